@@ -1,0 +1,69 @@
+/* small.h - 3-vectors and symmetric 3x3 blocks out of component-major arrays.
+ *
+ * A symmetric block is six doubles: xx, xy, xz, yy, yz, zz. Sums run left to right.
+ */
+#ifndef CLOTHSIM_SMALL_H
+#define CLOTHSIM_SMALL_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Vector i of an array (3,n). */
+static inline void cs_vec3_read(size_t n, const double *array, size_t i, double out[3]) {
+    for (size_t c = 0; c < 3; c++)
+        out[c] = array[c * n + i];
+}
+
+static inline void cs_vec3_write(size_t n, double *array, size_t i, const double a[3]) {
+    for (size_t c = 0; c < 3; c++)
+        array[c * n + i] = a[c];
+}
+
+/* Block i of an array (6,n). */
+static inline void cs_sym3_read(size_t n, const double *array, size_t i, double out[6]) {
+    for (size_t c = 0; c < 6; c++)
+        out[c] = array[c * n + i];
+}
+
+/* out = a p; out may not be p. */
+static inline void cs_sym3_mul(const double a[6], const double p[3], double out[3]) {
+    out[0] = a[0] * p[0] + a[1] * p[1] + a[2] * p[2];
+    out[1] = a[1] * p[0] + a[3] * p[1] + a[4] * p[2];
+    out[2] = a[2] * p[0] + a[4] * p[1] + a[5] * p[2];
+}
+
+/* The inverse by cofactors, definite or not. false if a is singular to working precision (the
+ * determinant of a, scaled to a largest entry of 1, is below 1e-30) or not finite; inverse is
+ * then not written. inverse may be a. */
+static inline bool cs_sym3_invert(const double a[6], double inverse[6]) {
+    double largest = 0;
+    for (int c = 0; c < 6; c++)
+        largest = fabs(a[c]) > largest ? fabs(a[c]) : largest;
+    if (!(largest > 0 && largest < HUGE_VAL))
+        return false;
+    // scaled, so that light particles do not underflow
+    const double xx = a[0] / largest, xy = a[1] / largest, xz = a[2] / largest;
+    const double yy = a[3] / largest, yz = a[4] / largest, zz = a[5] / largest;
+    const double cxx = yy * zz - yz * yz, cxy = xz * yz - xy * zz, cxz = xy * yz - xz * yy;
+    const double det = xx * cxx + xy * cxy + xz * cxz;
+    if (!(fabs(det) > 1e-30))
+        return false;
+    const double scale = det * largest;
+    inverse[0] = cxx / scale;
+    inverse[1] = cxy / scale;
+    inverse[2] = cxz / scale;
+    inverse[3] = (xx * zz - xz * xz) / scale;
+    inverse[4] = (xy * xz - xx * yz) / scale;
+    inverse[5] = (xx * yy - xy * xy) / scale;
+    return true;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
