@@ -1,0 +1,70 @@
+#include "base/arena.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 64, BLOCK_BYTES = 64 * 1024 };
+
+/* The block's bytes start at the next multiple of 64 behind this header. */
+struct cs_arena_block {
+    struct cs_arena_block *next;
+    size_t used, capacity;
+    unsigned char *bytes;
+};
+
+static struct cs_arena_block *block_create(size_t capacity) {
+    if (capacity > SIZE_MAX - 2 * ALIGNMENT)
+        return NULL;
+    struct cs_arena_block *block = NULL;
+    unsigned char *memory = calloc(1, capacity + 2 * ALIGNMENT);
+    if (!memory)
+        return NULL;
+    block = (struct cs_arena_block *)(void *)memory;
+    const uintptr_t start = (uintptr_t)(memory + sizeof *block);
+    block->bytes = memory + sizeof *block + (ALIGNMENT - start % ALIGNMENT) % ALIGNMENT;
+    block->capacity = capacity;
+    return block;
+}
+
+void *cs_arena_take(struct cs_arena *arena, size_t bytes, struct cs_error *error) {
+    const size_t size = bytes <= SIZE_MAX - ALIGNMENT
+                            ? (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT
+                            : SIZE_MAX;
+    struct cs_arena_block *block = arena->blocks;
+    if (!block || block->capacity - block->used < size) {
+        block = block_create(size > BLOCK_BYTES ? size : BLOCK_BYTES);
+        if (!block) {
+            cs_fail(error, CS_ERR_MEMORY, "out of memory (%zu bytes more were asked for)", bytes);
+            return NULL;
+        }
+        block->next = arena->blocks;
+        arena->blocks = block;
+    }
+    void *taken = block->bytes + block->used;
+    block->used += size;
+    arena->used += bytes;
+    return taken;
+}
+
+void *cs_arena_take_n(struct cs_arena *arena, size_t n, size_t size, struct cs_error *error) {
+    size_t bytes;
+    if (__builtin_mul_overflow(n, size, &bytes))
+        bytes = SIZE_MAX;
+    return cs_arena_take(arena, bytes, error);
+}
+
+char *cs_arena_take_text(struct cs_arena *arena, const char *text, struct cs_error *error) {
+    const size_t bytes = strlen(text) + 1;
+    char *copy = cs_arena_take(arena, bytes, error);
+    return copy ? memcpy(copy, text, bytes) : NULL;
+}
+
+void cs_arena_finish(struct cs_arena *arena) {
+    while (arena->blocks) {
+        struct cs_arena_block *next = arena->blocks->next;
+        free(arena->blocks);
+        arena->blocks = next;
+    }
+    arena->used = 0;
+}

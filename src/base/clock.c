@@ -1,0 +1,17 @@
+#include "base/clock.h"
+
+#include <time.h>
+
+static double seconds_of(clockid_t clock) {
+    struct timespec now = {0};
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double cs_clock_wall(void) {
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+double cs_clock_cpu(void) {
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}

@@ -1,0 +1,8 @@
+/* clock.h - the only clock; nothing of it reaches the state. */
+#ifndef CS_CLOCK_H
+#define CS_CLOCK_H
+
+double cs_clock_wall(void); /* s, monotonic */
+double cs_clock_cpu(void);  /* s of this process */
+
+#endif

@@ -1,0 +1,13 @@
+/* image.h - 8-bit RGB pixels, rows from the top. */
+#ifndef CS_IMAGE_H
+#define CS_IMAGE_H
+
+#include <stdint.h>
+
+/* width 0: no image. rgb holds 3 * width * height bytes, owned by whoever made it (malloc). */
+struct cs_image {
+    uint32_t width, height;
+    uint8_t *rgb;
+};
+
+#endif

@@ -1,0 +1,43 @@
+#include "base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char *format, ...) {
+    if (error->status != CS_OK)
+        return error->status;
+    error->status = status;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(error->message, sizeof error->message, format, args);
+    va_end(args);
+    return status;
+}
+
+int cs_status_exit_code(enum cs_status status) {
+    switch (status) {
+#define X(name, code, sentence)                                                                    \
+    case name:                                                                                     \
+        return code;
+        CS_STATUS_LIST(X)
+#undef X
+    }
+    return 6;
+}
+
+const char *cs_status_sentence(enum cs_status status) {
+    switch (status) {
+#define X(name, code, sentence)                                                                    \
+    case name:                                                                                     \
+        return sentence;
+        CS_STATUS_LIST(X)
+#undef X
+    }
+    return "unknown status";
+}
+
+void cs_assert_failed(const char *fact, const char *file, int line) {
+    fprintf(stderr, "clothsim: internal error: %s (%s:%d)\n", fact, file, line);
+    abort();
+}

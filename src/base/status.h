@@ -1,0 +1,41 @@
+/* status.h - how a call fails: a code, and the first message with its place. */
+#ifndef CS_STATUS_H
+#define CS_STATUS_H
+
+/* name, exit code, sentence for the man page */
+#define CS_STATUS_LIST(X)                                                                          \
+    X(CS_OK, 0, "done; an unstable run is a result too")                                           \
+    X(CS_ERR_CHECK, 1, "a check failed: a golden hash or image differs")                           \
+    X(CS_ERR_USAGE, 2, "the command line is wrong")                                                \
+    X(CS_ERR_SCENE, 3, "the scene is not valid")                                                   \
+    X(CS_ERR_FILE, 4, "a file cannot be read or written")                                          \
+    X(CS_ERR_MODULE, 5, "an integrator or renderer module cannot be used, or failed")              \
+    X(CS_ERR_INTERNAL, 6, "an error in clothsim itself")                                           \
+    X(CS_ERR_MEMORY, 7, "out of memory")                                                           \
+    X(CS_ERR_INTERRUPT, 130, "interrupted; whole frames were kept")
+
+enum cs_status {
+#define X(name, code, sentence) name,
+    CS_STATUS_LIST(X)
+#undef X
+};
+
+struct cs_error {
+    enum cs_status status; /* CS_OK while nothing has failed */
+    char message[1024];    /* one line, without the program's name */
+};
+
+/* Records status and message in *error unless it already holds one (the first wins: the place
+ * that knows most). Returns status, so that a caller can write `return cs_fail(error, ...)`. */
+enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Exit code and sentence of a status. */
+int cs_status_exit_code(enum cs_status status);
+const char *cs_status_sentence(enum cs_status status);
+
+/* A programmer's mistake: prints the place and aborts, in every build. */
+#define CS_ASSERT(fact) ((fact) ? (void)0 : cs_assert_failed(#fact, __FILE__, __LINE__))
+_Noreturn void cs_assert_failed(const char *fact, const char *file, int line);
+
+#endif

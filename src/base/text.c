@@ -1,0 +1,122 @@
+#include "base/text.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool reserve(struct cs_text *text, size_t more) {
+    if (text->failed)
+        return false;
+    if (text->capacity - text->length > more)
+        return true;
+    const size_t capacity = (text->length + more + 1) * 2;
+    char *bytes = realloc(text->bytes, capacity);
+    if (!bytes) {
+        text->failed = true;
+        return false;
+    }
+    text->bytes = bytes;
+    text->capacity = capacity;
+    return true;
+}
+
+void cs_text_add(struct cs_text *text, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    const int length = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    if (length < 0 || !reserve(text, (size_t)length))
+        return;
+    va_start(args, format);
+    vsnprintf(text->bytes + text->length, (size_t)length + 1, format, args);
+    va_end(args);
+    text->length += (size_t)length;
+}
+
+void cs_text_add_real(struct cs_text *text, double value) {
+    if (!isfinite(value)) {
+        cs_text_add(text, "null");
+        return;
+    }
+    char digits[40];
+    for (int precision = 1; precision <= 17; precision++) {
+        snprintf(digits, sizeof digits, "%.*g", precision, value);
+        if (strtod(digits, NULL) == value)
+            break;
+    }
+    cs_text_add(text, "%s", digits);
+}
+
+void cs_text_add_json(struct cs_text *text, const char *s) {
+    cs_text_add(text, "\"");
+    for (const unsigned char *c = (const unsigned char *)s; *c; c++) {
+        if (*c == '"' || *c == '\\')
+            cs_text_add(text, "\\%c", *c);
+        else if (*c < 0x20)
+            cs_text_add(text, "\\u%04x", *c);
+        else
+            cs_text_add(text, "%c", *c);
+    }
+    cs_text_add(text, "\"");
+}
+
+const char *cs_text_get(const struct cs_text *text) {
+    return text->bytes ? text->bytes : "";
+}
+
+void cs_text_finish(struct cs_text *text) {
+    free(text->bytes);
+    *text = (struct cs_text){0};
+}
+
+bool cs_parse_real(const char *s, double *value) {
+    /* strtod also takes blanks, hex and names */
+    if (!*s || s[strspn(s, "+-.0123456789eE")])
+        return false;
+    char *end;
+    const double read = strtod(s, &end);
+    if (*end || !isfinite(read))
+        return false;
+    *value = read;
+    return true;
+}
+
+/* edits (insert, delete, replace) that turn a into b, by one row of the usual table */
+static size_t distance(const char *a, const char *b) {
+    enum { LONGEST = 64 };
+    size_t row[LONGEST + 1];
+    const size_t n = strlen(b);
+    if (n > LONGEST || strlen(a) > LONGEST)
+        return LONGEST;
+    for (size_t j = 0; j <= n; j++)
+        row[j] = j;
+    for (size_t i = 0; a[i]; i++) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < n; j++) {
+            const size_t replaced =
+                diagonal + (tolower((unsigned char)a[i]) != tolower((unsigned char)b[j]));
+            diagonal = row[j + 1];
+            size_t best = replaced < row[j] + 1 ? replaced : row[j] + 1;
+            row[j + 1] = best < row[j + 1] + 1 ? best : row[j + 1] + 1;
+        }
+    }
+    return row[n];
+}
+
+const char *cs_nearest(const char *word, const char *const *candidates) {
+    const char *nearest = NULL;
+    size_t least = strlen(word) / 2 + 2;
+    for (; *candidates; candidates++) {
+        /* what was begun and not finished is near too */
+        const bool begun = strlen(word) > 2 && !strncmp(word, *candidates, strlen(word));
+        const size_t d = begun ? 1 : distance(word, *candidates);
+        if (d < least) {
+            least = d;
+            nearest = *candidates;
+        }
+    }
+    return nearest;
+}

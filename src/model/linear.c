@@ -1,0 +1,129 @@
+#include "model/linear.h"
+
+#include "model/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
+                              struct cs_arena *arena, struct cs_error *error) {
+    const size_t n = system->view.n;
+    *linear = (struct cs_linear){.system = system};
+    linear->factors = cs_arena_take_n(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
+    linear->mass = cs_arena_take_n(arena, n, sizeof(double), error);
+    linear->inverse = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
+    double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
+    for (int k = 0; k < 4; k++)
+        *vectors[k] = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+    return error->status;
+}
+
+/* inverts the symmetric 3x3 block of particle i in place; false if it is not positive definite */
+static bool invert(double *blocks, size_t n, size_t i) {
+    const double a = blocks[i], b = blocks[n + i], c = blocks[2 * n + i];
+    const double d = blocks[3 * n + i], e = blocks[4 * n + i], f = blocks[5 * n + i];
+    const double c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d;
+    const double minor = a * d - b * b, determinant = a * c00 + b * c01 + c * c02;
+    if (!(a > 0) || !(minor > 0) || !(determinant > 0))
+        return false;
+    const double inverse = 1 / determinant;
+    blocks[i] = c00 * inverse;
+    blocks[n + i] = c01 * inverse;
+    blocks[2 * n + i] = c02 * inverse;
+    blocks[3 * n + i] = (a * f - c * c) * inverse;
+    blocks[4 * n + i] = (b * c - a * e) * inverse;
+    blocks[5 * n + i] = minor * inverse;
+    return true;
+}
+
+bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
+                     bool psd) {
+    const struct cs_system *system = linear->system;
+    const struct cs_forces *forces = &system->scene->forces;
+    const size_t n = system->view.n;
+    linear->cm = cm, linear->cd = cd, linear->ck = ck;
+    cs_springs_factor(&system->springs, (uint32_t)n, x, cd, ck, psd, linear->factors);
+
+    memset(linear->inverse, 0, 6 * n * sizeof(double));
+    for (size_t i = 0; i < n; i++) {
+        const double drag =
+            forces->drag * (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
+        linear->mass[i] = cm * system->mass[i] - cd * drag;
+        linear->inverse[i] = linear->inverse[3 * n + i] = linear->inverse[5 * n + i] =
+            linear->mass[i];
+    }
+    cs_springs_factor_diagonal(&system->springs, (uint32_t)n, linear->factors, linear->inverse);
+    bool definite = true;
+    for (size_t i = 0; i < n; i++)
+        definite &= invert(linear->inverse, n, i);
+    return definite;
+}
+
+static void clear_pinned(const struct cs_system *system, double *p) {
+    for (size_t c = 0; c < 3; c++)
+        for (uint32_t k = 0; k < system->n_pinned; k++)
+            p[c * system->view.n + system->pinned[k]] = 0;
+}
+
+void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
+    const size_t n = linear->system->view.n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            y[c * n + i] = linear->mass[i] * p[c * n + i];
+    cs_springs_mul_add(&linear->system->springs, (uint32_t)n, linear->factors, p, y);
+    clear_pinned(linear->system, y);
+}
+
+/* z = inverse blocks times r */
+static void precondition(const struct cs_linear *linear, const double *r, double *z) {
+    const size_t n = linear->system->view.n;
+    const double *b = linear->inverse;
+    for (size_t i = 0; i < n; i++) {
+        const double x = r[i], y = r[n + i], w = r[2 * n + i];
+        z[i] = b[i] * x + b[n + i] * y + b[2 * n + i] * w;
+        z[n + i] = b[n + i] * x + b[3 * n + i] * y + b[4 * n + i] * w;
+        z[2 * n + i] = b[2 * n + i] * x + b[4 * n + i] * y + b[5 * n + i] * w;
+    }
+}
+
+enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
+                                   double *u, uint64_t *iterations, double *residual) {
+    const size_t n3 = 3 * (size_t)linear->system->view.n;
+    const uint64_t limit = 10 * (uint64_t)linear->system->view.n + 100;
+    double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
+
+    /* r = b - A u without the pinned rows */
+    clear_pinned(linear->system, u);
+    cs_linear_mul(linear, u, q);
+    memcpy(r, b, n3 * sizeof *r);
+    clear_pinned(linear->system, r);
+    const double goal = rtol * sqrt(cs_vector_dot(n3, r, r));
+    cs_vector_kernels.linear_sum(n3, 1, r, -1, q, r);
+    double norm = sqrt(cs_vector_dot(n3, r, r)), rz = 0;
+
+    *iterations = 0;
+    while (norm > goal) {
+        if (*iterations == limit) {
+            *residual = norm / goal * rtol;
+            return CS_LINEAR_LIMIT;
+        }
+        precondition(linear, r, z);
+        const double next = cs_vector_dot(n3, r, z);
+        if (*iterations == 0)
+            memcpy(p, z, n3 * sizeof *p);
+        else
+            cs_vector_kernels.linear_sum(n3, 1, z, next / rz, p, p);
+        rz = next;
+        cs_linear_mul(linear, p, q);
+        const double curvature = cs_vector_dot(n3, p, q);
+        if (!(curvature > 0))
+            return CS_LINEAR_INDEFINITE;
+        const double step = rz / curvature;
+        cs_vector_kernels.linear_sum(n3, 1, u, step, p, u);
+        cs_vector_kernels.linear_sum(n3, 1, r, -step, q, r);
+        norm = sqrt(cs_vector_dot(n3, r, r));
+        ++*iterations;
+    }
+    *residual = goal > 0 ? norm / goal * rtol : 0;
+    return CS_LINEAR_DONE;
+}

@@ -1,0 +1,37 @@
+/* linear.h - the one linear solver: A u = b with A = cm M + cd df/dv + ck df/dx of springs,
+ * dampers and drag, by conjugate gradients without assembling A, preconditioned by the 3x3
+ * blocks of its diagonal. */
+#ifndef CS_LINEAR_H
+#define CS_LINEAR_H
+
+#include "model/system.h"
+
+struct cs_linear {
+    const struct cs_system *system; /* borrowed */
+    double cm, cd, ck;
+    double *factors;       /* 4 doubles a spring */
+    double *mass;          /* (n) diagonal part: cm m - cd drag */
+    double *inverse;       /* (6,n) inverses of the diagonal blocks */
+    double *r, *z, *p, *q; /* (3,n) each */
+};
+
+/* Takes the arrays from arena. CS_ERR_MEMORY. */
+enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
+                              struct cs_arena *arena, struct cs_error *error);
+
+/* Prepares A at x. cm > 0, cd <= 0, ck <= 0. false: a diagonal block is not positive definite
+ * (only without psd). */
+bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
+                     bool psd);
+
+/* y = A p for p that is 0 on pinned particles; y is 0 there too. */
+void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y);
+
+enum cs_linear_end { CS_LINEAR_DONE, CS_LINEAR_INDEFINITE, CS_LINEAR_LIMIT };
+
+/* Solves A u = b to |b - A u| <= rtol |b|, from the start in u; rows of pinned particles are 0.
+ * At most 10 n + 100 iterations. *iterations and *residual (relative) say how it went. */
+enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
+                                   double *u, uint64_t *iterations, double *residual);
+
+#endif

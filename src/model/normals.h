@@ -1,0 +1,16 @@
+/* normals.h - particle normals of grids, for the wind. */
+#ifndef CS_NORMALS_H
+#define CS_NORMALS_H
+
+#include "model/system.h"
+
+/* Writes system->normals (3,n): at each particle the unit vector along
+ * (right - left) x (up - down), the particle itself standing in for a neighbour that is missing
+ * (cloth thesis, eq. 4.6-4.9). Where that product is 0 the normal is 0. */
+void cs_normals_update(const struct cs_system *system, const double *x);
+
+/* Change of the unit normal of particle i of a body when x changes along dx; normals fresh. */
+void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
+                          uint32_t i, const double *x, const double *dx, double dn[3]);
+
+#endif

@@ -1,0 +1,88 @@
+#include "model/plan.h"
+
+#include "model/springs.h"
+
+#include <clothsim/integrator.h>
+#include <math.h>
+
+static const char *const feature_names[CS_FEATURES] = {
+#define X(name, text) text,
+    CS_FEATURE_LIST(X)
+#undef X
+};
+
+static void decide(struct cs_plan *plan, enum cs_feature feature, bool built, size_t bytes,
+                   const char *why, const char *why_not) {
+    plan->rows[feature] =
+        (struct cs_plan_row){.built = built, .bytes = built ? bytes : 0, .why = built ? why : why_not};
+}
+
+static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uint32_t *n_runs) {
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    plan->n_bodies = scene->bodies.n;
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        plan->n += (uint32_t)(bodies[b].cloth.grid[0] * bodies[b].cloth.grid[1]);
+        *n_runs += cs_springs_of_grid(bodies + b, b, 0, NULL, &plan->n_springs);
+    }
+}
+
+static bool any_body(const struct cs_scene *scene, bool (*has)(const struct cs_body *body)) {
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        if (has(bodies + b))
+            return true;
+    return false;
+}
+static bool has_damping(const struct cs_body *body) {
+    return body->springs.damping > 0;
+}
+static bool has_limit(const struct cs_body *body) {
+    return !isnan(body->strain_limit);
+}
+
+void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs, bool render) {
+    *plan = (struct cs_plan){0};
+    uint32_t n_runs = 0;
+    count_bodies(plan, scene, &n_runs);
+    const size_t n = plan->n, s = plan->n_springs, real = sizeof(double);
+    const struct cs_forces *forces = &scene->forces;
+    const double *g = forces->gravity;
+    const bool wind = forces->wind.present && forces->wind.strength > 0, drag = forces->drag > 0;
+    const bool area = (wind && forces->wind.strength_unit == CS_WIND_PA) ||
+                      (drag && forces->drag_unit == CS_DRAG_AREA);
+    plan->state_bytes = (6 + 3 + 2) * n * real;
+
+    decide(plan, CS_FEATURE_SPRINGS, s > 0, n_runs * sizeof(struct cs_spring_run),
+           "the bodies have springs", "no stiffness above 0");
+    decide(plan, CS_FEATURE_DAMPING, s > 0 && any_body(scene, has_damping), 0,
+           "springs.damping is above 0", "springs.damping is 0");
+    decide(plan, CS_FEATURE_GRAVITY, g[0] != 0 || g[1] != 0 || g[2] != 0, 0, "forces.gravity",
+           "forces.gravity is 0");
+    decide(plan, CS_FEATURE_DRAG, drag, 0, "forces.drag is above 0", "forces.drag is 0");
+    decide(plan, CS_FEATURE_WIND, wind, 3 * n * real, "forces.wind blows; it needs normals",
+           forces->wind.present ? "forces.wind.strength is 0" : "no forces.wind");
+    decide(plan, CS_FEATURE_AREA, area, n * real, "drag or wind are by area",
+           "nothing is by area");
+    decide(plan, CS_FEATURE_VELOCITY_LOSS, forces->velocity_loss > 0, 0,
+           "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
+    decide(plan, CS_FEATURE_CONTACT, scene->colliders.n > 0, 0, "the scene has colliders",
+           "no colliders");
+    decide(plan, CS_FEATURE_STRAIN_LIMIT, s > 0 && any_body(scene, has_limit), 0,
+           "a body has strain_limit", "no strain_limit");
+    decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
+           s * (2 * sizeof(uint32_t) + 2 * real), "the integrator asks for it",
+           "the integrator does not ask for it");
+    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 24 * n) * real,
+           "the integrator asks for it", "the integrator does not ask for it");
+    decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
+}
+
+void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
+    cs_text_add(out, "particles      %u\nbodies         %u\nsprings        %u\nstate          %zu bytes\n",
+                plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
+    for (uint32_t f = 0; f < CS_FEATURES; f++) {
+        const struct cs_plan_row *row = plan->rows + f;
+        cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", feature_names[f],
+                    row->built ? "built" : "left out", row->bytes, row->why);
+    }
+}

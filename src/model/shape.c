@@ -1,0 +1,103 @@
+#include "model/shape.h"
+
+#include <math.h>
+#include <string.h>
+
+/* rows of the rotation: the given matrix, or that of the unit quaternion */
+static void rotation_of(const struct cs_place *place, double r[9]) {
+    if (!isnan(place->matrix[0])) {
+        memcpy(r, place->matrix, 9 * sizeof *r);
+        return;
+    }
+    const double x = place->rotate[0], y = place->rotate[1], z = place->rotate[2];
+    const double w = place->rotate[3];
+    const double turned[9] = {
+        1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+        2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+        2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    memcpy(r, turned, sizeof turned);
+}
+
+/* from -size/2 to size/2 in equal steps, 0 for a single particle (cloth thesis, eq. 4.1) */
+static double along(double size, uint32_t i, uint32_t count) {
+    const double share = count > 1 ? (double)i / (count - 1) : 0.5;
+    return (share - 0.5) * size;
+}
+
+void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+    const struct cs_cloth *cloth = &body->cloth;
+    const uint32_t columns = (uint32_t)cloth->grid[0], rows = (uint32_t)cloth->grid[1];
+    double r[9];
+    rotation_of(&cloth->place, r);
+    for (uint32_t i = 0; i < rows; i++)
+        for (uint32_t j = 0; j < columns; j++) {
+            const double across = along(cloth->size[0], j, columns);
+            const double up = -along(cloth->size[1], i, rows);
+            const bool flat = cloth->start == CS_START_FLAT;
+            const double p[3] = {across, flat ? 0 : up, flat ? -up : 0};
+            const size_t at = first + (size_t)i * columns + j;
+            for (size_t c = 0; c < 3; c++)
+                x[c * n + at] = r[3 * c] * p[0] + r[3 * c + 1] * p[1] + r[3 * c + 2] * p[2] +
+                                cloth->place.translate[c];
+        }
+}
+
+double cs_shape_area(const struct cs_body *body, uint32_t row, uint32_t column) {
+    const uint32_t columns = (uint32_t)body->cloth.grid[0], rows = (uint32_t)body->cloth.grid[1];
+    /* half a cell to each side that has one; a single row or column keeps the whole size */
+    const double width = columns > 1 ? body->cloth.size[0] / (columns - 1) *
+                                           (0.5 * (column > 0) + 0.5 * (column + 1 < columns))
+                                     : body->cloth.size[0];
+    const double height = rows > 1 ? body->cloth.size[1] / (rows - 1) *
+                                         (0.5 * (row > 0) + 0.5 * (row + 1 < rows))
+                                   : body->cloth.size[1];
+    return width * height;
+}
+
+static bool is_named(enum cs_pin_name name, uint32_t i, uint32_t j, uint32_t rows,
+                     uint32_t columns) {
+    const bool top = i == 0, bottom = i + 1 == rows, left = j == 0, right = j + 1 == columns;
+    switch (name) {
+    case CS_PIN_TOP_LEFT:
+        return top && left;
+    case CS_PIN_TOP_RIGHT:
+        return top && right;
+    case CS_PIN_BOTTOM_LEFT:
+        return bottom && left;
+    case CS_PIN_BOTTOM_RIGHT:
+        return bottom && right;
+    case CS_PIN_TOP:
+        return top;
+    case CS_PIN_BOTTOM:
+        return bottom;
+    case CS_PIN_LEFT:
+        return left;
+    case CS_PIN_RIGHT:
+        return right;
+    case CS_PIN_EDGES:
+        return top || bottom || left || right;
+    }
+    return false;
+}
+
+static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const double *x) {
+    for (size_t c = 0; c < 3; c++)
+        if (x[c * n + at] < box->min[c] || x[c * n + at] > box->max[c])
+            return false;
+    return true;
+}
+
+void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
+                  bool *pinned) {
+    const uint32_t columns = (uint32_t)body->cloth.grid[0], rows = (uint32_t)body->cloth.grid[1];
+    const struct cs_pin *pins = body->pins.items;
+    for (uint32_t p = 0; p < body->pins.n; p++)
+        for (uint32_t i = 0; i < rows; i++)
+            for (uint32_t j = 0; j < columns; j++) {
+                const uint32_t at = i * columns + j;
+                if ((pins[p].at >= 0 && is_named((enum cs_pin_name)pins[p].at, i, j, rows, columns)) ||
+                    pins[p].index == (int64_t)at ||
+                    (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
+                    pinned[at] = true;
+            }
+}

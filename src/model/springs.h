@@ -1,0 +1,76 @@
+/* springs.h - springs as runs, and the kernels over them.
+ *
+ * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. The
+ * 12 neighbours of a grid are six runs a row, so kernels vectorise inside a run. The order of
+ * runs is the order of every sum, and the state hash depends on it.
+ */
+#ifndef CS_SPRINGS_H
+#define CS_SPRINGS_H
+
+#include "base/arena.h"
+#include "model/scene.h"
+
+#include <clothsim/system.h>
+
+enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPRING_KINDS };
+
+struct cs_spring_run {
+    uint32_t a, b, count;
+    uint32_t kind;    /* enum cs_spring_kind */
+    uint32_t body;
+    uint32_t first;   /* number of the run's first spring */
+    double stiffness; /* N/m */
+    double length;    /* rest length in m */
+    double damping;   /* N s/m */
+    bool axial;       /* damping along the spring only */
+};
+
+struct cs_springs {
+    const struct cs_spring_run *runs;
+    uint32_t n_runs, n;   /* runs; springs */
+};
+
+/* Runs of one grid cloth whose particles start at `first`, appended at runs[0..]; runs may be
+ * NULL to count. Kinds of stiffness 0 have no springs unless they damp. Returns the number of
+ * runs and adds the springs to *n_springs. */
+uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uint32_t first,
+                            struct cs_spring_run *runs, uint32_t *n_springs);
+
+/* Adds the spring and damper forces of the chosen parts to f (3,n).
+ *
+ * For a spring of rest length L, stiffness k and damping d, with unit direction u from end a to
+ * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial damping;
+ * flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis, eq. 5.10).
+ * The smallest normal double is added to the squared length before the root, so that two
+ * particles in one place feel no spring force instead of dividing by zero. */
+void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
+                          const double *v, uint32_t parts, double *f);
+
+/* Elastic energy in J of the springs of `parts`. */
+double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
+                         uint32_t parts);
+
+/* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df; dx or dv may be NULL. */
+void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
+                        const double *v, uint32_t parts, const double *dx, const double *dv,
+                        double *df);
+
+/* Adds every particle's own blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
+ * The position derivative of axial damping is left out, as in the solver's matrix. */
+void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const double *x,
+                             double *kxx, double *dvv);
+
+/* The springs' part of the matrix cd df/dv + ck df/dx in factored form, for cd and ck at most 0
+ * as in implicit methods: A p = sum over springs of (s I + w w^T)(p_a - p_b), added at a and
+ * taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz, each (count).
+ * With psd the transverse part of a compressed spring is dropped (Teran et al. 2005); else s may
+ * be negative. The position derivative of axial damping is left out. */
+void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
+                       double ck, bool psd, double *factors);
+void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
+                        const double *p, double *y);
+/* Own blocks (6,n) of that matrix, added. */
+void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
+                                const double *factors, double *blocks);
+
+#endif
