@@ -1,0 +1,113 @@
+#include "sim/module.h"
+
+#include "sim/guard.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <string.h>
+
+static bool is_name(const char *name, const char *letters) {
+    return name && *name && strlen(name) < 64 && !name[strspn(name, letters)];
+}
+
+static enum cs_status refuse_option(const struct cs_integrator *integrator,
+                                    const struct cs_option *option, const char *why,
+                                    struct cs_error *error) {
+    return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\", option \"%.60s\": %s",
+                   integrator->name, option->name ? option->name : "(no name)", why);
+}
+
+static size_t size_of(enum cs_type type) {
+    switch (type) {
+    case CS_REAL:
+        return sizeof(double);
+    case CS_INT:
+        return sizeof(int64_t);
+    case CS_BOOL:
+        return sizeof(bool);
+    case CS_CHOICE:
+        return sizeof(int32_t);
+    default:
+        return 0;
+    }
+}
+
+static enum cs_status check_option(const struct cs_integrator *integrator,
+                                   const struct cs_option *option, struct cs_error *error) {
+    const size_t size = size_of(option->type);
+    if (!is_name(option->name, "abcdefghijklmnopqrstuvwxyz0123456789_"))
+        return refuse_option(integrator, option, "its name is not of [a-z0-9_]", error);
+    if (size == 0)
+        return refuse_option(integrator, option, "its type is not for modules", error);
+    if (option->offset > integrator->options_size ||
+        size > integrator->options_size - option->offset)
+        return refuse_option(integrator, option, "it lies outside its struct", error);
+    if (!option->help || !option->unit)
+        return refuse_option(integrator, option, "it has no help or unit", error);
+    if (option->type == CS_CHOICE) {
+        int32_t n = 0;
+        while (option->choices && option->choices[n])
+            n++;
+        if (!(option->def >= 0) || option->def >= n)
+            return refuse_option(integrator, option, "its default is none of its choices", error);
+    } else if (option->type != CS_BOOL &&
+               !(option->min <= option->def && option->def <= option->max)) {
+        return refuse_option(integrator, option, "its default is outside its range", error);
+    }
+    return CS_OK;
+}
+
+static enum cs_status check_integrator(const struct cs_integrator *integrator,
+                                       struct cs_error *error) {
+    if (!integrator || !is_name(integrator->name, "abcdefghijklmnopqrstuvwxyz0123456789-"))
+        return cs_fail(error, CS_ERR_MODULE, "an integrator's name is not of [a-z0-9-]");
+    if (integrator->size < sizeof *integrator)
+        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\": size %u, expected at least %zu",
+                       integrator->name, integrator->size, sizeof *integrator);
+    if (!integrator->summary || !integrator->source)
+        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\": no summary or source",
+                       integrator->name);
+    if (!integrator->create || !integrator->restart || !integrator->advance)
+        return cs_fail(error, CS_ERR_MODULE,
+                       "integrator \"%s\": create, restart or advance is missing",
+                       integrator->name);
+    if (integrator->n_options > 0 && !integrator->options)
+        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\": no option table",
+                       integrator->name);
+    for (uint32_t k = 0; k < integrator->n_options; k++)
+        if (check_option(integrator, integrator->options + k, error))
+            return error->status;
+    return CS_OK;
+}
+
+static enum cs_status check_module(const struct cs_module *module, struct cs_error *error) {
+    if (module->abi != CS_ABI)
+        return cs_fail(error, CS_ERR_MODULE, "made for interface %u, expected %u", module->abi,
+                       CS_ABI);
+    if (module->size < sizeof(struct cs_integrator))
+        return cs_fail(error, CS_ERR_MODULE, "integrator structs of %u bytes, expected %zu",
+                       module->size, sizeof(struct cs_integrator));
+    if (module->n == 0 || !module->integrators)
+        return cs_fail(error, CS_ERR_MODULE, "holds no integrator");
+    for (uint32_t k = 0; k < module->n; k++)
+        if (check_integrator(module->integrators[k], error))
+            return error->status;
+    return CS_OK;
+}
+
+enum cs_status cs_module_open(const char *file, const struct cs_module **module,
+                              struct cs_error *error) {
+    *module = NULL;
+    const struct cs_guard guard = cs_guard_take();
+    void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
+    cs_guard_restore(guard);
+    if (!handle)
+        return cs_fail(error, CS_ERR_MODULE, "cannot be loaded: %s", dlerror());
+    const struct cs_module *found = dlsym(handle, "clothsim_module");
+    if (!found)
+        return cs_fail(error, CS_ERR_MODULE, "has no symbol clothsim_module");
+    if (check_module(found, error))
+        return error->status;
+    *module = found;
+    return CS_OK;
+}

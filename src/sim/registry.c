@@ -1,0 +1,195 @@
+#include "sim/registry.h"
+
+#include "base/file.h"
+#include "base/text.h"
+#include "sim/folders.h"
+#include "sim/module.h"
+
+#include <dirent.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MODULE_BYTES_MAX = 256 << 20 };
+
+static enum cs_status add_entry(struct cs_registry *registry, const char *file,
+                                const struct cs_integrator *integrator, const char *refusal,
+                                struct cs_error *error) {
+    if (registry->n == registry->capacity) {
+        const uint32_t capacity = 2 * registry->capacity + 32;
+        struct cs_registered *entries =
+            cs_arena_take_n(&registry->arena, capacity, sizeof *entries, error);
+        if (!entries)
+            return error->status;
+        if (registry->n > 0)
+            memcpy(entries, registry->entries, registry->n * sizeof *entries);
+        registry->entries = entries;
+        registry->capacity = capacity;
+    }
+    const struct cs_registered entry = {
+        .file = cs_arena_take_text(&registry->arena, file, error),
+        .integrator = integrator,
+        .refusal = refusal ? cs_arena_take_text(&registry->arena, refusal, error) : NULL,
+    };
+    registry->entries[registry->n++] = entry;
+    return error->status;
+}
+
+static const struct cs_registered *find_entry(const struct cs_registry *registry,
+                                              const char *name) {
+    for (uint32_t k = 0; k < registry->n; k++)
+        if (registry->entries[k].integrator &&
+            !strcmp(registry->entries[k].integrator->name, name))
+            return registry->entries + k;
+    return NULL;
+}
+
+static bool was_opened(const struct cs_registry *registry, const char *file) {
+    for (uint32_t k = 0; k < registry->n; k++)
+        if (!strcmp(registry->entries[k].file, file))
+            return true;
+    return false;
+}
+
+/* Opens a module; its refusal becomes an entry. A name that is taken stays with the first. */
+static enum cs_status open_module(struct cs_registry *registry, const char *file,
+                                  struct cs_error *error) {
+    if (was_opened(registry, file))
+        return CS_OK;
+    struct cs_error refusal = {0};
+    const struct cs_module *module;
+    if (cs_module_open(file, &module, &refusal))
+        return add_entry(registry, file, NULL, refusal.message, error);
+    for (uint32_t k = 0; k < module->n && !error->status; k++) {
+        const struct cs_integrator *integrator = module->integrators[k];
+        const struct cs_registered *first = find_entry(registry, integrator->name);
+        char why[PATH_MAX + 128];
+        snprintf(why, sizeof why, "integrator \"%s\" is already in %s", integrator->name,
+                 first ? first->file : "");
+        add_entry(registry, file, first ? NULL : integrator, first ? why : NULL, error);
+    }
+    return error->status;
+}
+
+enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
+                                    struct cs_error *error) {
+    char absolute[PATH_MAX];
+    if (!realpath(file, absolute))
+        return cs_fail(error, CS_ERR_MODULE, "%s: there is no such module file", file);
+    const uint32_t before = registry->n;
+    if (open_module(registry, absolute, error))
+        return error->status;
+    for (uint32_t k = before; k < registry->n; k++)
+        if (registry->entries[k].refusal)
+            return cs_fail(error, CS_ERR_MODULE, "%s: %s", file, registry->entries[k].refusal);
+    return CS_OK;
+}
+
+/* Whether the file's bytes hold the name as a whole string: a module that could have the
+ * integrator is opened, and no other (opening one loads its libraries). */
+static bool may_hold(const char *file, const char *name) {
+    struct cs_error ignored = {0};
+    char *bytes;
+    size_t length;
+    if (cs_file_read(file, MODULE_BYTES_MAX, &bytes, &length, &ignored))
+        return true; /* opening it will say what is wrong */
+    const bool holds = memmem(bytes, length, name, strlen(name) + 1) != NULL;
+    free(bytes);
+    return holds;
+}
+
+static int is_module_name(const struct dirent *entry) {
+    const size_t length = strlen(entry->d_name);
+    return length > 3 && !strcmp(entry->d_name + length - 3, ".so");
+}
+
+/* opens the modules of a folder, in the order of their names; name NULL: all */
+static enum cs_status open_folder(struct cs_registry *registry, const char *folder,
+                                  const char *name, struct cs_error *error) {
+    struct dirent **entries;
+    const int n = scandir(folder, &entries, is_module_name, alphasort);
+    for (int k = 0; k < n; k++) {
+        char file[PATH_MAX];
+        const int length = snprintf(file, sizeof file, "%s/%s", folder, entries[k]->d_name);
+        if (!error->status && length < (int)sizeof file && (!name || may_hold(file, name)))
+            open_module(registry, file, error);
+        free(entries[k]);
+    }
+    if (n >= 0)
+        free(entries);
+    return error->status;
+}
+
+static enum cs_status open_folders(struct cs_registry *registry, const char *name,
+                                   struct cs_error *error) {
+    if (open_folder(registry, cs_module_folder(), name, error))
+        return error->status;
+    const char *list = getenv("CLOTHSIM_PLUGIN_PATH");
+    while (list && *list && !error->status) {
+        const size_t length = strcspn(list, ":");
+        char folder[PATH_MAX];
+        /* absolute folders only: never what happens to lie in the working folder */
+        if (*list == '/' && length < sizeof folder) {
+            memcpy(folder, list, length);
+            folder[length] = 0;
+            open_folder(registry, folder, name, error);
+        }
+        list += length + (list[length] == ':');
+    }
+    return error->status;
+}
+
+/* refused ones last, else by name */
+static int by_name(const void *left, const void *right) {
+    const struct cs_registered *a = left, *b = right;
+    if (!a->integrator != !b->integrator)
+        return a->integrator ? -1 : 1;
+    return a->integrator ? strcmp(a->integrator->name, b->integrator->name)
+                         : strcmp(a->file, b->file);
+}
+
+enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error) {
+    if (open_folders(registry, NULL, error))
+        return error->status;
+    if (registry->n > 0)
+        qsort(registry->entries, registry->n, sizeof *registry->entries, by_name);
+    return CS_OK;
+}
+
+static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
+                                   struct cs_error *error) {
+    if (cs_registry_open_all(registry, error))
+        return error->status;
+    const char *names[257];
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < registry->n && n < 256; k++)
+        if (registry->entries[k].integrator)
+            names[n++] = registry->entries[k].integrator->name;
+    names[n] = NULL;
+    const char *nearest = cs_nearest(name, names);
+    return cs_fail(error, CS_ERR_USAGE, "no integrator \"%.60s\"%s%s%s (see: clothsim integrators)",
+                   name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                   nearest ? "\"?" : "");
+}
+
+enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
+                                const struct cs_registered **found, struct cs_error *error) {
+    *found = find_entry(registry, name);
+    if (!*found && open_folders(registry, name, error))
+        return error->status;
+    if (!*found)
+        *found = find_entry(registry, name);
+    if (*found)
+        return CS_OK;
+    for (uint32_t k = 0; k < registry->n; k++)
+        if (registry->entries[k].refusal && strstr(registry->entries[k].file, name))
+            return cs_fail(error, CS_ERR_MODULE, "%s: %s", registry->entries[k].file,
+                           registry->entries[k].refusal);
+    return unknown_name(registry, name, error);
+}
+
+void cs_registry_finish(struct cs_registry *registry) {
+    cs_arena_finish(&registry->arena);
+    *registry = (struct cs_registry){0};
+}

@@ -1,0 +1,41 @@
+/* registry.h - the integrator modules: where they are looked for, and why one is refused. */
+#ifndef CS_REGISTRY_H
+#define CS_REGISTRY_H
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "sim/folders.h"
+
+#include <clothsim/integrator.h>
+
+/* One integrator that can be used, or one module file that cannot. */
+struct cs_registered {
+    const char *file;                       /* absolute path of the module */
+    const struct cs_integrator *integrator; /* NULL: refused */
+    const char *refusal;                    /* why; NULL: it can be used */
+};
+
+/* Zeroed: empty. */
+struct cs_registry {
+    struct cs_registered *entries; /* sorted by integrator name, refused ones last */
+    uint32_t n, capacity;
+    struct cs_arena arena;
+};
+
+/* Adds one module file (--plugin). A refused file is an error here: CS_ERR_MODULE. */
+enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
+                                    struct cs_error *error);
+
+/* Finds an integrator by name: files that were added first, then a module NAME.so, then every
+ * module in the folders (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute
+ * folders only). Only what must be opened is opened. CS_ERR_USAGE with the nearest name where
+ * there is none, CS_ERR_MODULE with the reason where it was refused. */
+enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
+                                const struct cs_registered **found, struct cs_error *error);
+
+/* Opens every module of the folders, for the list. */
+enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
+
+void cs_registry_finish(struct cs_registry *registry);
+
+#endif

@@ -1,0 +1,95 @@
+#include "sim/run.h"
+
+#include "base/clock.h"
+#include "sim/host.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const cs_stage_names[] = {"force", "solve", "contact", "limit", "normals", NULL};
+
+const char *cs_outcome_text(enum cs_outcome outcome) {
+    switch (outcome) {
+#define X(name, text)                                                                              \
+    case name:                                                                                     \
+        return text;
+        CS_OUTCOME_LIST(X)
+#undef X
+    }
+    return "unknown";
+}
+
+/* What a call into the method came to: its result, or a changed floating-point mode. */
+static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_guard guard,
+                            struct cs_error *error) {
+    const char *name = run->integrator->name;
+    if (cs_guard_restore(guard))
+        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\" changed the floating-point mode",
+                       name);
+    if (step == CS_STEP_OK || (step == CS_STEP_HALT && run->outcome != CS_RUNNING))
+        return CS_OK;
+    const struct cs_error *said = &run->host->error;
+    return cs_fail(error, said->status ? said->status : CS_ERR_MODULE,
+                   "integrator \"%s\" failed at t = %.6g s: %s", name, run->t,
+                   said->status ? said->message : "it gave no reason");
+}
+
+static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
+    struct cs_run_host *host = run->host;
+    struct cs_guard guard = cs_guard_take();
+    host->creating = true;
+    enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
+    host->creating = false;
+    if (judge(run, step, guard, error))
+        return error->status;
+    guard = cs_guard_take();
+    step = run->integrator->restart(host->self, 0, run->x, run->v);
+    return judge(run, step, guard, error);
+}
+
+enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
+                            const struct cs_integrator *integrator, const void *options,
+                            bool timed, const volatile sig_atomic_t *stop,
+                            struct cs_error *error) {
+    *run = (struct cs_run){.system = system, .integrator = integrator};
+    run->host = calloc(1, sizeof *run->host);
+    if (!run->host)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    run->host->timed = timed;
+    run->host->stop = stop;
+    run->x = system->state;
+    run->v = run->x + 3 * (size_t)system->view.n;
+    if (cs_run_host_init(run->host, run, error) || start(run, options, error))
+        cs_run_finish(run);
+    return error->status;
+}
+
+enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
+    const double next = (run->frame + 1) / run->system->scene->time.fps;
+    const double begin = cs_clock_wall();
+    const struct cs_guard guard = cs_guard_take();
+    const enum cs_step step =
+        run->integrator->advance(run->host->self, run->t, next, run->x, run->v);
+    run->advance_seconds += cs_clock_wall() - begin;
+    if (run->integrator->stats) {
+        run->counts.method.size = sizeof run->counts.method;
+        run->integrator->stats(run->host->self, &run->counts.method);
+    }
+    if (judge(run, step, guard, error))
+        return error->status;
+    if (run->outcome == CS_RUNNING) {
+        run->t = next;
+        run->frame++;
+    }
+    return CS_OK;
+}
+
+void cs_run_finish(struct cs_run *run) {
+    if (!run->host)
+        return;
+    if (run->integrator->destroy && run->host->self)
+        run->integrator->destroy(run->host->self);
+    cs_arena_finish(&run->host->arena);
+    free(run->host);
+    *run = (struct cs_run){0};
+}

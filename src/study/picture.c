@@ -1,0 +1,114 @@
+#include "study/picture.h"
+
+#include "base/clock.h"
+#include "io/png.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cs_picture_is_coloured(const struct cs_scene *scene) {
+    return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN;
+}
+
+const char *cs_picture_unit(const struct cs_scene *scene) {
+    return scene->render.look == CS_LOOK_FORCE ? "N" : "";
+}
+
+static enum cs_status read_texture(const struct cs_scene *scene, const char *name,
+                                   struct cs_image *image, struct cs_error *error) {
+    struct cs_text path = {0};
+    cs_text_add(&path, "%s/%s", scene->folder, name);
+    if (path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the texture \"%s\"", name);
+    else
+        cs_png_read(cs_text_get(&path), image, error);
+    cs_text_finish(&path);
+    return error->status;
+}
+
+static enum cs_status read_textures(struct cs_picture *picture, struct cs_error *error) {
+    const struct cs_scene *scene = picture->scene;
+    picture->textures = calloc(scene->bodies.n, sizeof *picture->textures);
+    if (!picture->textures)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u textures", scene->bodies.n);
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const char *name = cs_scene_bodies(scene)[b].material.texture;
+        if (*name && read_texture(scene, name, picture->textures + b, error))
+            return error->status;
+    }
+    return CS_OK;
+}
+
+static enum cs_status take_values(struct cs_picture *picture, struct cs_error *error) {
+    const size_t n = picture->system->view.n;
+    if (!cs_picture_is_coloured(picture->scene))
+        return CS_OK;
+    picture->scalar = calloc(n, sizeof(double));
+    picture->work = calloc(n, 3 * sizeof(double));
+    if (!picture->scalar || !picture->work)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of %zu particles",
+                       n);
+    return CS_OK;
+}
+
+static void free_textures(struct cs_picture *picture) {
+    for (uint32_t b = 0; picture->textures && b < picture->scene->bodies.n; b++)
+        free(picture->textures[b].rgb);
+    free(picture->textures);
+    picture->textures = NULL;
+}
+
+enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
+                               enum cs_gl gl, bool fast, struct cs_error *error) {
+    *picture = (struct cs_picture){.scene = system->scene, .system = system};
+    if (!read_textures(picture, error) && !take_values(picture, error) &&
+        !cs_renderer_open(cs_renderer_folder(), gl, &picture->renderer, error)) {
+        const struct cs_canvas_settings settings = {system->scene, system, picture->textures,
+                                                    fast};
+        picture->renderer->create(&settings, &picture->canvas, error);
+    }
+    /* the canvas has its own copy */
+    free_textures(picture);
+    if (error->status)
+        cs_picture_close(picture);
+    return error->status;
+}
+
+/* The value of each particle, and the range of its colours. */
+static void measure(struct cs_picture *picture, const struct cs_run *run) {
+    const struct cs_render *render = &picture->scene->render;
+    if (render->look == CS_LOOK_FORCE)
+        cs_measure_particle_force(picture->system, run->t, run->x, run->v, picture->scalar,
+                                  picture->work);
+    else
+        cs_measure_particle_strain(picture->system, run->x, picture->scalar);
+    if (isnan(render->range[0]))
+        cs_measure_range(picture->scalar, picture->system->view.n, picture->range);
+    else
+        memcpy(picture->range, render->range, sizeof picture->range);
+}
+
+enum cs_status cs_picture_paint(struct cs_picture *picture, const struct cs_run *run,
+                                struct cs_image *image, struct cs_error *error) {
+    const double start = cs_clock_wall();
+    if (picture->scalar)
+        measure(picture, run);
+    const struct cs_frame frame = {
+        run->x, picture->scalar, {picture->range[0], picture->range[1]}};
+    picture->renderer->paint(picture->canvas, &frame, image, error);
+    picture->seconds += cs_clock_wall() - start;
+    return error->status;
+}
+
+const char *cs_picture_renderer(const struct cs_picture *picture) {
+    return picture->renderer->description(picture->canvas);
+}
+
+void cs_picture_close(struct cs_picture *picture) {
+    if (picture->renderer)
+        picture->renderer->destroy(picture->canvas);
+    free(picture->scalar);
+    free(picture->work);
+    *picture = (struct cs_picture){0};
+}
