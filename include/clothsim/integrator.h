@@ -104,6 +104,9 @@ struct cs_host {
     enum cs_step (*solve_setup)(void *ctx, double t, const double *x, const double *v, double cm,
                                 double cd, double ck, uint32_t flags);
     enum cs_step (*solve)(void *ctx, const double *b, double rtol, double *u);
+    /* [advance] y (3,n) = A p with the A of the last solve_setup; p is 0 on pinned particles.
+     * Counted as a Jacobian product. */
+    void (*apply)(void *ctx, const double *p, double *y);
 
     /* [advance] MUST follow every accepted internal step of length dt that ended at time t:
      * strain limit, contact, velocity loss, blow-up test, counting. May move x and v; then

@@ -35,7 +35,8 @@ void *cs_arena_take(struct cs_arena *arena, size_t bytes, struct cs_error *error
     if (!block || block->capacity - block->used < size) {
         block = block_create(size > BLOCK_BYTES ? size : BLOCK_BYTES);
         if (!block) {
-            cs_fail(error, CS_ERR_MEMORY, "out of memory (%zu bytes more were asked for)", bytes);
+            cs_fail(error, CS_ERR_MEMORY, "out of memory (%zu bytes more were asked for)",
+                    bytes);
             return NULL;
         }
         block->next = arena->blocks;

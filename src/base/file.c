@@ -129,15 +129,17 @@ enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
 }
 
 enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
-    /* an earlier failure is remembered by ferror alone; what is still in the buffer fails late
-     */
-    errno = 0;
-    bool failed = fflush(out->file) != 0;
-    failed = ferror(out->file) || failed;
+    /* an earlier failure shows in ferror alone, with the reason most likely still in errno;
+     * what is still in the buffer fails now */
     int reason = errno;
-    if (fclose(out->file)) {
+    bool failed = ferror(out->file) != 0;
+    if (!failed && fflush(out->file)) {
         failed = true;
-        reason = reason ? reason : errno;
+        reason = errno;
+    }
+    if (fclose(out->file) && !failed) {
+        failed = true;
+        reason = errno;
     }
     out->file = NULL;
     if (!failed && !rename(out->temporary, out->path))

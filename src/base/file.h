@@ -1,4 +1,5 @@
-/* file.h - whole files: read at once; write beside and rename, so that none is ever half there. */
+/* file.h - whole files: read at once; write beside and rename, so that none is ever half there.
+ */
 #ifndef CS_FILE_H
 #define CS_FILE_H
 
@@ -18,7 +19,8 @@ struct cs_file_out {
     FILE *file; /* NULL: not open */
     char path[4096], temporary[4160];
 };
-enum cs_status cs_file_create(struct cs_file_out *out, const char *path, struct cs_error *error);
+enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
+                              struct cs_error *error);
 /* Checks every earlier write, closes and renames; on failure the temporary is gone. */
 enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error);
 /* Gives up: closes and removes the temporary. Safe on a zeroed or finished one. */

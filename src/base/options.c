@@ -173,7 +173,8 @@ static enum cs_status set_bool(bool *field, const char *text, const char *where,
     else if (!strcmp(text, "false") || !strcmp(text, "no") || !strcmp(text, "0"))
         *field = false;
     else
-        return cs_fail(error, status, "%s: expected true or false, found \"%.60s\"", where, text);
+        return cs_fail(error, status, "%s: expected true or false, found \"%.60s\"", where,
+                       text);
     return CS_OK;
 }
 
@@ -231,7 +232,9 @@ void cs_option_print_range(const struct cs_option *row, struct cs_text *out) {
     case CS_INT:
     case CS_VECTOR:
     case CS_COUNTS:
-        cs_text_add(out, "%.6g..%.12g", row->min, row->max);
+        cs_text_add_real(out, row->min);
+        cs_text_add(out, "..");
+        cs_text_add_real(out, row->max);
         if (row->unit && *row->unit)
             cs_text_add(out, " %s", row->unit);
         break;

@@ -17,8 +17,8 @@ enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char
 
 int cs_status_exit_code(enum cs_status status) {
     switch (status) {
-#define X(name, code, sentence)                                                                    \
-    case name:                                                                                     \
+#define X(name, code, sentence)                                                                \
+    case name:                                                                                 \
         return code;
         CS_STATUS_LIST(X)
 #undef X
@@ -28,8 +28,8 @@ int cs_status_exit_code(enum cs_status status) {
 
 const char *cs_status_sentence(enum cs_status status) {
     switch (status) {
-#define X(name, code, sentence)                                                                    \
-    case name:                                                                                     \
+#define X(name, code, sentence)                                                                \
+    case name:                                                                                 \
         return sentence;
         CS_STATUS_LIST(X)
 #undef X

@@ -3,15 +3,15 @@
 #define CS_STATUS_H
 
 /* name, exit code, sentence for the man page */
-#define CS_STATUS_LIST(X)                                                                          \
-    X(CS_OK, 0, "done; an unstable run is a result too")                                           \
-    X(CS_ERR_CHECK, 1, "a check failed: a golden hash or image differs")                           \
-    X(CS_ERR_USAGE, 2, "the command line is wrong")                                                \
-    X(CS_ERR_SCENE, 3, "the scene is not valid")                                                   \
-    X(CS_ERR_FILE, 4, "a file cannot be read or written")                                          \
-    X(CS_ERR_MODULE, 5, "an integrator or renderer module cannot be used, or failed")              \
-    X(CS_ERR_INTERNAL, 6, "an error in clothsim itself")                                           \
-    X(CS_ERR_MEMORY, 7, "out of memory")                                                           \
+#define CS_STATUS_LIST(X)                                                                      \
+    X(CS_OK, 0, "done; an unstable run is a result too")                                       \
+    X(CS_ERR_CHECK, 1, "a check failed: a golden hash or image differs")                       \
+    X(CS_ERR_USAGE, 2, "the command line is wrong")                                            \
+    X(CS_ERR_SCENE, 3, "the scene is not valid")                                               \
+    X(CS_ERR_FILE, 4, "a file cannot be read or written")                                      \
+    X(CS_ERR_MODULE, 5, "an integrator or renderer module cannot be used, or failed")          \
+    X(CS_ERR_INTERNAL, 6, "an error in clothsim itself")                                       \
+    X(CS_ERR_MEMORY, 7, "out of memory")                                                       \
     X(CS_ERR_INTERRUPT, 130, "interrupted; whole frames were kept")
 
 enum cs_status {

@@ -41,11 +41,15 @@ void cs_text_add_real(struct cs_text *text, double value) {
         return;
     }
     char digits[40];
-    for (int precision = 1; precision <= 17; precision++) {
-        snprintf(digits, sizeof digits, "%.*g", precision, value);
-        if (strtod(digits, NULL) == value)
-            break;
-    }
+    int precision = 0, before_point = 1;
+    do
+        snprintf(digits, sizeof digits, "%.*g", ++precision, value);
+    while (precision < 17 && strtod(digits, NULL) != value);
+    /* 640 and not 6.4e+02 */
+    for (double rest = value < 0 ? -value : value; rest >= 10 && before_point < 7; rest /= 10)
+        before_point++;
+    if (precision < before_point)
+        snprintf(digits, sizeof digits, "%.*g", before_point, value);
     cs_text_add(text, "%s", digits);
 }
 

@@ -49,7 +49,8 @@ static double distance_of(const struct cs_collider *collider, const double p[3],
     return p[1] - collider->floor.height - collider->thickness;
 }
 
-struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x, double *v) {
+struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x,
+                                            double *v) {
     const size_t n = system->view.n;
     const struct cs_collider *colliders = cs_scene_colliders(system->scene);
     struct cs_contact_counts counts = {0};

@@ -14,6 +14,7 @@ struct cs_contact_counts {
  * turns the normal velocity round and multiplies it by |ka|); then Coulomb friction: the
  * tangential velocity loses at most `friction` times the normal velocity that was changed.
  * Colliders in the scene's order, particles ascending. Returns what was done. */
-struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x, double *v);
+struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x,
+                                            double *v);
 
 #endif

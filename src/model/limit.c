@@ -25,13 +25,19 @@ static bool shorten(const struct cs_system *system, uint32_t a, uint32_t b, doub
     return true;
 }
 
-static uint64_t sweep_body(const struct cs_system *system, uint32_t body, double limit,
-                           double per_dt, double *x, double *v) {
+/* one pass, forwards or backwards */
+static uint64_t sweep(const struct cs_system *system, uint32_t body, double limit,
+                      double per_dt, bool backwards, double *x, double *v) {
     uint64_t moves = 0;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
-        const struct cs_spring_run *run = system->springs.runs + r;
-        for (uint32_t i = 0; i < run->count && run->body == body; i++)
+    for (uint32_t k = 0; k < system->springs.n_runs; k++) {
+        const struct cs_spring_run *run =
+            system->springs.runs + (backwards ? system->springs.n_runs - 1 - k : k);
+        if (run->body != body || run->kind != CS_SPRING_STRETCH)
+            continue;
+        for (uint32_t j = 0; j < run->count; j++) {
+            const uint32_t i = backwards ? run->count - 1 - j : j;
             moves += shorten(system, run->a + i, run->b + i, limit * run->length, per_dt, x, v);
+        }
     }
     return moves;
 }
@@ -39,14 +45,16 @@ static uint64_t sweep_body(const struct cs_system *system, uint32_t body, double
 uint64_t cs_limit_apply(const struct cs_system *system, double dt, double *x, double *v) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     uint64_t moves = 0;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
-        for (int64_t k = 0; k < bodies[b].strain_limit_sweeps && !isnan(bodies[b].strain_limit);
-             k++) {
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const int64_t sweeps =
+            isnan(bodies[b].strain_limit) ? 0 : bodies[b].strain_limit_sweeps;
+        for (int64_t k = 0; k < sweeps; k++) {
             const uint64_t moved =
-                sweep_body(system, b, bodies[b].strain_limit, 1 / dt, x, v);
+                sweep(system, b, bodies[b].strain_limit, 1 / dt, k % 2, x, v);
             moves += moved;
             if (moved == 0)
                 break;
         }
+    }
     return moves;
 }

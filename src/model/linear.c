@@ -9,7 +9,8 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;
     *linear = (struct cs_linear){.system = system};
-    linear->factors = cs_arena_take_n(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
+    linear->factors =
+        cs_arena_take_n(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
     linear->mass = cs_arena_take_n(arena, n, sizeof(double), error);
     linear->inverse = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
     double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
@@ -18,7 +19,8 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
     return error->status;
 }
 
-/* inverts the symmetric 3x3 block of particle i in place; false if it is not positive definite */
+/* inverts the symmetric 3x3 block of particle i in place; false if it is not positive definite
+ */
 static bool invert(double *blocks, size_t n, size_t i) {
     const double a = blocks[i], b = blocks[n + i], c = blocks[2 * n + i];
     const double d = blocks[3 * n + i], e = blocks[4 * n + i], f = blocks[5 * n + i];
@@ -47,7 +49,8 @@ bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, doubl
     memset(linear->inverse, 0, 6 * n * sizeof(double));
     for (size_t i = 0; i < n; i++) {
         const double drag =
-            forces->drag * (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
+            forces->drag *
+            (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
         linear->mass[i] = cm * system->mass[i] - cd * drag;
         linear->inverse[i] = linear->inverse[3 * n + i] = linear->inverse[5 * n + i] =
             linear->mass[i];

@@ -19,7 +19,8 @@ struct cs_energy cs_measure_energy(const struct cs_system *system, const double 
     return energy;
 }
 
-static double strain_of(const struct cs_spring_run *run, size_t n, const double *x, uint32_t i) {
+static double strain_of(const struct cs_spring_run *run, size_t n, const double *x,
+                        uint32_t i) {
     double squared = 0;
     for (size_t c = 0; c < 3; c++) {
         const double d = x[c * n + run->b + i] - x[c * n + run->a + i];
@@ -32,8 +33,8 @@ double cs_measure_strain(const struct cs_system *system, const double *x) {
     double largest = 0;
     for (uint32_t r = 0; r < system->springs.n_runs; r++)
         for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
-            largest = fmax(largest,
-                           fabs(strain_of(system->springs.runs + r, system->view.n, x, i)));
+            largest =
+                fmax(largest, fabs(strain_of(system->springs.runs + r, system->view.n, x, i)));
     return largest;
 }
 

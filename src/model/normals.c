@@ -8,7 +8,8 @@ struct neighbours {
 };
 
 static struct neighbours neighbours_of(const struct cs_body_range *body, uint32_t i) {
-    const uint32_t row = (i - body->first) / body->columns, column = (i - body->first) % body->columns;
+    const uint32_t row = (i - body->first) / body->columns,
+                   column = (i - body->first) % body->columns;
     return (struct neighbours){
         .left = column > 0 ? i - 1 : i,
         .right = column + 1 < body->columns ? i + 1 : i,

@@ -13,8 +13,8 @@ static const char *const feature_names[CS_FEATURES] = {
 
 static void decide(struct cs_plan *plan, enum cs_feature feature, bool built, size_t bytes,
                    const char *why, const char *why_not) {
-    plan->rows[feature] =
-        (struct cs_plan_row){.built = built, .bytes = built ? bytes : 0, .why = built ? why : why_not};
+    plan->rows[feature] = (struct cs_plan_row){
+        .built = built, .bytes = built ? bytes : 0, .why = built ? why : why_not};
 }
 
 static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uint32_t *n_runs) {
@@ -40,14 +40,16 @@ static bool has_limit(const struct cs_body *body) {
     return !isnan(body->strain_limit);
 }
 
-void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs, bool render) {
+void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
+                  bool render) {
     *plan = (struct cs_plan){0};
     uint32_t n_runs = 0;
     count_bodies(plan, scene, &n_runs);
     const size_t n = plan->n, s = plan->n_springs, real = sizeof(double);
     const struct cs_forces *forces = &scene->forces;
     const double *g = forces->gravity;
-    const bool wind = forces->wind.present && forces->wind.strength > 0, drag = forces->drag > 0;
+    const bool wind = forces->wind.present && forces->wind.strength > 0,
+               drag = forces->drag > 0;
     const bool area = (wind && forces->wind.strength_unit == CS_WIND_PA) ||
                       (drag && forces->drag_unit == CS_DRAG_AREA);
     plan->state_bytes = (6 + 3 + 2) * n * real;
@@ -78,8 +80,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
 }
 
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
-    cs_text_add(out, "particles      %u\nbodies         %u\nsprings        %u\nstate          %zu bytes\n",
-                plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
+    cs_text_add(
+        out,
+        "particles      %u\nbodies         %u\nsprings        %u\nstate          %zu bytes\n",
+        plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
         const struct cs_plan_row *row = plan->rows + f;
         cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", feature_names[f],

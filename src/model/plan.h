@@ -6,31 +6,31 @@
 #include "model/scene.h"
 
 /* X(name, what is printed) in the order of printing; each is a feature that may be absent */
-#define CS_FEATURE_LIST(X)                                                                         \
-    X(SPRINGS, "springs")                                                                          \
-    X(DAMPING, "spring damping")                                                                   \
-    X(GRAVITY, "gravity")                                                                          \
-    X(DRAG, "drag")                                                                                \
-    X(WIND, "wind")                                                                                \
-    X(AREA, "area shares")                                                                         \
-    X(VELOCITY_LOSS, "velocity loss")                                                              \
-    X(CONTACT, "contact")                                                                          \
-    X(STRAIN_LIMIT, "strain limit")                                                                \
-    X(SPRING_LIST, "spring list")                                                                  \
-    X(SOLVER, "linear solver")                                                                     \
+#define CS_FEATURE_LIST(X)                                                                     \
+    X(SPRINGS, "springs")                                                                      \
+    X(DAMPING, "spring damping")                                                               \
+    X(GRAVITY, "gravity")                                                                      \
+    X(DRAG, "drag")                                                                            \
+    X(WIND, "wind")                                                                            \
+    X(AREA, "area shares")                                                                     \
+    X(VELOCITY_LOSS, "velocity loss")                                                          \
+    X(CONTACT, "contact")                                                                      \
+    X(STRAIN_LIMIT, "strain limit")                                                            \
+    X(SPRING_LIST, "spring list")                                                              \
+    X(SOLVER, "linear solver")                                                                 \
     X(RENDER, "renderer")
 
 enum cs_feature {
 #define X(name, text) CS_FEATURE_##name,
     CS_FEATURE_LIST(X)
 #undef X
-    CS_FEATURES
+        CS_FEATURES
 };
 
 struct cs_plan_row {
     bool built;
-    size_t bytes;     /* of arrays that exist for this feature alone */
-    const char *why;  /* why it is built, or why it is left out */
+    size_t bytes;    /* of arrays that exist for this feature alone */
+    const char *why; /* why it is built, or why it is left out */
 };
 
 struct cs_plan {
@@ -39,8 +39,10 @@ struct cs_plan {
     struct cs_plan_row rows[CS_FEATURES];
 };
 
-/* Decides from a checked scene, the method's needs (enum cs_need) and whether frames are drawn. */
-void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs, bool render);
+/* Decides from a checked scene, the method's needs (enum cs_need) and whether frames are drawn.
+ */
+void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
+                  bool render);
 
 /* Prints it as aligned text, one feature a line. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);

@@ -22,9 +22,9 @@ struct cs_place {
 
 struct cs_cloth {
     bool present;
-    int64_t grid[2];  /* particles: columns, rows */
-    double size[2];   /* m: along a row, from row to row */
-    int32_t start;    /* enum cs_start */
+    int64_t grid[2]; /* particles: columns, rows */
+    double size[2];  /* m: along a row, from row to row */
+    int32_t start;   /* enum cs_start */
     struct cs_place place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
 };
@@ -41,10 +41,11 @@ enum cs_damping_model { CS_DAMPING_RELATIVE, CS_DAMPING_AXIAL };
 enum cs_stiffness_unit { CS_STIFFNESS_N_PER_M, CS_STIFFNESS_N };
 
 struct cs_spring_law {
-    double stretch, shear, bend; /* N/m, or N (divided by the rest length); 0: no such springs */
-    double damping;              /* N s/m per spring */
-    int32_t damping_model;       /* enum cs_damping_model */
-    int32_t stiffness_unit;      /* enum cs_stiffness_unit */
+    double stretch, shear,
+        bend;               /* N/m, or N (divided by the rest length); 0: no such springs */
+    double damping;         /* N s/m per spring */
+    int32_t damping_model;  /* enum cs_damping_model */
+    int32_t stiffness_unit; /* enum cs_stiffness_unit */
 };
 
 struct cs_box {
@@ -89,7 +90,7 @@ struct cs_body {
     struct cs_mass mass;
     struct cs_spring_law springs;
     struct cs_list pins; /* struct cs_pin */
-    double strain_limit; /* longest length of a spring / rest length; NAN: none */
+    double strain_limit; /* longest length of a stretch spring / rest length; NAN: none */
     int64_t strain_limit_sweeps;
     struct cs_material material;
 };
@@ -119,7 +120,7 @@ struct cs_collider {
     bool visible;
 };
 
-enum cs_wind_unit { CS_WIND_N, CS_WIND_PA };
+enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
 struct cs_wind {
     bool present;
     double direction[3]; /* made a unit vector by cs_scene_check */
@@ -151,18 +152,12 @@ struct cs_light {
     double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
 };
 
-enum cs_look {
-    CS_LOOK_LIT,
-    CS_LOOK_WIREFRAME,
-    CS_LOOK_SPRINGS,
-    CS_LOOK_FORCE,
-    CS_LOOK_STRAIN
-};
+enum cs_look { CS_LOOK_LIT, CS_LOOK_WIREFRAME, CS_LOOK_SPRINGS, CS_LOOK_FORCE, CS_LOOK_STRAIN };
 struct cs_render {
-    int64_t size[2];      /* pixels: width, height */
-    int64_t samples;      /* of multisampling: 1 or 4 */
-    int32_t look;         /* enum cs_look */
-    double range[2];      /* of the colours of looks force [N] and strain; NAN: from the frame */
+    int64_t size[2]; /* pixels: width, height */
+    int64_t samples; /* of multisampling: 1 or 4 */
+    int32_t look;    /* enum cs_look */
+    double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
     double background[3]; /* linear RGB */
     bool ground;          /* draw a grid on the plane y = ground_height */
     double ground_height; /* m */
@@ -209,9 +204,10 @@ static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scen
 }
 
 /* Checks what single ranges cannot say (pins exist, one kind of mass, a size that fits in
- * memory, a camera that looks somewhere, ...) and normalises directions, quaternion and normals.
- * On failure: CS_ERR_SCENE, and *path_out (CS_TEXT_MAX bytes) holds the JSON path of the value
- * at fault, so that the caller can add its place in the file; *error's message starts behind it. */
+ * memory, a camera that looks somewhere, ...) and normalises directions, quaternion and
+ * normals. On failure: CS_ERR_SCENE, and *path_out (CS_TEXT_MAX bytes) holds the JSON path of
+ * the value at fault, so that the caller can add its place in the file; *error's message starts
+ * behind it. */
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error);
 
 void cs_scene_finish(struct cs_scene *scene);

@@ -19,7 +19,8 @@ struct place {
 /* records the path of the value at fault and what is wrong with it */
 static enum cs_status refuse(const struct place *at, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-static enum cs_status refuse(const struct place *at, const char *path, const char *format, ...) {
+static enum cs_status refuse(const struct place *at, const char *path, const char *format,
+                             ...) {
     char message[512];
     va_list args;
     va_start(args, format);
@@ -55,12 +56,12 @@ static enum cs_status check_matrix(const struct place *at, const char *path, con
                                m[2] * (m[3] * m[7] - m[4] * m[6]);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {
-            const double product = m[3 * i] * m[3 * j] + m[3 * i + 1] * m[3 * j + 1] +
-                                   m[3 * i + 2] * m[3 * j + 2];
+            const double product =
+                m[3 * i] * m[3 * j] + m[3 * i + 1] * m[3 * j + 1] + m[3 * i + 2] * m[3 * j + 2];
             if (!(fabs(product - (i == j)) <= 1e-6))
                 return refuse(at, path,
-                              "rows %d and %d have the product %.9g: not a rotation matrix", j, i,
-                              product);
+                              "rows %d and %d have the product %.9g: not a rotation matrix", j,
+                              i, product);
         }
     if (!(determinant > 0))
         return refuse(at, path, "a mirror image (determinant %.3g): not a rotation matrix",
@@ -68,7 +69,8 @@ static enum cs_status check_matrix(const struct place *at, const char *path, con
     return CS_OK;
 }
 
-static enum cs_status check_place(const struct place *at, const char *body, struct cs_cloth *cloth) {
+static enum cs_status check_place(const struct place *at, const char *body,
+                                  struct cs_cloth *cloth) {
     char path[128];
     if (!isnan(cloth->place.matrix[0])) {
         snprintf(path, sizeof path, "%s.cloth.place.matrix", body);
@@ -109,13 +111,26 @@ static enum cs_status check_mass(const struct place *at, const char *body,
     return CS_OK;
 }
 
+/* below the scene's folder: a scene from elsewhere must not open any file it names */
+static enum cs_status check_texture(const struct place *at, const char *body,
+                                    const char *texture) {
+    char path[128];
+    snprintf(path, sizeof path, "%s.material.texture", body);
+    if (*texture == '/' || !strcmp(texture, "..") || !strncmp(texture, "../", 3) ||
+        strstr(texture, "/../"))
+        return refuse(at, path,
+                      "found \"%.60s\", expected a file in the scene's folder or below",
+                      texture);
+    return CS_OK;
+}
+
 static enum cs_status check_body(const struct place *at, uint32_t b, struct cs_body *body) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u]", b);
     if (!body->cloth.present)
         return refuse(at, path, "found no shape, expected cloth");
     if (check_place(at, path, &body->cloth) || check_mass(at, path, body) ||
-        check_pins(at, path, body))
+        check_pins(at, path, body) || check_texture(at, path, body->material.texture))
         return at->error->status;
     return CS_OK;
 }

@@ -5,41 +5,62 @@
 
 #include <math.h>
 
-#define BIG 1e9
+#define BIG         1e9
+#define ABSENT      ((double)NAN)
 #define ROWS(array) .rows = array, .n = sizeof array / sizeof *array
 
-#define REAL(s, f, unit_, def_, min_, max_, help_)                                                 \
-    {.name = #f, .unit = unit_, .help = help_, .type = CS_REAL, .count = 1,                        \
-     .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_}
-#define INT(s, f, unit_, def_, min_, max_, help_)                                                  \
-    {.name = #f, .unit = unit_, .help = help_, .type = CS_INT, .count = 1,                         \
-     .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_}
-#define BOOL(s, f, def_, help_)                                                                    \
-    {.name = #f, .unit = "", .help = help_, .type = CS_BOOL, .count = 1,                           \
-     .offset = offsetof(s, f), .def = def_}
-#define CHOICE(s, f, names_, def_, help_)                                                          \
-    {.name = #f, .unit = "", .help = help_, .type = CS_CHOICE, .count = 1,                         \
-     .offset = offsetof(s, f), .def = def_, .choices = names_}
-#define TEXT(s, f, help_)                                                                          \
-    {.name = #f, .unit = "", .help = help_, .type = CS_TEXT, .count = 1, .offset = offsetof(s, f)}
-#define VECTOR(s, f, n_, unit_, defs_, min_, max_, help_)                                          \
-    {.name = #f, .unit = unit_, .help = help_, .type = CS_VECTOR, .count = n_,                     \
-     .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_}
-#define COUNTS(s, f, n_, unit_, defs_, min_, max_, help_)                                          \
-    {.name = #f, .unit = unit_, .help = help_, .type = CS_COUNTS, .count = n_,                     \
-     .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_}
-#define TABLE(s, f, table_, help_)                                                                 \
-    {.name = #f, .unit = "", .help = help_, .type = CS_TABLE, .count = 1,                          \
-     .offset = offsetof(s, f), .table = &table_}
-#define LIST(s, f, table_, help_)                                                                  \
-    {.name = #f, .unit = "", .help = help_, .type = CS_LIST, .count = 1,                           \
-     .offset = offsetof(s, f), .table = &table_}
+#define REAL(s, f, unit_, def_, min_, max_, help_)                                             \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_REAL, .count = 1,                 \
+        .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_                        \
+    }
+#define INT(s, f, unit_, def_, min_, max_, help_)                                              \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_INT, .count = 1,                  \
+        .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_                        \
+    }
+#define BOOL(s, f, def_, help_)                                                                \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_BOOL, .count = 1,                    \
+        .offset = offsetof(s, f), .def = def_                                                  \
+    }
+#define CHOICE(s, f, names_, def_, help_)                                                      \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_CHOICE, .count = 1,                  \
+        .offset = offsetof(s, f), .def = def_, .choices = names_                               \
+    }
+#define TEXT(s, f, help_)                                                                      \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_TEXT, .count = 1,                    \
+        .offset = offsetof(s, f)                                                               \
+    }
+#define VECTOR(s, f, n_, unit_, defs_, min_, max_, help_)                                      \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_VECTOR, .count = n_,              \
+        .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_                      \
+    }
+#define COUNTS(s, f, n_, unit_, defs_, min_, max_, help_)                                      \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_COUNTS, .count = n_,              \
+        .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_                      \
+    }
+#define TABLE(s, f, table_, help_)                                                             \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_TABLE, .count = 1,                   \
+        .offset = offsetof(s, f), .table = &table_                                             \
+    }
+#define LIST(s, f, table_, help_)                                                              \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_LIST, .count = 1,                    \
+        .offset = offsetof(s, f), .table = &table_                                             \
+    }
 
 static const double zero3[3] = {0, 0, 0};
 static const double one2[2] = {1, 1};
 static const double up3[3] = {0, 1, 0};
 static const double no_turn[4] = {0, 0, 0, 1};
-static const double absent9[9] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+static const double absent9[9] = {ABSENT, ABSENT, ABSENT, ABSENT, ABSENT,
+                                  ABSENT, ABSENT, ABSENT, ABSENT};
 
 static const char *const start_names[] = {"hanging", "flat", NULL};
 static const struct cs_option place_rows[] = {
@@ -53,7 +74,8 @@ static const struct cs_table place_table = {ROWS(place_rows), .size = sizeof(str
 
 static const struct cs_option cloth_rows[] = {
     COUNTS(struct cs_cloth, grid, 2, "particles", NULL, 1, 65535, "columns and rows"),
-    VECTOR(struct cs_cloth, size, 2, "m", one2, 1e-6, 1e6, "width of a row, height of a column"),
+    VECTOR(struct cs_cloth, size, 2, "m", one2, 1e-6, 1e6,
+           "width of a row, height of a column"),
     CHOICE(struct cs_cloth, start, start_names, CS_START_HANGING,
            "hanging: in the xy plane, row 0 on top; flat: turned back into the xz plane, row 0 "
            "at -z"),
@@ -65,11 +87,11 @@ static const struct cs_table cloth_table = {ROWS(cloth_rows), .size = sizeof(str
                                             .optional = true};
 
 static const struct cs_option mass_rows[] = {
-    REAL(struct cs_mass, particle, "kg", NAN, 1e-12, BIG, "of each particle"),
-    REAL(struct cs_mass, areal_density, "kg/m2", NAN, 1e-12, BIG,
+    REAL(struct cs_mass, particle, "kg", ABSENT, 1e-12, BIG, "of each particle"),
+    REAL(struct cs_mass, areal_density, "kg/m2", ABSENT, 1e-12, BIG,
          "each particle gets its share of the area: a quarter of every cell that it touches"),
-    REAL(struct cs_mass, total, "kg", NAN, 1e-12, BIG, "of the body, shared equally"),
-    REAL(struct cs_mass, degree, "kg", NAN, 1e-12, BIG, "for each spring at the particle"),
+    REAL(struct cs_mass, total, "kg", ABSENT, 1e-12, BIG, "of the body, shared equally"),
+    REAL(struct cs_mass, degree, "kg", ABSENT, 1e-12, BIG, "for each spring at the particle"),
 };
 static const struct cs_table mass_table = {ROWS(mass_rows), .size = sizeof(struct cs_mass),
                                            .one_of = true};
@@ -79,7 +101,8 @@ static const char *const stiffness_names[] = {"N/m", "N", NULL};
 static const struct cs_option spring_rows[] = {
     REAL(struct cs_spring_law, stretch, "N/m", 50, 0, 1e12,
          "stiffness between direct neighbours; 0: no such springs"),
-    REAL(struct cs_spring_law, shear, "N/m", 20, 0, 1e12, "stiffness between diagonal neighbours"),
+    REAL(struct cs_spring_law, shear, "N/m", 20, 0, 1e12,
+         "stiffness between diagonal neighbours"),
     REAL(struct cs_spring_law, bend, "N/m", 8, 0, 1e12, "stiffness between second neighbours"),
     REAL(struct cs_spring_law, damping, "N s/m", 0, 0, 1e12, "damper beside every spring"),
     CHOICE(struct cs_spring_law, damping_model, damping_names, CS_DAMPING_AXIAL,
@@ -90,8 +113,9 @@ static const struct cs_option spring_rows[] = {
 static const struct cs_table spring_table = {ROWS(spring_rows),
                                              .size = sizeof(struct cs_spring_law)};
 
-const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right", "top",
-                                    "bottom",   "left",      "right",       "edges",        NULL};
+const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right",
+                                    "top",      "bottom",    "left",        "right",
+                                    "edges",    NULL};
 static const struct cs_option box_rows[] = {
     VECTOR(struct cs_box, min, 3, "m", NULL, -BIG, BIG, "corner with the smallest coordinates"),
     VECTOR(struct cs_box, max, 3, "m", NULL, -BIG, BIG, "corner with the largest coordinates"),
@@ -132,10 +156,10 @@ static const struct cs_option body_rows[] = {
     TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
     TABLE(struct cs_body, springs, spring_table, "12-neighbour spring law"),
     LIST(struct cs_body, pins, pin_table, "particles that keep their place"),
-    REAL(struct cs_body, strain_limit, "", NAN, 1, 1000,
-         "largest length of a spring as a multiple of its rest length; absent: no limit"),
+    REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
+         "largest length of a stretch spring over its rest length; absent: no limit"),
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
-        "passes over the springs after each step"),
+        "passes of the strain limit over the springs after each step"),
     TABLE(struct cs_body, material, material_table, "Blinn-Phong look"),
 };
 static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};
@@ -144,19 +168,21 @@ static const struct cs_option sphere_rows[] = {
     VECTOR(struct cs_sphere, centre, 3, "m", NULL, -BIG, BIG, "centre"),
     REAL(struct cs_sphere, radius, "m", 0.3, 1e-9, BIG, "radius"),
 };
-static const struct cs_table sphere_table = {ROWS(sphere_rows), .size = sizeof(struct cs_sphere),
-                                             .optional = true};
+static const struct cs_table sphere_table = {
+    ROWS(sphere_rows), .size = sizeof(struct cs_sphere), .optional = true};
 static const struct cs_option plane_rows[] = {
     VECTOR(struct cs_plane, point, 3, "m", zero3, -BIG, BIG, "a point of the plane"),
     VECTOR(struct cs_plane, normal, 3, "", up3, -BIG, BIG,
            "points to the free side; of any length but 0"),
-    REAL(struct cs_plane, extent, "m", 1, 1e-6, 1e6, "half the side of the square that is drawn"),
+    REAL(struct cs_plane, extent, "m", 1, 1e-6, 1e6,
+         "half the side of the square that is drawn"),
 };
 static const struct cs_table plane_table = {ROWS(plane_rows), .size = sizeof(struct cs_plane),
                                             .optional = true};
 static const struct cs_option floor_rows[] = {
     REAL(struct cs_floor, height, "m", 0, -BIG, BIG, "the plane y = height"),
-    REAL(struct cs_floor, extent, "m", 3, 1e-6, 1e6, "half the side of the square that is drawn"),
+    REAL(struct cs_floor, extent, "m", 3, 1e-6, 1e6,
+         "half the side of the square that is drawn"),
 };
 static const struct cs_table floor_table = {ROWS(floor_rows), .size = sizeof(struct cs_floor),
                                             .optional = true};
@@ -176,14 +202,15 @@ static const struct cs_option collider_rows[] = {
 static const struct cs_table collider_table = {
     ROWS(collider_rows), .size = sizeof(struct cs_collider), .one_of = true};
 
-static const char *const wind_units[] = {"N", "Pa", NULL};
+static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {
     VECTOR(struct cs_wind, direction, 3, "", NULL, -BIG, BIG,
            "to which it blows; of any length but 0"),
-    REAL(struct cs_wind, strength, "N or Pa", 0, 0, BIG,
-         "force on a particle that faces it; times |direction . normal| elsewhere"),
-    CHOICE(struct cs_wind, strength_unit, wind_units, CS_WIND_N,
-           "N: on each particle; Pa: times the particle's share of the area"),
+    REAL(struct cs_wind, strength, "Pa or N", 0, 0, BIG,
+         "pressure or force where the cloth faces it; times |direction . normal| elsewhere"),
+    CHOICE(
+        struct cs_wind, strength_unit, wind_units, CS_WIND_PA,
+        "Pa: times the particle's share of the area, whatever the grid; N: on each particle"),
 };
 static const struct cs_table wind_table = {ROWS(wind_rows), .size = sizeof(struct cs_wind),
                                            .optional = true};
@@ -194,15 +221,17 @@ static const struct cs_option force_rows[] = {
     REAL(struct cs_forces, drag, "N s/m or Pa s/m", 0, 0, BIG, "force of still air: -drag * v"),
     CHOICE(struct cs_forces, drag_unit, drag_units, CS_DRAG_PARTICLE,
            "N s/m: on each particle; Pa s/m: times the particle's share of the area"),
-    REAL(struct cs_forces, velocity_loss, "", 0, 0, 1,
-         "share of the velocity removed after every internal step: a factor that depends on the "
-         "step, no force"),
+    REAL(
+        struct cs_forces, velocity_loss, "", 0, 0, 1,
+        "share of the velocity removed after every internal step: a factor that depends on the "
+        "step, no force"),
     TABLE(struct cs_forces, wind, wind_table, "steady wind, by the particle normals"),
 };
 static const struct cs_table force_table = {ROWS(force_rows), .size = sizeof(struct cs_forces)};
 
 static const struct cs_option time_rows[] = {
-    REAL(struct cs_time, fps, "1/s", 60, 1e-3, 1e6, "frames a second; frame k shows t = k / fps"),
+    REAL(struct cs_time, fps, "1/s", 60, 1e-3, 1e6,
+         "frames a second; frame k shows t = k / fps"),
 };
 static const struct cs_table time_table = {ROWS(time_rows), .size = sizeof(struct cs_time)};
 
@@ -213,7 +242,8 @@ static const struct cs_option camera_rows[] = {
     VECTOR(struct cs_camera, up, 3, "", up3, -BIG, BIG, "direction that is up in the picture"),
     REAL(struct cs_camera, fov, "degrees", 40, 1, 170, "vertical field of view"),
 };
-static const struct cs_table camera_table = {ROWS(camera_rows), .size = sizeof(struct cs_camera)};
+static const struct cs_table camera_table = {ROWS(camera_rows),
+                                             .size = sizeof(struct cs_camera)};
 
 static const double dim[3] = {0.16, 0.17, 0.19};
 static const double bright[3] = {1, 0.97, 0.92};
@@ -240,7 +270,8 @@ static const struct cs_option render_rows[] = {
     BOOL(struct cs_render, ground, 0, "draw a grid of lines on the ground"),
     REAL(struct cs_render, ground_height, "m", 0, -BIG, BIG, "the grid lies at y = this"),
 };
-static const struct cs_table render_table = {ROWS(render_rows), .size = sizeof(struct cs_render)};
+static const struct cs_table render_table = {ROWS(render_rows),
+                                             .size = sizeof(struct cs_render)};
 
 static const struct cs_option scene_rows[] = {
     TEXT(struct cs_scene, about, "what the scene shows"),

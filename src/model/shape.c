@@ -43,14 +43,15 @@ void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, doub
 }
 
 double cs_shape_area(const struct cs_body *body, uint32_t row, uint32_t column) {
-    const uint32_t columns = (uint32_t)body->cloth.grid[0], rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t columns = (uint32_t)body->cloth.grid[0],
+                   rows = (uint32_t)body->cloth.grid[1];
     /* half a cell to each side that has one; a single row or column keeps the whole size */
     const double width = columns > 1 ? body->cloth.size[0] / (columns - 1) *
                                            (0.5 * (column > 0) + 0.5 * (column + 1 < columns))
                                      : body->cloth.size[0];
-    const double height = rows > 1 ? body->cloth.size[1] / (rows - 1) *
-                                         (0.5 * (row > 0) + 0.5 * (row + 1 < rows))
-                                   : body->cloth.size[1];
+    const double height =
+        rows > 1 ? body->cloth.size[1] / (rows - 1) * (0.5 * (row > 0) + 0.5 * (row + 1 < rows))
+                 : body->cloth.size[1];
     return width * height;
 }
 
@@ -89,13 +90,15 @@ static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const dou
 
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
                   bool *pinned) {
-    const uint32_t columns = (uint32_t)body->cloth.grid[0], rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t columns = (uint32_t)body->cloth.grid[0],
+                   rows = (uint32_t)body->cloth.grid[1];
     const struct cs_pin *pins = body->pins.items;
     for (uint32_t p = 0; p < body->pins.n; p++)
         for (uint32_t i = 0; i < rows; i++)
             for (uint32_t j = 0; j < columns; j++) {
                 const uint32_t at = i * columns + j;
-                if ((pins[p].at >= 0 && is_named((enum cs_pin_name)pins[p].at, i, j, rows, columns)) ||
+                if ((pins[p].at >= 0 &&
+                     is_named((enum cs_pin_name)pins[p].at, i, j, rows, columns)) ||
                     pins[p].index == (int64_t)at ||
                     (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
                     pinned[at] = true;

@@ -1,5 +1,6 @@
 /* Kernels over spring runs: force, energy, Jacobian product. Rows are done in pieces that fit a
- * small buffer on the stack; within a piece no spring waits for another, so the loops vectorise. */
+ * small buffer on the stack; within a piece no spring waits for another, so the loops
+ * vectorise. */
 #include "model/springs.h"
 
 #include <clothsim/integrator.h>
@@ -21,7 +22,8 @@ static struct ends ends_of(const double *p, uint32_t n, uint32_t a, uint32_t b) 
 uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, uint32_t *n_springs) {
     const struct cs_spring_law *law = &body->springs;
-    const uint32_t columns = (uint32_t)body->cloth.grid[0], rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t columns = (uint32_t)body->cloth.grid[0],
+                   rows = (uint32_t)body->cloth.grid[1];
     const double dx = columns > 1 ? body->cloth.size[0] / (columns - 1) : 0;
     const double dy = rows > 1 ? body->cloth.size[1] / (rows - 1) : 0;
     const double stiffness[CS_SPRING_KINDS] = {law->stretch, law->shear, law->bend};
@@ -30,9 +32,9 @@ uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uin
     static const struct {
         int32_t right, down;
         uint32_t kind;
-    } forward[6] = {
-        {1, 0, CS_SPRING_STRETCH}, {0, 1, CS_SPRING_STRETCH}, {1, 1, CS_SPRING_SHEAR},
-        {-1, 1, CS_SPRING_SHEAR},  {2, 0, CS_SPRING_BEND},    {0, 2, CS_SPRING_BEND}};
+    } forward[6] = {{1, 0, CS_SPRING_STRETCH}, {0, 1, CS_SPRING_STRETCH},
+                    {1, 1, CS_SPRING_SHEAR},   {-1, 1, CS_SPRING_SHEAR},
+                    {2, 0, CS_SPRING_BEND},    {0, 2, CS_SPRING_BEND}};
 
     uint32_t n_runs = 0;
     for (uint32_t i = 0; i < rows; i++)
@@ -166,7 +168,8 @@ static void spring_jvp(const struct cs_spring_run *run, double k, double c, cons
     const double inverse = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + DBL_MIN);
     const double u[3] = {d[0] * inverse, d[1] * inverse, d[2] * inverse};
     const double ue = u[0] * e[0] + u[1] * e[1] + u[2] * e[2];
-    const double slack = k * (1 - run->length * inverse), along = k * run->length * inverse * ue;
+    const double slack = k * (1 - run->length * inverse),
+                 along = k * run->length * inverse * ue;
     for (int c3 = 0; c3 < 3; c3++)
         df[c3] = slack * e[c3] + along * u[c3];
     if (c == 0)

@@ -16,7 +16,7 @@ enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPR
 
 struct cs_spring_run {
     uint32_t a, b, count;
-    uint32_t kind;    /* enum cs_spring_kind */
+    uint32_t kind; /* enum cs_spring_kind */
     uint32_t body;
     uint32_t first;   /* number of the run's first spring */
     double stiffness; /* N/m */
@@ -27,7 +27,7 @@ struct cs_spring_run {
 
 struct cs_springs {
     const struct cs_spring_run *runs;
-    uint32_t n_runs, n;   /* runs; springs */
+    uint32_t n_runs, n; /* runs; springs */
 };
 
 /* Runs of one grid cloth whose particles start at `first`, appended at runs[0..]; runs may be
@@ -39,10 +39,10 @@ uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uin
 /* Adds the spring and damper forces of the chosen parts to f (3,n).
  *
  * For a spring of rest length L, stiffness k and damping d, with unit direction u from end a to
- * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial damping;
- * flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis, eq. 5.10).
- * The smallest normal double is added to the squared length before the root, so that two
- * particles in one place feel no spring force instead of dividing by zero. */
+ * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial
+ * damping; flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis,
+ * eq. 5.10). The smallest normal double is added to the squared length before the root, so that
+ * two particles in one place feel no spring force instead of dividing by zero. */
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
                           const double *v, uint32_t parts, double *f);
 
@@ -63,8 +63,8 @@ void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const
 /* The springs' part of the matrix cd df/dv + ck df/dx in factored form, for cd and ck at most 0
  * as in implicit methods: A p = sum over springs of (s I + w w^T)(p_a - p_b), added at a and
  * taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz, each (count).
- * With psd the transverse part of a compressed spring is dropped (Teran et al. 2005); else s may
- * be negative. The position derivative of axial damping is left out. */
+ * With psd the transverse part of a compressed spring is dropped (Teran et al. 2005); else s
+ * may be negative. The position derivative of axial damping is left out. */
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
                        double ck, bool psd, double *factors);
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,

@@ -22,8 +22,7 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
     uint32_t n_runs = 0, n_springs = 0;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
         n_runs += cs_springs_of_grid(bodies + b, b, 0, NULL, &n_springs);
-    struct cs_spring_run *runs =
-        cs_arena_take_n(&system->arena, n_runs, sizeof *runs, error);
+    struct cs_spring_run *runs = cs_arena_take_n(&system->arena, n_runs, sizeof *runs, error);
     if (!runs)
         return;
     n_runs = n_springs = 0;

@@ -10,14 +10,15 @@ static double share_of(const struct cs_system *system, bool by_area, uint32_t i)
     return by_area ? system->area[i] : 1;
 }
 
-static void drag_force(const struct cs_system *system, double t, const double *x, const double *v,
-                       uint32_t parts, double *f) {
+static void drag_force(const struct cs_system *system, double t, const double *x,
+                       const double *v, uint32_t parts, double *f) {
     (void)t, (void)x, (void)parts;
     const uint32_t n = system->view.n;
     const struct cs_forces *forces = &system->scene->forces;
     for (uint32_t c = 0; c < 3; c++, f += n, v += n)
         for (uint32_t i = 0; i < n; i++)
-            f[i] -= forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i) * v[i];
+            f[i] -=
+                forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i) * v[i];
 }
 
 static void drag_jvp(const struct cs_system *system, double t, const double *x, const double *v,
@@ -48,8 +49,8 @@ const struct cs_term cs_term_drag = {
     .add_diagonal = drag_diagonal,
 };
 
-static void wind_force(const struct cs_system *system, double t, const double *x, const double *v,
-                       uint32_t parts, double *f) {
+static void wind_force(const struct cs_system *system, double t, const double *x,
+                       const double *v, uint32_t parts, double *f) {
     (void)t, (void)x, (void)v, (void)parts;
     const uint32_t n = system->view.n;
     const struct cs_wind *wind = &system->scene->forces.wind;

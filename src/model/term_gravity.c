@@ -1,8 +1,8 @@
 /* Gravity: f = m g; its potential -m g.x is 0 at the origin. */
 #include "model/terms.h"
 
-static void add_force(const struct cs_system *system, double t, const double *x, const double *v,
-                      uint32_t parts, double *f) {
+static void add_force(const struct cs_system *system, double t, const double *x,
+                      const double *v, uint32_t parts, double *f) {
     (void)t, (void)x, (void)v, (void)parts;
     const uint32_t n = system->view.n;
     for (uint32_t c = 0; c < 3; c++) {

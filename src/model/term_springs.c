@@ -1,8 +1,8 @@
 /* Springs with dampers: the kernels of springs.h as a term. */
 #include "model/terms.h"
 
-static void add_force(const struct cs_system *system, double t, const double *x, const double *v,
-                      uint32_t parts, double *f) {
+static void add_force(const struct cs_system *system, double t, const double *x,
+                      const double *v, uint32_t parts, double *f) {
     (void)t;
     cs_springs_add_force(&system->springs, system->view.n, x, v, parts, f);
 }

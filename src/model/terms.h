@@ -8,11 +8,12 @@ struct cs_term {
     uint32_t parts;          /* enum cs_part that the term adds to */
     enum cs_feature feature; /* of the plan; a scene without it never calls the term */
     /* f (3,n) += force of the chosen parts */
-    void (*add_force)(const struct cs_system *system, double t, const double *x, const double *v,
-                      uint32_t parts, double *f);
+    void (*add_force)(const struct cs_system *system, double t, const double *x,
+                      const double *v, uint32_t parts, double *f);
     /* potential energy in J; NULL: the force has none */
     double (*energy)(const struct cs_system *system, const double *x);
-    /* df (3,n) += (df/dx) dx + (df/dv) dv; directions may be NULL; NULL: the force is constant */
+    /* df (3,n) += (df/dx) dx + (df/dv) dv; directions may be NULL; NULL: the force is constant
+     */
     void (*add_jvp)(const struct cs_system *system, double t, const double *x, const double *v,
                     uint32_t parts, const double *dx, const double *dv, double *df);
     /* own blocks (6,n) of df/dx and df/dv; NULL: none, or not in CS_PART_LINEARISED */
@@ -33,7 +34,8 @@ void cs_terms_force(const struct cs_system *system, double t, const double *x, c
 void cs_terms_jvp(const struct cs_system *system, double t, const double *x, const double *v,
                   uint32_t parts, const double *dx, const double *dv, double *df);
 /* kxx, dvv (6,n). */
-void cs_terms_diagonal(const struct cs_system *system, const double *x, double *kxx, double *dvv);
+void cs_terms_diagonal(const struct cs_system *system, const double *x, double *kxx,
+                       double *dvv);
 
 /* true if the chosen parts need the particle normals in this scene */
 bool cs_terms_need_normals(const struct cs_system *system, uint32_t parts);

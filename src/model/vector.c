@@ -44,7 +44,8 @@ static double weighted_square(size_t n, const double *x, const double *w) {
     return sum;
 }
 
-static void linear_sum(size_t n, double a, const double *x, double b, const double *y, double *z) {
+static void linear_sum(size_t n, double a, const double *x, double b, const double *y,
+                       double *z) {
     for (size_t i = 0; i < n; i++)
         z[i] = a * x[i] + b * y[i];
 }
@@ -52,8 +53,8 @@ static void linear_sum(size_t n, double a, const double *x, double b, const doub
 static double max_norm(size_t n, const double *x) {
     double largest = 0;
     for (size_t i = 0; i < n; i++)
-        if (!(fabs(x[i]) <= largest))
-            largest = fabs(x[i]); /* also takes a NaN, and keeps it from being passed over */
+        if (!(fabs(x[i]) <= largest) && largest == largest)
+            largest = fabs(x[i]); /* a NaN is taken, and stays */
     return largest;
 }
 

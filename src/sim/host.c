@@ -118,8 +118,8 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
     if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
-        return host_fail(ctx, "solve wants cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm, cd,
-                         ck);
+        return host_fail(ctx, "solve wants cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm,
+                         cd, ck);
     const double begin = stage_begin(host);
     host->run->counts.solve_setups++;
     host->clamped = flags & CS_SOLVE_PSD;
@@ -148,12 +148,22 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     }
     stage_end(host, CS_STAGE_SOLVE, begin);
     if (end == CS_LINEAR_LIMIT)
-        return host_fail(ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
-                         (unsigned long long)iterations, residual);
+        return host_fail(
+            ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
+            (unsigned long long)iterations, residual);
     if (end == CS_LINEAR_INDEFINITE)
-        return host_fail(ctx, "the linear solver met a direction without stiffness: numbers out "
-                              "of the range of doubles");
+        return host_fail(ctx,
+                         "the linear solver met a direction without stiffness: numbers out "
+                         "of the range of doubles");
     return CS_STEP_OK;
+}
+
+static void host_apply(void *ctx, const double *p, double *y) {
+    struct cs_run_host *host = ctx;
+    const double begin = stage_begin(host);
+    cs_linear_mul(&host->linear, p, y);
+    host->run->counts.jvps++;
+    stage_end(host, CS_STAGE_SOLVE, begin);
 }
 
 /* Kinetic energy that no passive system of this kind can reach by time t: a hundred times what
@@ -191,8 +201,8 @@ static bool has_blown_up(struct cs_run_host *host, double t, const double *x, co
     const double *mass = run->system->mass;
     double energy = 0, places = 0;
     for (size_t i = 0; i < n; i++) {
-        energy += 0.5 * mass[i] *
-                  (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        energy +=
+            0.5 * mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
         places += (x[i] - x[i]) + (x[n + i] - x[n + i]) + (x[2 * n + i] - x[2 * n + i]);
     }
     const double bound = blow_up_bound(host, t);
@@ -280,11 +290,13 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .diagonal = host_diagonal,
         .solve_setup = host_solve_setup,
         .solve = host_solve,
+        .apply = host_apply,
         .commit = host_commit,
     };
     set_bound(host);
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
-    host->kept_x = cs_arena_take_n(&host->arena, 3 * (size_t)system->view.n, sizeof(double), error);
+    host->kept_x =
+        cs_arena_take_n(&host->arena, 3 * (size_t)system->view.n, sizeof(double), error);
     return cs_linear_init(&host->linear, system, &host->arena, error);
 }

@@ -7,18 +7,18 @@
 #include "sim/run.h"
 
 struct cs_run_host {
-    struct cs_host calls;  /* what the method sees */
-    struct cs_run *run;    /* borrowed: counts, outcome, notes */
+    struct cs_host calls;    /* what the method sees */
+    struct cs_run *run;      /* borrowed: counts, outcome, notes */
     struct cs_linear linear; /* only with CS_NEED_SOLVE */
-    double *kept_x;        /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
-    bool clamped;          /* the matrix in use is positive definite by construction */
-    bool creating;         /* the method may take memory */
+    double *kept_x; /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
+    bool clamped;   /* the matrix in use is positive definite by construction */
+    bool creating;  /* the method may take memory */
     bool timed;
     const volatile sig_atomic_t *stop;
-    void *self;            /* the method's own */
-    struct cs_error error; /* the method's first message */
+    void *self;                                  /* the method's own */
+    struct cs_error error;                       /* the method's first message */
     double bound_start, bound_speed, bound_push; /* of the kinetic energy, see blow_up_bound */
-    struct cs_arena arena; /* the method's memory and the solver's */
+    struct cs_arena arena;                       /* the method's memory and the solver's */
 };
 
 /* Fills the calls for a run over system. CS_ERR_MEMORY. */

@@ -49,7 +49,8 @@ static enum cs_status check_option(const struct cs_integrator *integrator,
         while (option->choices && option->choices[n])
             n++;
         if (!(option->def >= 0) || option->def >= n)
-            return refuse_option(integrator, option, "its default is none of its choices", error);
+            return refuse_option(integrator, option, "its default is none of its choices",
+                                 error);
     } else if (option->type != CS_BOOL &&
                !(option->min <= option->def && option->def <= option->max)) {
         return refuse_option(integrator, option, "its default is outside its range", error);
@@ -62,8 +63,9 @@ static enum cs_status check_integrator(const struct cs_integrator *integrator,
     if (!integrator || !is_name(integrator->name, "abcdefghijklmnopqrstuvwxyz0123456789-"))
         return cs_fail(error, CS_ERR_MODULE, "an integrator's name is not of [a-z0-9-]");
     if (integrator->size < sizeof *integrator)
-        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\": size %u, expected at least %zu",
-                       integrator->name, integrator->size, sizeof *integrator);
+        return cs_fail(error, CS_ERR_MODULE,
+                       "integrator \"%s\": size %u, expected at least %zu", integrator->name,
+                       integrator->size, sizeof *integrator);
     if (!integrator->summary || !integrator->source)
         return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\": no summary or source",
                        integrator->name);

@@ -168,9 +168,9 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
             names[n++] = registry->entries[k].integrator->name;
     names[n] = NULL;
     const char *nearest = cs_nearest(name, names);
-    return cs_fail(error, CS_ERR_USAGE, "no integrator \"%.60s\"%s%s%s (see: clothsim integrators)",
-                   name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                   nearest ? "\"?" : "");
+    return cs_fail(
+        error, CS_ERR_USAGE, "no integrator \"%.60s\"%s%s%s (see: clothsim integrators)", name,
+        nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");
 }
 
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,

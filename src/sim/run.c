@@ -10,8 +10,8 @@ const char *const cs_stage_names[] = {"force", "solve", "contact", "limit", "nor
 
 const char *cs_outcome_text(enum cs_outcome outcome) {
     switch (outcome) {
-#define X(name, text)                                                                              \
-    case name:                                                                                     \
+#define X(name, text)                                                                          \
+    case name:                                                                                 \
         return text;
         CS_OUTCOME_LIST(X)
 #undef X
@@ -24,8 +24,8 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_gua
                             struct cs_error *error) {
     const char *name = run->integrator->name;
     if (cs_guard_restore(guard))
-        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\" changed the floating-point mode",
-                       name);
+        return cs_fail(error, CS_ERR_MODULE,
+                       "integrator \"%s\" changed the floating-point mode", name);
     if (step == CS_STEP_OK || (step == CS_STEP_HALT && run->outcome != CS_RUNNING))
         return CS_OK;
     const struct cs_error *said = &run->host->error;

@@ -9,10 +9,10 @@
 #include <signal.h>
 
 /* How a run stands. All but the first end it; none of them is an error. */
-#define CS_OUTCOME_LIST(X)                                                                         \
-    X(CS_RUNNING, "finished")                                                                      \
-    X(CS_NOT_FINITE, "blew up: not finite")                                                        \
-    X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                            \
+#define CS_OUTCOME_LIST(X)                                                                     \
+    X(CS_RUNNING, "finished")                                                                  \
+    X(CS_NOT_FINITE, "blew up: not finite")                                                    \
+    X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                        \
     X(CS_INTERRUPTED, "interrupted")
 enum cs_outcome {
 #define X(name, text) name,
@@ -22,23 +22,30 @@ enum cs_outcome {
 const char *cs_outcome_text(enum cs_outcome outcome);
 
 /* Stages that the host times, when asked to. */
-enum cs_stage { CS_STAGE_FORCE, CS_STAGE_SOLVE, CS_STAGE_CONTACT, CS_STAGE_LIMIT, CS_STAGE_NORMALS, CS_STAGES };
+enum cs_stage {
+    CS_STAGE_FORCE,
+    CS_STAGE_SOLVE,
+    CS_STAGE_CONTACT,
+    CS_STAGE_LIMIT,
+    CS_STAGE_NORMALS,
+    CS_STAGES
+};
 extern const char *const cs_stage_names[];
 
 /* Exact counts, the same on every machine. */
 struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
-    uint64_t clamped;        /* solver set-ups that fell back to CS_SOLVE_PSD */
-    uint64_t contacts;       /* particles pushed out */
-    uint64_t contact_tests;  /* particle-collider pairs tested */
-    uint64_t limit_moves;    /* springs shortened by the strain limit */
-    uint64_t normals;        /* times that normals were computed in a step */
-    struct cs_stats method;  /* what the method counted itself */
+    uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD */
+    uint64_t contacts;      /* particles pushed out */
+    uint64_t contact_tests; /* particle-collider pairs tested */
+    uint64_t limit_moves;   /* springs shortened by the strain limit */
+    uint64_t normals;       /* times that normals were computed in a step */
+    struct cs_stats method; /* what the method counted itself */
 };
 
 struct cs_blow_up {
-    double time;         /* s */
-    uint32_t particle;   /* the first not finite, or the fastest */
+    double time;          /* s */
+    uint32_t particle;    /* the first not finite, or the fastest */
     double energy, bound; /* kinetic energy and its bound in J */
 };
 
@@ -50,15 +57,15 @@ struct cs_run_host;
 struct cs_run {
     struct cs_system *system; /* borrowed */
     const struct cs_integrator *integrator;
-    double *x, *v;            /* the state: x (3,n), v = x + 3n */
-    double t;                 /* s */
-    uint32_t frame;           /* frames done */
+    double *x, *v;  /* the state: x (3,n), v = x + 3n */
+    double t;       /* s */
+    uint32_t frame; /* frames done */
     enum cs_outcome outcome;
     struct cs_blow_up blow_up; /* where outcome says so */
     struct cs_counts counts;
     double stage_seconds[CS_STAGES]; /* all 0 unless timed */
-    double advance_seconds;   /* wall time inside the method */
-    char notes[CS_NOTES_MAX][160]; /* remarks of the method */
+    double advance_seconds;          /* wall time inside the method */
+    char notes[CS_NOTES_MAX][160];   /* remarks of the method */
     uint32_t n_notes;
     struct cs_run_host *host; /* owned */
 };

@@ -147,12 +147,11 @@ static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
 }
 
 /* one table; check handles a row */
-static enum cs_status check_table(struct cs_golden *golden, const char *name, const char *head,
-                                  int n_fields,
-                                  enum cs_status (*check)(struct cs_golden *golden,
-                                                          struct cs_golden_row *row,
-                                                          struct cs_error *error),
-                                  struct cs_error *error) {
+static enum cs_status
+check_table(struct cs_golden *golden, const char *name, const char *head, int n_fields,
+            enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,
+                                    struct cs_error *error),
+            struct cs_error *error) {
     struct table table = {.head = head, .n_fields = n_fields};
     const uint32_t before = golden->accepted;
     read_table(&table, golden->folder, name, error);
@@ -179,7 +178,7 @@ enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error)
         return error->status;
     if (golden->images)
         check_table(golden, "image.tsv",
-                    "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer", IMAGE_FIELDS,
-                    cs_golden_check_image, error);
+                    "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
+                    IMAGE_FIELDS, cs_golden_check_image, error);
     return error->status;
 }

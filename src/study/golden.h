@@ -21,20 +21,20 @@ struct cs_golden_run {
 /* A line of a table: a run, and what belongs to it. Fields are owned by the row. */
 struct cs_golden_row {
     struct cs_golden_run run;
-    char *line;       /* the fields above point into it */
-    char *hash;       /* of the state (hash.tsv) or of the pixels (image.tsv) */
-    char *note;       /* builds ("any", "sundials") or the image's renderer */
-    char *image;      /* name of the picture; NULL in hash.tsv */
+    char *line;  /* the fields above point into it */
+    char *hash;  /* of the state (hash.tsv) or of the pixels (image.tsv) */
+    char *note;  /* builds ("any", "sundials") or the image's renderer */
+    char *image; /* name of the picture; NULL in hash.tsv */
     char found[CS_HASH_DIGITS], renderer[256];
     struct cs_text message; /* what differs; empty: nothing */
-    bool skipped;     /* the integrator's library is not in this build */
+    bool skipped;           /* the integrator's library is not in this build */
 };
 
 struct cs_golden {
-    const char *folder;     /* "golden" */
-    const char *only;       /* rows whose scene or integrator holds this text; NULL: all */
-    bool hashes, images;    /* what to do */
-    bool accept;            /* write what was found instead of failing */
+    const char *folder;  /* "golden" */
+    const char *only;    /* rows whose scene or integrator holds this text; NULL: all */
+    bool hashes, images; /* what to do */
+    bool accept;         /* write what was found instead of failing */
     enum cs_gl gl;
     const volatile sig_atomic_t *stop;
     /* called after each row; may be NULL */
@@ -50,7 +50,8 @@ enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error)
 
 /* Below: the parts of golden.c. */
 
-/* Steps a row's run to its last frame. The session is open on success, and closed by the caller. */
+/* Steps a row's run to its last frame. The session is open on success, and closed by the
+ * caller. */
 enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
                               bool render, struct cs_session *session, struct cs_error *error);
 enum cs_status cs_golden_check_hash(struct cs_golden *golden, struct cs_golden_row *row,

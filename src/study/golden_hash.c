@@ -8,7 +8,8 @@ enum cs_status cs_golden_check_hash(struct cs_golden *golden, struct cs_golden_r
     struct cs_session session;
     struct cs_error failed = {0};
     if (cs_golden_step(golden, &row->run, false, &session, &failed)) {
-        /* only a build without SUNDIALS may lack an integrator, and only where the row says so */
+        /* only a build without SUNDIALS may lack an integrator, and only where the row says so
+         */
         row->skipped = failed.status == CS_ERR_USAGE && !strcmp(row->note, "sundials");
         if (row->skipped)
             return CS_OK;

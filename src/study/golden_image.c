@@ -1,5 +1,5 @@
-/* One picture through the two-level gate: pixel for pixel where the renderer is the golden's own,
- * else within the calibrated tolerance. */
+/* One picture through the two-level gate: pixel for pixel where the renderer is the golden's
+ * own, else within the calibrated tolerance. */
 #include "draw/compare.h"
 #include "io/png.h"
 #include "study/golden.h"
@@ -39,9 +39,9 @@ static enum cs_status paint(const struct cs_golden *golden, const struct cs_gold
     return error->status;
 }
 
-static enum cs_status write_image(const struct cs_golden *golden, const struct cs_golden_row *row,
-                            const char *ending, const struct cs_image *image,
-                            struct cs_error *error) {
+static enum cs_status write_image(const struct cs_golden *golden,
+                                  const struct cs_golden_row *row, const char *ending,
+                                  const struct cs_image *image, struct cs_error *error) {
     char path[1024];
     path_of(golden, row, ending, path);
     return cs_png_write(path, image, 6, NULL, 0, error);
@@ -49,7 +49,8 @@ static enum cs_status write_image(const struct cs_golden *golden, const struct c
 
 /* what was drawn, and 16 times the difference, beside the golden image */
 static enum cs_status write_evidence(const struct cs_golden *golden,
-                                     const struct cs_golden_row *row, const struct cs_image *found,
+                                     const struct cs_golden_row *row,
+                                     const struct cs_image *found,
                                      const struct cs_image *expected, struct cs_error *error) {
     struct cs_image amplified = {found->width, found->height, malloc(bytes_of(found))};
     if (!amplified.rgb)
@@ -74,15 +75,16 @@ static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row
     if (cs_png_read(path, &expected, error))
         return error->status;
     if (expected.width != found->width || expected.height != found->height) {
-        cs_text_add(&row->message, "%u x %u pixels, expected %u x %u", found->width, found->height,
-                    expected.width, expected.height);
+        cs_text_add(&row->message, "%u x %u pixels, expected %u x %u", found->width,
+                    found->height, expected.width, expected.height);
     } else {
         const struct cs_image_difference d = cs_image_compare(found, &expected);
         if (same_renderer || !cs_image_difference_passes(&d)) {
-            cs_text_add(&row->message,
-                        "%llu pixels differ, RMSE %.3f, %.3f %% off by more than 2, largest %d%s",
-                        (unsigned long long)d.pixels, d.rmse, 100 * d.share, d.largest,
-                        same_renderer ? " (same renderer: every pixel counts)" : "");
+            cs_text_add(
+                &row->message,
+                "%llu pixels differ, RMSE %.3f, %.3f %% off by more than 2, largest %d%s",
+                (unsigned long long)d.pixels, d.rmse, 100 * d.share, d.largest,
+                same_renderer ? " (same renderer: every pixel counts)" : "");
             write_evidence(golden, row, found, &expected, error);
         }
     }
@@ -92,9 +94,10 @@ static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row
 
 /* --accept: only the pinned renderer may bless, so that goldens are everyone's */
 static enum cs_status bless(const struct cs_golden *golden, struct cs_golden_row *row,
-                             const struct cs_image *found, struct cs_text *renderer,
-                             struct cs_error *error) {
-    if (!strstr(cs_text_get(renderer), "caps=sse4.1") || !strstr(cs_text_get(renderer), "llvmpipe"))
+                            const struct cs_image *found, struct cs_text *renderer,
+                            struct cs_error *error) {
+    if (!strstr(cs_text_get(renderer), "caps=sse4.1") ||
+        !strstr(cs_text_get(renderer), "llvmpipe"))
         return cs_fail(error, CS_ERR_CHECK,
                        "%s: only the pinned llvmpipe may accept images, found %s", row->image,
                        cs_text_get(renderer));

@@ -7,8 +7,8 @@
 #include <string.h>
 
 /* one "key=value"; where names the place for messages */
-static enum cs_status set_option(struct cs_session *session, const char *name, const char *value,
-                                 const char *prefix, enum cs_status status,
+static enum cs_status set_option(struct cs_session *session, const char *name,
+                                 const char *value, const char *prefix, enum cs_status status,
                                  struct cs_error *error) {
     const struct cs_option *row = cs_option_find(&session->option_table, name);
     char where[160];
@@ -16,10 +16,11 @@ static enum cs_status set_option(struct cs_session *session, const char *name, c
     if (row)
         return cs_option_set(row, session->options, value, where, status, error);
     const char *nearest = cs_option_nearest(&session->option_table, name);
-    return cs_fail(error, status,
-                   "%s: integrator \"%s\" has no such option%s%s%s (see: clothsim integrators %s)",
-                   where, session->integrator->name, nearest ? "; did you mean \"" : "",
-                   nearest ? nearest : "", nearest ? "\"?" : "", session->integrator->name);
+    return cs_fail(
+        error, status,
+        "%s: integrator \"%s\" has no such option%s%s%s (see: clothsim integrators %s)", where,
+        session->integrator->name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+        nearest ? "\"?" : "", session->integrator->name);
 }
 
 /* "key=value,key=value" of --integrator */
@@ -34,8 +35,8 @@ static enum cs_status set_options_text(struct cs_session *session, const char *t
         pair[length] = 0;
         char *equals = strchr(pair, '=');
         if (!equals)
-            return cs_fail(error, CS_ERR_USAGE, "--integrator: found \"%s\", expected key=value",
-                           pair);
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--integrator: found \"%s\", expected key=value", pair);
         *equals = 0;
         if (set_option(session, pair, equals + 1, "--integrator ", CS_ERR_USAGE, error))
             return error->status;
@@ -49,7 +50,8 @@ static enum cs_status set_options_scene(struct cs_session *session, struct cs_er
     for (uint32_t k = 0; k < session->scene.integrator_settings.n; k++) {
         char prefix[512];
         snprintf(prefix, sizeof prefix, "%s: integrator.", session->scene.path);
-        if (set_option(session, settings[k].name, settings[k].value, prefix, CS_ERR_SCENE, error))
+        if (set_option(session, settings[k].name, settings[k].value, prefix, CS_ERR_SCENE,
+                       error))
             return error->status;
     }
     return CS_OK;
@@ -68,8 +70,13 @@ static enum cs_status choose_integrator(struct cs_session *session, const char *
     name[length] = 0;
 
     const struct cs_registered *found;
-    if (cs_registry_find(&session->registry, name, &found, error))
-        return error->status;
+    struct cs_error missing = {0};
+    if (cs_registry_find(&session->registry, name, &found, &missing)) {
+        const bool by_scene = !asked && missing.status == CS_ERR_USAGE;
+        return cs_fail(error, by_scene ? CS_ERR_SCENE : missing.status, "%s%s%s",
+                       by_scene ? session->scene.path : "", by_scene ? ": integrator: " : "",
+                       missing.message);
+    }
     session->integrator = found->integrator;
     session->option_table = (struct cs_table){.rows = found->integrator->options,
                                               .n = found->integrator->n_options,

@@ -13,11 +13,11 @@ struct cs_session_settings {
     const char *scene;                   /* path */
     const struct cs_override *overrides; /* (n_overrides) */
     uint32_t n_overrides;
-    const char *integrator;              /* "NAME:key=value,key=value", NULL: the scene's own */
-    const char *const *plugins;          /* (n_plugins) module files */
+    const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */
+    const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
     bool render, timed;
-    const volatile sig_atomic_t *stop;   /* may be NULL */
+    const volatile sig_atomic_t *stop; /* may be NULL */
 };
 
 /* Zeroed: closed. Must stay where it is while open. */
@@ -34,7 +34,8 @@ struct cs_session {
 
 /* The whole way. On failure everything is closed and *error says where and why. */
 enum cs_status cs_session_open(struct cs_session *session,
-                               const struct cs_session_settings *settings, struct cs_error *error);
+                               const struct cs_session_settings *settings,
+                               struct cs_error *error);
 /* The way up to the plan only: no system, no run. */
 enum cs_status cs_session_open_plan(struct cs_session *session,
                                     const struct cs_session_settings *settings,

@@ -1,0 +1,151 @@
+/* cvode_vector.c - the operations that CVODE asks of a vector; see cvode_vector.h. */
+#include "cvode_vector.h"
+
+#include <math.h>
+
+static struct cvode_vectors *pool_of(N_Vector vector) {
+    return ((struct cvode_slot *)vector->content)->pool;
+}
+
+static size_t length_of(N_Vector vector) {
+    return 6 * (size_t)pool_of(vector)->host->view->n;
+}
+
+static N_Vector_ID get_id(N_Vector vector) {
+    (void)vector;
+    return SUNDIALS_NVEC_CUSTOM;
+}
+
+static sunindextype get_length(N_Vector vector) {
+    return (sunindextype)length_of(vector);
+}
+
+static N_Vector clone(N_Vector vector) {
+    return cvode_vectors_take(pool_of(vector));
+}
+
+static void give_back(N_Vector vector) {
+    ((struct cvode_slot *)vector->content)->taken = false;
+}
+
+static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z) {
+    pool_of(z)->host->vector->linear_sum(length_of(z), a, cvode_data(x), b, cvode_data(y),
+                                         cvode_data(z));
+}
+
+static void set_constant(sunrealtype c, N_Vector z) {
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = c;
+}
+
+static void multiply(N_Vector x, N_Vector y, N_Vector z) {
+    const double *a = cvode_data(x), *b = cvode_data(y);
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = a[i] * b[i];
+}
+
+static void divide(N_Vector x, N_Vector y, N_Vector z) {
+    const double *a = cvode_data(x), *b = cvode_data(y);
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = a[i] / b[i];
+}
+
+static void scale(sunrealtype c, N_Vector x, N_Vector z) {
+    const double *a = cvode_data(x);
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = c * a[i];
+}
+
+static void absolute(N_Vector x, N_Vector z) {
+    const double *a = cvode_data(x);
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = fabs(a[i]);
+}
+
+static void invert(N_Vector x, N_Vector z) {
+    const double *a = cvode_data(x);
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = 1 / a[i];
+}
+
+static void add_constant(N_Vector x, sunrealtype b, N_Vector z) {
+    const double *a = cvode_data(x);
+    double *out = cvode_data(z);
+    for (size_t i = 0, n = length_of(z); i < n; i++)
+        out[i] = a[i] + b;
+}
+
+static sunrealtype dot(N_Vector x, N_Vector y) {
+    return pool_of(x)->host->vector->dot(length_of(x), cvode_data(x), cvode_data(y));
+}
+
+static sunrealtype max_norm(N_Vector x) {
+    return pool_of(x)->host->vector->max_norm(length_of(x), cvode_data(x));
+}
+
+static sunrealtype weighted_norm(N_Vector x, N_Vector w) {
+    const size_t n = length_of(x);
+    return sqrt(pool_of(x)->host->vector->weighted_square(n, cvode_data(x), cvode_data(w)) /
+                (double)n);
+}
+
+static sunrealtype smallest(N_Vector x) {
+    const double *a = cvode_data(x);
+    double least = a[0];
+    for (size_t i = 1, n = length_of(x); i < n; i++)
+        if (a[i] < least)
+            least = a[i];
+    return least;
+}
+
+static const struct _generic_N_Vector_Ops operations = {
+    .nvgetvectorid = get_id,
+    .nvclone = clone,
+    .nvcloneempty = clone,
+    .nvdestroy = give_back,
+    .nvgetlength = get_length,
+    .nvlinearsum = linear_sum,
+    .nvconst = set_constant,
+    .nvprod = multiply,
+    .nvdiv = divide,
+    .nvscale = scale,
+    .nvabs = absolute,
+    .nvinv = invert,
+    .nvaddconst = add_constant,
+    .nvdotprod = dot,
+    .nvmaxnorm = max_norm,
+    .nvwrmsnorm = weighted_norm,
+    .nvmin = smallest,
+};
+
+enum cs_step cvode_vectors_init(struct cvode_vectors *pool, const struct cs_host *host,
+                                SUNContext context) {
+    pool->host = host;
+    pool->ops = operations;
+    for (int i = 0; i < CVODE_VECTORS; i++) {
+        struct cvode_slot *slot = pool->slots + i;
+        slot->pool = pool;
+        slot->vector.content = slot;
+        slot->vector.ops = &pool->ops;
+        slot->vector.sunctx = context;
+        slot->data = host->alloc(host->ctx, 6 * sizeof(double) * host->view->n);
+        if (!slot->data)
+            return CS_STEP_FAIL;
+    }
+    return CS_STEP_OK;
+}
+
+N_Vector cvode_vectors_take(struct cvode_vectors *pool) {
+    for (int i = 0; i < CVODE_VECTORS; i++)
+        if (!pool->slots[i].taken) {
+            pool->slots[i].taken = true;
+            return &pool->slots[i].vector;
+        }
+    return NULL;
+}

@@ -1,0 +1,199 @@
+/* explicit.c - explicit methods: their options, step limits and descriptors.
+ *
+ * Step limits for x'' + r x' + w^2 x = 0, from the characteristic polynomials; the automatic dt
+ * is 0.9 of them, with bounds for w and r that hold at rest:
+ *   explicit-euler    h < r/w^2, and 4/(r + sqrt(r^2 - 4 w^2)) where overdamped
+ *   averaged-euler    h < 2 r/w^2, and h < 2/r
+ *   the others        h^2 w^2 + q r h < s with s = 4 (4 - 2 l with loss l) and q = 2, but 4 for
+ *                     velocity-verlet, whose damping sees a predicted velocity
+ */
+#include "explicit_steps.h"
+
+struct explicit_options {
+    double dt;
+};
+
+struct lossy_options {
+    double dt, loss;
+};
+
+#define DT_HELP "longest step; 0: 0.9 of the stability limit, estimated at rest"
+#define DT_MAX  10
+
+static const struct cs_option explicit_rows[] = {
+    CS_OPTION(struct explicit_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+};
+
+static const struct cs_option lossy_rows[] = {
+    CS_OPTION(struct lossy_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+    CS_OPTION(
+        struct lossy_options, loss, "", 0, 0, 0.999,
+        "share of the motion lost in every step; the flag thesis takes 0.01, and any value "
+        "above 0 is a drag that grows as dt shrinks"),
+};
+
+/* Root h of h^2 w^2 + q r h = s; HUGE_VAL where nothing limits the step. */
+static double leapfrog_limit(const struct cs_view *view, double q, double s) {
+    const double w = view->omega, qr = q * 2 * view->delta;
+    return 2 * s / (qr + sqrt(qr * qr + 4 * s * w * w));
+}
+
+static double explicit_euler_limit(const struct cs_view *view) {
+    const double w = view->omega, r = 2 * view->delta;
+    if (w <= 0)
+        return 2 / r;
+    return r < 2 * w ? r / (w * w) : 4 / (r + sqrt(r * r - 4 * w * w));
+}
+
+static double averaged_euler_limit(const struct cs_view *view) {
+    const double w = view->omega, r = 2 * view->delta;
+    return w > r ? 2 * r / (w * w) : 2 / r;
+}
+
+static void choose_dt(struct fixed_step *loop, double limit) {
+    const struct cs_host *host = loop->host;
+    const struct cs_view *view = host->view;
+    loop->chosen = true;
+    loop->dt = 0.9 * limit;
+    if (view->omega <= 0 && view->delta <= 0) {
+        loop->dt = HUGE_VAL;
+        host->note(host->ctx, "dt automatic: one step a frame, nothing swings or is damped");
+    } else if (limit <= 0) {
+        loop->dt = 0.9 * leapfrog_limit(view, 2, 4);
+        host->note(host->ctx,
+                   "dt automatic: no step is stable without damping; %.6g s is that of "
+                   "symplectic-euler",
+                   loop->dt);
+    } else
+        host->note(host->ctx, "dt automatic: at most %.6g s (omega %.6g 1/s, delta %.6g 1/s)",
+                   loop->dt, view->omega, view->delta);
+}
+
+/* limit: the method's largest stable step; n_arrays: of (3,n) that it keeps. */
+static enum cs_step create(const struct cs_host *host, double dt, double limit,
+                           enum cs_step (*step)(struct fixed_step *, double, double, double *,
+                                                double *),
+                           int n_arrays, void **out) {
+    const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
+    struct explicit_method *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->loop = (struct fixed_step){.host = host, .dt = dt, .fresh = true, .step = step};
+    if (!(self->a = host->alloc(host->ctx, bytes)))
+        return CS_STEP_FAIL;
+    if (n_arrays > 1 && !(self->kept = host->alloc(host->ctx, bytes)))
+        return CS_STEP_FAIL;
+    if (dt <= 0)
+        choose_dt(&self->loop, limit);
+    return CS_STEP_OK;
+}
+
+static enum cs_step create_explicit_euler(const struct cs_host *host, const void *options,
+                                          void **self) {
+    return create(host, ((const struct explicit_options *)options)->dt,
+                  explicit_euler_limit(host->view), step_explicit_euler, 1, self);
+}
+
+static enum cs_step create_symplectic_euler(const struct cs_host *host, const void *options,
+                                            void **self) {
+    return create(host, ((const struct explicit_options *)options)->dt,
+                  leapfrog_limit(host->view, 2, 4), step_symplectic_euler, 1, self);
+}
+
+static enum cs_step create_averaged_euler(const struct cs_host *host, const void *options,
+                                          void **self) {
+    return create(host, ((const struct explicit_options *)options)->dt,
+                  averaged_euler_limit(host->view), step_averaged_euler, 1, self);
+}
+
+static enum cs_step create_velocity_verlet(const struct cs_host *host, const void *options,
+                                           void **self) {
+    return create(host, ((const struct explicit_options *)options)->dt,
+                  leapfrog_limit(host->view, 4, 4), step_velocity_verlet, 2, self);
+}
+
+static enum cs_step create_position_verlet(const struct cs_host *host, const void *options,
+                                           void **self) {
+    const struct lossy_options *asked = options;
+    const enum cs_step status =
+        create(host, asked->dt, leapfrog_limit(host->view, 2, 4 - 2 * asked->loss),
+               step_position_verlet, 2, self);
+    if (status == CS_STEP_OK)
+        ((struct explicit_method *)*self)->loss = asked->loss;
+    return status;
+}
+
+#define EXPLICIT(struct_, rows_)                                                               \
+    .size = sizeof(struct cs_integrator), .options = rows_,                                    \
+    .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
+    .advance = fixed_step_advance
+
+static const struct cs_integrator explicit_euler = {
+    EXPLICIT(struct explicit_options, explicit_rows),
+    .name = "explicit-euler",
+    .summary = "forward Euler: explodes unless damping is strong against dt",
+    .source = "Euler 1768; cloth thesis, eq. 5.15",
+    .order = 1,
+    .order_damped = 1,
+    .create = create_explicit_euler,
+    .restart = fixed_step_restart,
+};
+
+static const struct cs_integrator symplectic_euler = {
+    EXPLICIT(struct explicit_options, explicit_rows),
+    .name = "symplectic-euler",
+    .summary = "velocity first, then position with the new velocity",
+    .source = "flag thesis; Hairer, Lubich, Wanner 2006, sec. I.1.2",
+    .order = 1,
+    .order_damped = 1,
+    .traits = CS_SYMPLECTIC,
+    .create = create_symplectic_euler,
+    .restart = fixed_step_restart,
+};
+
+static const struct cs_integrator averaged_euler = {
+    EXPLICIT(struct explicit_options, explicit_rows),
+    .name = "averaged-euler",
+    .summary = "forward Euler whose position moves by the mean of old and new velocity",
+    .source = "cloth article",
+    .order = 1,
+    .order_damped = 1,
+    .create = create_averaged_euler,
+    .restart = fixed_step_restart,
+};
+
+static const struct cs_integrator velocity_verlet = {
+    EXPLICIT(struct explicit_options, explicit_rows),
+    .name = "velocity-verlet",
+    .summary = "kick, drift, kick; damping sees a predicted velocity",
+    .source = "Swope et al. 1982; Hairer, Lubich, Wanner 2003",
+    .order = 2,
+    .order_damped = 2,
+    .traits = CS_SYMPLECTIC,
+    .create = create_velocity_verlet,
+    .restart = fixed_step_restart,
+};
+
+static const struct cs_integrator position_verlet = {
+    EXPLICIT(struct lossy_options, lossy_rows),
+    .name = "position-verlet",
+    .summary = "two-step Verlet on positions, with a loss; damping sees the last half step",
+    .source = "Verlet 1967; flag thesis",
+    .order = 2,
+    .order_damped = 1,
+    .traits = CS_MULTISTEP | CS_SYMPLECTIC,
+    .create = create_position_verlet,
+    .restart = restart_position_verlet,
+};
+
+static const struct cs_integrator *const integrators[] = {
+    &explicit_euler, &symplectic_euler, &averaged_euler, &velocity_verlet, &position_verlet,
+};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

@@ -1,0 +1,30 @@
+/* explicit_steps.h - the steps of the explicit methods and the struct that they share. */
+#ifndef EXPLICIT_STEPS_H
+#define EXPLICIT_STEPS_H
+
+#include "fixed_step.h"
+
+struct explicit_method {
+    struct fixed_step loop; /* first: the loop's functions take it for the whole */
+    double *a;              /* (3,n) in m/s2, of the last evaluation */
+    double *kept; /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet */
+    double h;     /* s, of the last step of position-verlet; 0: none since the restart */
+    double loss;
+};
+
+/* Each moves (x, v) from t to t + h. */
+enum cs_step step_explicit_euler(struct fixed_step *loop, double t, double h, double *x,
+                                 double *v);
+enum cs_step step_symplectic_euler(struct fixed_step *loop, double t, double h, double *x,
+                                   double *v);
+enum cs_step step_averaged_euler(struct fixed_step *loop, double t, double h, double *x,
+                                 double *v);
+enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, double *x,
+                                  double *v);
+enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, double *x,
+                                  double *v);
+
+/* Forgets the last step too. */
+enum cs_step restart_position_verlet(void *object, double t, const double *x, const double *v);
+
+#endif

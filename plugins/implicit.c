@@ -1,0 +1,238 @@
+/* implicit.c - implicit Euler methods that solve one linear system a step.
+ *
+ * With K = df/dx, D = df/dv of springs, dampers and drag at (x, v), and step h:
+ *   implicit-linearised  (M - h D - h^2 K) dv = h (f + h K v)                (whole system)
+ *   implicit-block       (m I - h D_ii - h^2 K_ii) dv_i = h (f_i + h K_ii v_i)   (each
+ * particle) then                 v' = v + dv, x' = x + h v' The first is Baraff and Witkin 1998
+ * (cloth thesis, eq. 5.20); it is one Newton step of implicit Euler. The second is the cloth
+ * thesis's shortcut (sec. 5.3, end): K_ii v_i treats a particle that moves with its neighbours
+ * as if they stood still, which is a drag of size h K_ii. It is stable because it is nearly
+ * frozen, and approaches the equation of motion only as h K h / m goes to 0.
+ */
+#include "fixed_step.h"
+
+#include <clothsim/small.h>
+
+#define DT_HELP "longest step; 0: one step a frame"
+#define DT_MAX  10
+
+static const char *const hessians[] = {"clamped", "exact", NULL};
+
+struct linearised_options {
+    double dt, rtol;
+    int32_t hessian;
+};
+
+static const struct cs_option linearised_rows[] = {
+    CS_OPTION(struct linearised_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+    CS_OPTION(struct linearised_options, rtol, "", 1e-3, 1e-15, 0.5,
+              "relative residual of the linear solve"),
+    CS_OPTION_CHOICE(struct linearised_options, hessian, hessians, 0,
+                     "clamped drops the transverse part of compressed springs (Teran et al. "
+                     "2005); exact keeps it where the matrix stays definite"),
+};
+
+struct block_options {
+    double dt;
+};
+
+static const struct cs_option block_rows[] = {
+    CS_OPTION(struct block_options, dt, "s", 0, 0, DT_MAX, DT_HELP),
+};
+
+struct linearised {
+    struct fixed_step loop; /* first: the loop's functions take it for the whole */
+    double rtol;
+    uint32_t flags;   /* of solve_setup */
+    double *f;        /* (3,n) in N */
+    double *b;        /* (3,n) in N s: K v, then the right-hand side */
+    double *dv;       /* (3,n) in m/s */
+    double *external; /* (3,n) in N: gravity, which does not depend on the state */
+};
+
+struct block {
+    struct fixed_step loop;
+    double *f;         /* (3,n) in N */
+    double *kxx, *dvv; /* (6,n) in N/m and N s/m */
+};
+
+static void *take(const struct cs_host *host, size_t doubles_a_particle) {
+    return host->alloc(host->ctx, doubles_a_particle * sizeof(double) * host->view->n);
+}
+
+static struct fixed_step loop_of(const struct cs_host *host, double dt,
+                                 enum cs_step (*step)(struct fixed_step *, double, double,
+                                                      double *, double *)) {
+    return (struct fixed_step){
+        .host = host, .dt = dt > 0 ? dt : HUGE_VAL, .chosen = dt <= 0, .step = step};
+}
+
+/* Starts the solver's iteration. Free fall, dv = h g, is the one motion that every residual
+ * tolerance would spoil visibly; where gravity is most of b it is the better start than 0. */
+static void start_solve(struct linearised *self, double h) {
+    const struct cs_view *view = self->loop.host->view;
+    const size_t n = view->n;
+    double rest = 0, whole = 0;
+    for (size_t i = 0; i < 3 * n; i++) {
+        const double left = self->b[i] - h * self->external[i];
+        rest += left * left;
+        whole += self->b[i] * self->b[i];
+    }
+    const bool falls = rest < whole / 4;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            self->dv[c * n + i] = falls ? h * self->external[c * n + i] * view->inv_mass[i] : 0;
+}
+
+static void move(size_t n, double h, const double *dv, double *x, double *v) {
+    for (size_t i = 0; i < 3 * n; i++) {
+        v[i] += dv[i];
+        x[i] += h * v[i];
+    }
+}
+
+static enum cs_step step_linearised(struct fixed_step *loop, double t, double h, double *x,
+                                    double *v) {
+    struct linearised *self = (struct linearised *)loop;
+    const struct cs_host *host = loop->host;
+    const size_t n = host->view->n;
+    const double *mass = host->view->mass;
+    enum cs_step status = host->solve_setup(host->ctx, t, x, v, 1, -h, -h * h, self->flags);
+    if (status != CS_STEP_OK)
+        return status;
+
+    /* h^2 K v = M v - h D v - A v with the K that is in A: the exact K of a spring that is
+     * nearly closed would be huge here and clamped there, and throw the particles apart */
+    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    host->jvp(host->ctx, t, x, v, CS_PART_LINEARISED, NULL, v, self->dv);
+    host->apply(host->ctx, v, self->b);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++)
+            self->b[k] = h * (self->f[k] - self->dv[k]) + (mass[i] * v[k] - self->b[k]);
+    start_solve(self, h);
+    status = host->solve(host->ctx, self->b, self->rtol, self->dv);
+    if (status == CS_STEP_OK)
+        move(n, h, self->dv, x, v);
+    return status;
+}
+
+static enum cs_step restart_linearised(void *object, double t, const double *x,
+                                       const double *v) {
+    struct linearised *self = object;
+    const struct cs_host *host = self->loop.host;
+    host->force(host->ctx, t, x, v, CS_PART_GRAVITY, self->external);
+    return CS_STEP_OK;
+}
+
+/* dv of particle i, over its force; false: its block is singular. */
+static bool solve_block(const struct block *self, size_t i, double h, const double *v) {
+    const struct cs_view *view = self->loop.host->view;
+    const size_t n = view->n;
+    double k[6], d[6], a[6], f[3], vi[3], kv[3], b[3], dv[3];
+    cs_sym3_read(n, self->kxx, i, k);
+    cs_sym3_read(n, self->dvv, i, d);
+    for (int c = 0; c < 6; c++)
+        a[c] = -h * d[c] - h * h * k[c];
+    a[0] += view->mass[i], a[3] += view->mass[i], a[5] += view->mass[i];
+
+    cs_vec3_read(n, self->f, i, f);
+    cs_vec3_read(n, v, i, vi);
+    cs_sym3_mul(k, vi, kv);
+    for (int c = 0; c < 3; c++)
+        b[c] = h * (f[c] + h * kv[c]);
+    if (!cs_sym3_invert(a, a))
+        return false;
+    cs_sym3_mul(a, b, dv);
+    cs_vec3_write(n, self->f, i, dv);
+    return true;
+}
+
+static enum cs_step step_block(struct fixed_step *loop, double t, double h, double *x,
+                               double *v) {
+    struct block *self = (struct block *)loop;
+    const struct cs_host *host = loop->host;
+    const size_t n = host->view->n;
+    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    host->diagonal(host->ctx, t, x, v, self->kxx, self->dvv);
+    for (size_t i = 0; i < n; i++)
+        // a pinned particle keeps its zero force as dv
+        if (host->view->inv_mass[i] > 0 && !solve_block(self, i, h, v))
+            return host->fail(host->ctx, "the block of particle %zu is singular at t = %g s", i,
+                              t);
+    move(n, h, self->f, x, v);
+    return CS_STEP_OK;
+}
+
+static enum cs_step create_linearised(const struct cs_host *host, const void *options,
+                                      void **out) {
+    const struct linearised_options *asked = options;
+    struct linearised *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->loop = loop_of(host, asked->dt, step_linearised);
+    self->rtol = asked->rtol;
+    self->flags = asked->hessian == 0 ? CS_SOLVE_PSD : 0;
+    if (!(self->f = take(host, 3)) || !(self->b = take(host, 3)) ||
+        !(self->dv = take(host, 3)) || !(self->external = take(host, 3)))
+        return CS_STEP_FAIL;
+    return CS_STEP_OK;
+}
+
+static enum cs_step create_block(const struct cs_host *host, const void *options, void **out) {
+    const struct block_options *asked = options;
+    struct block *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->loop = loop_of(host, asked->dt, step_block);
+    if (!(self->f = take(host, 3)) || !(self->kxx = take(host, 6)) ||
+        !(self->dvv = take(host, 6)))
+        return CS_STEP_FAIL;
+    return CS_STEP_OK;
+}
+
+static const struct cs_integrator implicit_linearised = {
+    .size = sizeof(struct cs_integrator),
+    .name = "implicit-linearised",
+    .summary = "one linear solve of the whole system a step; stable at large steps, damps",
+    .source = "Baraff, Witkin 1998; cloth thesis, eq. 5.20",
+    .order = 1,
+    .order_damped = 1,
+    .needs = CS_NEED_JVP | CS_NEED_SOLVE,
+    .traits = CS_IMPLICIT,
+    .options = linearised_rows,
+    .n_options = sizeof linearised_rows / sizeof linearised_rows[0],
+    .options_size = sizeof(struct linearised_options),
+    .create = create_linearised,
+    .restart = restart_linearised,
+    .advance = fixed_step_advance,
+};
+
+static const struct cs_integrator implicit_block = {
+    .size = sizeof(struct cs_integrator),
+    .name = "implicit-block",
+    .summary =
+        "the cloth thesis's shortcut, a 3x3 block a particle: spurious drag, falls too slowly",
+    .source = "cloth thesis, sec. 5.3",
+    .order = 1,
+    .order_damped = 1,
+    .needs = CS_NEED_DIAGONAL,
+    .traits = CS_IMPLICIT | CS_NOT_GALILEAN,
+    .options = block_rows,
+    .n_options = sizeof block_rows / sizeof block_rows[0],
+    .options_size = sizeof(struct block_options),
+    .create = create_block,
+    .restart = fixed_step_restart,
+    .advance = fixed_step_advance,
+};
+
+static const struct cs_integrator *const integrators[] = {&implicit_linearised,
+                                                          &implicit_block};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

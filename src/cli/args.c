@@ -1,0 +1,152 @@
+#include "cli/args.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LONGEST_TABLE = 31 };
+
+/* CS_ERR_USAGE for a word that no option has, with the nearest that one has */
+static enum cs_status unknown_option(const struct cs_command *command, const char *word,
+                                     struct cs_error *error) {
+    const char *names[LONGEST_TABLE + 1];
+    uint32_t n = 0;
+    CS_ASSERT(command->n_rows <= LONGEST_TABLE);
+    for (uint32_t r = 0; r < command->n_rows; r++)
+        if (command->rows[r].help)
+            names[n++] = command->rows[r].name;
+    names[n] = NULL;
+    const char *nearest = word[1] == '-' ? cs_nearest(word + 2, names) : NULL;
+    if (nearest)
+        return cs_fail(
+            error, CS_ERR_USAGE,
+            "unknown option \"%.60s\"; did you mean \"--%s\"? (see: clothsim %s --help)", word,
+            nearest, command->name);
+    return cs_fail(error, CS_ERR_USAGE, "unknown option \"%.60s\" (see: clothsim %s --help)",
+                   word, command->name);
+}
+
+/* The row of "--name", "--name=value", "-n" or "-nvalue", and the value that hangs at it. */
+static const struct cs_arg *find_row(const struct cs_command *command, const char *word,
+                                     const char **attached) {
+    *attached = NULL;
+    for (uint32_t r = 0; r < command->n_rows; r++) {
+        const struct cs_arg *row = command->rows + r;
+        if (word[1] == '-') {
+            const size_t length = strcspn(word + 2, "=");
+            if (strlen(row->name) != length || strncmp(row->name, word + 2, length))
+                continue;
+            *attached = word[2 + length] ? word + 3 + length : NULL;
+            return row;
+        }
+        if (row->letter != word[1])
+            continue;
+        if (word[2])
+            *attached = word + 2;
+        return row;
+    }
+    return NULL;
+}
+
+static enum cs_status check_given_once(const struct cs_args *args, const struct cs_arg *row,
+                                       struct cs_error *error) {
+    if (row->many || !cs_args_get(args, (uint32_t)(row - args->command->rows)))
+        return CS_OK;
+    return cs_fail(error, CS_ERR_USAGE, "--%s is given more than once", row->name);
+}
+
+/* Takes the option at argv[*i], and its value where that is the next word. */
+static enum cs_status take_option(struct cs_args *args, int argc, char **argv, int *i,
+                                  struct cs_error *error) {
+    const char *attached;
+    const struct cs_arg *row = find_row(args->command, argv[*i], &attached);
+    if (!row || (!row->value && attached && argv[*i][1] != '-'))
+        return unknown_option(args->command, argv[*i], error);
+    if (check_given_once(args, row, error))
+        return error->status;
+    const char *value = attached;
+    if (!row->value) {
+        if (attached)
+            return cs_fail(error, CS_ERR_USAGE, "--%s takes no value, found \"%.60s\"",
+                           row->name, attached);
+        value = "";
+    } else if (!attached) {
+        /* two dashes are the next option: its name is hardly meant as a value */
+        if (*i + 1 >= argc || !strncmp(argv[*i + 1], "--", 2))
+            return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name,
+                           row->name, row->value);
+        value = argv[++*i];
+    }
+    if (row->value && !*value)
+        return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name, row->name,
+                       row->value);
+    args->given[args->n_given++] =
+        (struct cs_given){(uint32_t)(row - args->command->rows), value};
+    return CS_OK;
+}
+
+static bool asks_for_help(int argc, char **argv) {
+    for (int i = 0; i < argc && strcmp(argv[i], "--"); i++)
+        if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h"))
+            return true;
+    return false;
+}
+
+static enum cs_status check_operands(const struct cs_args *args, struct cs_error *error) {
+    const struct cs_command *command = args->command;
+    if (args->n_operands < command->least)
+        return cs_fail(error, CS_ERR_USAGE, "expected %s (see: clothsim %s --help)",
+                       command->operands, command->name);
+    if (args->n_operands > command->most)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "unexpected argument \"%.60s\" (see: clothsim %s --help)",
+                       args->operands[command->most], command->name);
+    return CS_OK;
+}
+
+enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
+                             char **argv, struct cs_error *error) {
+    args->command = command;
+    args->help = asks_for_help(argc, argv);
+    if (args->help)
+        return CS_OK;
+    args->given = cs_arena_take_n(&args->arena, (size_t)argc, sizeof *args->given, error);
+    args->operands = cs_arena_take_n(&args->arena, (size_t)argc, sizeof *args->operands, error);
+    if (error->status)
+        return error->status;
+    bool options = true;
+    for (int i = 0; i < argc; i++) {
+        if (options && !strcmp(argv[i], "--"))
+            options = false;
+        else if (options && argv[i][0] == '-' && argv[i][1]) {
+            if (take_option(args, argc, argv, &i, error))
+                return error->status;
+        } else
+            args->operands[args->n_operands++] = argv[i];
+    }
+    return check_operands(args, error);
+}
+
+void cs_args_finish(struct cs_args *args) {
+    cs_arena_finish(&args->arena);
+    *args = (struct cs_args){0};
+}
+
+const char *cs_args_get(const struct cs_args *args, uint32_t row) {
+    for (uint32_t i = args->n_given; i-- > 0;)
+        if (args->given[i].row == row)
+            return args->given[i].value;
+    return NULL;
+}
+
+enum cs_status cs_args_all(struct cs_args *args, uint32_t row, const char *const **values,
+                           uint32_t *n, struct cs_error *error) {
+    const char **all = cs_arena_take_n(&args->arena, args->n_given, sizeof *all, error);
+    *n = 0;
+    if (!all)
+        return error->status;
+    for (uint32_t i = 0; i < args->n_given; i++)
+        if (args->given[i].row == row)
+            all[(*n)++] = args->given[i].value;
+    *values = all;
+    return CS_OK;
+}

@@ -1,0 +1,31 @@
+/* args_help.c - what --help says, from a command's table. */
+#include "cli/args.h"
+#include "cli/print.h"
+
+enum { HELP_COLUMN = 28 };
+
+static void add_row(const struct cs_arg *row, struct cs_text *out) {
+    struct cs_text left = {0};
+    if (row->letter)
+        cs_text_add(&left, "  -%c, --%s", row->letter, row->name);
+    else
+        cs_text_add(&left, "      --%s", row->name);
+    if (row->value)
+        cs_text_add(&left, " %s", row->value);
+    cs_print_hanging(cs_text_get(&left), row->help, HELP_COLUMN, out);
+    cs_text_finish(&left);
+}
+
+void cs_command_print_help(const struct cs_command *command, struct cs_text *out) {
+    static const struct cs_arg help = {"help", 'h', NULL, "this text", false};
+    cs_text_add(out, "usage: clothsim %s%s%s [options]\n\n", command->name,
+                *command->operands ? " " : "", command->operands);
+    cs_print_hanging("", command->summary, 0, out);
+    cs_text_add(out, "\n");
+    for (uint32_t r = 0; r < command->n_rows; r++)
+        if (command->rows[r].help)
+            add_row(command->rows + r, out);
+    add_row(&help, out);
+    if (command->notes)
+        cs_text_add(out, "\n%s", command->notes);
+}

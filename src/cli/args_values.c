@@ -1,0 +1,70 @@
+/* args_values.c - the values of options, checked. */
+#include "cli/args.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t min,
+                             uint32_t max, uint32_t *value, struct cs_error *error) {
+    const char *text = cs_args_get(args, row);
+    if (!text)
+        return CS_OK;
+    const size_t digits = strspn(text, "0123456789");
+    const unsigned long read = digits <= 10 ? strtoul(text, NULL, 10) : max + 1ul;
+    if (!digits || text[digits] || read < min || read > max)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--%s: expected a whole number from %u to %u, found \"%.60s\"",
+                       args->command->rows[row].name, min, max, text);
+    *value = (uint32_t)read;
+    return CS_OK;
+}
+
+enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
+                              const char *const *names, int *index, struct cs_error *error) {
+    const char *text = cs_args_get(args, row);
+    if (!text)
+        return CS_OK;
+    for (int i = 0; names[i]; i++)
+        if (!strcmp(names[i], text)) {
+            *index = i;
+            return CS_OK;
+        }
+    struct cs_text list = {0};
+    for (int i = 0; names[i]; i++)
+        cs_text_add(&list, "%s%s", i ? ", " : "", names[i]);
+    cs_fail(error, CS_ERR_USAGE, "--%s: expected one of %s, found \"%.60s\"",
+            args->command->rows[row].name, cs_text_get(&list), text);
+    cs_text_finish(&list);
+    return error->status;
+}
+
+/* Splits PATH=VALUE; the copy lives in the arena. */
+static enum cs_status split(struct cs_args *args, const char *option, const char *text,
+                            struct cs_override *override, struct cs_error *error) {
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text || !equals[1])
+        return cs_fail(error, CS_ERR_USAGE, "--%s: expected PATH=VALUE, found \"%.60s\"",
+                       option, text);
+    char *path = cs_arena_take_text(&args->arena, text, error);
+    if (!path)
+        return error->status;
+    path[equals - text] = 0;
+    *override = (struct cs_override){path, path + (equals - text) + 1};
+    return CS_OK;
+}
+
+enum cs_status cs_args_overrides(struct cs_args *args, uint32_t row,
+                                 const struct cs_override **overrides, uint32_t *n,
+                                 struct cs_error *error) {
+    const char *const *texts;
+    if (cs_args_all(args, row, &texts, n, error))
+        return error->status;
+    struct cs_override *all = cs_arena_take_n(&args->arena, *n, sizeof *all, error);
+    if (!all)
+        return error->status;
+    for (uint32_t i = 0; i < *n; i++)
+        if (split(args, args->command->rows[row].name, texts[i], all + i, error))
+            return error->status;
+    *overrides = all;
+    return CS_OK;
+}

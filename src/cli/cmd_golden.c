@@ -1,0 +1,95 @@
+/* cmd_golden.c - clothsim golden: recomputes what runs came to, and says what differs. */
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "study/golden.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    GOLDEN_ACCEPT,
+    GOLDEN_HASHES,
+    GOLDEN_IMAGES,
+    GOLDEN_ONLY,
+    GOLDEN_FOLDER,
+    GOLDEN_GL,
+    GOLDEN_QUIET,
+    GOLDEN_ROWS
+};
+
+static const struct cs_arg rows[GOLDEN_ROWS] = {
+    [GOLDEN_ACCEPT] = {"accept", 0, NULL,
+                       "write what was found into the golden files: look at it first", false},
+    [GOLDEN_HASHES] = {"hashes", 0, NULL, "state hashes only", false},
+    [GOLDEN_IMAGES] = {"images", 0, NULL, "images only", false},
+    [GOLDEN_ONLY] = {"only", 0, "TEXT", "rows whose scene or integrator holds TEXT", false},
+    [GOLDEN_FOLDER] = {"folder", 0, "DIR", "the golden folder (default: golden)", false},
+    [GOLDEN_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
+    [GOLDEN_QUIET] = {"quiet", 'q', NULL, "print only rows that differ, and the count", false},
+};
+
+static void print_row(void *ctx, const struct cs_golden_row *row) {
+    const struct cs_args *args = ctx;
+    const bool differs = row->message.length > 0;
+    if (!differs && cs_args_get(args, GOLDEN_QUIET))
+        return;
+    const char *verdict = row->skipped ? "skip" : !differs ? "ok" : "DIFFERS";
+    if (differs && cs_args_get(args, GOLDEN_ACCEPT))
+        verdict = "accepted";
+    printf("%-8s %s%s%s  %s", verdict, row->image ? "image " : "", row->image ? row->image : "",
+           row->image ? " " : "", row->run.scene);
+    if (strcmp(row->run.integrator, "-"))
+        printf("  %s", row->run.integrator);
+    if (strcmp(row->run.overrides, "-"))
+        printf("  %s", row->run.overrides);
+    printf("  frame %u%s%s\n", row->run.frames, differs ? ": " : "",
+           cs_text_get(&row->message));
+    fflush(stdout);
+}
+
+static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
+    int gl = CS_GL_AUTO;
+    const char *folder = cs_args_get(args, GOLDEN_FOLDER);
+    const bool hashes = cs_args_get(args, GOLDEN_HASHES),
+               images = cs_args_get(args, GOLDEN_IMAGES);
+    if (cs_args_choice(args, GOLDEN_GL, cs_gl_names, &gl, error))
+        return error->status;
+    struct cs_golden check = {
+        .folder = folder ? folder : "golden",
+        .only = cs_args_get(args, GOLDEN_ONLY),
+        .hashes = hashes || !images,
+        .images = images || !hashes,
+        .accept = cs_args_get(args, GOLDEN_ACCEPT),
+        .gl = (enum cs_gl)gl,
+        .stop = cs_interrupt_catch(),
+        .report = print_row,
+        .ctx = args,
+    };
+    if (cs_golden_check(&check, error))
+        return error->status;
+    printf("%u agree, %u differ, %u accepted, %u skipped\n", check.passed, check.failed,
+           check.accepted, check.skipped);
+    if (check.passed + check.failed + check.accepted + check.skipped == 0)
+        return cs_fail(error, CS_ERR_USAGE, "no golden row matches");
+    if (check.failed > 0)
+        return cs_fail(
+            error, CS_ERR_CHECK,
+            "%u golden row%s differ%s; if the change is meant, look and then --accept",
+            check.failed, check.failed == 1 ? "" : "s", check.failed == 1 ? "s" : "");
+    return CS_OK;
+}
+
+const struct cs_command cs_command_golden = {
+    .name = "golden",
+    .operands = "",
+    .summary = "recompute golden state hashes and images, and compare",
+    .notes = "Images are compared pixel for pixel where the renderer is the one that made the\n"
+             "golden image, else within a tolerance that defects do not pass. A picture that\n"
+             "differs is written beside its golden image as *.actual.png, with 16 times the\n"
+             "difference as *.difference.png.\n",
+    .rows = rows,
+    .n_rows = GOLDEN_ROWS,
+    .least = 0,
+    .most = 0,
+    .main = golden,
+};

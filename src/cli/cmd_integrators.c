@@ -1,0 +1,173 @@
+/* cmd_integrators.c - clothsim integrators: which methods there are, and what one takes. */
+#include "base/options.h"
+#include "cli/commands.h"
+#include "cli/print.h"
+#include "sim/registry.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LIST_PLUGIN, LIST_ROWS };
+enum { NAME_COLUMN = 22, INDENT = 4, DETAIL_COLUMN = 14 };
+
+static const struct cs_arg rows[LIST_ROWS] = {
+    [LIST_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated", true},
+};
+
+static const struct {
+    uint32_t trait;
+    const char *text;
+} traits[] = {
+    {CS_IMPLICIT, "implicit"},
+    {CS_ADAPTIVE, "adaptive"},
+    {CS_MULTISTEP, "multistep"},
+    {CS_SYMPLECTIC, "symplectic"},
+    {CS_LIBRARY_BITS, "bits by a library"},
+    {CS_NOT_GALILEAN, "not Galilean"},
+};
+
+static void add_traits(uint32_t given, const char *before, struct cs_text *out) {
+    for (uint32_t i = 0; i < sizeof traits / sizeof *traits; i++)
+        if (given & traits[i].trait) {
+            cs_text_add(out, "%s%s", before, traits[i].text);
+            before = ", ";
+        }
+}
+
+static void add_order(const struct cs_integrator *integrator, struct cs_text *out) {
+    cs_text_add(out, "%u", integrator->order);
+    if (integrator->order_damped != integrator->order)
+        cs_text_add(out, " (%u with damping)", integrator->order_damped);
+}
+
+static void add_listed(const struct cs_integrator *integrator, struct cs_text *out) {
+    struct cs_text source = {0};
+    cs_text_add(out, "%-*s order ", NAME_COLUMN - 1, integrator->name);
+    add_order(integrator, out);
+    add_traits(integrator->traits, ", ", out);
+    cs_text_add(out, "\n");
+    cs_print_hanging("", integrator->summary, INDENT, out);
+    cs_text_add(&source, "source: %s", integrator->source);
+    cs_print_hanging("", cs_text_get(&source), INDENT, out);
+    cs_text_finish(&source);
+}
+
+static void add_refused(const struct cs_registered *entry, struct cs_text *out) {
+    cs_text_add(out, "refused: %s: %s\n", entry->file, entry->refusal);
+}
+
+static enum cs_status print_list(struct cs_registry *registry, struct cs_error *error) {
+    struct cs_text out = {0};
+    if (cs_registry_open_all(registry, error))
+        return error->status;
+    for (uint32_t i = 0; i < registry->n; i++) {
+        const struct cs_registered *entry = registry->entries + i;
+        if (entry->integrator)
+            add_listed(entry->integrator, &out);
+        else
+            add_refused(entry, &out);
+    }
+    return cs_print_out(stdout, &out, error);
+}
+
+/* A row's default and range, each in its column, then what it means. */
+static void add_option(const struct cs_option *row, const void *defaults, struct cs_text *out) {
+    struct cs_text left = {0}, value = {0}, range = {0};
+    const bool given = !cs_option_is_optional(row) || cs_option_is_given(row, defaults);
+    if (!given)
+        cs_text_add(&value, "not set");
+    else if (row->type == CS_CHOICE)
+        cs_text_add(&value, "%s", row->choices[(int)row->def]);
+    else
+        cs_option_print(row, defaults, &value);
+    cs_option_print_range(row, &range);
+    cs_text_add(&left, "%-*s%-*s%s", DETAIL_COLUMN, row->name, DETAIL_COLUMN,
+                cs_text_get(&value), cs_text_get(&range));
+    cs_text_add(out, "%s\n", cs_text_get(&left));
+    cs_print_hanging("", row->help, 2 * DETAIL_COLUMN, out);
+    cs_text_finish(&left);
+    cs_text_finish(&value);
+    cs_text_finish(&range);
+}
+
+static enum cs_status add_options(const struct cs_integrator *integrator, struct cs_text *out,
+                                  struct cs_error *error) {
+    const struct cs_table table = {.rows = integrator->options,
+                                   .n = integrator->n_options,
+                                   .size = integrator->options_size};
+    if (!table.n) {
+        cs_text_add(out, "\nno options\n");
+        return CS_OK;
+    }
+    void *defaults = calloc(1, table.size);
+    if (!defaults)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the options of %s",
+                       integrator->name);
+    cs_options_default(&table, defaults);
+    cs_text_add(out, "\n%-*s%-*s%s\n", DETAIL_COLUMN, "option", DETAIL_COLUMN, "default",
+                "range");
+    for (uint32_t r = 0; r < table.n; r++)
+        add_option(table.rows + r, defaults, out);
+    free(defaults);
+    return CS_OK;
+}
+
+static enum cs_status print_one(struct cs_registry *registry, const char *name,
+                                struct cs_error *error) {
+    const struct cs_registered *found;
+    if (cs_registry_find(registry, name, &found, error))
+        return error->status;
+    const struct cs_integrator *integrator = found->integrator;
+    struct cs_text out = {0}, order = {0}, list = {0};
+    add_order(integrator, &order);
+    add_traits(integrator->traits, "", &list);
+    cs_print_hanging("name", integrator->name, DETAIL_COLUMN, &out);
+    cs_print_hanging("method", integrator->summary, DETAIL_COLUMN, &out);
+    cs_print_hanging("source", integrator->source, DETAIL_COLUMN, &out);
+    cs_print_hanging("order", cs_text_get(&order), DETAIL_COLUMN, &out);
+    cs_print_hanging("traits", list.length ? cs_text_get(&list) : "none", DETAIL_COLUMN, &out);
+    cs_print_hanging("module", found->file, DETAIL_COLUMN, &out);
+    cs_text_finish(&order);
+    cs_text_finish(&list);
+    if (!add_options(integrator, &out, error))
+        return cs_print_out(stdout, &out, error);
+    cs_text_finish(&out);
+    return error->status;
+}
+
+static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *registry,
+                                  struct cs_error *error) {
+    const char *const *files;
+    uint32_t n;
+    if (cs_args_all(args, LIST_PLUGIN, &files, &n, error))
+        return error->status;
+    for (uint32_t i = 0; i < n; i++)
+        if (cs_registry_add_file(registry, files[i], error))
+            return error->status;
+    return CS_OK;
+}
+
+static enum cs_status list(struct cs_args *args, struct cs_error *error) {
+    struct cs_registry registry = {0};
+    if (!add_plugins(args, &registry, error)) {
+        if (args->n_operands)
+            print_one(&registry, args->operands[0], error);
+        else
+            print_list(&registry, error);
+    }
+    cs_registry_finish(&registry);
+    return error->status;
+}
+
+const struct cs_command cs_command_integrators = {
+    .name = "integrators",
+    .operands = "[NAME]",
+    .summary = "list the integrators, or say all about one and its options",
+    .notes = "Modules are looked for beside the program and in the folders of\n"
+             "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n",
+    .rows = rows,
+    .n_rows = LIST_ROWS,
+    .least = 0,
+    .most = 1,
+    .main = list,
+};

@@ -1,0 +1,171 @@
+/* cmd_run.c - clothsim run: a scene to pictures, states, hashes and a report. */
+#include "base/file.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/print.h"
+#include "cli/run_report.h"
+
+#include <string.h>
+
+enum {
+    RUN_FRAMES,
+    RUN_INTEGRATOR,
+    RUN_SET,
+    RUN_PLUGIN,
+    RUN_OUT,
+    RUN_OVERWRITE,
+    RUN_NO_RENDER,
+    RUN_EVERY,
+    RUN_STATES,
+    RUN_HASH,
+    RUN_JSON,
+    RUN_TIMING,
+    RUN_GL,
+    RUN_FAST,
+    RUN_LEVEL,
+    RUN_QUIET,
+    RUN_ROWS
+};
+enum { MOST_FRAMES = 10000000 };
+
+static const struct cs_arg rows[RUN_ROWS] = {
+    [RUN_FRAMES] = {"frames", 'n', "N", "simulate frames 1 to N (default: one second of them)",
+                    false},
+    [RUN_INTEGRATOR] =
+        {"integrator", 'i', "NAME[:KEY=VALUE,...]",
+         "method and its options, instead of the scene's (see: clothsim integrators)", false},
+    [RUN_SET] =
+        {"set", 's', "PATH=VALUE",
+         "another value for a key of the scene, such as bodies[0].springs.stretch=200; may "
+         "be repeated",
+         true},
+    [RUN_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated", true},
+    [RUN_OUT] = {"out", 'o', "DIR",
+                 "folder for frame_00001.png ... and run.json (default: out)", false},
+    [RUN_OVERWRITE] = {"overwrite", 'y', NULL, "replace the files of an earlier run", false},
+    [RUN_NO_RENDER] = {"no-render", 0, NULL, "draw nothing; -o is not used", false},
+    [RUN_EVERY] = {"every", 0, "K", "draw frames K, 2K, 3K ... only (default: 1)", false},
+    [RUN_STATES] = {"states", 0, "DIR",
+                    "write x_00000.npy, v_00000.npy ...: positions and velocities of the start "
+                    "(0) and of each frame",
+                    false},
+    [RUN_HASH] = {"hash", 0, NULL, "print number and state hash of each frame, one a line",
+                  false},
+    [RUN_JSON] = {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
+                  false},
+    [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a step and of a picture", false},
+    [RUN_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
+    [RUN_FAST] = {"fast-render", 0, NULL,
+                  "use all of the processor; pixels then depend on the machine", false},
+    [RUN_LEVEL] = {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)", false},
+    [RUN_QUIET] = {"quiet", 'q', NULL, "no progress and no table", false},
+};
+
+static enum cs_status read_session(struct cs_args *args, struct cs_session_settings *session,
+                                   struct cs_error *error) {
+    session->scene = args->operands[0];
+    session->integrator = cs_args_get(args, RUN_INTEGRATOR);
+    session->render = !cs_args_get(args, RUN_NO_RENDER);
+    session->timed = cs_args_get(args, RUN_TIMING);
+    session->stop = cs_interrupt_catch();
+    if (cs_args_overrides(args, RUN_SET, &session->overrides, &session->n_overrides, error))
+        return error->status;
+    return cs_args_all(args, RUN_PLUGIN, &session->plugins, &session->n_plugins, error);
+}
+
+static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings *settings,
+                                    struct cs_error *error) {
+    const char *folder = cs_args_get(args, RUN_OUT);
+    *settings = (struct cs_job_settings){
+        .every = 1,
+        .folder = folder ? folder : "out",
+        .states = cs_args_get(args, RUN_STATES),
+        .json = cs_args_get(args, RUN_JSON),
+        .gl = CS_GL_AUTO,
+        .level = 1,
+        .fast = cs_args_get(args, RUN_FAST),
+        .hash = cs_args_get(args, RUN_HASH),
+        .overwrite = cs_args_get(args, RUN_OVERWRITE),
+        .quiet = cs_args_get(args, RUN_QUIET),
+    };
+    if (cs_args_whole(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
+        cs_args_whole(args, RUN_EVERY, 1, MOST_FRAMES, &settings->every, error) ||
+        cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
+        cs_args_choice(args, RUN_GL, cs_gl_names, &settings->gl, error))
+        return error->status;
+    if (settings->hash && settings->json && !strcmp(settings->json, "-"))
+        return cs_fail(error, CS_ERR_USAGE, "--hash and --json - both ask for standard output");
+    return read_session(args, &settings->session, error);
+}
+
+static enum cs_status write_json(const struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    struct cs_text json = {0}, path = {0};
+    if (!cs_job_wants_json(settings))
+        return CS_OK;
+    cs_report_print_json(job, &json);
+    cs_text_add(&path, "%s/run.json", settings->folder);
+    if (json.failed || path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
+    if (!error->status && settings->session.render)
+        cs_file_write(cs_text_get(&path), json.bytes, json.length, error);
+    if (!error->status && settings->json && strcmp(settings->json, "-"))
+        cs_file_write(settings->json, json.bytes, json.length, error);
+    else if (!error->status && settings->json)
+        cs_print_out(stdout, &json, error);
+    cs_text_finish(&json);
+    cs_text_finish(&path);
+    return error->status;
+}
+
+static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const bool taken = settings->hash || (settings->json && !strcmp(settings->json, "-"));
+    struct cs_text table = {0};
+    if (settings->quiet)
+        return CS_OK;
+    cs_report_print_table(job, &table);
+    return cs_print_out(taken ? stderr : stdout, &table, error);
+}
+
+/* A run that stopped early says so whatever else is printed. */
+static enum cs_status tell_outcome(const struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    struct cs_text outcome = {0};
+    if (run->outcome == CS_RUNNING)
+        return CS_OK;
+    cs_report_print_outcome(job, &outcome);
+    cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
+    if (run->outcome == CS_INTERRUPTED)
+        cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
+    else
+        cs_print_message(cs_text_get(&outcome));
+    cs_text_finish(&outcome);
+    return error->status;
+}
+
+static enum cs_status run(struct cs_args *args, struct cs_error *error) {
+    struct cs_job_settings settings;
+    struct cs_job job = {0};
+    if (read_settings(args, &settings, error))
+        return error->status;
+    if (!cs_job_run(&job, &settings, error) && !write_json(&job, error) &&
+        !print_table(&job, error))
+        tell_outcome(&job, error);
+    cs_job_finish(&job);
+    return error->status;
+}
+
+const struct cs_command cs_command_run = {
+    .name = "run",
+    .operands = "SCENE",
+    .summary = "simulate a scene and write its frames as PNG pictures",
+    .notes = "Frame k shows the time k / fps. A run that blows up is a result: it says when\n"
+             "and where, keeps the frames before, and exits with 0.\n\n"
+             "Example: clothsim run scenes/hang.json --frames 60 -i velocity-verlet:dt=0.001\n",
+    .rows = rows,
+    .n_rows = RUN_ROWS,
+    .least = 1,
+    .most = 1,
+    .main = run,
+};

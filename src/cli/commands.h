@@ -1,0 +1,12 @@
+/* commands.h - the commands of the program, one file each. */
+#ifndef CS_COMMANDS_H
+#define CS_COMMANDS_H
+
+#include "cli/args.h"
+
+extern const struct cs_command cs_command_run;
+extern const struct cs_command cs_command_integrators;
+extern const struct cs_command cs_command_scene;
+extern const struct cs_command cs_command_golden;
+
+#endif

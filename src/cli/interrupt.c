@@ -1,0 +1,32 @@
+#include "cli/interrupt.h"
+
+#include <time.h>
+
+enum { PATIENCE_SECONDS = 2 };
+
+static volatile sig_atomic_t stop;
+static struct timespec first;
+
+/* Some programs that pass signals on send each of them twice. */
+static void request_stop(int signal_number) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (!stop) {
+        first = now;
+        stop = 1;
+    } else if (now.tv_sec - first.tv_sec >= PATIENCE_SECONDS) {
+        signal(signal_number, SIG_DFL);
+        raise(signal_number);
+    }
+}
+
+const volatile sig_atomic_t *cs_interrupt_catch(void) {
+    struct sigaction action = {.sa_flags = SA_RESTART};
+    sigfillset(&action.sa_mask);
+    action.sa_handler = request_stop;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    /* a reader that went away must not cut a picture short: the write fails, and is reported */
+    signal(SIGPIPE, SIG_IGN);
+    return &stop;
+}

@@ -1,0 +1,111 @@
+/* main.c - which command, and how it ended. */
+#include "cli/commands.h"
+#include "cli/print.h"
+
+#include <signal.h>
+#include <string.h>
+
+static const struct cs_command *const commands[] = {
+    &cs_command_run, &cs_command_integrators, &cs_command_scene, &cs_command_golden, NULL};
+
+static const struct cs_command *find_command(const char *name) {
+    for (uint32_t i = 0; commands[i]; i++)
+        if (!strcmp(commands[i]->name, name))
+            return commands[i];
+    return NULL;
+}
+
+static enum cs_status unknown_command(const char *word, struct cs_error *error) {
+    const char *names[16];
+    uint32_t n = 0;
+    for (; commands[n]; n++)
+        names[n] = commands[n]->name;
+    names[n++] = "help";
+    names[n] = NULL;
+    if (*word == '-')
+        return cs_fail(error, CS_ERR_USAGE,
+                       "unknown option \"%.60s\"; a command comes first (see: clothsim help)",
+                       word);
+    const char *nearest = cs_nearest(word, names);
+    if (nearest)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "unknown command \"%.60s\"; did you mean \"%s\"? (see: clothsim help)",
+                       word, nearest);
+    return cs_fail(error, CS_ERR_USAGE, "unknown command \"%.60s\" (see: clothsim help)", word);
+}
+
+static enum cs_status print_overview(struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_text_add(&out, "usage: clothsim COMMAND [options]\n\n"
+                      "Cloth as particles and springs: simulated, compared and drawn.\n\n");
+    for (uint32_t i = 0; commands[i]; i++) {
+        struct cs_text left = {0};
+        cs_text_add(&left, "  %s", commands[i]->name);
+        cs_print_hanging(cs_text_get(&left), commands[i]->summary, 16, &out);
+        cs_text_finish(&left);
+    }
+    cs_print_hanging("  help", "this text, or the options of a command: clothsim help run", 16,
+                     &out);
+    cs_text_add(&out,
+                "\nA first run:  clothsim run scenes/sphere_rest.json --frames 60 -o out\n"
+                "Manual:       man clothsim\n");
+    return cs_print_out(stdout, &out, error);
+}
+
+static enum cs_status print_help(const struct cs_command *command, struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_command_print_help(command, &out);
+    return cs_print_out(stdout, &out, error);
+}
+
+static enum cs_status help(int argc, char **argv, struct cs_error *error) {
+    if (!argc || !strcmp(argv[0], "help") || argv[0][0] == '-')
+        return print_overview(error);
+    const struct cs_command *command = find_command(argv[0]);
+    return command ? print_help(command, error) : unknown_command(argv[0], error);
+}
+
+static enum cs_status print_version(struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_text_add(&out, "clothsim " CS_VERSION "\n");
+    return cs_print_out(stdout, &out, error);
+}
+
+static enum cs_status run_command(const struct cs_command *command, int argc, char **argv,
+                                  struct cs_error *error) {
+    struct cs_args args = {0};
+    if (!cs_args_parse(&args, command, argc, argv, error)) {
+        if (args.help)
+            print_help(command, error);
+        else
+            command->main(&args, error);
+    }
+    cs_args_finish(&args);
+    return error->status;
+}
+
+static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
+    if (argc < 2)
+        return cs_fail(error, CS_ERR_USAGE, "expected a command (see: clothsim help)");
+    if (!strcmp(argv[1], "--version"))
+        return print_version(error);
+    if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
+        return help(argc - 2, argv + 2, error);
+    const struct cs_command *command = find_command(argv[1]);
+    if (!command)
+        return unknown_command(argv[1], error);
+    return run_command(command, argc - 2, argv + 2, error);
+}
+
+int main(int argc, char **argv) {
+    struct cs_error error = {0};
+    /* a file that grew too long comes back from the write as an error, and is reported */
+    signal(SIGXFSZ, SIG_IGN);
+    if (!dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))
+        cs_fail(&error, CS_ERR_FILE, "cannot write to standard output");
+    /* what was printed before the failure stands before it */
+    fflush(stdout);
+    if (error.status)
+        cs_print_message(error.message);
+    return cs_status_exit_code(error.status);
+}

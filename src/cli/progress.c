@@ -1,0 +1,41 @@
+#include "cli/progress.h"
+
+#include "base/clock.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+void cs_progress_begin(struct cs_progress *progress, bool quiet) {
+    *progress = (struct cs_progress){.shown = !quiet && isatty(STDERR_FILENO)};
+    progress->start = progress->last = cs_clock_wall();
+}
+
+static void write_line(struct cs_progress *progress, const char *line) {
+    const int width = (int)strlen(line);
+    /* blanks cover what is left of a longer line, on the plainest of terminals too */
+    fprintf(stderr, "\r%s%*s", line, width < progress->width ? progress->width - width : 0, "");
+    fflush(stderr);
+    progress->width = width;
+}
+
+void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total) {
+    const double now = cs_clock_wall();
+    if (!progress->shown || !done || now - progress->last < 0.1)
+        return;
+    const double left = (now - progress->start) / done * (total - done);
+    char line[80];
+    snprintf(line, sizeof line, "frame %u of %u, %u %%, %.0f:%02u left", done, total,
+             (uint32_t)(100.0 * done / total), (left - (uint32_t)left % 60) / 60,
+             (uint32_t)left % 60);
+    write_line(progress, line);
+    progress->last = now;
+}
+
+void cs_progress_end(struct cs_progress *progress) {
+    if (!progress->width)
+        return;
+    write_line(progress, "");
+    fputc('\r', stderr);
+    fflush(stderr);
+}

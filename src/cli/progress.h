@@ -1,0 +1,22 @@
+/* progress.h - one line on the terminal that says how far a run is. */
+#ifndef CS_PROGRESS_H
+#define CS_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct cs_progress {
+    bool shown;         /* stderr is a terminal, and nobody asked for quiet */
+    double start, last; /* s */
+    int width;          /* of the line that is there */
+};
+
+void cs_progress_begin(struct cs_progress *progress, bool quiet);
+
+/* Rewrites the line, at most ten times a second. */
+void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total);
+
+/* Takes the line away. */
+void cs_progress_end(struct cs_progress *progress);
+
+#endif

@@ -1,0 +1,225 @@
+#include "cli/run_job.h"
+
+#include "base/clock.h"
+#include "base/options.h"
+#include "cli/print.h"
+#include "cli/progress.h"
+#include "cli/run_output.h"
+#include "io/scene_write.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+bool cs_job_wants_json(const struct cs_job_settings *settings) {
+    return settings->session.render || settings->json;
+}
+
+/* "NAME:key=value,..." with every option that has a value */
+static void describe_method(const struct cs_session *session, struct cs_text *out) {
+    cs_text_add(out, "%s", session->integrator->name);
+    char mark = ':';
+    for (uint32_t r = 0; r < session->option_table.n; r++) {
+        const struct cs_option *row = session->option_table.rows + r;
+        if (cs_option_is_optional(row) && !cs_option_is_given(row, session->options))
+            continue;
+        cs_text_add(out, "%c%s=", mark, row->name);
+        if (row->type == CS_CHOICE) {
+            const char *field = (const char *)session->options + row->offset;
+            cs_text_add(out, "%s", row->choices[*(const int32_t *)(const void *)field]);
+        } else
+            cs_option_print(row, session->options, out);
+        mark = ',';
+    }
+}
+
+/* The scene with every value: what the scene hash is of. */
+static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
+    const struct cs_session *session = &job->session;
+    cs_scene_print(&session->scene, &session->option_table, session->options, 2, &job->scene);
+    describe_method(session, &job->method);
+    if (job->scene.failed || job->method.failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
+    cs_hash_bytes(job->scene.bytes, job->scene.length, job->scene_hash);
+    return CS_OK;
+}
+
+static uint32_t frames_of_one_second(const struct cs_scene *scene) {
+    const double frames = floor(scene->time.fps + 0.5);
+    return frames < 1 ? 1 : (uint32_t)frames;
+}
+
+static enum cs_status check_outputs(const struct cs_job_settings *settings,
+                                    struct cs_error *error) {
+    if (settings->overwrite)
+        return CS_OK;
+    if (settings->session.render && cs_output_check(settings->folder, false, error))
+        return error->status;
+    if (settings->json && strcmp(settings->json, "-") &&
+        cs_output_check_file(settings->json, error))
+        return error->status;
+    return cs_output_check(settings->states, true, error);
+}
+
+static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    if (cs_picture_open(&job->picture, &job->session.system, (enum cs_gl)settings->gl,
+                        settings->fast, error))
+        return error->status;
+    cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));
+    if (job->renderer.failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the renderer's name");
+    return CS_OK;
+}
+
+/* Nothing on disk is touched before all that can be refused was looked at. */
+static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const int64_t *size = job->session.scene.render.size;
+    if (settings->session.render && open_pictures(job, error))
+        return error->status;
+    if (settings->states && cs_output_prepare(settings->states, true, error))
+        return error->status;
+    if (!settings->session.render)
+        return CS_OK;
+    if (cs_output_prepare(settings->folder, false, error))
+        return error->status;
+    const bool threaded = sysconf(_SC_NPROCESSORS_ONLN) > 1;
+    return cs_frames_create(settings->folder, (uint32_t)size[0], (uint32_t)size[1],
+                            (int)settings->level, threaded, &job->writer, error);
+}
+
+static enum cs_status keep(struct cs_job *job, const struct cs_job_frame *frame,
+                           struct cs_error *error) {
+    const size_t number = job->session.run.frame;
+    if (number > job->kept_capacity) {
+        const size_t capacity = 2 * number + 64;
+        void *larger = realloc(job->kept, capacity * sizeof *job->kept);
+        if (!larger)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %zu frames",
+                           number);
+        job->kept = larger;
+        job->kept_capacity = capacity;
+    }
+    job->kept[number - 1] = *frame;
+    return CS_OK;
+}
+
+/* Hands the picture over with what says where it came from. */
+static enum cs_status give_picture(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    const struct cs_scene *scene = &job->session.scene;
+    char number[16];
+    struct cs_text time = {0}, range = {0};
+    snprintf(number, sizeof number, "%u", run->frame);
+    cs_text_add_real(&time, run->t);
+    if (cs_picture_is_coloured(scene)) {
+        cs_text_add_real(&range, job->picture.range[0]);
+        cs_text_add(&range, "..");
+        cs_text_add_real(&range, job->picture.range[1]);
+        cs_text_add(&range, " %s", cs_picture_unit(scene));
+    }
+    const struct cs_png_text texts[] = {
+        {"Software", "clothsim " CS_VERSION},
+        {"Source", job->scene_hash},
+        {"clothsim:frame", number},
+        {"clothsim:time", cs_text_get(&time)},
+        {"clothsim:integrator", cs_text_get(&job->method)},
+        {"clothsim:state-hash", job->hash},
+        {"clothsim:renderer", cs_text_get(&job->renderer)},
+        {"clothsim:range", cs_text_get(&range)},
+    };
+    const uint32_t n_texts = sizeof texts / sizeof *texts - !range.length;
+    if (time.failed || range.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
+    else
+        cs_frames_give(job->writer, run->frame, texts, n_texts, error);
+    cs_text_finish(&time);
+    cs_text_finish(&range);
+    return error->status;
+}
+
+static enum cs_status draw(struct cs_job *job, struct cs_job_frame *frame,
+                           struct cs_error *error) {
+    struct cs_image *image = cs_frames_take(job->writer);
+    if (cs_picture_paint(&job->picture, &job->session.run, image, error) ||
+        give_picture(job, error))
+        return error->status;
+    frame->drawn = true;
+    memcpy(frame->range, job->picture.range, sizeof frame->range);
+    job->drawn++;
+    return CS_OK;
+}
+
+static enum cs_status print_hash(uint32_t number, const char *hash, struct cs_error *error) {
+    struct cs_text line = {0};
+    cs_text_add(&line, "%u %s\n", number, hash);
+    return cs_print_out(stdout, &line, error);
+}
+
+/* Everything that one finished frame leaves behind. */
+static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const struct cs_run *run = &job->session.run;
+    const uint32_t n = job->session.system.view.n;
+    struct cs_job_frame frame = {0};
+    cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
+    memcpy(frame.hash, job->hash, sizeof frame.hash);
+    if (settings->states &&
+        cs_output_state(settings->states, run->frame, run->x, run->v, n, error))
+        return error->status;
+    if (job->writer && run->frame % settings->every == 0 && draw(job, &frame, error))
+        return error->status;
+    if (cs_job_wants_json(settings) && keep(job, &frame, error))
+        return error->status;
+    return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
+}
+
+static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
+    struct cs_run *run = &job->session.run;
+    struct cs_progress progress;
+    cs_progress_begin(&progress, job->settings->quiet);
+    while (run->frame < job->frames && !error->status) {
+        if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
+            break;
+        take_frame(job, error);
+        cs_progress_show(&progress, run->frame, job->frames);
+    }
+    cs_progress_end(&progress);
+    return error->status;
+}
+
+enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
+                          struct cs_error *error) {
+    const double start = cs_clock_wall();
+    const struct cs_run *run = &job->session.run;
+    job->settings = settings;
+    if (cs_session_open(&job->session, &settings->session, error) || describe(job, error) ||
+        check_outputs(settings, error) || open_outputs(job, error))
+        return error->status;
+    job->frames =
+        settings->frames ? settings->frames : frames_of_one_second(&job->session.scene);
+
+    const uint32_t n = job->session.system.view.n;
+    cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
+    if (settings->states && cs_output_state(settings->states, 0, run->x, run->v, n, error))
+        return error->status;
+    run_frames(job, error);
+    /* the first failure wins: a later one of the writer changes nothing */
+    if (job->writer)
+        cs_frames_finish(job->writer, &job->encode_seconds, error);
+    job->wall_seconds = cs_clock_wall() - start;
+    return error->status;
+}
+
+void cs_job_finish(struct cs_job *job) {
+    cs_frames_destroy(job->writer);
+    cs_picture_close(&job->picture);
+    cs_session_close(&job->session);
+    cs_text_finish(&job->scene);
+    cs_text_finish(&job->method);
+    cs_text_finish(&job->renderer);
+    free(job->kept);
+    *job = (struct cs_job){0};
+}

@@ -1,0 +1,56 @@
+/* run_job.h - one run from settings to its last frame. */
+#ifndef CS_RUN_JOB_H
+#define CS_RUN_JOB_H
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "io/frames.h"
+#include "study/picture.h"
+#include "study/session.h"
+
+struct cs_job_settings {
+    struct cs_session_settings session;
+    uint32_t frames;                    /* 0: one second of them */
+    uint32_t every;                     /* draw each so-many-th frame */
+    const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
+    int gl;                             /* enum cs_gl */
+    uint32_t level;                     /* zlib */
+    bool fast, hash, overwrite, quiet;
+};
+
+/* What is kept of a frame for the report. */
+struct cs_job_frame {
+    char hash[CS_HASH_DIGITS];
+    bool drawn;
+    double range[2]; /* of the colours, where drawn by a value */
+};
+
+/* Zeroed: nothing done. */
+struct cs_job {
+    const struct cs_job_settings *settings;
+    struct cs_session session;
+    struct cs_picture picture;
+    struct cs_frames *writer;
+    uint32_t frames;           /* asked for */
+    struct cs_job_frame *kept; /* (run.frame), owned; only where JSON is written */
+    size_t kept_capacity;
+    struct cs_text scene;            /* the resolved scene, indented by two */
+    struct cs_text method;           /* "NAME:key=value,..." with every option */
+    struct cs_text renderer;         /* description; empty unless pictures are drawn */
+    char scene_hash[CS_HASH_DIGITS]; /* of the resolved scene */
+    char hash[CS_HASH_DIGITS];       /* of the last frame's state */
+    uint32_t drawn;                  /* pictures written */
+    double wall_seconds, encode_seconds;
+};
+
+/* Opens the session, checks and prepares the folders, runs to the last frame, a blow-up or an
+ * interrupt (job->session.run.outcome), and waits for the last picture. On failure the frames
+ * up to it are kept. cs_job_finish is to be called either way. */
+enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
+                          struct cs_error *error);
+void cs_job_finish(struct cs_job *job);
+
+/* true where the run is written as JSON somewhere. */
+bool cs_job_wants_json(const struct cs_job_settings *settings);
+
+#endif

@@ -1,0 +1,143 @@
+/* run_json.c - run.json: what one needs to do a run again and to see that it is the same. */
+#include "cli/run_report.h"
+
+#include <cjson/cJSON.h>
+#include <png.h>
+
+enum { SCHEMA_VERSION = 1 };
+
+static void add_real(struct cs_text *out, const char *before, double value) {
+    cs_text_add(out, "%s", before);
+    cs_text_add_real(out, value);
+}
+
+static void add_versions(const struct cs_job *job, struct cs_text *out) {
+    cs_text_add(out, "  \"versions\": {\"clothsim\": \"%s\", \"cjson\": \"%s\"", CS_VERSION,
+                cJSON_Version());
+    if (job->settings->session.render)
+        cs_text_add(out, ", \"libpng\": \"%s\"", png_get_libpng_ver(NULL));
+    cs_text_add(out, "},\n  \"renderer\": ");
+    if (job->renderer.length)
+        cs_text_add_json(out, cs_text_get(&job->renderer));
+    else
+        cs_text_add(out, "null");
+    cs_text_add(out, ",\n");
+}
+
+static void add_outcome(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    struct cs_text sentence = {0};
+    cs_report_print_outcome(job, &sentence);
+    cs_text_add(out, "  \"outcome\": ");
+    cs_text_add_json(out, cs_outcome_text(run->outcome));
+    cs_text_add(out, ",\n  \"outcome_detail\": ");
+    cs_text_add_json(out, cs_text_get(&sentence));
+    cs_text_finish(&sentence);
+    if (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED) {
+        add_real(out, ",\n  \"blow_up\": {\"time\": ", run->blow_up.time);
+        cs_text_add(out, ", \"particle\": %u", run->blow_up.particle);
+        add_real(out, ", \"kinetic_energy\": ", run->blow_up.energy);
+        add_real(out, ", \"bound\": ", run->blow_up.bound);
+        cs_text_add(out, "}");
+    }
+    cs_text_add(out, ",\n  \"frames_asked\": %u,\n  \"frames_done\": %u", job->frames,
+                run->frame);
+    add_real(out, ",\n  \"time\": ", run->t);
+    cs_text_add(out, ",\n");
+}
+
+static void add_counts(const struct cs_counts *c, struct cs_text *out) {
+    const struct {
+        const char *name;
+        uint64_t value;
+    } rows[] = {
+        {"steps", c->steps},
+        {"rejected", c->method.rejected},
+        {"forces", c->forces},
+        {"energies", c->energies},
+        {"jvps", c->jvps},
+        {"diagonals", c->diagonals},
+        {"newton", c->method.newton},
+        {"setups", c->method.setups},
+        {"solve_setups", c->solve_setups},
+        {"solves", c->solves},
+        {"solve_iterations", c->solve_iterations},
+        {"clamped", c->clamped},
+        {"contacts", c->contacts},
+        {"contact_tests", c->contact_tests},
+        {"limit_moves", c->limit_moves},
+        {"normals", c->normals},
+    };
+    cs_text_add(out, "  \"counts\": {");
+    for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        cs_text_add(out, "%s\"%s\": %llu", i ? ", " : "", rows[i].name,
+                    (unsigned long long)rows[i].value);
+    cs_text_add(out, "},\n");
+}
+
+static void add_measures(const struct cs_run *run, struct cs_text *out) {
+    const struct cs_energy energy = cs_measure_energy(run->system, run->x, run->v);
+    add_real(out, "  \"energy\": {\"kinetic\": ", energy.kinetic);
+    add_real(out, ", \"elastic\": ", energy.elastic);
+    add_real(out, ", \"gravity\": ", energy.gravity);
+    add_real(out, "},\n  \"largest_strain\": ", cs_measure_strain(run->system, run->x));
+    cs_text_add(out, ",\n  \"notes\": [");
+    for (uint32_t i = 0; i < run->n_notes; i++) {
+        cs_text_add(out, i ? ", " : "");
+        cs_text_add_json(out, run->notes[i]);
+    }
+    cs_text_add(out, "],\n");
+}
+
+/* The only values that differ from one run of the same scene to the next. */
+static void add_seconds(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    add_real(out, "  \"seconds\": {\"wall\": ", job->wall_seconds);
+    add_real(out, ", \"method\": ", run->advance_seconds);
+    for (uint32_t s = 0; job->settings->session.timed && s < CS_STAGES; s++) {
+        cs_text_add(out, ", \"%s\": ", cs_stage_names[s]);
+        cs_text_add_real(out, run->stage_seconds[s]);
+    }
+    if (job->settings->session.timed && job->settings->session.render) {
+        add_real(out, ", \"draw\": ", job->picture.seconds);
+        add_real(out, ", \"encode\": ", job->encode_seconds);
+    }
+    cs_text_add(out, "},\n");
+}
+
+static void add_frames(const struct cs_job *job, struct cs_text *out) {
+    const bool coloured = cs_picture_is_coloured(&job->session.scene);
+    cs_text_add(out, "  \"frames\": [");
+    for (uint32_t i = 0; i < job->session.run.frame; i++) {
+        const struct cs_job_frame *frame = job->kept + i;
+        cs_text_add(out, "%s\n    {\"number\": %u, \"hash\": \"%s\", \"drawn\": %s",
+                    i ? "," : "", i + 1, frame->hash, frame->drawn ? "true" : "false");
+        if (coloured && frame->drawn) {
+            add_real(out, ", \"range\": [", frame->range[0]);
+            add_real(out, ", ", frame->range[1]);
+            cs_text_add(out, "]");
+        }
+        cs_text_add(out, "}");
+    }
+    cs_text_add(out, "\n  ]\n");
+}
+
+void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    cs_text_add(out, "{\n  \"schema\": %d,\n", SCHEMA_VERSION);
+    add_versions(job, out);
+    cs_text_add(out, "  \"scene_file\": ");
+    cs_text_add_json(out, job->session.scene.path);
+    cs_text_add(out, ",\n  \"scene_hash\": \"%s\",\n  \"method\": ", job->scene_hash);
+    cs_text_add_json(out, cs_text_get(&job->method));
+    cs_text_add(out, ",\n  \"particles\": %u,\n  \"springs\": %u,\n", run->system->view.n,
+                run->system->springs.n);
+    add_outcome(job, out);
+    add_counts(&run->counts, out);
+    add_measures(run, out);
+    cs_text_add(out, "  \"state_hash\": \"%s\",\n", job->hash);
+    add_seconds(job, out);
+    cs_text_add(out, "  \"scene\": %s,\n", cs_text_get(&job->scene));
+    add_frames(job, out);
+    cs_text_add(out, "}\n");
+}

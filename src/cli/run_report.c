@@ -1,0 +1,129 @@
+#include "cli/run_report.h"
+
+#include "cli/print.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { VALUE_COLUMN = 16 };
+
+static void add_row(struct cs_text *out, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void add_row(struct cs_text *out, const char *name, const char *format, ...) {
+    char value[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(value, sizeof value, format, args);
+    va_end(args);
+    cs_text_add(out, "%-*s%s\n", VALUE_COLUMN, name, value);
+}
+
+/* "particle 312 (body 0, column 24, row 4)" */
+static void add_particle(const struct cs_system *system, uint32_t particle,
+                         struct cs_text *out) {
+    cs_text_add(out, "particle %u", particle);
+    for (uint32_t b = 0; b < system->plan.n_bodies; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        const uint32_t local = particle - range->first;
+        if (particle < range->first || local >= range->count)
+            continue;
+        cs_text_add(out, " (body %u, column %u, row %u)", b, local % range->columns,
+                    local / range->columns);
+    }
+}
+
+void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    cs_text_add(out, "%s", cs_outcome_text(run->outcome));
+    if (run->outcome == CS_RUNNING)
+        return;
+    const bool blown = run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED;
+    cs_text_add(out, " at t = %.6g s", blown ? run->blow_up.time : run->t);
+    if (!blown)
+        return;
+    cs_text_add(out, ", ");
+    add_particle(&job->session.system, run->blow_up.particle, out);
+    if (run->outcome == CS_UNBOUNDED)
+        cs_text_add(out, ", kinetic energy %.3g J beyond %.3g J", run->blow_up.energy,
+                    run->blow_up.bound);
+}
+
+static void add_frames(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    struct cs_text outcome = {0};
+    cs_report_print_outcome(job, &outcome);
+    add_row(out, "frames", "%u of %u, t = %.6g s", run->frame, job->frames, run->t);
+    add_row(out, "outcome", "%s", cs_text_get(&outcome));
+    cs_text_finish(&outcome);
+}
+
+/* Only what was at work has a row. */
+static void add_counts(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_counts *c = &job->session.run.counts;
+    add_row(out, "steps", "%llu, %llu rejected", (unsigned long long)c->steps,
+            (unsigned long long)c->method.rejected);
+    add_row(out, "evaluations", "%llu of the force, %llu of its derivatives",
+            (unsigned long long)c->forces, (unsigned long long)(c->jvps + c->diagonals));
+    add_row(out, "iterations", "%llu linear in %llu solves, %llu nonlinear",
+            (unsigned long long)c->solve_iterations, (unsigned long long)c->solves,
+            (unsigned long long)c->method.newton);
+    if (c->clamped)
+        add_row(out, "clamped", "%llu indefinite matrices made definite",
+                (unsigned long long)c->clamped);
+    if (c->contact_tests)
+        add_row(out, "contacts", "%llu in %llu tests", (unsigned long long)c->contacts,
+                (unsigned long long)c->contact_tests);
+    if (c->limit_moves)
+        add_row(out, "strain limit", "%llu springs shortened",
+                (unsigned long long)c->limit_moves);
+}
+
+static void add_measures(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    const struct cs_energy energy = cs_measure_energy(run->system, run->x, run->v);
+    add_row(out, "energy", "%.6g J kinetic, %.6g J elastic, %.6g J gravity", energy.kinetic,
+            energy.elastic, energy.gravity);
+    add_row(out, "largest strain", "%.4g %%", 100 * cs_measure_strain(run->system, run->x));
+    add_row(out, "wall time", "%.3g s, %.3g s of it in the method", job->wall_seconds,
+            run->advance_seconds);
+}
+
+static void add_stage(const struct cs_job *job, const char *name, double seconds,
+                      struct cs_text *out) {
+    const uint32_t frames = job->session.run.frame;
+    cs_text_add(out, "  %-*s%10.4f%14.4f\n", VALUE_COLUMN - 2, name, seconds,
+                1e3 * seconds / (frames ? frames : 1));
+}
+
+static void add_stages(const struct cs_job *job, struct cs_text *out) {
+    cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "a frame [ms]");
+    for (uint32_t s = 0; s < CS_STAGES; s++)
+        add_stage(job, cs_stage_names[s], job->session.run.stage_seconds[s], out);
+    add_stage(job, "draw", job->picture.seconds, out);
+    add_stage(job, "encode", job->encode_seconds, out);
+}
+
+static void add_files(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_job_settings *settings = job->settings;
+    if (job->drawn)
+        add_row(out, "pictures", "%u in %s", job->drawn, settings->folder);
+    if (settings->states)
+        add_row(out, "states", "%u in %s", job->session.run.frame + 1, settings->states);
+}
+
+void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_run *run = &job->session.run;
+    add_row(out, "scene", "%s", job->session.scene.path);
+    cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
+    add_frames(job, out);
+    add_counts(job, out);
+    add_measures(job, out);
+    if (job->settings->session.timed)
+        add_stages(job, out);
+    for (uint32_t i = 0; i < run->n_notes; i++)
+        cs_print_hanging("note", run->notes[i], VALUE_COLUMN, out);
+    add_files(job, out);
+    add_row(out, "state hash", "%s", job->hash);
+}

@@ -1,0 +1,17 @@
+/* run_report.h - how a run went: a table for people, JSON for programs. */
+#ifndef CS_RUN_REPORT_H
+#define CS_RUN_REPORT_H
+
+#include "cli/run_job.h"
+
+/* Adds the table. */
+void cs_report_print_table(const struct cs_job *job, struct cs_text *out);
+
+/* Adds the JSON: every value that decides the run, versions, counts, energies, outcome and the
+ * hash of each frame. */
+void cs_report_print_json(const struct cs_job *job, struct cs_text *out);
+
+/* Adds "blew up: ... at t = ... s, particle ..." or "finished". */
+void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out);
+
+#endif

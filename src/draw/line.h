@@ -1,0 +1,34 @@
+/* line.h - lines and dots with smooth edges, any width, collected and drawn in one call. */
+#ifndef CS_DRAW_LINE_H
+#define CS_DRAW_LINE_H
+
+#include "base/arena.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct cs_lines {
+    unsigned program, object, buffer;
+    int paint, half_width, lift, flat;
+    uint32_t n, capacity;
+    float (*ends)[6]; /* (capacity) from, to; owned by the arena */
+};
+
+struct cs_line_style {
+    float colour[3]; /* linear RGB */
+    double alpha;
+    double half_width; /* pixels */
+    double lift;       /* m by which the lines show through surfaces in front of them */
+    bool flat;         /* ends are pixels from the top left, not m */
+};
+
+enum cs_status cs_lines_init(struct cs_lines *lines, uint32_t capacity, struct cs_arena *arena,
+                             struct cs_error *error);
+
+/* Adds a line; equal ends make a dot. No more than the capacity between two draws. */
+void cs_lines_add(struct cs_lines *lines, const double from[3], const double to[3]);
+
+/* Draws what was added, and forgets it. */
+void cs_lines_draw(struct cs_lines *lines, const struct cs_line_style *style);
+
+#endif

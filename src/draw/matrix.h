@@ -1,0 +1,98 @@
+/* matrix.h - 3-vectors and 4x4 matrices (by columns) for cameras; + - * / and sqrt only. */
+#ifndef CS_DRAW_MATRIX_H
+#define CS_DRAW_MATRIX_H
+
+#include <math.h>
+#include <string.h>
+
+static inline double cs_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void cs_cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void cs_subtract(const double a[3], const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] - b[i];
+}
+
+static inline double cs_length(const double a[3]) {
+    return sqrt(cs_dot(a, a));
+}
+
+static inline void cs_normalise(double a[3]) {
+    const double length = cs_length(a);
+    for (int i = 0; i < 3; i++)
+        a[i] = length > 0 ? a[i] / length : 0;
+}
+
+/* A unit vector across `along`, and the third one that makes (across, third, along)
+ * right-handed. */
+static inline void cs_frame_across(const double along[3], double across[3], double third[3]) {
+    const double axis[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
+    cs_cross(axis, along, across);
+    cs_normalise(across);
+    cs_cross(along, across, third);
+}
+
+/* out = a b; out may be neither. */
+static inline void cs_matrix_multiply(const double a[16], const double b[16], double out[16]) {
+    for (int column = 0; column < 4; column++)
+        for (int row = 0; row < 4; row++) {
+            double sum = 0;
+            for (int k = 0; k < 4; k++)
+                sum += a[4 * k + row] * b[4 * column + k];
+            out[4 * column + row] = sum;
+        }
+}
+
+/* World to camera: x right, y up, z towards the camera. */
+static inline void cs_matrix_look(const double eye[3], const double target[3],
+                                  const double up[3], double out[16]) {
+    double axes[3][3], unused[3];
+    cs_subtract(eye, target, axes[2]);
+    cs_normalise(axes[2]);
+    cs_cross(up, axes[2], axes[0]);
+    // looking straight along up: any turn will do
+    if (cs_length(axes[0]) < 1e-9 * cs_length(up))
+        cs_frame_across(axes[2], axes[0], unused);
+    cs_normalise(axes[0]);
+    cs_cross(axes[2], axes[0], axes[1]);
+    memset(out, 0, 16 * sizeof *out);
+    for (int row = 0; row < 3; row++) {
+        for (int i = 0; i < 3; i++)
+            out[4 * i + row] = axes[row][i];
+        out[12 + row] = -cs_dot(axes[row], eye);
+    }
+    out[15] = 1;
+}
+
+/* slope: tangent of half the vertical angle. */
+static inline void cs_matrix_perspective(double slope, double aspect, double near, double far,
+                                         double out[16]) {
+    memset(out, 0, 16 * sizeof *out);
+    out[0] = 1 / (slope * aspect);
+    out[5] = 1 / slope;
+    out[10] = (far + near) / (near - far);
+    out[11] = -1;
+    out[14] = 2 * far * near / (near - far);
+}
+
+static inline void cs_matrix_parallel(double half, double near, double far, double out[16]) {
+    memset(out, 0, 16 * sizeof *out);
+    out[0] = out[5] = 1 / half;
+    out[10] = 2 / (near - far);
+    out[14] = (far + near) / (near - far);
+    out[15] = 1;
+}
+
+static inline void cs_matrix_to_float(const double from[16], float to[16]) {
+    for (int i = 0; i < 16; i++)
+        to[i] = (float)from[i];
+}
+
+#endif

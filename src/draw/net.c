@@ -1,0 +1,114 @@
+#include "draw/net.h"
+
+#include "draw/colour.h"
+#include "draw/mesh.h"
+
+#include <math.h>
+
+static uint32_t edges_of(const struct cs_body_range *body) {
+    return (body->columns - 1) * body->rows + body->columns * (body->rows - 1);
+}
+
+uint32_t cs_net_capacity(const struct cs_system *system) {
+    uint32_t most = system->springs.n > system->view.n ? system->springs.n : system->view.n;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const uint32_t edges = edges_of(system->bodies + b);
+        most = edges > most ? edges : most;
+    }
+    return most;
+}
+
+static void add(const struct cs_net *net, struct cs_lines *lines, const double *x, uint32_t a,
+                uint32_t b) {
+    double from[3], to[3];
+    cs_mesh_place(net->system->view.n, x, a, from);
+    cs_mesh_place(net->system->view.n, x, b, to);
+    cs_lines_add(lines, from, to);
+}
+
+static void add_edges(const struct cs_net *net, struct cs_lines *lines, const double *x,
+                      const struct cs_body_range *body) {
+    for (uint32_t row = 0; row < body->rows; row++)
+        for (uint32_t column = 0; column < body->columns; column++) {
+            const uint32_t i = body->first + row * body->columns + column;
+            if (column + 1 < body->columns)
+                add(net, lines, x, i, i + 1);
+            if (row + 1 < body->rows)
+                add(net, lines, x, i, i + body->columns);
+        }
+}
+
+// a share of the distance between neighbours, so that fine grids keep gaps; in 480ths of the
+// height
+static double width(const struct cs_net *net, double share, double least, double most) {
+    return fmin(fmax(share * net->cell, least * net->unit), most * net->unit);
+}
+
+void cs_net_draw_edges(const struct cs_net *net, struct cs_lines *lines, const double *x) {
+    for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
+        // darkened to ink that still tells bodies apart
+        const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
+        struct cs_line_style style = {.alpha = 0.9, .lift = net->lift};
+        for (int i = 0; i < 3; i++)
+            style.colour[i] = (float)(0.012 + 0.45 * colour[i]);
+        style.half_width = width(net, 0.07, 0.35, 0.8);
+        add_edges(net, lines, x, net->system->bodies + b);
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const double *x) {
+    // bend springs run along two stretch springs: wide and pale below, they frame them
+    static const struct {
+        uint32_t kind, colour;
+        double alpha, share, least, most;
+    } layers[] = {{CS_SPRING_BEND, 0x6fb3e8, 0.55, 0.17, 0.8, 2.4},
+                  {CS_SPRING_SHEAR, 0x2f9e62, 0.85, 0.05, 0.3, 0.7},
+                  {CS_SPRING_STRETCH, 0xc8321f, 0.95, 0.07, 0.4, 0.9}};
+    const struct cs_springs *springs = &net->system->springs;
+    for (size_t layer = 0; layer < sizeof layers / sizeof *layers; layer++) {
+        struct cs_line_style style = {.alpha = layers[layer].alpha, .lift = net->lift};
+        cs_colour_linear(layers[layer].colour, style.colour);
+        style.half_width =
+            width(net, layers[layer].share, layers[layer].least, layers[layer].most);
+        for (uint32_t r = 0; r < springs->n_runs; r++) {
+            const struct cs_spring_run *run = springs->runs + r;
+            for (uint32_t i = 0; run->kind == layers[layer].kind && i < run->count; i++)
+                add(net, lines, x, run->a + i, run->b + i);
+        }
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x) {
+    // a light disc with a dark rim
+    static const uint32_t colours[2] = {0x1d2733, 0xffd34d};
+    const struct cs_view *view = &net->system->view;
+    for (int pass = 0; pass < 2; pass++) {
+        struct cs_line_style style = {.alpha = 1, .lift = 2 * net->lift};
+        cs_colour_linear(colours[pass], style.colour);
+        style.half_width = width(net, 0.4, 2.2, 5) - pass * 1.1 * net->unit;
+        for (uint32_t i = 0; i < view->n; i++)
+            if (view->inv_mass[i] == 0)
+                add(net, lines, x, i, i);
+        cs_lines_draw(lines, &style);
+    }
+}
+
+void cs_net_draw_threads(const struct cs_net *net, struct cs_lines *lines, const double *x) {
+    for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = net->system->bodies + b;
+        const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
+        struct cs_line_style style = {.alpha = 1, .half_width = net->unit};
+        if (body->columns > 1 && body->rows > 1)
+            continue;
+        for (int i = 0; i < 3; i++)
+            style.colour[i] = (float)colour[i];
+        add_edges(net, lines, x, body);
+        cs_lines_draw(lines, &style);
+        for (uint32_t i = 0; i < body->count; i++)
+            add(net, lines, x, body->first + i, body->first + i);
+        style.half_width = width(net, 0.3, 1.5, 5);
+        cs_lines_draw(lines, &style);
+    }
+}

@@ -1,0 +1,25 @@
+/* net.h - cloth as lines: grid edges, springs by kind, pins. */
+#ifndef CS_DRAW_NET_H
+#define CS_DRAW_NET_H
+
+#include "draw/line.h"
+#include "model/system.h"
+
+/* Sizes of lines on a picture. */
+struct cs_net {
+    const struct cs_system *system;
+    double unit; /* pixels of a line of width 1: a 480th of the height */
+    double cell; /* pixels between neighbours where the camera looks */
+    double lift; /* m */
+};
+
+/* Lines that the largest of these calls adds before it draws. */
+uint32_t cs_net_capacity(const struct cs_system *system);
+
+void cs_net_draw_edges(const struct cs_net *net, struct cs_lines *lines, const double *x);
+void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const double *x);
+void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x);
+/* Bodies that are one row or column of particles and have no surface: a thread with knots. */
+void cs_net_draw_threads(const struct cs_net *net, struct cs_lines *lines, const double *x);
+
+#endif

@@ -1,0 +1,58 @@
+/* render.h - what the program knows of a renderer: a table of four calls in a module.
+ *
+ * The modules render-osmesa.so and render-egl.so hold everything that touches OpenGL, and are
+ * loaded only when a frame is asked for (cs_renderer_open).
+ */
+#ifndef CS_RENDER_H
+#define CS_RENDER_H
+
+#include "base/image.h"
+#include "base/status.h"
+#include "model/system.h"
+
+#include <stdbool.h>
+
+struct cs_canvas;
+
+struct cs_canvas_settings {
+    const struct cs_scene *scene;   /* checked; borrowed while the canvas lives */
+    const struct cs_system *system; /* borrowed while the canvas lives */
+    const struct cs_image
+        *textures; /* (scene->bodies.n), width 0: none; needed by create only */
+    bool fast;     /* do not pin the CPU capabilities: 1.4 times faster, pixels depend on the
+                      machine */
+};
+
+/* What one picture shows beside the scene itself. */
+struct cs_frame {
+    const double *x; /* (3,n) positions in m */
+    const double
+        *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */
+    double range[2]; /* values at the ends of the colours; lowest first */
+};
+
+#define CS_RENDERER_ABI 1u
+struct cs_renderer {
+    unsigned abi;
+    const char *name; /* "osmesa" or "egl" */
+    /* Makes a context, shaders and buffers for this scene. On failure CS_ERR_MODULE, *canvas
+     * NULL. */
+    enum cs_status (*create)(const struct cs_canvas_settings *settings,
+                             struct cs_canvas **canvas, struct cs_error *error);
+    /* Draws a frame into image->rgb, which has room for scene->render.size. */
+    enum cs_status (*paint)(struct cs_canvas *canvas, const struct cs_frame *frame,
+                            struct cs_image *image, struct cs_error *error);
+    /* "GL_RENDERER | GL_VERSION | caps": pixels are equal where this text is. */
+    const char *(*description)(const struct cs_canvas *canvas);
+    void (*destroy)(struct cs_canvas *canvas); /* NULL is fine */
+};
+
+enum cs_gl { CS_GL_AUTO, CS_GL_OSMESA, CS_GL_EGL };
+extern const char *const cs_gl_names[];
+
+/* Loads the module of a renderer from folder; auto takes OSMesa, else EGL without a display.
+ * Never unloaded. On failure CS_ERR_MODULE and the message says what to install. */
+enum cs_status cs_renderer_open(const char *folder, enum cs_gl gl,
+                                const struct cs_renderer **renderer, struct cs_error *error);
+
+#endif

@@ -1,0 +1,57 @@
+/* surface.h - triangles on the graphics side, and the program that shades them. */
+#ifndef CS_DRAW_SURFACE_H
+#define CS_DRAW_SURFACE_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct cs_vertex;
+
+/* Buffers of one mesh. */
+struct cs_surface {
+    unsigned object, vertices;
+    uint32_t n_drawn;
+    bool indexed;
+};
+
+void cs_surface_init(struct cs_surface *surface, const uint32_t *indices, uint32_t n_indices);
+/* Replaces the vertices; n_drawn of them without indices. */
+void cs_surface_upload(struct cs_surface *surface, const struct cs_vertex *vertices,
+                       uint32_t n);
+/* Gives texture coordinates (n,2) once. */
+void cs_surface_set_uv(struct cs_surface *surface, const float *uv, uint32_t n);
+/* Draws with the program in use. */
+void cs_surface_draw(const struct cs_surface *surface);
+
+enum cs_surface_mode {
+    CS_SURFACE_PLAIN,
+    CS_SURFACE_TEXTURED,
+    CS_SURFACE_VALUE,
+    CS_SURFACE_FAINT
+};
+
+/* How a surface looks: the uniforms of the program. */
+struct cs_surface_style {
+    enum cs_surface_mode mode;
+    unsigned texture;
+    double front[3], back[3]; /* linear RGB */
+    double ambient, diffuse, specular, shininess;
+    double centre[3], scale; /* placement of the vertices */
+    double sink;             /* m by which the depth is moved away */
+    double fade;             /* m about the origin where it has melted; 0: none */
+};
+
+struct cs_surface_program {
+    unsigned name;
+    int mode, front, back, coefficients, model, sink, fade;
+};
+
+enum cs_status cs_surface_program_init(struct cs_surface_program *program,
+                                       struct cs_error *error);
+void cs_surface_program_use(const struct cs_surface_program *program,
+                            const struct cs_surface_style *style);
+
+#endif

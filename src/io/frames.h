@@ -1,0 +1,34 @@
+/* frames.h - writes numbered frames, on a thread of its own where a core is free. */
+#ifndef CS_FRAMES_H
+#define CS_FRAMES_H
+
+#include "io/png.h"
+
+#include <stdbool.h>
+
+struct cs_frames;
+
+/* folder exists. threaded: encode on a worker with a queue of two; else inline. level: zlib. */
+enum cs_status cs_frames_create(const char *folder, uint32_t width, uint32_t height, int level,
+                                bool threaded, struct cs_frames **frames,
+                                struct cs_error *error);
+
+/* An image to draw the next frame into; waits while both are being written. Owned by *frames.
+ */
+struct cs_image *cs_frames_take(struct cs_frames *frames);
+
+/* Hands the taken image over as frame `number`: folder/frame_%05u.png. Texts are copied.
+ * An earlier write's failure is returned here or by finish; frames are written in order and
+ * none after a failed one. */
+enum cs_status cs_frames_give(struct cs_frames *frames, uint32_t number,
+                              const struct cs_png_text *texts, uint32_t n_texts,
+                              struct cs_error *error);
+
+/* Waits for what is under way; *seconds gets the time spent in encoding. */
+enum cs_status cs_frames_finish(struct cs_frames *frames, double *seconds,
+                                struct cs_error *error);
+
+/* NULL is fine; without an earlier finish, what is queued is still written. */
+void cs_frames_destroy(struct cs_frames *frames);
+
+#endif

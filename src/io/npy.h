@@ -1,0 +1,15 @@
+/* npy.h - arrays of 3-vectors as NumPy files. */
+#ifndef CS_NPY_H
+#define CS_NPY_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* Writes component-major a (3,n) as a C-ordered float64 array of shape (n,3), NumPy format 1.0,
+ * little-endian on every machine. Beside and renamed. On failure CS_ERR_FILE, no file is left.
+ */
+enum cs_status cs_npy_write(const char *path, const double *a, uint32_t n,
+                            struct cs_error *error);
+
+#endif

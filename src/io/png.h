@@ -1,0 +1,29 @@
+/* png.h - RGB PNG files through libpng. */
+#ifndef CS_PNG_H
+#define CS_PNG_H
+
+#include "base/image.h"
+#include "base/status.h"
+
+#include <stddef.h>
+
+/* One text chunk: where a picture came from. */
+struct cs_png_text {
+    const char *key, *value; /* Latin-1, key at most 79 characters */
+};
+
+/* Writes beside and renames. RGB, zlib level `level` (1: fast, 6: archive), filter SUB, no time
+ * stamp. On failure CS_ERR_FILE and no file is left. */
+enum cs_status cs_png_write(const char *path, const struct cs_image *image, int level,
+                            const struct cs_png_text *texts, uint32_t n_texts,
+                            struct cs_error *error);
+
+/* Reads any PNG of at most 16384 x 16384 pixels as 8-bit RGB (alpha dropped, grey and palette
+ * widened). The caller frees image->rgb. On failure CS_ERR_FILE and *image is empty. */
+enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error);
+
+/* The same from memory; name is for messages. */
+enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t length,
+                                 struct cs_image *image, struct cs_error *error);
+
+#endif

@@ -1,0 +1,126 @@
+#include "base/file.h"
+#include "io/png.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SIDE_MAX = 16384,
+    CHUNK_BYTES_MAX = 8 * 1024 * 1024,
+    FILE_BYTES_MAX = 512 * 1024 * 1024
+};
+
+/* deflate never packs more than about 1032 bytes into one */
+enum { PACKING_MAX = 1100 };
+
+/* What one picture needs, outside the frame that longjmp leaves. */
+struct reader {
+    const unsigned char *bytes; /* borrowed */
+    size_t length, at;
+    png_structp png;
+    png_infop info;
+    struct cs_image image;
+    char message[128];
+};
+
+static void on_error(png_structp png, png_const_charp message) {
+    struct reader *reader = png_get_error_ptr(png);
+    snprintf(reader->message, sizeof reader->message, "%s", message);
+    png_longjmp(png, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message) {
+    (void)png;
+    (void)message;
+}
+
+static void on_read(png_structp png, png_bytep out, size_t length) {
+    struct reader *reader = png_get_io_ptr(png);
+    if (length > reader->length - reader->at)
+        png_error(png, "the file ends too early");
+    memcpy(out, reader->bytes + reader->at, length);
+    reader->at += length;
+}
+
+/* whatever the file holds becomes 8-bit RGB */
+static void ask_for_rgb(png_structp png) {
+    png_set_palette_to_rgb(png);
+    png_set_expand_gray_1_2_4_to_8(png);
+    png_set_scale_16(png);
+    png_set_gray_to_rgb(png);
+    png_set_strip_alpha(png);
+}
+
+/* zeroed memory for the pixels */
+static void take_image(struct reader *reader) {
+    struct cs_image *image = &reader->image;
+    const uint32_t width = png_get_image_width(reader->png, reader->info);
+    const uint32_t height = png_get_image_height(reader->png, reader->info);
+    /* a small file that claims to be huge is not worth its memory */
+    if (png_get_rowbytes(reader->png, reader->info) * height / PACKING_MAX > reader->length)
+        png_error(reader->png, "the file is too short for the size that it states");
+    image->rgb = calloc((size_t)width * height, 3);
+    if (!image->rgb)
+        png_error(reader->png, "out of memory");
+    image->width = width;
+    image->height = height;
+}
+
+/* the part that libpng may leave by longjmp; false if it did */
+static bool decode(struct reader *reader) {
+    const png_structp png = reader->png;
+    if (setjmp(png_jmpbuf(png)))
+        return false;
+    png_set_read_fn(png, reader, on_read);
+    png_set_user_limits(png, SIDE_MAX, SIDE_MAX);
+    png_set_chunk_malloc_max(png, CHUNK_BYTES_MAX);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_read_info(png, reader->info);
+    take_image(reader);
+    ask_for_rgb(png);
+    const int passes = png_set_interlace_handling(png);
+    png_read_update_info(png, reader->info);
+    const size_t row_bytes = 3 * (size_t)reader->image.width;
+    if (png_get_rowbytes(png, reader->info) != row_bytes)
+        png_error(png, "a kind of pixel that cannot be made RGB");
+    for (int pass = 0; pass < passes; pass++)
+        for (size_t y = 0; y < reader->image.height; y++)
+            png_read_row(png, reader->image.rgb + y * row_bytes, NULL);
+    png_read_end(png, NULL);
+    return true;
+}
+
+enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t length,
+                                 struct cs_image *image, struct cs_error *error) {
+    struct reader reader = {.bytes = bytes, .length = length};
+    enum cs_status status = CS_OK;
+    *image = (struct cs_image){0};
+    if (length < 8 || png_sig_cmp(bytes, 0, 8))
+        return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": it is not a PNG file", name);
+    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
+    reader.info = reader.png ? png_create_info_struct(reader.png) : NULL;
+    if (!reader.info)
+        status = cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", name);
+    else if (!decode(&reader))
+        status =
+            cs_fail(error, CS_ERR_FILE, "cannot read \"%s\" as PNG: %s", name, reader.message);
+    png_destroy_read_struct(&reader.png, &reader.info, NULL);
+    if (status)
+        free(reader.image.rgb);
+    else
+        *image = reader.image;
+    return status;
+}
+
+enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error) {
+    char *bytes;
+    size_t length;
+    *image = (struct cs_image){0};
+    enum cs_status status = cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, error);
+    if (!status)
+        status = cs_png_read_bytes(path, bytes, length, image, error);
+    free(bytes);
+    return status;
+}

@@ -1,0 +1,74 @@
+#include "io/table_read.h"
+#include "io/utf8.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+bool cs_key_is_free(const char *key) {
+    return !strncmp(key, "x-", 2) || key[0] == '$';
+}
+
+/* a path that is too long is cut: it is for messages only */
+static size_t append(struct cs_reader *reader, const char *part) {
+    const size_t before = reader->path_length;
+    snprintf(reader->path + before, sizeof reader->path - before, "%s", part);
+    reader->path_length += strlen(reader->path + before);
+    return before;
+}
+
+size_t cs_reader_enter(struct cs_reader *reader, const char *key) {
+    const size_t plain = strspn(key, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                     "0123456789_-$");
+    struct cs_text part = {0};
+    if (plain && !key[plain] && plain < 64) {
+        cs_text_add(&part, "%s%s", reader->path_length ? "." : "", key);
+    } else {
+        cs_text_add(&part, "[");
+        cs_utf8_add_short(&part, key);
+        cs_text_add(&part, "]");
+    }
+    const size_t before = append(reader, cs_text_get(&part));
+    cs_text_finish(&part);
+    return before;
+}
+
+size_t cs_reader_enter_at(struct cs_reader *reader, uint32_t index) {
+    char part[16];
+    snprintf(part, sizeof part, "[%u]", index);
+    return append(reader, part);
+}
+
+void cs_reader_leave(struct cs_reader *reader, size_t length) {
+    reader->path_length = length;
+    reader->path[length] = 0;
+}
+
+enum cs_status cs_reader_fail(struct cs_reader *reader, const struct cs_json *value,
+                              bool of_key, const char *format, ...) {
+    char message[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+
+    const char *colon = reader->path_length ? ": " : "";
+    size_t offset;
+    if (!cs_json_place(value, reader->text, of_key, &offset))
+        return cs_fail(reader->error, CS_ERR_SCENE, "--set %s%s%s", reader->path, colon,
+                       message);
+    uint32_t line, column;
+    cs_json_locate(reader->text, offset, &line, &column);
+    return cs_fail(reader->error, CS_ERR_SCENE, "%s:%u:%u: %s%s%s", reader->name, line, column,
+                   reader->path, colon, message);
+}
+
+enum cs_status cs_reader_fail_type(struct cs_reader *reader, const struct cs_json *value,
+                                   const char *expected) {
+    struct cs_text found = {0};
+    cs_json_describe(value, &found);
+    const enum cs_status status = cs_reader_fail(reader, value, false, "found %s, expected %s",
+                                                 cs_text_get(&found), expected);
+    cs_text_finish(&found);
+    return status;
+}

@@ -1,0 +1,25 @@
+/* scene_read.h - a scene file into struct cs_scene, strictly. */
+#ifndef CS_SCENE_READ_H
+#define CS_SCENE_READ_H
+
+#include "model/scene.h"
+
+/* One --set: a JSON path and a JSON value (or a bare word, taken as a string). */
+struct cs_override {
+    const char *path, *value; /* "bodies[0].springs.stretch", "200" */
+};
+
+/* Reads, overrides, parses and checks (cs_scene_check) a scene. Every message starts with
+ * `file:line:column: path: ` (values from --set: `--set path: `). On failure CS_ERR_FILE,
+ * CS_ERR_SCENE, CS_ERR_USAGE (a --set that cannot be read) or CS_ERR_MEMORY; *scene is empty.
+ */
+enum cs_status cs_scene_read(struct cs_scene *scene, const char *path,
+                             const struct cs_override *overrides, uint32_t n_overrides,
+                             struct cs_error *error);
+
+/* The same from text in memory; path is only for messages and the folder of textures. */
+enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, const char *text,
+                                  size_t bytes, const struct cs_override *overrides,
+                                  uint32_t n_overrides, struct cs_error *error);
+
+#endif

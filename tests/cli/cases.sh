@@ -1,0 +1,58 @@
+#!/bin/sh
+# cases.sh PROGRAM FILE.case ... - runs command lines and compares what they print (as TAP).
+#
+# A case is a block between blank lines; its lines start with
+#   #  what the case shows
+#   <  NAME TEXT: a file of one line; << NAME ... <<: a file of the lines between
+#   $  a command line of the shell; clothsim is the program under test
+#   !  the exit code where it is not 0
+# and every other line is expected output, standard error among standard output as it comes.
+# "..." stands for any text within a line, and alone on a line for any number of lines.
+# Each case has an own empty folder, with the project's scenes/ and golden/ in it.
+set -eu
+
+program=$(realpath "$1")
+shift
+root=$(cd "$(dirname "$0")/../.." && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' INT TERM
+
+mkdir "$work/bin"
+ln -s "$program" "$work/bin/clothsim"
+PATH=$work/bin:$PATH
+export PATH LC_ALL=C
+unset CLOTHSIM_PLUGIN_PATH
+# only read in builds with a sanitizer
+export LSAN_OPTIONS="suppressions=$here/leaks.supp:print_suppressions=0"
+
+n=0 failed=0
+for file; do
+    rm -rf "$work/cases"
+    mkdir "$work/cases"
+    awk -v work="$work/cases" -f "$here/split.awk" "$file"
+    for case in "$work"/cases/*; do
+        n=$((n + 1))
+        ln -s "$root/scenes" "$root/golden" "$case/folder"
+        verdict=ok
+        for command in "$case"/*.command; do
+            step=${command%.command}
+            code=0
+            (cd "$case/folder" && sh "$command") >"$step.output" 2>&1 </dev/null || code=$?
+            if [ "$code" != "$(cat "$step.code")" ] ||
+                ! awk -f "$here/match.awk" "$step.expected" "$step.output"; then
+                verdict="not ok" failed=1
+                {
+                    echo "\$ $(cat "$command")"
+                    echo "! expected $(cat "$step.code"), found $code"
+                    diff "$step.expected" "$step.output" || true
+                } >>"$case/log"
+            fi
+        done
+        echo "$verdict $n - $(basename "$file" .case): $(cat "$case/title")"
+        [ ! -f "$case/log" ] || sed 's/^/#   /' "$case/log"
+    done
+done
+echo "1..$n"
+exit $failed

@@ -1,0 +1,112 @@
+#include "fixture.h"
+
+#include "model/measure.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* writes the scene to a file of its own; the session reads files only */
+static void write_scene(char *path, const char *format, va_list args) {
+    const int descriptor = mkstemp(path);
+    ck_assert_msg(descriptor >= 0, "cannot make %s", path);
+    FILE *file = fdopen(descriptor, "w");
+    ck_assert_ptr_nonnull(file);
+    vfprintf(file, format, args);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+void fixture_open(struct fixture *fixture, const char *integrator, const char *format, ...) {
+    char path[] = "/tmp/clothsim-physics-XXXXXX";
+    va_list args;
+    va_start(args, format);
+    write_scene(path, format, args);
+    va_end(args);
+
+    struct cs_error error = {0};
+    struct cs_session *session = &fixture->session;
+    const struct cs_session_settings settings = {.scene = path, .integrator = integrator};
+    cs_session_open_plan(session, &settings, &error);
+    unlink(path);
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_system_build(&session->system, &session->scene, &session->plan, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    fixture->system = &session->system;
+    fixture->n = session->system.view.n;
+    fixture->x = session->system.state;
+    fixture->v = fixture->x + 3 * fixture->n;
+}
+
+void fixture_start(struct fixture *fixture) {
+    struct cs_error error = {0};
+    struct cs_session *session = &fixture->session;
+    cs_run_begin(&session->run, &session->system, session->integrator, session->options, false,
+                 NULL, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+}
+
+void fixture_frames(struct fixture *fixture, uint32_t frames) {
+    struct cs_error error = {0};
+    struct cs_run *run = &fixture->session.run;
+    for (uint32_t k = 0; k < frames; k++) {
+        cs_run_frame(run, &error);
+        ck_assert_msg(!error.status, "%s", error.message);
+        ck_assert_msg(run->outcome == CS_RUNNING, "%s", cs_outcome_text(run->outcome));
+    }
+}
+
+void fixture_close(struct fixture *fixture) {
+    cs_session_close(&fixture->session);
+}
+
+void fixture_stir(struct fixture *fixture, double place, double speed) {
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < fixture->n; i++) {
+            const double free = fixture->system->inv_mass[i] > 0;
+            const double phase = 1.7 * (double)i + 2.3 * (double)c;
+            fixture->x[c * fixture->n + i] += free * place * sin(phase);
+            fixture->v[c * fixture->n + i] += free * speed * cos(2.1 * phase);
+        }
+}
+
+void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]) {
+    const size_t n = fixture->n;
+    for (size_t c = 0; c < 3; c++) {
+        const size_t d = (c + 1) % 3, e = (c + 2) % 3;
+        p[c] = l[c] = 0;
+        for (size_t i = 0; i < n; i++) {
+            const double m = fixture->system->mass[i];
+            p[c] += m * fixture->v[c * n + i];
+            l[c] += m * (fixture->x[d * n + i] * fixture->v[e * n + i] -
+                         fixture->x[e * n + i] * fixture->v[d * n + i]);
+        }
+    }
+}
+
+double fixture_rms(const double *a, const double *b, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum / (double)n);
+}
+
+double fixture_energy(const struct fixture *fixture) {
+    const struct cs_energy energy = cs_measure_energy(fixture->system, fixture->x, fixture->v);
+    return energy.kinetic + energy.elastic + energy.gravity;
+}
+
+int fixture_run(const char *name, const TTest *const *tests, size_t n_tests) {
+    Suite *suite = suite_create(name);
+    TCase *tcase = tcase_create(name);
+    for (size_t i = 0; i < n_tests; i++)
+        tcase_add_test(tcase, tests[i]);
+    tcase_set_timeout(tcase, 120);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,42 @@
+/* fixture.h - a scene in JSON and a method, made into a run, for one physics test. */
+#ifndef FIXTURE_H
+#define FIXTURE_H
+
+#include "study/session.h"
+
+#include <check.h>
+
+struct fixture {
+    struct cs_session session;
+    struct cs_system *system; /* of the session */
+    size_t n;                 /* particles */
+    double *x, *v;            /* (3,n) each: the state */
+};
+
+/* Reads a scene and builds its system for an integrator ("NAME:key=value,..."); the state may
+ * then be moved before the run starts. Anything that fails fails the test. */
+void fixture_open(struct fixture *fixture, const char *integrator, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+void fixture_start(struct fixture *fixture);
+
+/* Runs that many frames; a blow-up fails the test. */
+void fixture_frames(struct fixture *fixture, uint32_t frames);
+void fixture_close(struct fixture *fixture);
+
+/* Adds smooth moves to the free particles: up to `place` m and `speed` m/s, the same for every
+ * call, so that no spring is at its rest length. */
+void fixture_stir(struct fixture *fixture, double place, double speed);
+
+/* Adds (p, l): momentum and angular momentum about the origin. */
+void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]);
+
+/* Root of the mean square of a - b over n values. */
+double fixture_rms(const double *a, const double *b, size_t n);
+
+/* Kinetic and potential energy in J. */
+double fixture_energy(const struct fixture *fixture);
+
+/* Runs the tests and returns the program's exit code. */
+int fixture_run(const char *name, const TTest *const *tests, size_t n_tests);
+
+#endif

@@ -1,0 +1,85 @@
+/* Without outer forces a free cloth keeps its momentum and, with axial forces, its angular
+ * momentum. */
+#include "fixture.h"
+
+#include <math.h>
+
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 5]}, \"mass\": {\"particle\": 0.1},"             \
+    " \"springs\": {\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": 0.02,"           \
+    " \"damping_model\": \"%s\"}}], \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": "          \
+    "{\"fps\": 50}}"
+
+/* Largest change of momentum and of angular momentum in one second, relative to the sizes that
+ * they are made of. */
+static void drift(const char *integrator, const char *model, double out[2]) {
+    struct fixture cloth;
+    double before[2][3], after[2][3];
+    fixture_open(&cloth, integrator, SCENE, model);
+    fixture_stir(&cloth, 0.02, 0.5);
+    for (size_t i = 0; i < cloth.n; i++)
+        cloth.v[i] += 1;
+    fixture_start(&cloth);
+    fixture_momentum(&cloth, before[0], before[1]);
+    fixture_frames(&cloth, 50);
+    fixture_momentum(&cloth, after[0], after[1]);
+    for (int k = 0; k < 2; k++) {
+        out[k] = 0;
+        for (int c = 0; c < 3; c++)
+            out[k] = fmax(out[k], fabs(after[k][c] - before[k][c]));
+    }
+    fixture_close(&cloth);
+}
+
+/* Forces come in opposite pairs, so that only rounding (or the solver's residual) is left. */
+START_TEST(momentum_is_kept) {
+    static const struct {
+        const char *integrator;
+        double bound; /* kg m/s */
+    } rows[] = {{"explicit-euler:dt=1e-3", 1e-12},    {"symplectic-euler:dt=1e-3", 1e-12},
+                {"averaged-euler:dt=1e-3", 1e-12},    {"velocity-verlet:dt=1e-3", 1e-12},
+                {"position-verlet:dt=1e-3", 1e-12},   {"implicit-linearised:rtol=1e-14", 1e-11},
+                {"cvode-bdf:linear_rtol=1e-12", 1e-9}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        for (int m = 0; m < 2; m++) {
+            double moved[2];
+            drift(rows[i].integrator, m ? "axial" : "relative", moved);
+            ck_assert_msg(moved[0] < rows[i].bound, "%s: momentum moved by %.3g",
+                          rows[i].integrator, moved[0]);
+        }
+}
+END_TEST
+
+/* The thesis's shortcut slows a cloth that drifts as a whole. */
+START_TEST(block_shortcut_loses_momentum) {
+    double moved[2];
+    drift("implicit-block", "axial", moved);
+    ck_assert_double_gt(moved[0], 0.1);
+}
+END_TEST
+
+/* Kicks along the springs and drifts along the velocities keep angular momentum exactly; the
+ * other methods lose or gain it with their order. */
+START_TEST(angular_momentum_is_kept) {
+    static const struct {
+        const char *integrator;
+        double bound; /* kg m2/s */
+    } rows[] = {{"symplectic-euler:dt=1e-3", 1e-12},
+                {"velocity-verlet:dt=1e-3", 1e-12},
+                {"position-verlet:dt=1e-3", 1e-4},
+                {"explicit-euler:dt=1e-4", 1e-3},
+                {"cvode-bdf:rtol=1e-9,max_order=5", 1e-6}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double moved[2];
+        drift(rows[i].integrator, "axial", moved);
+        ck_assert_msg(moved[1] < rows[i].bound, "%s: angular momentum moved by %.3g",
+                      rows[i].integrator, moved[1]);
+    }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {momentum_is_kept, block_shortcut_loses_momentum,
+                                  angular_momentum_is_kept};
+    return fixture_run("momentum", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,89 @@
+/* The measured order of every fixed-step method is the one that it states. */
+#include "fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* hung at two corners, stirred, slow enough to be smooth over a step; %s: damping model */
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4]}, \"mass\": {\"particle\": 0.1},"             \
+    " \"springs\": {\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": %g,"             \
+    " \"damping_model\": \"%s\"}, \"pins\": [\"top-left\", \"top-right\"]}],"                  \
+    " \"forces\": {\"drag\": %g}, \"time\": {\"fps\": 10}}"
+
+enum { FRAMES = 3, VALUES = 6 * 16 };
+
+struct damping {
+    const char *model;
+    double spring, drag;
+};
+static const struct damping none = {"axial", 0, 0};
+static const struct damping kinds[] = {
+    {"axial", 0.3, 0}, {"relative", 0.1, 0}, {"axial", 0, 0.2}};
+
+/* The state at 0.3 s; returns the order that the method states. */
+static uint32_t end_state(const char *integrator, const struct damping *damping,
+                          double state[VALUES]) {
+    struct fixture cloth;
+    fixture_open(&cloth, integrator, SCENE, damping->spring, damping->model, damping->drag);
+    fixture_stir(&cloth, 0.01, 0.2);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, FRAMES);
+    memcpy(state, cloth.x, VALUES * sizeof *state);
+    const struct cs_integrator *method = cloth.session.integrator;
+    const uint32_t order = damping == &none ? method->order : method->order_damped;
+    fixture_close(&cloth);
+    return order;
+}
+
+/* Slopes of the errors of position and velocity from h to h/2, against a step far finer. */
+static void check_order(const char *name, double h, const struct damping *damping) {
+    double reference[VALUES], state[VALUES], error[2][2];
+    end_state("velocity-verlet:dt=1e-5", damping, reference);
+    uint32_t order = 0;
+    for (int k = 0; k < 2; k++) {
+        char integrator[128];
+        snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name,
+                 strchr(name, ':') ? ',' : ':', k ? h / 2 : h);
+        order = end_state(integrator, damping, state);
+        error[0][k] = fixture_rms(state, reference, VALUES / 2);
+        error[1][k] = fixture_rms(state + VALUES / 2, reference + VALUES / 2, VALUES / 2);
+    }
+    for (int part = 0; part < 2; part++) {
+        const double slope = log2(error[part][0] / error[part][1]);
+        ck_assert_msg(
+            fabs(slope - order) < 0.1,
+            "%s, %s damping %g, drag %g: order of %s is %.3f, stated %u (errors %.3g, %.3g)",
+            name, damping->model, damping->spring, damping->drag,
+            part ? "velocity" : "position", slope, order, error[part][0], error[part][1]);
+    }
+}
+
+/* The shortcut's drag is h K_ii: it needs smaller steps before it is small at all. */
+static const struct {
+    const char *name;
+    double h;
+} methods[] = {{"explicit-euler", 2.5e-4}, {"symplectic-euler", 2.5e-4},
+               {"averaged-euler", 2.5e-4}, {"velocity-verlet", 1e-3},
+               {"position-verlet", 1e-3},  {"implicit-linearised:rtol=1e-10", 2.5e-4},
+               {"implicit-block", 2.5e-5}};
+
+START_TEST(order_without_damping) {
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+        check_order(methods[i].name, methods[i].h, &none);
+}
+END_TEST
+
+START_TEST(order_with_damping) {
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+        for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+            check_order(methods[i].name, methods[i].h, kinds + k);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {order_without_damping, order_with_damping};
+    return fixture_run("order", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,112 @@
+/* The step of explicit methods: the automatic one is stable, and what was changed is told. */
+#include "fixture.h"
+
+#include <string.h>
+
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [8, 8]}, \"mass\": {\"particle\": 0.01},"            \
+    " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": %g,"           \
+    " \"damping_model\": \"relative\"}, \"pins\": [\"top\"]}], \"forces\": {\"drag\": %g}}"
+
+static bool was_told(const struct fixture *cloth, const char *part) {
+    const struct cs_run *run = &cloth->session.run;
+    bool found = false;
+    for (uint32_t k = 0; k < run->n_notes; k++)
+        found |= strstr(run->notes[k], part) != NULL;
+    return found;
+}
+
+/* Three seconds from a stirred start end with less energy than the start, from weak damping to
+ * dampers that set the limit alone. */
+START_TEST(automatic_step_is_stable) {
+    static const char *const methods[] = {"explicit-euler", "symplectic-euler",
+                                          "averaged-euler", "velocity-verlet",
+                                          "position-verlet"};
+    static const double damping[] = {0.002, 0.1, 2};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+        for (size_t k = 0; k < sizeof damping / sizeof *damping; k++) {
+            struct fixture cloth;
+            fixture_open(&cloth, methods[i], SCENE, damping[k], 0.001);
+            fixture_stir(&cloth, 0.01, 0.5);
+            fixture_start(&cloth);
+            const double before = fixture_energy(&cloth);
+            fixture_frames(&cloth, 180);
+            const double after = fixture_energy(&cloth);
+            ck_assert_msg(after < before, "%s, damping %g: %g J became %g J", methods[i],
+                          damping[k], before, after);
+            ck_assert(was_told(&cloth, "dt automatic: at most "));
+            fixture_close(&cloth);
+        }
+}
+END_TEST
+
+/* No step of explicit Euler is stable without damping: it says so, and blows up. */
+START_TEST(hopeless_step_is_told) {
+    struct fixture cloth;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "explicit-euler", SCENE, 0.0, 0.0);
+    fixture_stir(&cloth, 0.01, 0.5);
+    fixture_start(&cloth);
+    ck_assert(was_told(&cloth, "no step is stable without damping"));
+    struct cs_run *run = &cloth.session.run;
+    while (run->outcome == CS_RUNNING && run->frame < 180)
+        ck_assert_int_eq(cs_run_frame(run, &error), CS_OK);
+    ck_assert_int_ne(run->outcome, CS_RUNNING);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* dt is cut to whole steps a frame: 1/60 s in dt = 4 ms is five steps, in 1/600 s ten. */
+START_TEST(steps_fill_the_frame) {
+    static const struct {
+        const char *integrator;
+        uint64_t steps;
+        bool told;
+    } rows[] = {{"velocity-verlet:dt=0.004", 5, true},
+                {"velocity-verlet:dt=0.00166666666666667", 10, false},
+                {"velocity-verlet:dt=1", 1, true},
+                {"implicit-linearised", 1, false},
+                {"implicit-block:dt=0.004", 5, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct fixture cloth;
+        fixture_open(&cloth, rows[i].integrator, SCENE, 0.0, 0.0);
+        fixture_start(&cloth);
+        fixture_frames(&cloth, 2);
+        ck_assert_uint_eq(cloth.session.run.counts.steps, 2 * rows[i].steps);
+        ck_assert(was_told(&cloth, "dt shortened") == rows[i].told);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+START_TEST(endless_frame_is_refused) {
+    struct fixture cloth;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "symplectic-euler:dt=1e-14", SCENE, 0.0, 0.0);
+    fixture_start(&cloth);
+    ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
+    ck_assert_msg(strstr(error.message, "needs more than 1e+09 steps"), "%s", error.message);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* cvode-bdf gives up with a reason when it may not take the steps it wants. */
+START_TEST(step_budget_is_kept) {
+    struct fixture cloth;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "cvode-bdf:rtol=1e-10,max_steps=3", SCENE, 0.1, 0.0);
+    fixture_stir(&cloth, 0.01, 0.5);
+    fixture_start(&cloth);
+    ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
+    ck_assert_msg(strstr(error.message, "more than 3 steps"), "%s", error.message);
+    ck_assert_uint_eq(cloth.session.run.counts.steps, 3);
+    fixture_close(&cloth);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {automatic_step_is_stable, hopeless_step_is_told,
+                                  steps_fill_the_frame, endless_frame_is_refused,
+                                  step_budget_is_kept};
+    return fixture_run("step", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,209 @@
+/* Files are written whole or not at all, and read whole or refused. */
+#include "base/file.h"
+#include "unit.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+
+static void assert_content(const char *path, const char *expected) {
+    struct cs_error error = {0};
+    char *bytes;
+    size_t length;
+    cs_file_read(path, 1000, &bytes, &length, &error);
+    UNIT_ASSERT_OK(&error);
+    ck_assert_uint_eq(length, strlen(expected));
+    ck_assert_str_eq(bytes, expected);
+    free(bytes);
+}
+
+START_TEST(written_file_reads_back) {
+    struct cs_error error = {0};
+    cs_folder_make("alone", &error);
+    cs_file_write("alone/a.txt", "hello", 5, &error);
+    UNIT_ASSERT_OK(&error);
+    assert_content("alone/a.txt", "hello");
+    cs_file_write("alone/a.txt", "", 0, &error);
+    UNIT_ASSERT_OK(&error);
+    assert_content("alone/a.txt", "");
+    ck_assert_int_eq(unit_count_files("alone"), 1);
+}
+END_TEST
+
+START_TEST(target_is_untouched_until_finish) {
+    struct cs_error error = {0};
+    struct cs_file_out out;
+    cs_file_write("b.txt", "old", 3, &error);
+    ck_assert_int_eq(cs_file_create(&out, "b.txt", &error), CS_OK);
+    fputs("new", out.file);
+    fflush(out.file);
+    assert_content("b.txt", "old");
+    ck_assert_int_eq(cs_file_finish(&out, &error), CS_OK);
+    assert_content("b.txt", "new");
+    ck_assert_int_ne(access(out.temporary, F_OK), 0);
+    cs_file_abandon(&out);
+    assert_content("b.txt", "new");
+}
+END_TEST
+
+START_TEST(abandoned_file_leaves_nothing) {
+    struct cs_error error = {0};
+    struct cs_file_out out, empty = {0};
+    ck_assert_int_eq(cs_file_create(&out, "c.txt", &error), CS_OK);
+    ck_assert_int_eq(access(out.temporary, F_OK), 0);
+    cs_file_abandon(&out);
+    cs_file_abandon(&out);
+    cs_file_abandon(&empty);
+    ck_assert_int_ne(access(out.temporary, F_OK), 0);
+    ck_assert_int_ne(access("c.txt", F_OK), 0);
+}
+END_TEST
+
+/* A link that waits under the temporary's name must not lead the write elsewhere. */
+START_TEST(temporary_follows_no_link) {
+    struct cs_error error = {0};
+    struct cs_file_out out;
+    char temporary[64];
+    snprintf(temporary, sizeof temporary, "d.txt.tmp.%ld", (long)getpid());
+    cs_file_write("victim.txt", "safe", 4, &error);
+    ck_assert_int_eq(symlink("victim.txt", temporary), 0);
+    ck_assert_int_eq(cs_file_create(&out, "d.txt", &error), CS_OK);
+    ck_assert_str_eq(out.temporary, temporary);
+    fputs("data", out.file);
+    ck_assert_int_eq(cs_file_finish(&out, &error), CS_OK);
+    assert_content("victim.txt", "safe");
+    assert_content("d.txt", "data");
+}
+END_TEST
+
+START_TEST(places_that_cannot_be_written_are_refused) {
+    char *too_long = malloc(6000);
+    memset(too_long, 'x', 5999);
+    too_long[5999] = 0;
+    const struct {
+        const char *path, *message;
+    } rows[] = {{"none/a.txt", "cannot write \"none/a.txt\": No such file"},
+                {".", "it is a folder"},
+                {"/dev/full", "it is not a regular file"},
+                {"/dev/null", "it is not a regular file"},
+                {"/proc/clothsim.txt", "cannot write"},
+                {"", "without a name"},
+                {too_long, "too long"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct cs_error error = {0};
+        struct cs_file_out out;
+        cs_file_create(&out, rows[i].path, &error);
+        UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, rows[i].message);
+        ck_assert_ptr_null(out.file);
+    }
+    free(too_long);
+}
+END_TEST
+
+/* root may write everywhere, so that only others can see this */
+START_TEST(read_only_folder_is_refused) {
+    struct cs_error error = {0};
+    if (geteuid() == 0)
+        return;
+    ck_assert_int_eq(mkdir("closed", 0555), 0);
+    cs_file_write("closed/a.txt", "a", 1, &error);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "Permission denied");
+}
+END_TEST
+
+/* A full disk shows as a failed write, or only when the buffer is written out. */
+START_TEST(full_disk_leaves_no_file) {
+    for (size_t length = 10; length <= 100000; length *= 100) {
+        struct cs_error error = {0};
+        struct cs_file_out out;
+        char *bytes = calloc(1, length);
+        ck_assert_int_eq(cs_file_create(&out, "full.bin", &error), CS_OK);
+        out.file = freopen("/dev/full", "wb", out.file);
+        ck_assert_ptr_nonnull(out.file);
+        fwrite(bytes, 1, length, out.file);
+        cs_file_finish(&out, &error);
+        UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "cannot write \"full.bin\"");
+        ck_assert_int_ne(access("full.bin", F_OK), 0);
+        ck_assert_int_ne(access(out.temporary, F_OK), 0);
+        free(bytes);
+    }
+}
+END_TEST
+
+START_TEST(size_limit_keeps_the_old_file) {
+    struct cs_error error = {0};
+    static const char bytes[20000];
+    cs_folder_make("limit", &error);
+    cs_file_write("limit/limit.bin", "old", 3, &error);
+    signal(SIGXFSZ, SIG_IGN);
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &(struct rlimit){9000, 9000}), 0);
+    cs_file_write("limit/limit.bin", bytes, sizeof bytes, &error);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "File too large");
+    assert_content("limit/limit.bin", "old");
+    ck_assert_int_eq(unit_count_files("limit"), 1);
+}
+END_TEST
+
+START_TEST(what_is_no_small_regular_file_is_not_read) {
+    struct cs_error made = {0};
+    cs_file_write("six.txt", "123456", 6, &made);
+    ck_assert_int_eq(mkfifo("pipe", 0600), 0);
+    const struct {
+        const char *path;
+        size_t max;
+        const char *message;
+    } rows[] = {{"none.txt", 10, "cannot read \"none.txt\": No such file"},
+                {".", 10, "it is a folder"},
+                {"pipe", 10, "it is not a regular file"},
+                {"/dev/zero", 10, "it is not a regular file"},
+                {"six.txt", 5, "it has 6 bytes, expected at most 5"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct cs_error error = {0};
+        char *bytes = (char *)1;
+        size_t length;
+        cs_file_read(rows[i].path, rows[i].max, &bytes, &length, &error);
+        UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, rows[i].message);
+        ck_assert_ptr_null(bytes);
+    }
+    assert_content("six.txt", "123456");
+}
+END_TEST
+
+START_TEST(folders_are_made_with_parents) {
+    struct cs_error error = {0};
+    struct stat info;
+    const char *const paths[] = {"p/q/r", "p/q/r", "p//q/s/", ".", "/", "/tmp", "p/../t"};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        cs_folder_make(paths[i], &error);
+        UNIT_ASSERT_OK(&error);
+        ck_assert_int_eq(stat(paths[i], &info), 0);
+        ck_assert(S_ISDIR(info.st_mode));
+    }
+}
+END_TEST
+
+START_TEST(folder_over_a_file_is_refused) {
+    const char *const paths[] = {"file", "file/below", ""};
+    struct cs_error made = {0};
+    cs_file_write("file", "x", 1, &made);
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        struct cs_error error = {0};
+        cs_folder_make(paths[i], &error);
+        UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "cannot make the folder");
+    }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {written_file_reads_back,
+                                  target_is_untouched_until_finish,
+                                  abandoned_file_leaves_nothing,
+                                  temporary_follows_no_link,
+                                  places_that_cannot_be_written_are_refused,
+                                  read_only_folder_is_refused,
+                                  full_disk_leaves_no_file,
+                                  size_limit_keeps_the_old_file,
+                                  what_is_no_small_regular_file_is_not_read,
+                                  folders_are_made_with_parents,
+                                  folder_over_a_file_is_refused};
+    return unit_run("file", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,77 @@
+/* The hash is the published XXH3-128, and the same for the same doubles everywhere. */
+#include "base/hash.h"
+#include "unit.h"
+
+/* canonical digits as `xxh128sum` prints them */
+START_TEST(bytes_match_known_digests) {
+    static const struct {
+        const char *bytes, *digits;
+    } rows[] = {{"", "99aa06d3014798d86001c324468d497f"},
+                {"a", "a96faf705af16834e6c632b61e964e1f"},
+                {"abc", "06b05ab6733a618578af5f94892f3950"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char digits[CS_HASH_DIGITS];
+        cs_hash_bytes(rows[i].bytes, strlen(rows[i].bytes), digits);
+        ck_assert_str_eq(digits, rows[i].digits);
+    }
+}
+END_TEST
+
+START_TEST(no_doubles_hash_like_no_bytes) {
+    char digits[CS_HASH_DIGITS];
+    cs_hash_doubles(NULL, 0, digits);
+    ck_assert_str_eq(digits, "99aa06d3014798d86001c324468d497f");
+}
+END_TEST
+
+/* 1.0, -2.5 and 1e-300 as the bytes that a little-endian machine holds, written out, so that
+ * the test means the same on every machine. */
+START_TEST(doubles_hash_as_little_endian_bytes) {
+    static const double values[] = {1.0, -2.5, 1e-300};
+    static const unsigned char bytes[] = {0,    0,    0,    0,    0,    0,    0xf0, 0x3f,
+                                          0,    0,    0,    0,    0,    0,    4,    0xc0,
+                                          0x59, 0xf3, 0xf8, 0xc2, 0x1f, 0x6e, 0xa5, 0x01};
+    char of_values[CS_HASH_DIGITS], of_bytes[CS_HASH_DIGITS];
+    cs_hash_doubles(values, 3, of_values);
+    cs_hash_bytes(bytes, sizeof bytes, of_bytes);
+    ck_assert_str_eq(of_values, of_bytes);
+}
+END_TEST
+
+/* every length round the blocks of the hash: by pieces the same as at once */
+START_TEST(pieces_do_not_show) {
+    enum { MOST = 1300 };
+    double values[MOST];
+    unsigned char bytes[8 * MOST];
+    for (int i = 0; i < MOST; i++) {
+        uint64_t word;
+        values[i] = 0.1 * i - 3;
+        memcpy(&word, values + i, 8);
+        for (int b = 0; b < 8; b++)
+            bytes[8 * i + b] = (unsigned char)(word >> 8 * b);
+    }
+    for (size_t n = 0; n <= MOST; n += n < 40 || (n > 500 && n < 530) ? 1 : 13) {
+        char of_values[CS_HASH_DIGITS], of_bytes[CS_HASH_DIGITS];
+        cs_hash_doubles(values, n, of_values);
+        cs_hash_bytes(bytes, 8 * n, of_bytes);
+        ck_assert_str_eq(of_values, of_bytes);
+    }
+}
+END_TEST
+
+START_TEST(one_bit_changes_the_hash) {
+    double values[64] = {0};
+    char before[CS_HASH_DIGITS], after[CS_HASH_DIGITS];
+    cs_hash_doubles(values, 64, before);
+    values[63] = -0.0;
+    cs_hash_doubles(values, 64, after);
+    ck_assert_str_ne(before, after);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {bytes_match_known_digests, no_doubles_hash_like_no_bytes,
+                                  doubles_hash_as_little_endian_bytes, pieces_do_not_show,
+                                  one_bit_changes_the_hash};
+    return unit_run("hash", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,413 @@
+/* Scenes are read whole, with defaults, shorthands and --set; bad ones name the place. */
+#include "io/scene_read.h"
+#include "unit.h"
+
+#include <math.h>
+
+#define BODY "{\"cloth\": {\"grid\": [4, 3]}, \"mass\": {\"total\": 2}}"
+
+static void read_text(struct cs_scene *scene, const char *text,
+                      const struct cs_override *overrides, uint32_t n) {
+    struct cs_error error = {0};
+    cs_scene_read_text(scene, "dir/s.json", text, strlen(text), overrides, n, &error);
+    UNIT_ASSERT_OK(&error);
+}
+
+START_TEST(defaults_stand_in) {
+    struct cs_scene scene;
+    const char *text = "{\"bodies\": [" BODY "]}";
+    read_text(&scene, text, NULL, 0);
+    ck_assert_uint_eq(scene.bodies.n, 1);
+    const struct cs_body *body = cs_scene_bodies(&scene);
+    ck_assert(body->cloth.present);
+    ck_assert_int_eq(body->cloth.grid[0], 4);
+    ck_assert_int_eq(body->cloth.grid[1], 3);
+    ck_assert_double_eq(body->cloth.size[1], 1);
+    ck_assert_double_eq(body->cloth.place.rotate[3], 1);
+    ck_assert(isnan(body->cloth.place.matrix[0]));
+    ck_assert_double_eq(body->mass.total, 2);
+    ck_assert(isnan(body->mass.particle));
+    ck_assert_double_eq(body->springs.stretch, 50);
+    ck_assert_int_eq(body->springs.damping_model, CS_DAMPING_AXIAL);
+    ck_assert(isnan(body->strain_limit));
+    ck_assert_uint_eq(body->pins.n, 0);
+    ck_assert_ptr_null(body->pins.items);
+    ck_assert_uint_eq(scene.colliders.n, 0);
+    ck_assert(!scene.forces.wind.present);
+    ck_assert_double_eq(scene.forces.gravity[1], -9.81);
+    ck_assert_double_eq(scene.time.fps, 60);
+    ck_assert_int_eq(scene.render.size[0], 640);
+    ck_assert_str_eq(scene.integrator, CS_INTEGRATOR_DEFAULT);
+    ck_assert_uint_eq(scene.integrator_settings.n, 0);
+    ck_assert_str_eq(scene.path, "dir/s.json");
+    ck_assert_str_eq(scene.folder, "dir");
+    ck_assert_uint_eq(scene.text_bytes, strlen(text));
+    ck_assert_str_eq(scene.text, text);
+    cs_scene_finish(&scene);
+}
+END_TEST
+
+START_TEST(everything_given_is_kept) {
+    struct cs_scene scene;
+    read_text(
+        &scene,
+        "{\"$schema\": \"s\", \"x-mine\": {\"any\": [null]}, \"about\": \"caf\xc3\xa9\","
+        " \"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"start\": \"flat\"}, \"x-note\": 1,"
+        "   \"mass\": {\"degree\": 0.5}, \"springs\": {\"stiffness_unit\": \"N\"},"
+        "   \"pins\": [\"top-left\", 7, {\"at\": \"edges\"}, {\"index\": 3},"
+        "             {\"box\": {\"min\": [0, 0, 0], \"max\": [1, 2, 3]}}],"
+        "   \"strain_limit\": 1.1, \"material\": {\"texture\": \"weave.png\"}}, " BODY "],"
+        " \"colliders\": [{\"floor\": {}}, {\"sphere\": {\"centre\": [1, 2, 3]},"
+        "   \"friction\": 0.5, \"visible\": false}],"
+        " \"integrator\": {\"name\": \"cvode-bdf\", \"rtol\": 1e-4, \"fast\": true,"
+        "   \"kind\": \"newton\", \"x-why\": []}, \"render\": {\"look\": \"force\"}}",
+        NULL, 0);
+    const struct cs_body *body = cs_scene_bodies(&scene);
+    const struct cs_pin *pins = body->pins.items;
+    ck_assert_str_eq(scene.about, "caf\xc3\xa9");
+    ck_assert_uint_eq(scene.bodies.n, 2);
+    ck_assert_int_eq(body->cloth.start, CS_START_FLAT);
+    ck_assert_int_eq(body->springs.stiffness_unit, CS_STIFFNESS_N);
+    ck_assert_uint_eq(body->pins.n, 5);
+    ck_assert_int_eq(pins[0].at, CS_PIN_TOP_LEFT);
+    ck_assert_int_eq(pins[0].index, -1);
+    ck_assert_int_eq(pins[1].at, -1);
+    ck_assert_int_eq(pins[1].index, 7);
+    ck_assert_int_eq(pins[2].at, CS_PIN_EDGES);
+    ck_assert_int_eq(pins[3].index, 3);
+    ck_assert(pins[4].box.present && !pins[3].box.present);
+    ck_assert_double_eq(pins[4].box.max[2], 3);
+    ck_assert_str_eq(body->material.texture, "weave.png");
+    ck_assert_double_eq(body[1].mass.total, 2);
+    const struct cs_collider *colliders = cs_scene_colliders(&scene);
+    ck_assert(colliders[0].floor.present && !colliders[0].sphere.present);
+    ck_assert_double_eq(colliders[1].sphere.radius, 0.3);
+    ck_assert(!colliders[1].visible);
+    ck_assert_int_eq(scene.render.look, CS_LOOK_FORCE);
+    ck_assert_str_eq(scene.integrator, "cvode-bdf");
+    const struct cs_setting *settings = scene.integrator_settings.items;
+    ck_assert_uint_eq(scene.integrator_settings.n, 3);
+    ck_assert_str_eq(settings[0].name, "rtol");
+    ck_assert_str_eq(settings[0].value, "0.0001");
+    ck_assert_str_eq(settings[1].value, "true");
+    ck_assert_str_eq(settings[2].value, "newton");
+    cs_scene_finish(&scene);
+}
+END_TEST
+
+START_TEST(folder_is_that_of_the_path) {
+    static const char *const rows[][2] = {
+        {"a.json", "."}, {"s/a.json", "s"}, {"/a.json", "/"}, {"./s/t/a.json", "./s/t"}};
+    const char *text = "{\"bodies\": [" BODY "]}";
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct cs_error error = {0};
+        struct cs_scene scene;
+        cs_scene_read_text(&scene, rows[i][0], text, strlen(text), NULL, 0, &error);
+        UNIT_ASSERT_OK(&error);
+        ck_assert_str_eq(scene.folder, rows[i][1]);
+        cs_scene_finish(&scene);
+    }
+}
+END_TEST
+
+/* the words of a message, so that each row below says the whole of it */
+static void assert_refused(const char *text, const struct cs_override *overrides, uint32_t n,
+                           enum cs_status status, const char *message) {
+    struct cs_error error = {0};
+    struct cs_scene scene, empty = {0};
+    ck_assert_int_eq(
+        cs_scene_read_text(&scene, "s.json", text, strlen(text), overrides, n, &error), status);
+    ck_assert_str_eq(error.message, message);
+    ck_assert_ptr_eq(scene.text, empty.text);
+    ck_assert_ptr_null(scene.arena.blocks);
+    ck_assert_uint_eq(scene.bodies.n, 0);
+}
+
+START_TEST(messages_name_the_place) {
+    static const char *const rows[][2] = {
+        {"{\n  \"time\": {\"fps\": 60,}\n}",
+         "s.json:2:22: found '}', expected a key in quotes"},
+        {"[1, 2]", "s.json:1:1: found a list of 2, expected an object"},
+        {"{\"bodies\": [" BODY "],\n \"time\": {\"fps\": \"60\"}}",
+         "s.json:2:18: time.fps: found text \"60\", expected a number (0.001..1000000 1/s)"},
+        {"{\"bodies\": [\n" BODY ",\n{\"cloth\": {\"grid\": [2, 2]}}]}",
+         "s.json:3:1: bodies[1].mass: found none, expected exactly one of particle, "
+         "areal_density, total, degree"},
+        {"{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]},\n"
+         "\"mass\": {\"total\": 1, \"degree\": 2}}]}",
+         "s.json:2:9: bodies[0].mass: found total and degree, expected exactly one of "
+         "particle, "
+         "areal_density, total, degree"},
+        {"{\"bodies\": [{\"cloth\": {}}]}",
+         "s.json:1:23: bodies[0].cloth.grid: missing, expected "
+         "a list of 2 whole numbers (1..65535 particles)"},
+        {"{\"bodies\": [{\n\"springs\": {\"sheer\": 1}}]}",
+         "s.json:2:13: bodies[0].springs.sheer: unknown key; did you mean \"shear\"?"},
+        {"{\"integratr\": 1}",
+         "s.json:1:2: integratr: unknown key; did you mean \"integrator\"?"},
+        {"{\"Bodies\": []}", "s.json:1:2: Bodies: unknown key; did you mean \"bodies\"?"},
+        {"{\"zzzzzzzzz q\": 1}", "s.json:1:2: [\"zzzzzzzzz q\"]: unknown key"},
+        {"{\"time\": {\"fps\": 0}}",
+         "s.json:1:18: time.fps: 0 is out of range (0.001..1000000 1/s)"},
+        {"{\"render\": {\"size\": [640, 12.5]}}",
+         "s.json:1:27: render.size[1]: 12.5 is out of range (16..8192 pixels)"},
+        {"{\"render\": {\"size\": [640, 99.5]}}",
+         "s.json:1:27: render.size[1]: 99.5 is not a whole number (16..8192 pixels)"},
+        {"{\"render\": {\"size\": [640]}}",
+         "s.json:1:21: render.size: found a list of 1, expected "
+         "a list of 2 whole numbers (16..8192 pixels)"},
+        {"{\"camera\": {\"eye\": [0, null, 1]}}",
+         "s.json:1:24: camera.eye[1]: found null, expected a number"},
+        {"{\"render\": {\"look\": \"strian\"}}",
+         "s.json:1:21: render.look: unknown choice \"strian\"; did you mean \"strain\"? "
+         "(lit, wireframe, springs, force, strain)"},
+        {"{\"render\": {\"look\": 3}}",
+         "s.json:1:21: render.look: found 3, expected one of lit, "
+         "wireframe, springs, force, strain"},
+        {"{\"render\": {\"ground\": 1}}",
+         "s.json:1:23: render.ground: found 1, expected true or false"},
+        {"{\"bodies\": {}}", "s.json:1:12: bodies: found an object, expected a list"},
+        {"{\"about\": true}", "s.json:1:11: about: found true, expected a text"},
+        {"{\"bodies\": [{\"pins\": [[1]]}]}",
+         "s.json:1:23: bodies[0].pins[0]: found a list of 1, "
+         "expected an object, a text or a number"},
+        {"{\"bodies\": [{\"pins\": [-1]}]}",
+         "s.json:1:23: bodies[0].pins[0]: -1 is out of range (0..4294967295)"},
+        {"{\"bodies\": [{\"pins\": [{}]}]}",
+         "s.json:1:23: bodies[0].pins[0]: found none, expected "
+         "exactly one of at, index, box"},
+        {"{\"colliders\": [{\"sphere\": {\"radius\": 1}}]}",
+         "s.json:1:27: colliders[0].sphere.centre: missing, expected a list of 3 numbers "
+         "(-1e+09..1000000000 m)"},
+        {"{\"bodies\": [" BODY "], \"integrator\": [1]}",
+         "s.json:1:79: integrator: found a list of 1, expected an object or a text"},
+        {"{\"bodies\": [" BODY "], \"integrator\": {\"name\": 1}}",
+         "s.json:1:88: integrator.name: found 1, expected a text"},
+        {"{\"bodies\": [" BODY "], \"integrator\": {\"dt\": null}}",
+         "s.json:1:86: integrator.dt: found null, expected a number, true, false or a text"},
+        {"{\"bodies\": [" BODY "], \"integrator\": \"\"}",
+         "s.json:1:79: integrator: found 0 characters, expected 1..63"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        assert_refused(rows[i][0], NULL, 0, CS_ERR_SCENE, rows[i][1]);
+}
+END_TEST
+
+/* what cs_scene_check says gets the place of the value at fault, or of the nearest one */
+START_TEST(checks_get_a_place) {
+    struct cs_error pins = {0}, none = {0};
+    struct cs_scene scene;
+    const char *text =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3]}, \"mass\": {\"total\": 2},\n"
+        " \"pins\": [0,\n  12]}]}";
+    cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &pins);
+    UNIT_ASSERT_FAILED(&pins, CS_ERR_SCENE, "s.json:3:3: bodies[0].pins[1]: ");
+    cs_scene_read_text(&scene, "s.json", "{}", 2, NULL, 0, &none);
+    UNIT_ASSERT_FAILED(&none, CS_ERR_SCENE, "s.json:1:1: bodies: ");
+}
+END_TEST
+
+START_TEST(long_texts_are_refused) {
+    struct cs_error error = {0};
+    struct cs_scene scene;
+    char text[400];
+    for (int length = CS_TEXT_MAX - 2; length <= CS_TEXT_MAX; length++) {
+        snprintf(text, sizeof text, "{\"bodies\": [" BODY "], \"about\": \"%0*d\"}", length, 0);
+        cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &error);
+        if (length < CS_TEXT_MAX)
+            ck_assert_uint_eq(strlen(scene.about), (size_t)length);
+        cs_scene_finish(&scene);
+    }
+    UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE,
+                       "about: found a text of 256 bytes, expected at most 255");
+}
+END_TEST
+
+START_TEST(overrides_are_put_in) {
+    static const struct cs_override overrides[] = {{"bodies[0].springs.stretch", "200"},
+                                                   {"bodies[0].cloth.grid", "[9, 8]"},
+                                                   {"bodies[0].cloth.grid[1]", "7"},
+                                                   {"bodies[0].pins[0]", "{\"at\": \"top\"}"},
+                                                   {"bodies[0].pins[1]", "{\"index\": 5}"},
+                                                   {"bodies[0].pins[0].at", "left"},
+                                                   {"bodies[1]", BODY},
+                                                   {"bodies[1].mass", "{\"particle\": 0.5}"},
+                                                   {"forces.wind.direction", "[0, 0, 2]"},
+                                                   {"forces.wind.strength", " 4 "},
+                                                   {"about", "two words"},
+                                                   {"source", "\"quoted\""},
+                                                   {"render.look", "strain"},
+                                                   {"render.ground", "true"},
+                                                   {"integrator", "cvode-bdf"},
+                                                   {"integrator.rtol", "1e-3"},
+                                                   {"integrator.rtol", "1e-5"},
+                                                   {"x-tag.deep[0][0].key", "1"}};
+    struct cs_scene scene;
+    read_text(&scene, "{\"bodies\": [" BODY "], \"integrator\": \"explicit-euler\"}", overrides,
+              sizeof overrides / sizeof *overrides);
+    const struct cs_body *bodies = cs_scene_bodies(&scene);
+    const struct cs_pin *pins = bodies[0].pins.items;
+    ck_assert_uint_eq(scene.bodies.n, 2);
+    ck_assert_double_eq(bodies[0].springs.stretch, 200);
+    ck_assert_int_eq(bodies[0].cloth.grid[0], 9);
+    ck_assert_int_eq(bodies[0].cloth.grid[1], 7);
+    ck_assert_uint_eq(bodies[0].pins.n, 2);
+    ck_assert_int_eq(pins[0].at, CS_PIN_LEFT);
+    ck_assert_int_eq(pins[1].index, 5);
+    ck_assert_double_eq(bodies[1].mass.particle, 0.5);
+    ck_assert_double_eq(scene.forces.wind.direction[2], 1);
+    ck_assert_double_eq(scene.forces.wind.strength, 4);
+    ck_assert_str_eq(scene.about, "two words");
+    ck_assert_str_eq(scene.source, "quoted");
+    ck_assert_int_eq(scene.render.look, CS_LOOK_STRAIN);
+    ck_assert(scene.render.ground);
+    const struct cs_setting *settings = scene.integrator_settings.items;
+    ck_assert_str_eq(scene.integrator, "cvode-bdf");
+    ck_assert_uint_eq(scene.integrator_settings.n, 1);
+    ck_assert_str_eq(settings[0].value, "1e-05");
+    /* the hash of a scene is that of its file */
+    ck_assert_ptr_null(strstr(scene.text, "cvode"));
+    cs_scene_finish(&scene);
+}
+END_TEST
+
+START_TEST(a_plain_integrator_takes_options) {
+    static const struct cs_override dt[] = {{"integrator.dt", "0.001"}};
+    static const char *const texts[] = {"{\"bodies\": [" BODY
+                                        "], \"integrator\": \"cvode-bdf\"}",
+                                        "{\"bodies\": [" BODY "], \"integrator\": {\"name\": "
+                                        "\"cvode-bdf\", \"dt\": 5}}"};
+    for (size_t i = 0; i < 2; i++) {
+        struct cs_scene scene;
+        read_text(&scene, texts[i], dt, 1);
+        const struct cs_setting *settings = scene.integrator_settings.items;
+        ck_assert_str_eq(scene.integrator, "cvode-bdf");
+        ck_assert_uint_eq(scene.integrator_settings.n, 1);
+        ck_assert_str_eq(settings[0].name, "dt");
+        ck_assert_str_eq(settings[0].value, "0.001");
+        cs_scene_finish(&scene);
+    }
+}
+END_TEST
+
+START_TEST(bad_overrides_are_refused) {
+    static const struct {
+        struct cs_override override;
+        enum cs_status status;
+        const char *message;
+    } rows[] = {
+        {{"bodies[0].springs.stretch", "-1"},
+         CS_ERR_SCENE,
+         "--set bodies[0].springs.stretch: -1 is out of range (0..1e+12 N/m)"},
+        {{"bodies[0].springs", "{\"bend\": \"b\"}"},
+         CS_ERR_SCENE,
+         "--set bodies[0].springs.bend: found text \"b\", expected a number (0..1e+12 N/m)"},
+        {{"bodies[0].sprngs.stretch", "1"},
+         CS_ERR_SCENE,
+         "--set bodies[0].sprngs: unknown key; did you mean \"springs\"?"},
+        {{"forces.wind.strength", "1"},
+         CS_ERR_SCENE,
+         "--set forces.wind.direction: missing, expected a list of 3 numbers "
+         "(-1e+09..1000000000)"},
+        {{"bodies[0].mass.particle", "1"},
+         CS_ERR_SCENE,
+         "s.json:1:49: bodies[0].mass: found particle and total, expected exactly one of "
+         "particle, areal_density, total, degree"},
+        {{"integrator.dt", "{}"},
+         CS_ERR_SCENE,
+         "--set integrator.dt: found an object, expected a number, true, false or a text"},
+        {{"", "1"},
+         CS_ERR_USAGE,
+         "--set : not a path, expected one like bodies[0].springs.stretch"},
+        {{".time", "1"},
+         CS_ERR_USAGE,
+         "--set .time: not a path, expected one like bodies[0].springs.stretch"},
+        {{"time.", "1"},
+         CS_ERR_USAGE,
+         "--set time.: not a path, expected one like bodies[0].springs.stretch"},
+        {{"bodies[x]", "1"},
+         CS_ERR_USAGE,
+         "--set bodies[x]: not a path, expected one like bodies[0].springs.stretch"},
+        {{"bodies[-1]", "1"},
+         CS_ERR_USAGE,
+         "--set bodies[-1]: not a path, expected one like bodies[0].springs.stretch"},
+        {{"bodies[0", "1"},
+         CS_ERR_USAGE,
+         "--set bodies[0: not a path, expected one like bodies[0].springs.stretch"},
+        {{"bodies[0]time", "1"},
+         CS_ERR_USAGE,
+         "--set bodies[0]time: not a path, expected one like bodies[0].springs.stretch"},
+        {{"bodies[2].cloth", "{}"},
+         CS_ERR_USAGE,
+         "--set bodies[2].cloth: index 2 is out of range, expected 0..1 (1 adds one)"},
+        {{"bodies.cloth", "{}"},
+         CS_ERR_USAGE,
+         "--set bodies.cloth: found a list of 1 before \"cloth\", expected an object"},
+        {{"bodies[0][0]", "{}"},
+         CS_ERR_USAGE,
+         "--set bodies[0][0]: found an object before [0], expected a list"},
+        {{"[0]", "1"}, CS_ERR_USAGE, "--set [0]: found an object before [0], expected a list"},
+        {{"time.fps", "60fps"},
+         CS_ERR_USAGE,
+         "--set time.fps: the value is not JSON: found 'f', expected the end of the text (at "
+         "column 3)"},
+        {{"time.fps", "1e999"},
+         CS_ERR_USAGE,
+         "--set time.fps: the value is not JSON: the number 1e999 is too large (at column 1)"},
+        {{"bodies[0].cloth.grid", "[1, 2"},
+         CS_ERR_USAGE,
+         "--set bodies[0].cloth.grid: the value is not JSON: found the end of the text, "
+         "expected "
+         "',' or ']' (at column 6)"},
+        {{"about", "\xff"},
+         CS_ERR_USAGE,
+         "--set about: the value is not UTF-8 text without control characters"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        assert_refused("{\"bodies\": [" BODY "]}", &rows[i].override, 1, rows[i].status,
+                       rows[i].message);
+}
+END_TEST
+
+START_TEST(deep_override_is_refused) {
+    char path[400] = "x-a";
+    for (int i = 0; i < 70; i++)
+        strcat(path, "[0]");
+    const struct cs_override override = {path, "1"};
+    struct cs_error error = {0};
+    struct cs_scene scene;
+    cs_scene_read_text(&scene, "s.json", "{}", 2, &override, 1, &error);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_USAGE, "not a path");
+}
+END_TEST
+
+START_TEST(files_are_read) {
+    struct cs_error error = {0}, missing = {0}, folder = {0};
+    struct cs_scene scene;
+    FILE *file = fopen("a.json", "w");
+    fputs("{\"bodies\": [" BODY "]}", file);
+    fclose(file);
+    cs_scene_read(&scene, "a.json", NULL, 0, &error);
+    UNIT_ASSERT_OK(&error);
+    ck_assert_uint_eq(scene.bodies.n, 1);
+    cs_scene_finish(&scene);
+    cs_scene_read(&scene, "b.json", NULL, 0, &missing);
+    UNIT_ASSERT_FAILED(&missing, CS_ERR_FILE, "cannot read \"b.json\"");
+    ck_assert_ptr_null(scene.path);
+    cs_scene_read(&scene, ".", NULL, 0, &folder);
+    UNIT_ASSERT_FAILED(&folder, CS_ERR_FILE, "it is a folder");
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {defaults_stand_in,
+                                  everything_given_is_kept,
+                                  folder_is_that_of_the_path,
+                                  messages_name_the_place,
+                                  checks_get_a_place,
+                                  long_texts_are_refused,
+                                  overrides_are_put_in,
+                                  a_plain_integrator_takes_options,
+                                  bad_overrides_are_refused,
+                                  deep_override_is_refused,
+                                  files_are_read};
+    return unit_run("scene_read", tests, sizeof tests / sizeof *tests);
+}
