@@ -65,6 +65,14 @@ enum cs_trait {
     CS_NOT_GALILEAN = 1u << 5  /* a uniform velocity changes the internal forces */
 };
 
+/* What the method's result is, however small its own tolerances are. */
+enum cs_fidelity {
+    CS_FIDELITY_ODE,            /* converges to the equation of motion at its order */
+    CS_FIDELITY_IMPLICIT_EULER, /* one implicit Euler step as its iterations grow */
+    CS_FIDELITY_CONSISTENT,     /* meets the equation of motion only as the step goes to 0 */
+    CS_FIDELITY_OTHER           /* another model: no error against the equation of motion */
+};
+
 enum cs_solve_flag {
     CS_SOLVE_PSD = 1u << 0 /* drop the transverse part of compressed springs (Teran et al. 2005) */
 };
@@ -130,6 +138,9 @@ struct cs_integrator {
     uint32_t order;      /* on smooth scenes without damping; measured by the tests */
     uint32_t order_damped; /* on smooth scenes with velocity-dependent forces */
     uint32_t needs, traits;
+    uint32_t fidelity; /* enum cs_fidelity */
+    /* checks of `clothsim conform` that the method is known to fail, closed by NULL; or NULL */
+    const char *const *fails;
     const struct cs_option *options;
     uint32_t n_options;
     uint32_t options_size; /* sizeof the struct that the table describes */
