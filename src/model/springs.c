@@ -3,21 +3,11 @@
  * vectorise. */
 #include "model/springs.h"
 
+#include "model/rows.h"
+
 #include <clothsim/integrator.h>
 #include <float.h>
 #include <math.h>
-
-enum { PIECE = 256 };
-
-/* one piece of a run: both ends' rows of an array of 3-vectors */
-struct ends {
-    const double *ax, *ay, *az, *bx, *by, *bz;
-};
-
-static struct ends ends_of(const double *p, uint32_t n, uint32_t a, uint32_t b) {
-    const double *y = p + n, *z = y + n;
-    return (struct ends){p + a, y + a, z + a, p + b, y + b, z + b};
-}
 
 uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, uint32_t *n_springs) {
@@ -65,28 +55,10 @@ uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uin
     return n_runs;
 }
 
-/* adds the buffered forces at the first ends and takes them at the second */
-static void scatter(uint32_t count, const double *restrict fx, const double *restrict fy,
-                    const double *restrict fz, uint32_t n, uint32_t a, uint32_t b, double *f) {
-    double *y = f + n, *z = y + n;
-    for (uint32_t i = 0; i < count; i++)
-        f[a + i] += fx[i];
-    for (uint32_t i = 0; i < count; i++)
-        y[a + i] += fy[i];
-    for (uint32_t i = 0; i < count; i++)
-        z[a + i] += fz[i];
-    for (uint32_t i = 0; i < count; i++)
-        f[b + i] -= fx[i];
-    for (uint32_t i = 0; i < count; i++)
-        y[b + i] -= fy[i];
-    for (uint32_t i = 0; i < count; i++)
-        z[b + i] -= fz[i];
-}
-
 /* force of one piece; k and c are 0 where the part was not asked for */
-static inline void piece_force(uint32_t count, struct ends x, struct ends v, double k, double L,
-                               double c, const bool damped, const bool axial,
-                               double *restrict fx, double *restrict fy, double *restrict fz) {
+CS_INLINE void piece_force(uint32_t count, struct ends x, struct ends v, double k, double L,
+                           double c, const bool damped, const bool axial, double *restrict fx,
+                           double *restrict fy, double *restrict fz) {
     for (uint32_t i = 0; i < count; i++) {
         const double dx = x.bx[i] - x.ax[i];
         const double dy = x.by[i] - x.ay[i];
@@ -114,8 +86,9 @@ static inline void piece_force(uint32_t count, struct ends x, struct ends v, dou
     }
 }
 
-void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
-                          const double *v, uint32_t parts, double *f) {
+CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
+                                    const double *x, const double *v, uint32_t parts,
+                                    double *f) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
@@ -158,62 +131,76 @@ double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const dou
     return energy;
 }
 
-/* What dx and dv at the ends do to the force of spring i: with u the unit direction, l the
- * length, e and g the differences of dx and dv, w that of v:
+/* What dx and dv at the ends do to the force of each spring of a piece: with u the unit
+ * direction, l the length, e and g the differences of dx and dv, w that of v:
  *   elastic    k (1 - L/l) e + k L/l (u.e) u
  *   axial      d (g.u) u + d [(w.du) u + (w.u) du],  du = (e - (u.e) u) / l
- *   relative   d g */
-static void spring_jvp(const struct cs_spring_run *run, double k, double c, const double d[3],
-                       const double w[3], const double e[3], const double g[3], double df[3]) {
-    const double inverse = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + DBL_MIN);
-    const double u[3] = {d[0] * inverse, d[1] * inverse, d[2] * inverse};
-    const double ue = u[0] * e[0] + u[1] * e[1] + u[2] * e[2];
-    const double slack = k * (1 - run->length * inverse),
-                 along = k * run->length * inverse * ue;
-    for (int c3 = 0; c3 < 3; c3++)
-        df[c3] = slack * e[c3] + along * u[c3];
-    if (c == 0)
-        return;
-    if (!run->axial) {
-        for (int c3 = 0; c3 < 3; c3++)
-            df[c3] += c * g[c3];
-        return;
+ *   relative   d g
+ * moved: dx is given; turned: dv is given. */
+CS_INLINE void piece_jvp(uint32_t count, struct ends x, struct ends v, struct ends dx,
+                         struct ends dv, const struct cs_spring_run *run, double k, double c,
+                         const bool moved, const bool turned, double *restrict fx,
+                         double *restrict fy, double *restrict fz) {
+    const double L = run->length;
+    const double axial = run->axial ? c : 0, relative = run->axial ? 0 : c;
+    for (uint32_t i = 0; i < count; i++) {
+        const double px = x.bx[i] - x.ax[i], py = x.by[i] - x.ay[i], pz = x.bz[i] - x.az[i];
+        const double inverse = 1 / sqrt(px * px + py * py + pz * pz + DBL_MIN);
+        const double ux = px * inverse, uy = py * inverse, uz = pz * inverse;
+        double rx = 0, ry = 0, rz = 0;
+        if (moved) {
+            const double ex = dx.bx[i] - dx.ax[i], ey = dx.by[i] - dx.ay[i];
+            const double ez = dx.bz[i] - dx.az[i];
+            const double ue = ux * ex + uy * ey + uz * ez;
+            const double slack = k * (1 - L * inverse);
+            double along = k * L * inverse * ue;
+            const double wx = v.bx[i] - v.ax[i], wy = v.by[i] - v.ay[i], wz = v.bz[i] - v.az[i];
+            const double tx = (ex - ue * ux) * inverse, ty = (ey - ue * uy) * inverse;
+            const double tz = (ez - ue * uz) * inverse;
+            const double closing = axial * (wx * ux + wy * uy + wz * uz);
+            along += axial * (wx * tx + wy * ty + wz * tz);
+            rx = slack * ex + along * ux + closing * tx;
+            ry = slack * ey + along * uy + closing * ty;
+            rz = slack * ez + along * uz + closing * tz;
+        }
+        if (turned) {
+            const double gx = dv.bx[i] - dv.ax[i], gy = dv.by[i] - dv.ay[i];
+            const double gz = dv.bz[i] - dv.az[i];
+            const double along = axial * (gx * ux + gy * uy + gz * uz);
+            rx += relative * gx + along * ux;
+            ry += relative * gy + along * uy;
+            rz += relative * gz + along * uz;
+        }
+        fx[i] = rx;
+        fy[i] = ry;
+        fz[i] = rz;
     }
-    const double wu = w[0] * u[0] + w[1] * u[1] + w[2] * u[2];
-    const double gu = g[0] * u[0] + g[1] * u[1] + g[2] * u[2];
-    double du[3], wdu = 0;
-    for (int c3 = 0; c3 < 3; c3++) {
-        du[c3] = (e[c3] - ue * u[c3]) * inverse;
-        wdu += w[c3] * du[c3];
-    }
-    for (int c3 = 0; c3 < 3; c3++)
-        df[c3] += c * ((gu + wdu) * u[c3] + wu * du[c3]);
 }
 
-static void difference(const double *p, uint32_t n, uint32_t a, uint32_t b, double out[3]) {
-    for (uint32_t c = 0; c < 3; c++)
-        out[c] = p ? p[c * n + b] - p[c * n + a] : 0;
-}
-
-void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
-                        const double *v, uint32_t parts, const double *dx, const double *dv,
-                        double *df) {
+CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
+                                  const double *v, uint32_t parts, const double *dx,
+                                  const double *dv, double *df) {
+    double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
         const double k = parts & (CS_PART_STRETCH << run->kind) ? run->stiffness : 0;
         const double c = parts & CS_PART_DAMPING ? run->damping : 0;
-        for (uint32_t i = 0; i < run->count && (k != 0 || c != 0); i++) {
-            const uint32_t a = run->a + i, b = run->b + i;
-            double d[3], w[3], e[3], g[3], push[3];
-            difference(x, n, a, b, d);
-            difference(v, n, a, b, w);
-            difference(dx, n, a, b, e);
-            difference(dv, n, a, b, g);
-            spring_jvp(run, k, c, d, w, e, g, push);
-            for (uint32_t c3 = 0; c3 < 3; c3++) {
-                df[c3 * n + a] += push[c3];
-                df[c3 * n + b] -= push[c3];
-            }
+        if ((k == 0 && c == 0) || (c == 0 && !dx))
+            continue;
+        for (uint32_t start = 0; start < run->count; start += PIECE) {
+            const uint32_t left = run->count - start, count = left < PIECE ? left : PIECE;
+            const uint32_t a = run->a + start, b = run->b + start;
+            const struct ends xs = ends_of(x, n, a, b), vs = ends_of(v, n, a, b);
+            /* a direction that is not given stands for itself, and is not read */
+            const struct ends xd = ends_of(dx ? dx : x, n, a, b);
+            const struct ends vd = ends_of(dv ? dv : v, n, a, b);
+            if (dx && dv)
+                piece_jvp(count, xs, vs, xd, vd, run, k, c, true, true, fx, fy, fz);
+            else if (dx)
+                piece_jvp(count, xs, vs, xd, vd, run, k, c, true, false, fx, fy, fz);
+            else
+                piece_jvp(count, xs, vs, xd, vd, run, k, c, false, true, fx, fy, fz);
+            scatter(count, fx, fy, fz, n, a, b, df);
         }
     }
 }

@@ -2,6 +2,8 @@
  * y = sum of (s I + w w^T)(p_a - p_b) that the linear solver multiplies by. */
 #include "model/springs.h"
 
+#include "model/rows.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -55,27 +57,25 @@ void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const
     }
 }
 
-void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
-                       double ck, bool psd, double *factors) {
+CS_CLONES void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x,
+                                 double cd, double ck, bool psd, double *factors) {
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
         const double gamma = run->axial ? 0 : -cd * run->damping;
         const double eta = run->axial ? -cd * run->damping : 0;
-        const double stiffness = -ck * run->stiffness;
+        const double stiffness = -ck * run->stiffness, length = run->length;
+        const struct ends e = ends_of(x, n, run->a, run->b);
         double *restrict s = factors + 4 * (size_t)run->first;
         double *restrict wx = s + run->count, *restrict wy = wx + run->count;
         double *restrict wz = wy + run->count;
-        const double *a = x + run->a, *b = x + run->b;
-        for (uint32_t i = 0; i < run->count; i++) {
-            const double dx = b[i] - a[i], dy = b[n + i] - a[n + i];
-            const double dz = b[2 * (size_t)n + i] - a[2 * (size_t)n + i];
+        for (size_t i = 0; i < run->count; i++) {
+            const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i], dz = e.bz[i] - e.az[i];
             const double inverse = 1 / sqrt(dx * dx + dy * dy + dz * dz + DBL_MIN);
-            const double ratio = run->length * inverse;
-            const double alpha = stiffness * (1 - ratio);
-            s[i] = gamma + (psd && alpha < 0 ? 0 : alpha);
+            const double ratio = length * inverse;
             /* a compressed spring's axial stiffness is k: beta alone would exceed it */
-            const double beta = stiffness * (psd && alpha < 0 ? 1 : ratio);
-            const double w = sqrt(beta + eta) * inverse;
+            const bool clamped = psd && ratio > 1;
+            s[i] = gamma + (clamped ? 0 : stiffness * (1 - ratio));
+            const double w = sqrt(stiffness * (clamped ? 1 : ratio) + eta) * inverse;
             wx[i] = w * dx;
             wy[i] = w * dy;
             wz[i] = w * dz;
@@ -83,35 +83,26 @@ void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const doubl
     }
 }
 
-void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
-                        const double *p, double *y) {
-    enum { PIECE = 256 };
+CS_CLONES void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n,
+                                  const double *factors, const double *p, double *y) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
         for (uint32_t start = 0; start < run->count; start += PIECE) {
             const uint32_t left = run->count - start, count = left < PIECE ? left : PIECE;
-            const double *restrict s = factors + 4 * (size_t)run->first + start;
-            const double *restrict wx = s + run->count, *restrict wy = wx + run->count;
-            const double *restrict wz = wy + run->count;
-            const double *a = p + run->a + start, *b = p + run->b + start;
-            for (uint32_t i = 0; i < count; i++) {
-                const double dx = a[i] - b[i], dy = a[n + i] - b[n + i];
-                const double dz = a[2 * (size_t)n + i] - b[2 * (size_t)n + i];
+            const double *s = factors + 4 * (size_t)run->first + start;
+            const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
+            const struct ends e = ends_of(p, n, run->a + start, run->b + start);
+            for (size_t i = 0; i < count; i++) {
+                const double dx = e.ax[i] - e.bx[i], dy = e.ay[i] - e.by[i];
+                const double dz = e.az[i] - e.bz[i];
                 /* w.(p_a - p_b), left to right: the sum order is part of the state hash */
                 const double along = wx[i] * dx + wy[i] * dy + wz[i] * dz;
                 fx[i] = s[i] * dx + along * wx[i];
                 fy[i] = s[i] * dy + along * wy[i];
                 fz[i] = s[i] * dz + along * wz[i];
             }
-            double *to_a = y + run->a + start, *to_b = y + run->b + start;
-            const double *rows[3] = {fx, fy, fz};
-            for (uint32_t c = 0; c < 3; c++, to_a += n, to_b += n) {
-                for (uint32_t i = 0; i < count; i++)
-                    to_a[i] += rows[c][i];
-                for (uint32_t i = 0; i < count; i++)
-                    to_b[i] -= rows[c][i];
-            }
+            scatter(count, fx, fy, fz, n, run->a + start, run->b + start, y);
         }
     }
 }

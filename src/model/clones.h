@@ -1,0 +1,18 @@
+/* clones.h - hot kernels compiled for several instruction sets, chosen when the program starts.
+ *
+ * The bits are the same in each: contraction is off, and vectors only do several independent
+ * elements at once. Clang 14 refuses the attribute on some of these functions. */
+#ifndef CS_CLONES_H
+#define CS_CLONES_H
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                         \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CS_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define CS_CLONES
+#endif
+
+/* inlined into each clone */
+#define CS_INLINE static inline __attribute__((always_inline))
+
+#endif
