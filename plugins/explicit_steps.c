@@ -8,6 +8,9 @@
  *                     a' = a(x', v + h a): one evaluation a step, a' is kept for the next
  *   position-verlet   x' = (2 - l) x - (1 - l) x_old + h^2 a(x, (x - x_old)/h)
  *                     (flag thesis, with its loss l), v' = (x' - x)/h + h/2 a
+ *   rk4               y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), y = (x, v), k1 = F(t, y),
+ *                     k2 = F(t + h/2, y + h/2 k1), k3 = F(t + h/2, y + h/2 k2),
+ *                     k4 = F(t + h, y + h k3)   (Kutta 1901)
  */
 #include "explicit_steps.h"
 
@@ -109,6 +112,37 @@ enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, d
         v[i] = u[i] + h / 2 * a[i];
     }
     self->h = h;
+    return CS_STEP_OK;
+}
+
+enum cs_step step_rk4(struct fixed_step *loop, double t, double h, double *x, double *v) {
+    static const double weight[] = {1, 2, 2, 1}, reach[] = {0.5, 0.5, 1, 0};
+    struct explicit_method *self = method_of(loop);
+    const size_t length = length_of(self);
+    const double *a = self->a;
+    double *stage_x = self->kept, *stage_v = stage_x + length;
+    double *sum_x = stage_v + length, *sum_v = sum_x + length;
+    for (size_t i = 0; i < length; i++) {
+        stage_x[i] = x[i];
+        stage_v[i] = v[i];
+        sum_x[i] = sum_v[i] = 0;
+    }
+    double stage_t = t;
+    for (int k = 0; k < 4; k++) {
+        evaluate(self, stage_t, stage_x, stage_v);
+        const double forth = reach[k] * h;
+        for (size_t i = 0; i < length; i++) {
+            sum_x[i] += weight[k] * stage_v[i];
+            sum_v[i] += weight[k] * a[i];
+            stage_x[i] = x[i] + forth * stage_v[i];
+            stage_v[i] = v[i] + forth * a[i];
+        }
+        stage_t = t + forth;
+    }
+    for (size_t i = 0; i < length; i++) {
+        x[i] += h / 6 * sum_x[i];
+        v[i] += h / 6 * sum_v[i];
+    }
     return CS_STEP_OK;
 }
 

@@ -7,7 +7,8 @@
 struct explicit_method {
     struct fixed_step loop; /* first: the loop's functions take it for the whole */
     double *a;              /* (3,n) in m/s2, of the last evaluation */
-    double *kept; /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet */
+    double *kept; /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet;
+                   * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
     double h;     /* s, of the last step of position-verlet; 0: none since the restart */
     double loss;
 };
@@ -23,6 +24,7 @@ enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, d
                                   double *v);
 enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v);
+enum cs_step step_rk4(struct fixed_step *loop, double t, double h, double *x, double *v);
 
 /* Forgets the last step too. */
 enum cs_step restart_position_verlet(void *object, double t, const double *x, const double *v);

@@ -39,6 +39,9 @@ struct cs_view {
     const uint32_t *ends;    /* (n_springs, 2) */
     const double *length;    /* (n_springs) rest lengths in m */
     const double *stiffness; /* (n_springs) in N/m */
+    const double *damping;   /* (n_springs) in N s/m, of the damper beside the spring */
+    const uint32_t *kind;    /* (n_springs) CS_PART_STRETCH, CS_PART_SHEAR or CS_PART_BEND */
+    const uint8_t *axial;    /* (n_springs) 1: damped along the spring only; 0: in every way */
 };
 
 #ifdef __cplusplus

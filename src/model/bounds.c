@@ -21,7 +21,8 @@ void cs_bounds_set(struct cs_system *system, double *work) {
     const struct cs_forces *forces = &system->scene->forces;
     for (uint32_t i = 0; i < n; i++) {
         const double drag =
-            forces->drag * (forces->drag_unit == CS_DRAG_AREA ? system->area[i] : 1);
+            forces->drag *
+            (system->area && forces->drag_unit == CS_DRAG_AREA ? system->area[i] : 1);
         squared = fmax(squared, 2 * stiffness[i] * system->inv_mass[i]);
         delta = fmax(delta, (damping[i] + 0.5 * drag) * system->inv_mass[i]);
     }

@@ -72,8 +72,8 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_STRAIN_LIMIT, s > 0 && any_body(scene, has_limit), 0,
            "a body has strain_limit", "no strain_limit");
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
-           s * (2 * sizeof(uint32_t) + 2 * real), "the integrator asks for it",
-           "the integrator does not ask for it");
+           s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),
+           "the integrator asks for it", "the integrator does not ask for it");
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 24 * n) * real,
            "the integrator asks for it", "the integrator does not ask for it");
     decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");

@@ -22,9 +22,11 @@ struct cs_place {
 
 struct cs_cloth {
     bool present;
-    int64_t grid[2]; /* particles: columns, rows */
-    double size[2];  /* m: along a row, from row to row */
-    int32_t start;   /* enum cs_start */
+    int64_t grid[2];   /* particles: columns, rows */
+    double size[2];    /* m: along a row, from row to row */
+    int32_t start;     /* enum cs_start */
+    double stretch[2]; /* size at time 0 over the rest size, along a row and from row to row */
+    double bump;       /* m, height of the middle over the edges at time 0 */
     struct cs_place place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
 };

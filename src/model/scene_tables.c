@@ -79,6 +79,11 @@ static const struct cs_option cloth_rows[] = {
     CHOICE(struct cs_cloth, start, start_names, CS_START_HANGING,
            "hanging: in the xy plane, row 0 on top; flat: turned back into the xz plane, row 0 "
            "at -z"),
+    VECTOR(struct cs_cloth, stretch, 2, "", one2, 1e-3, 1e3,
+           "width and height at time 0 over those of size, which stays the rest size"),
+    REAL(struct cs_cloth, bump, "m", 0, -BIG, BIG,
+         "height at time 0 of a bump sin(pi a) sin(pi b) along the normal, a and b from 0 to 1 "
+         "over the cloth"),
     TABLE(struct cs_cloth, place, place_table, "rigid placement, about the cloth's centre"),
     VECTOR(struct cs_cloth, velocity, 3, "m/s", zero3, -BIG, BIG,
            "of every particle that is not pinned, at time 0"),

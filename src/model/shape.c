@@ -18,10 +18,19 @@ static void rotation_of(const struct cs_place *place, double r[9]) {
     memcpy(r, turned, sizeof turned);
 }
 
-/* from -size/2 to size/2 in equal steps, 0 for a single particle (cloth thesis, eq. 4.1) */
-static double along(double size, uint32_t i, uint32_t count) {
-    const double share = count > 1 ? (double)i / (count - 1) : 0.5;
-    return (share - 0.5) * size;
+/* place of particle i between the edges, 0 to 1; 0.5 for a single one */
+static double share_of(uint32_t i, uint32_t count) {
+    return count > 1 ? (double)i / (count - 1) : 0.5;
+}
+
+/* sin(pi a) for a in 0..1, by the nested series of sin up to its 21st power; no libm, whose
+ * bits differ between machines. Good to 1e-15, 0 at both ends. */
+static double arch(double a) {
+    const double y = 3.14159265358979323846 * (a > 0.5 ? 1 - a : a);
+    double series = 1;
+    for (int k = 20; k > 0; k -= 2)
+        series = 1 - series * (y * y) / (k * (k + 1));
+    return y * series;
 }
 
 void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
@@ -31,10 +40,13 @@ void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, doub
     rotation_of(&cloth->place, r);
     for (uint32_t i = 0; i < rows; i++)
         for (uint32_t j = 0; j < columns; j++) {
-            const double across = along(cloth->size[0], j, columns);
-            const double up = -along(cloth->size[1], i, rows);
+            const double a = share_of(j, columns), b = share_of(i, rows);
+            // from -size/2 to size/2 in equal steps (cloth thesis, eq. 4.1)
+            const double across = (a - 0.5) * (cloth->size[0] * cloth->stretch[0]);
+            const double up = -((b - 0.5) * (cloth->size[1] * cloth->stretch[1]));
+            const double out = cloth->bump * arch(a) * arch(b);
             const bool flat = cloth->start == CS_START_FLAT;
-            const double p[3] = {across, flat ? 0 : up, flat ? -up : 0};
+            const double p[3] = {across, flat ? out : up, flat ? -up : out};
             const size_t at = first + (size_t)i * columns + j;
             for (size_t c = 0; c < 3; c++)
                 x[c * n + at] = r[3 * c] * p[0] + r[3 * c + 1] * p[1] + r[3 * c + 2] * p[2] +

@@ -31,7 +31,7 @@ struct cs_springs {
 };
 
 /* Runs of one grid cloth whose particles start at `first`, appended at runs[0..]; runs may be
- * NULL to count. Kinds of stiffness 0 have no springs unless they damp. Returns the number of
+ * NULL to count. Kinds of stiffness 0 have no springs. Returns the number of
  * runs and adds the springs to *n_springs. */
 uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, uint32_t *n_springs);

@@ -37,6 +37,9 @@ static void build_spring_list(struct cs_system *system, struct cs_error *error) 
     const uint32_t n = system->springs.n;
     uint32_t *ends = cs_arena_take_n(&system->arena, 2 * (size_t)n, sizeof *ends, error);
     double *length = take(system, n, error), *stiffness = take(system, n, error);
+    double *damping = take(system, n, error);
+    uint32_t *kind = cs_arena_take_n(&system->arena, n, sizeof *kind, error);
+    uint8_t *axial = cs_arena_take_n(&system->arena, n, sizeof *axial, error);
     if (error->status)
         return;
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
@@ -47,12 +50,18 @@ static void build_spring_list(struct cs_system *system, struct cs_error *error) 
             ends[2 * s + 1] = run->b + i;
             length[s] = run->length;
             stiffness[s] = run->stiffness;
+            damping[s] = run->damping;
+            kind[s] = CS_PART_STRETCH << run->kind;
+            axial[s] = run->axial;
         }
     }
     system->view.n_springs = n;
     system->view.ends = ends;
     system->view.length = length;
     system->view.stiffness = stiffness;
+    system->view.damping = damping;
+    system->view.kind = kind;
+    system->view.axial = axial;
 }
 
 static void count_degrees(const struct cs_system *system, double *degree) {

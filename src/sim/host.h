@@ -6,6 +6,14 @@
 #include "sim/guard.h"
 #include "sim/run.h"
 
+/* Processor time that the run may use, looked at every few steps. */
+struct cs_budget {
+    double end;       /* cs_clock_cpu; 0: none */
+    double last;      /* cs_clock_wall of the last look */
+    uint32_t steps;   /* since then */
+    uint32_t between; /* steps from one look to the next */
+};
+
 struct cs_run_host {
     struct cs_host calls;    /* what the method sees */
     struct cs_run *run;      /* borrowed: counts, outcome, notes */
@@ -15,6 +23,7 @@ struct cs_run_host {
     bool creating;  /* the method may take memory */
     bool timed;
     const volatile sig_atomic_t *stop;
+    struct cs_budget budget;
     void *self;                                  /* the method's own */
     struct cs_error error;                       /* the method's first message */
     double bound_start, bound_speed, bound_push; /* of the kinetic energy, see blow_up_bound */

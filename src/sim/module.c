@@ -102,9 +102,13 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
     *module = NULL;
     const struct cs_guard guard = cs_guard_take();
     void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-    cs_guard_restore(guard);
+    const bool changed = cs_guard_restore(guard);
     if (!handle)
         return cs_fail(error, CS_ERR_MODULE, "cannot be loaded: %s", dlerror());
+    if (changed)
+        return cs_fail(error, CS_ERR_MODULE,
+                       "changes the floating-point mode when it is loaded (was it linked with "
+                       "-ffast-math?)");
     const struct cs_module *found = dlsym(handle, "clothsim_module");
     if (!found)
         return cs_fail(error, CS_ERR_MODULE, "has no symbol clothsim_module");

@@ -1,6 +1,7 @@
 #include "sim/run.h"
 
 #include "base/clock.h"
+#include "sim/crash.h"
 #include "sim/host.h"
 
 #include <stdlib.h>
@@ -38,7 +39,9 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
     struct cs_run_host *host = run->host;
     struct cs_guard guard = cs_guard_take();
     host->creating = true;
+    cs_crash_watch(run->integrator->name);
     enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
+    cs_crash_forget();
     host->creating = false;
     if (judge(run, step, guard, error))
         return error->status;
@@ -62,6 +65,11 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
     if (cs_run_host_init(run->host, run, error) || start(run, options, error))
         cs_run_finish(run);
     return error->status;
+}
+
+void cs_run_set_budget(struct cs_run *run, double cpu_seconds) {
+    run->host->budget = (struct cs_budget){
+        .end = cs_clock_cpu() + cpu_seconds, .last = cs_clock_wall(), .between = 1};
 }
 
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {

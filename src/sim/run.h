@@ -13,7 +13,8 @@
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
     X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                        \
-    X(CS_INTERRUPTED, "interrupted")
+    X(CS_INTERRUPTED, "interrupted")                                                           \
+    X(CS_OVER_BUDGET, "over budget")
 enum cs_outcome {
 #define X(name, text) name,
     CS_OUTCOME_LIST(X)
@@ -78,7 +79,11 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             bool timed, const volatile sig_atomic_t *stop,
                             struct cs_error *error);
 
-/* Steps to the next frame, t = (frame + 1) / fps. A blow-up or an interrupt sets run->outcome
+/* Ends the run as CS_OVER_BUDGET once the process has used that much more processor time; the
+ * clock is read between steps and never reaches the state. */
+void cs_run_set_budget(struct cs_run *run, double cpu_seconds);
+
+/* Steps to the next frame, t = (frame + 1) / fps. A blow-up, an interrupt or an end of the budget sets run->outcome
  * and returns CS_OK with run->frame as it was. CS_ERR_MODULE: the method failed; the message
  * says where and why. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);

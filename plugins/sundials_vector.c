@@ -1,10 +1,10 @@
-/* cvode_vector.c - the operations that CVODE asks of a vector; see cvode_vector.h. */
-#include "cvode_vector.h"
+/* sundials_vector.c - the operations that SUNDIALS asks of a vector; see sundials_vector.h. */
+#include "sundials_vector.h"
 
 #include <math.h>
 
-static struct cvode_vectors *pool_of(N_Vector vector) {
-    return ((struct cvode_slot *)vector->content)->pool;
+static struct sundials_vectors *pool_of(N_Vector vector) {
+    return ((struct sundials_slot *)vector->content)->pool;
 }
 
 static size_t length_of(N_Vector vector) {
@@ -21,82 +21,104 @@ static sunindextype get_length(N_Vector vector) {
 }
 
 static N_Vector clone(N_Vector vector) {
-    return cvode_vectors_take(pool_of(vector));
+    return sundials_vectors_take(pool_of(vector));
 }
 
 static void give_back(N_Vector vector) {
-    ((struct cvode_slot *)vector->content)->taken = false;
+    ((struct sundials_slot *)vector->content)->taken = false;
 }
 
 static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z) {
-    pool_of(z)->host->vector->linear_sum(length_of(z), a, cvode_data(x), b, cvode_data(y),
-                                         cvode_data(z));
+    pool_of(z)->host->vector->linear_sum(length_of(z), a, sundials_data(x), b, sundials_data(y),
+                                         sundials_data(z));
 }
 
 static void set_constant(sunrealtype c, N_Vector z) {
-    double *out = cvode_data(z);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = c;
 }
 
 static void multiply(N_Vector x, N_Vector y, N_Vector z) {
-    const double *a = cvode_data(x), *b = cvode_data(y);
-    double *out = cvode_data(z);
+    const double *a = sundials_data(x), *b = sundials_data(y);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = a[i] * b[i];
 }
 
 static void divide(N_Vector x, N_Vector y, N_Vector z) {
-    const double *a = cvode_data(x), *b = cvode_data(y);
-    double *out = cvode_data(z);
+    const double *a = sundials_data(x), *b = sundials_data(y);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = a[i] / b[i];
 }
 
 static void scale(sunrealtype c, N_Vector x, N_Vector z) {
-    const double *a = cvode_data(x);
-    double *out = cvode_data(z);
+    const double *a = sundials_data(x);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = c * a[i];
+    if (c == 1 && x != z) {
+        pool_of(z)->copied_from = x;
+        pool_of(z)->copied_to = z;
+    }
 }
 
 static void absolute(N_Vector x, N_Vector z) {
-    const double *a = cvode_data(x);
-    double *out = cvode_data(z);
+    const double *a = sundials_data(x);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = fabs(a[i]);
 }
 
 static void invert(N_Vector x, N_Vector z) {
-    const double *a = cvode_data(x);
-    double *out = cvode_data(z);
+    const double *a = sundials_data(x);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = 1 / a[i];
 }
 
 static void add_constant(N_Vector x, sunrealtype b, N_Vector z) {
-    const double *a = cvode_data(x);
-    double *out = cvode_data(z);
+    const double *a = sundials_data(x);
+    double *out = sundials_data(z);
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = a[i] + b;
 }
 
+/* z = sum of c_k x_k, in their order; x_0 may be z. In blocks that stay in the cache. */
+static int combine(int n, sunrealtype *c, N_Vector *x, N_Vector z) {
+    enum { BLOCK = 512 };
+    const struct cs_vector_kernels *vector = pool_of(z)->host->vector;
+    const size_t length = length_of(z);
+    for (size_t start = 0; start < length; start += BLOCK) {
+        const size_t count = length - start < BLOCK ? length - start : BLOCK;
+        const double *first = sundials_data(x[0]) + start;
+        double *out = sundials_data(z) + start;
+        for (size_t i = 0; i < count; i++)
+            out[i] = c[0] * first[i];
+        for (int k = 1; k < n; k++)
+            vector->linear_sum(count, c[k], sundials_data(x[k]) + start, 1, out, out);
+    }
+    return 0;
+}
+
 static sunrealtype dot(N_Vector x, N_Vector y) {
-    return pool_of(x)->host->vector->dot(length_of(x), cvode_data(x), cvode_data(y));
+    return pool_of(x)->host->vector->dot(length_of(x), sundials_data(x), sundials_data(y));
 }
 
 static sunrealtype max_norm(N_Vector x) {
-    return pool_of(x)->host->vector->max_norm(length_of(x), cvode_data(x));
+    return pool_of(x)->host->vector->max_norm(length_of(x), sundials_data(x));
 }
 
 static sunrealtype weighted_norm(N_Vector x, N_Vector w) {
     const size_t n = length_of(x);
-    return sqrt(pool_of(x)->host->vector->weighted_square(n, cvode_data(x), cvode_data(w)) /
-                (double)n);
+    return sqrt(
+        pool_of(x)->host->vector->weighted_square(n, sundials_data(x), sundials_data(w)) /
+        (double)n);
 }
 
 static sunrealtype smallest(N_Vector x) {
-    const double *a = cvode_data(x);
+    const double *a = sundials_data(x);
     double least = a[0];
     for (size_t i = 1, n = length_of(x); i < n; i++)
         if (a[i] < least)
@@ -122,14 +144,17 @@ static const struct _generic_N_Vector_Ops operations = {
     .nvmaxnorm = max_norm,
     .nvwrmsnorm = weighted_norm,
     .nvmin = smallest,
+    .nvlinearcombination = combine,
 };
 
-enum cs_step cvode_vectors_init(struct cvode_vectors *pool, const struct cs_host *host,
-                                SUNContext context) {
+enum cs_step sundials_vectors_init(struct sundials_vectors *pool, const struct cs_host *host,
+                                   int n, SUNContext context) {
     pool->host = host;
     pool->ops = operations;
-    for (int i = 0; i < CVODE_VECTORS; i++) {
-        struct cvode_slot *slot = pool->slots + i;
+    if (!(pool->slots = host->alloc(host->ctx, (size_t)n * sizeof *pool->slots)))
+        return CS_STEP_FAIL;
+    for (; pool->n < n; pool->n++) {
+        struct sundials_slot *slot = pool->slots + pool->n;
         slot->pool = pool;
         slot->vector.content = slot;
         slot->vector.ops = &pool->ops;
@@ -141,8 +166,8 @@ enum cs_step cvode_vectors_init(struct cvode_vectors *pool, const struct cs_host
     return CS_STEP_OK;
 }
 
-N_Vector cvode_vectors_take(struct cvode_vectors *pool) {
-    for (int i = 0; i < CVODE_VECTORS; i++)
+N_Vector sundials_vectors_take(struct sundials_vectors *pool) {
+    for (int i = 0; i < pool->n; i++)
         if (!pool->slots[i].taken) {
             pool->slots[i].taken = true;
             return &pool->slots[i].vector;

@@ -1,0 +1,243 @@
+/* arkode.c - Runge-Kutta methods of SUNDIALS ARKODE, with error control or a fixed step.
+ *
+ *   ark-erk   explicit
+ *   ark-dirk  diagonally implicit: one Newton iteration a stage
+ *   ark-imex  additive pairs: x' = v and the forces of springs and dampers by the implicit
+ *             table, the other forces by the explicit one
+ * One-step methods lose nothing but a slope where the state was moved.
+ */
+#include "arkode_calls.h"
+#include "arkode_tables.h"
+#include "fixed_step.h"
+#include "sundials_common.h"
+
+#define IMPLICIT_PARTS (CS_PART_SPRINGS | CS_PART_DAMPING)
+
+/* Of state, error weights, work, interpolation and Newton, and some to spare. */
+enum { WORK_VECTORS = 20 };
+
+/* A rejected step may follow a jump of the forces: the library's 7 are few. */
+enum { ERROR_FAILURES_MAX = 20 };
+
+/* The library's 3 throw steps away at a loose tolerance, and end runs of fixed step. */
+enum { NEWTON_MAX = 20 };
+
+struct ark_options {
+    double rtol, atol, dt;
+    int64_t order, max_steps;
+    double linear_rtol;
+};
+
+#define COMMON_ROWS(order_, least, most)                                                       \
+    CS_OPTION(struct ark_options, rtol, "", 1e-4, 1e-14, 0.1,                                  \
+              "local error of a step, relative to the value"),                                 \
+        CS_OPTION(struct ark_options, atol, "", 0, 0, 1,                                       \
+                  "absolute local error in m and m/s; 0: rtol of 1 m and 1 m/s"),              \
+        CS_OPTION(struct ark_options, dt, "s", 0, 0, 10,                                       \
+                  "longest step of equal steps without error control; 0: with it"),            \
+        CS_OPTION(struct ark_options, order, "", order_, least, most,                          \
+                  "order, which selects the table"),                                           \
+        CS_OPTION(struct ark_options, max_steps, "", 1000000, 1, 1e9,                          \
+                  "most steps in a frame before the run is given up")
+#define LINEAR_ROW                                                                             \
+    CS_OPTION(struct ark_options, linear_rtol, "", 1e-4, 1e-14, 0.5,                           \
+              "relative residual of the linear solves")
+
+static const struct cs_option erk_rows[] = {COMMON_ROWS(5, 2, 8)};
+static const struct cs_option dirk_rows[] = {COMMON_ROWS(4, 2, 5), LINEAR_ROW};
+static const struct cs_option imex_rows[] = {COMMON_ROWS(4, 3, 5), LINEAR_ROW};
+
+struct ark {
+    struct sundials base; /* first: its functions take it for the whole */
+    struct ark_options asked;
+    struct fixed_step steps; /* only to cut frames into steps of dt */
+};
+
+static int implicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
+    return sundials_slope(object, t, y, IMPLICIT_PARTS, true, slope);
+}
+
+static int explicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
+    return sundials_slope(object, t, y, CS_PART_ALL & ~(uint32_t)IMPLICIT_PARTS, false, slope);
+}
+
+static int newton_system(void *memory, double *t, N_Vector *y, double *g) {
+    N_Vector unused;
+    void *object;
+    return ARK(GetNonlinearSystemData)(memory, t, &unused, y, &unused, g, &unused, &object);
+}
+
+static void stats(const void *object, struct cs_stats *out) {
+    void *memory = ((const struct ark *)object)->base.memory;
+    long error_failures = 0, solve_failures = 0, newton = 0, setups = 0;
+    if (memory) {
+        ARK(GetNumErrTestFails)(memory, &error_failures);
+        ARK(GetNumStepSolveFails)(memory, &solve_failures);
+        ARK(GetNumNonlinSolvIters)(memory, &newton);
+        ARK(GetNumLinSolvSetups)(memory, &setups);
+    }
+    out->rejected = (uint64_t)(error_failures + solve_failures);
+    out->newton = (uint64_t)newton;
+    out->setups = (uint64_t)setups;
+}
+
+/* A reset keeps counts and step; a state from outside has its first step chosen anew. */
+static int moved(struct sundials *base, double t, double dt) {
+    const struct ark *self = (const struct ark *)base;
+    int code = ARK(Reset)(base->memory, t, base->state);
+    if (code == ARK_SUCCESS && dt <= 0 && self->asked.dt <= 0)
+        code = ARK(SetInitStep)(base->memory, 0);
+    return code;
+}
+
+static const struct sundials_library library = {
+    .name = "ARKODE",
+    .code_name = ARK(GetReturnFlagName),
+    .set_stop = ARK(SetStopTime),
+    .evolve = ARK(Evolve),
+    .one_step = ARK_ONE_STEP,
+    .system = newton_system,
+    .moved = moved,
+};
+
+static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
+    struct ark *self = object;
+    if (self->asked.dt > 0) {
+        double n;
+        if (fixed_step_count(&self->steps, t1 - t0, &n) != CS_STEP_OK)
+            return CS_STEP_FAIL;
+        const int code = ARK(SetFixedStep)(self->base.memory, (t1 - t0) / n);
+        if (code != ARK_SUCCESS)
+            return sundials_fail(&self->base, code, t0);
+    }
+    return sundials_advance(object, t0, t1, x, v);
+}
+
+/* ARKODE over the vectors that were taken; the first code that is not ARK_SUCCESS. */
+static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implicit_part,
+                       const struct ark_table *table) {
+    struct sundials *base = &self->base;
+    const struct ark_options *asked = &self->asked;
+    base->memory = ARKStepCreate(explicit_part, implicit_part, 0, base->state, base->context);
+    if (!base->memory)
+        return ARK_MEM_FAIL;
+    int code = ARK_SUCCESS;
+#if SUNDIALS_VERSION_MAJOR < 7
+    code = ARKStepSetErrHandlerFn(base->memory, sundials_keep_message, base);
+#endif
+    if (code == ARK_SUCCESS)
+        code = ARK(SetUserData)(base->memory, base);
+    if (code == ARK_SUCCESS)
+        code = ARK(SStolerances)(base->memory, asked->rtol,
+                                 asked->atol > 0 ? asked->atol : asked->rtol);
+    if (code == ARK_SUCCESS)
+        code = ARK(SetMaxErrTestFails)(base->memory, ERROR_FAILURES_MAX);
+    // steps end at the frame: the default interpolant would cost an evaluation a step
+    if (code == ARK_SUCCESS)
+        code = ARK(SetInterpolantType)(base->memory, ARK_INTERP_LAGRANGE);
+    if (code == ARK_SUCCESS)
+        code = ARK(SetInterpolantDegree)(base->memory, 1);
+    if (code == ARK_SUCCESS && implicit_part)
+        code = ARK(SetLinearSolver)(base->memory, &base->solver, NULL);
+    if (code == ARK_SUCCESS && implicit_part)
+        code = ARK(SetMaxNonlinIters)(base->memory, NEWTON_MAX);
+    if (code == ARK_SUCCESS)
+        code = ARKStepSetTableName(base->memory, table->implicit, table->explicit);
+    return code;
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options,
+                           ARKRhsFn explicit_part, ARKRhsFn implicit_part,
+                           const struct ark_table *tables, void **out) {
+    struct ark *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->asked = *(const struct ark_options *)options;
+    self->steps = (struct fixed_step){.host = host, .dt = self->asked.dt};
+    self->base.max_steps = self->asked.max_steps;
+    const struct ark_table *table = tables + self->asked.order;
+    if (!table->stages)
+        return host->fail(host->ctx, "SUNDIALS %s has no table of order %d: take another order",
+                          SUNDIALS_VERSION, (int)self->asked.order);
+    const int slopes =
+        (explicit_part ? table->stages : 0) + (implicit_part ? table->stages : 0);
+    if (sundials_open(&self->base, host, &library, slopes + WORK_VECTORS,
+                      implicit_part ? self->asked.linear_rtol : 0) != CS_STEP_OK)
+        return CS_STEP_FAIL;
+    const int code = open_memory(self, explicit_part, implicit_part, table);
+    return code == ARK_SUCCESS ? CS_STEP_OK : sundials_fail(&self->base, code, 0);
+}
+
+static enum cs_step create_erk(const struct cs_host *host, const void *options, void **out) {
+    return create(host, options, sundials_whole_slope, NULL, ark_erk_tables, out);
+}
+
+static enum cs_step create_dirk(const struct cs_host *host, const void *options, void **out) {
+    return create(host, options, NULL, sundials_whole_slope, ark_dirk_tables, out);
+}
+
+static enum cs_step create_imex(const struct cs_host *host, const void *options, void **out) {
+    return create(host, options, explicit_slope, implicit_slope, ark_imex_tables, out);
+}
+
+static void destroy(void *object) {
+    struct ark *self = object;
+    if (!self)
+        return;
+    if (self->base.memory)
+        ARK(Free)(&self->base.memory);
+    sundials_close(&self->base);
+}
+
+#define ARKODE(rows_)                                                                          \
+    .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
+    .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct ark_options),   \
+    .restart = sundials_restart, .advance = advance, .stats = stats, .destroy = destroy
+
+static const struct cs_integrator ark_erk = {
+    ARKODE(erk_rows),
+    .name = "ark-erk",
+    .summary = "explicit Runge-Kutta of orders 2 to 8 with error control, by SUNDIALS ARKODE",
+    .source = "Cash, Karp 1990 (order 5); Fehlberg 1968 (order 8); Reynolds et al. 2023",
+    .order = 5,
+    .order_damped = 5,
+    .traits = CS_ADAPTIVE | CS_LIBRARY_BITS,
+    .create = create_erk,
+};
+
+static const struct cs_integrator ark_dirk = {
+    ARKODE(dirk_rows),
+    .name = "ark-dirk",
+    .summary =
+        "diagonally implicit Runge-Kutta of orders 2 to 5 with error control, by SUNDIALS "
+        "ARKODE",
+    .source = "Kennedy, Carpenter 2016, 2019; Reynolds et al. 2023",
+    .order = 4,
+    .order_damped = 4,
+    .needs = CS_NEED_JVP | CS_NEED_SOLVE,
+    .traits = CS_IMPLICIT | CS_ADAPTIVE | CS_LIBRARY_BITS,
+    .create = create_dirk,
+};
+
+static const struct cs_integrator ark_imex = {
+    ARKODE(imex_rows),
+    .name = "ark-imex",
+    .summary = "additive Runge-Kutta of orders 3 to 5, springs and dampers implicit, the rest "
+               "explicit, by SUNDIALS ARKODE",
+    .source = "Kennedy, Carpenter 2003, 2019; Reynolds et al. 2023",
+    .order = 4,
+    .order_damped = 4,
+    .needs = CS_NEED_JVP | CS_NEED_SOLVE,
+    .traits = CS_IMPLICIT | CS_ADAPTIVE | CS_LIBRARY_BITS,
+    .create = create_imex,
+};
+
+static const struct cs_integrator *const integrators[] = {&ark_dirk, &ark_erk, &ark_imex};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

@@ -1,0 +1,121 @@
+#include "constant_matrix.h"
+
+#include <math.h>
+
+enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct cs_host *host) {
+    matrix->host = host;
+    matrix->drag = host->alloc(host->ctx, sizeof(double) * (size_t)host->view->n);
+    if (!matrix->drag)
+        return CS_STEP_FAIL;
+    if (!cholmod_start(&matrix->common))
+        return host->fail(host->ctx, "CHOLMOD does not start");
+    matrix->started = true;
+    matrix->common.print = 0;
+    matrix->common.supernodal = CHOLMOD_SIMPLICIAL;
+    // one ordering, not the best of those that this build of the library knows
+    matrix->common.nmethods = 1;
+    matrix->common.method[0].ordering = CHOLMOD_AMD;
+    return CS_STEP_OK;
+}
+
+void constant_matrix_read_drag(struct constant_matrix *matrix, double t, const double *x,
+                               double *ones, double *f) {
+    const struct cs_host *host = matrix->host;
+    const size_t n = host->view->n;
+    for (size_t i = 0; i < 3 * n; i++)
+        ones[i] = 1;
+    host->force(host->ctx, t, x, ones, CS_PART_DRAG, f);
+    for (size_t i = 0; i < n; i++)
+        matrix->drag[i] = -f[i];
+    matrix->h = 0;
+}
+
+static void add_entry(cholmod_triplet *list, size_t row, size_t column, double value) {
+    ((int *)list->i)[list->nnz] = (int)row;
+    ((int *)list->j)[list->nnz] = (int)column;
+    ((double *)list->x)[list->nnz++] = value;
+}
+
+/* the lower triangle; entries in one place are added up */
+static void list_entries(const struct constant_matrix *matrix, double h,
+                         cholmod_triplet *list) {
+    const struct cs_view *view = matrix->host->view;
+    for (size_t i = 0; i < view->n; i++)
+        add_entry(list, i, i, view->mass[i] + h * matrix->drag[i]);
+    for (size_t s = 0; s < view->n_springs; s++) {
+        const size_t a = view->ends[2 * s], b = view->ends[2 * s + 1];
+        const double weight = h * view->damping[s] + h * h * view->stiffness[s];
+        const bool free_a = view->inv_mass[a] > 0, free_b = view->inv_mass[b] > 0;
+        if (free_a)
+            add_entry(list, a, a, weight);
+        if (free_b)
+            add_entry(list, b, b, weight);
+        if (free_a && free_b)
+            add_entry(list, a > b ? a : b, a > b ? b : a, -weight);
+    }
+}
+
+static cholmod_sparse *assemble(struct constant_matrix *matrix, double h) {
+    const struct cs_view *view = matrix->host->view;
+    const size_t n = view->n, most = n + 3 * (size_t)view->n_springs;
+    cholmod_triplet *list =
+        cholmod_allocate_triplet(n, n, most, -1, CHOLMOD_REAL, &matrix->common);
+    if (!list)
+        return NULL;
+    list_entries(matrix, h, list);
+    cholmod_sparse *sparse = cholmod_triplet_to_sparse(list, most, &matrix->common);
+    cholmod_free_triplet(&list, &matrix->common);
+    return sparse;
+}
+
+enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double h) {
+    const struct cs_host *host = matrix->host;
+    // frames differ in length by rounding
+    if (fabs(h - matrix->h) <= 1e-9 * h)
+        return CS_STEP_OK;
+    matrix->h = 0;
+    cholmod_sparse *sparse = assemble(matrix, h);
+    if (sparse && !matrix->factor)
+        matrix->factor = cholmod_analyze(sparse, &matrix->common);
+    if (sparse && matrix->factor)
+        cholmod_factorize(sparse, matrix->factor, &matrix->common);
+    cholmod_free_sparse(&sparse, &matrix->common);
+    if (matrix->common.status != CHOLMOD_OK)
+        return host->fail(host->ctx,
+                          "CHOLMOD cannot factor the matrix for steps of %g s (status %d: %s)",
+                          h, matrix->common.status,
+                          matrix->common.status == CHOLMOD_OUT_OF_MEMORY
+                              ? "out of memory"
+                              : "numbers out of the range of doubles");
+    matrix->h = h;
+    return CS_STEP_OK;
+}
+
+enum cs_step constant_matrix_solve(struct constant_matrix *matrix, double *b,
+                                   const double **u) {
+    const struct cs_host *host = matrix->host;
+    const size_t n = host->view->n;
+    cholmod_dense right = {.nrow = n,
+                           .ncol = 4,
+                           .nzmax = 4 * n,
+                           .d = n,
+                           .x = b,
+                           .xtype = CHOLMOD_REAL,
+                           .dtype = CHOLMOD_DOUBLE};
+    if (!cholmod_solve2(CHOLMOD_A, matrix->factor, &right, NULL, &matrix->u, NULL, &matrix->y,
+                        &matrix->e, &matrix->common))
+        return host->fail(host->ctx, "CHOLMOD cannot solve (status %d)", matrix->common.status);
+    *u = matrix->u->x;
+    return CS_STEP_OK;
+}
+
+void constant_matrix_finish(struct constant_matrix *matrix) {
+    if (!matrix->started)
+        return;
+    cholmod_free_dense(&matrix->u, &matrix->common);
+    cholmod_free_dense(&matrix->y, &matrix->common);
+    cholmod_free_dense(&matrix->e, &matrix->common);
+    cholmod_free_factor(&matrix->factor, &matrix->common);
+    cholmod_finish(&matrix->common);
+    matrix->started = false;
+}

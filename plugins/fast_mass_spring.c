@@ -1,0 +1,192 @@
+/* fast_mass_spring.c - implicit Euler by local/global steps with a constant matrix.
+ *
+ * A spring's energy is the least over p with |p| = L of k/2 |x_b - x_a - p|^2. In turn,
+ * `iterations` times over, from the place y = x + h v + h^2 f/m that the outer forces alone
+ * lead to:
+ *   local    p = L n with n the direction of the spring
+ *   global   (M + h D + h^2 L) u = sum over springs of h^2 k (p - (y_b - y_a)) + dampers, x = y
+ * + u (Liu et al. 2013, for u instead of x, so that free flight leaves no rounding). Neither
+ * half can raise the incremental potential, and where both leave x as it is, x is the implicit
+ * Euler step. Then v = (x' - x)/h.
+ *
+ * Dampers and drag are implicit too. Relative dampers and drag are in the matrix. An axial
+ * damper is there as if it were relative, and its part across the spring is given back from the
+ * last x: h c (I - n n^T)((x_b - x_a) - (x_b - x_a)_old), which is the same kind of projection.
+ * Wind is that at the start of the step.
+ */
+#include "constant_matrix.h"
+#include "fixed_step.h"
+
+#include <float.h>
+#include <string.h>
+
+struct local_global_options {
+    double dt;
+    int64_t iterations;
+};
+
+static const struct cs_option rows[] = {
+    CS_OPTION(struct local_global_options, dt, "s", 0, 0, 10,
+              "longest step; 0: one step a frame"),
+    CS_OPTION(struct local_global_options, iterations, "", 10, 1, 1e6,
+              "local and global halves in a step"),
+};
+
+struct local_global {
+    struct fixed_step loop; /* first: the loop's functions take it for the whole */
+    int64_t iterations;
+    struct constant_matrix matrix;
+    double *f;       /* (3,n) in N: outer forces */
+    double *old;     /* (3,n) in m: where the step began */
+    double *y;       /* (3,n) in m */
+    double *b;       /* (4,n) in kg m: right-hand side; the last row is 0 */
+    uint64_t passes; /* local and global halves */
+};
+
+static void difference(size_t n, const uint32_t ends[2], const double *x, double d[3]) {
+    for (size_t c = 0; c < 3; c++)
+        d[c] = x[c * n + ends[1]] - x[c * n + ends[0]];
+}
+
+/* What spring s pulls its second end by, in kg m: h^2 k (L n - e_y), and of its damper
+ * - h c (e_y - e_old), with h c (I - n n^T)(e - e_old) given back to an axial one. */
+static void pull_of(const struct local_global *self, size_t s, const double *x,
+                    double pull[3]) {
+    const struct cs_view *view = self->loop.host->view;
+    const size_t n = view->n;
+    const uint32_t *ends = view->ends + 2 * s;
+    const double h = self->matrix.h, hc = h * view->damping[s];
+    const double h2k = h * h * view->stiffness[s];
+    double e[3], e_y[3], e_old[3], squared = DBL_MIN, along = 0;
+    difference(n, ends, x, e);
+    difference(n, ends, self->y, e_y);
+    difference(n, ends, self->old, e_old);
+    for (int c = 0; c < 3; c++)
+        squared += e[c] * e[c];
+    // two particles in one place have no direction: n is 0
+    const double inverse = 1 / sqrt(squared);
+    for (int c = 0; c < 3; c++)
+        along += e[c] * inverse * (e[c] - e_old[c]);
+    for (int c = 0; c < 3; c++) {
+        const double unit = e[c] * inverse;
+        pull[c] = h2k * (view->length[s] * unit - e_y[c]) - hc * (e_y[c] - e_old[c]);
+        if (view->axial[s])
+            pull[c] += hc * (e[c] - e_old[c] - along * unit);
+    }
+}
+
+/* the local half: all of the right-hand side */
+static void fill_right(struct local_global *self, const double *x) {
+    const struct cs_view *view = self->loop.host->view;
+    const size_t n = view->n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++)
+            self->b[k] = -self->matrix.h * self->matrix.drag[i] * (self->y[k] - self->old[k]);
+    for (size_t s = 0; s < view->n_springs; s++) {
+        double pull[3];
+        pull_of(self, s, x, pull);
+        for (size_t c = 0; c < 3; c++) {
+            self->b[c * n + view->ends[2 * s]] -= pull[c];
+            self->b[c * n + view->ends[2 * s + 1]] += pull[c];
+        }
+    }
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            if (view->inv_mass[i] <= 0)
+                self->b[c * n + i] = 0;
+}
+
+static enum cs_step step(struct fixed_step *loop, double t, double step_length, double *x,
+                         double *v) {
+    struct local_global *self = (struct local_global *)loop;
+    const struct cs_host *host = loop->host;
+    const size_t n = host->view->n;
+    enum cs_step status = constant_matrix_prepare(&self->matrix, step_length);
+    if (status != CS_STEP_OK)
+        return status;
+    const double h = self->matrix.h;
+    host->force(host->ctx, t, x, v, CS_PART_GRAVITY | CS_PART_WIND, self->f);
+    memcpy(self->old, x, 3 * n * sizeof *x);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++) {
+            v[k] += h * self->f[k] * host->view->inv_mass[i];
+            self->y[k] = x[k] += h * v[k];
+        }
+
+    const double *u = self->b;
+    for (int64_t i = 0; i < self->iterations; i++) {
+        fill_right(self, x);
+        status = constant_matrix_solve(&self->matrix, self->b, &u);
+        if (status != CS_STEP_OK)
+            return status;
+        for (size_t k = 0; k < 3 * n; k++)
+            x[k] = self->y[k] + u[k];
+        self->passes++;
+    }
+    for (size_t k = 0; k < 3 * n; k++)
+        v[k] += u[k] / h;
+    return CS_STEP_OK;
+}
+
+static enum cs_step restart(void *object, double t, const double *x, const double *v) {
+    struct local_global *self = object;
+    constant_matrix_read_drag(&self->matrix, t, x, self->b, self->f);
+    return fixed_step_restart(object, t, x, v);
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const struct local_global_options *asked = options;
+    const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
+    struct local_global *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->loop = (struct fixed_step){.host = host,
+                                     .dt = asked->dt > 0 ? asked->dt : HUGE_VAL,
+                                     .chosen = asked->dt <= 0,
+                                     .step = step};
+    self->iterations = asked->iterations;
+    if (!(self->f = host->alloc(host->ctx, bytes)) ||
+        !(self->old = host->alloc(host->ctx, bytes)) ||
+        !(self->y = host->alloc(host->ctx, bytes)) ||
+        !(self->b = host->alloc(host->ctx, bytes / 3 * 4)))
+        return CS_STEP_FAIL;
+    return constant_matrix_init(&self->matrix, host);
+}
+
+static void stats(const void *object, struct cs_stats *out) {
+    out->newton = ((const struct local_global *)object)->passes;
+}
+
+static void destroy(void *object) {
+    constant_matrix_finish(&((struct local_global *)object)->matrix);
+}
+
+static const struct cs_integrator fast_mass_spring = {
+    .size = sizeof(struct cs_integrator),
+    .name = "fast-mass-spring",
+    .summary = "implicit Euler by local projections and one constant matrix, factored once",
+    .source = "Liu, Bargteil, O'Brien, Kavan 2013",
+    .order = 1,
+    .order_damped = 1,
+    .needs = CS_NEED_SPRINGS,
+    .traits = CS_IMPLICIT | CS_LIBRARY_BITS,
+    .fidelity = CS_FIDELITY_IMPLICIT_EULER,
+    .options = rows,
+    .n_options = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct local_global_options),
+    .create = create,
+    .restart = restart,
+    .advance = fixed_step_advance,
+    .stats = stats,
+    .destroy = destroy,
+};
+
+static const struct cs_integrator *const integrators[] = {&fast_mass_spring};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

@@ -1,0 +1,113 @@
+/* halving.c - see halving.h. */
+#include "halving.h"
+
+struct halving *halving_create(const struct cs_host *host, size_t bytes, double dt,
+                               halving_step *step) {
+    struct halving *self = host->alloc(host->ctx, bytes);
+    if (!self)
+        return NULL;
+    self->loop = (struct fixed_step){
+        .host = host, .dt = dt > 0 ? dt : HUGE_VAL, .chosen = dt <= 0, .fresh = true};
+    self->step = step;
+    return self;
+}
+
+struct newton_method *newton_method_create(const struct cs_host *host, size_t bytes, double dt,
+                                           double rtol, int64_t iterations,
+                                           halving_step *step) {
+    struct newton_method *self = (struct newton_method *)halving_create(host, bytes, dt, step);
+    if (!self || newton_init(&self->newton, host, rtol, iterations) != CS_STEP_OK)
+        return NULL;
+    self->base.newton = &self->newton;
+    return self;
+}
+
+enum cs_step halving_take(const struct cs_host *host, double **const arrays[], size_t n) {
+    for (size_t k = 0; k < n; k++)
+        if (!(*arrays[k] = host->alloc(host->ctx, 3 * sizeof(double) * host->view->n)))
+            return CS_STEP_FAIL;
+    return CS_STEP_OK;
+}
+
+static enum cs_step give_up(const struct halving *self, double t, double h) {
+    const struct cs_host *host = self->loop.host;
+    if (self->turned)
+        return host->fail(host->ctx,
+                          "a step of %.3g s at t = %.9g s, halved %d times, still turns a "
+                          "spring by more than half its length",
+                          h, t, HALVINGS_MAX);
+    return host->fail(host->ctx,
+                      "Newton's iteration fails in a step of %.3g s at t = %.9g s, halved %d "
+                      "times: the residual is %.3g of the impulse, asked %.3g",
+                      h, t, HALVINGS_MAX, self->newton->norm / self->newton->impulse,
+                      self->newton->rtol);
+}
+
+/* One step of length h from t, whole or in parts; it ends at `end`. */
+static enum cs_step cross(struct halving *self, double t, double h, double end, double *x,
+                          double *v) {
+    const struct cs_host *host = self->loop.host;
+    // the step is cut into 2^depth parts, of which `at` are done
+    uint32_t depth = 0, at = 0;
+    while (depth > 0 || at == 0) {
+        const double part = h / (double)(1u << depth), from = t + at * part;
+        bool accepted = false, changed = false;
+        enum cs_step status = self->step(self, from, part, x, v, &accepted);
+        if (status != CS_STEP_OK)
+            return status;
+        if (!accepted) {
+            self->rejected++;
+            if (depth == HALVINGS_MAX)
+                return give_up(self, from, part);
+            depth++, at *= 2;
+            continue;
+        }
+        at++;
+        self->before = part;
+        status = host->commit(host->ctx, at == 1u << depth ? end : t + at * part, part, x, v,
+                              &changed);
+        if (status != CS_STEP_OK)
+            return status;
+        self->loop.fresh = changed;
+        for (; depth > 0 && at % 2 == 0; at /= 2)
+            depth--;
+    }
+    return CS_STEP_OK;
+}
+
+enum cs_step halving_advance(void *object, double t0, double t1, double *x, double *v) {
+    struct halving *self = object;
+    double n;
+    enum cs_step status = fixed_step_count(&self->loop, t1 - t0, &n);
+    const double h = (t1 - t0) / n;
+    for (double i = 0; i < n && status == CS_STEP_OK; i++)
+        status = cross(self, t0 + i * h, h, i + 1 == n ? t1 : t0 + (i + 1) * h, x, v);
+    return status;
+}
+
+void halving_stats(const void *object, struct cs_stats *out) {
+    const struct halving *self = object;
+    out->rejected = self->rejected;
+    out->newton = self->newton ? self->newton->done : 0;
+}
+
+bool halving_is_fresh(const struct halving *self, double h) {
+    // frames of 1/60 s differ in their last bits
+    return self->loop.fresh || fabs(h - self->before) > 1e-9 * h;
+}
+
+bool springs_turned(const struct cs_view *view, const double *x0, const double *x1) {
+    const size_t n = view->n;
+    for (size_t s = 0; s < view->n_springs; s++) {
+        const size_t a = view->ends[2 * s], b = view->ends[2 * s + 1];
+        double squared = 0;
+        for (size_t c = 0; c < 3 * n; c += n) {
+            const double d = (x1[c + b] - x1[c + a]) - (x0[c + b] - x0[c + a]);
+            squared += d * d;
+        }
+        // not >, so that it is true of what is not a number
+        if (!(squared <= 0.25 * view->length[s] * view->length[s]))
+            return true;
+    }
+    return false;
+}

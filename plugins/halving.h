@@ -1,0 +1,64 @@
+/* halving.h - the loop over steps that may be refused: a refused step is halved.
+ *
+ * As fixed_step.h, the span of an advance is cut into equal steps of at most dt. A step that
+ * its method refuses (Newton does not converge, springs turn too far) is taken as two halves,
+ * each of which may be refused in turn, at most HALVINGS_MAX times; then the run fails. Two
+ * halves done, the next step is as long as both. Each part is committed by itself.
+ */
+#ifndef HALVING_H
+#define HALVING_H
+
+#include "fixed_step.h"
+#include "newton.h"
+
+#define HALVINGS_MAX 8
+
+/* A method's own struct starts with this. */
+struct halving {
+    struct fixed_step loop;      /* its step is not used */
+    const struct newton *newton; /* NULL: the method has none */
+    double before;               /* length of the last accepted step in s */
+    uint64_t rejected;
+    bool turned; /* the last step was refused by springs_turned */
+    /* From (x, v) at t to t + h, without the commit; where *accepted stays false, x and v are
+     * left as they were. */
+    enum cs_step (*step)(struct halving *self, double t, double h, double *x, double *v,
+                         bool *accepted);
+};
+
+/* Start of the struct of a method with a Newton iteration. */
+struct newton_method {
+    struct halving base;
+    struct newton newton;
+};
+
+typedef enum cs_step halving_step(struct halving *, double, double, double *, double *, bool *);
+
+/* Memory of a method: a struct of `bytes` that starts with struct halving, or with struct
+ * newton_method; NULL: already reported; [create]. */
+struct halving *halving_create(const struct cs_host *host, size_t bytes, double dt,
+                               halving_step *step);
+struct newton_method *newton_method_create(const struct cs_host *host, size_t bytes, double dt,
+                                           double rtol, int64_t iterations, halving_step *step);
+
+/* Takes `n` arrays (3,n) of doubles; [create]. */
+enum cs_step halving_take(const struct cs_host *host, double **const arrays[], size_t n);
+
+enum cs_step halving_advance(void *self, double t0, double t1, double *x, double *v);
+void halving_stats(const void *self, struct cs_stats *out);
+
+/* What the last step remembers cannot be used for one of length h. */
+bool halving_is_fresh(const struct halving *self, double h);
+
+/* A spring's ends have moved against each other by more than half its rest length from x0 to
+ * x1, or to what is not a number: beyond that a linearised step knows nothing of the true
+ * motion. Needs CS_NEED_SPRINGS. */
+bool springs_turned(const struct cs_view *view, const double *x0, const double *x1);
+
+/* The common part of the descriptors. */
+#define HALVING_METHOD(struct_, rows_)                                                         \
+    .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
+    .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
+    .restart = fixed_step_restart, .advance = halving_advance, .stats = halving_stats
+
+#endif

@@ -1,0 +1,177 @@
+/* newton.c - see newton.h. */
+#include "newton.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Each linear solve gains that much, until the last, which need not gain more than is asked. */
+#define LINEAR_RTOL 1e-3
+
+/* Below this residual, relative to the impulse, the exact matrix is taken. */
+#define NEAR 0.1
+
+#define LINE_HALVINGS 12
+#define LINE_DECREASE 1e-4
+
+enum cs_step newton_init(struct newton *newton, const struct cs_host *host, double rtol,
+                         int64_t iterations) {
+    const size_t n = host->view->n;
+    *newton = (struct newton){.host = host, .rtol = rtol, .iterations = iterations};
+    double **arrays[] = {&newton->x, &newton->v,  &newton->r,  &newton->f,
+                         &newton->b, &newton->du, &newton->u0, &newton->zero};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        if (!(*arrays[k] = host->alloc(host->ctx, 3 * n * sizeof(double))))
+            return CS_STEP_FAIL;
+    for (size_t i = 0; i < n; i++)
+        newton->mass += host->view->inv_mass[i] > 0 ? host->view->mass[i] : 0;
+    return CS_STEP_OK;
+}
+
+static void place(struct newton *newton, const struct newton_stage *stage, const double *u) {
+    const size_t n3 = 3 * (size_t)newton->host->view->n;
+    const struct cs_vector_kernels *vector = newton->host->vector;
+    vector->linear_sum(n3, 1, stage->xb, stage->gx, u, newton->x);
+    vector->linear_sum(n3, 1, stage->vb ? stage->vb : newton->zero, stage->gv, u, newton->v);
+}
+
+/* X, V, r and the norms of u */
+static void evaluate(struct newton *newton, const struct newton_stage *stage, const double *u) {
+    const struct cs_host *host = newton->host;
+    const struct cs_view *view = host->view;
+    const size_t n = view->n;
+    place(newton, stage, u);
+    host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_ALL, newton->f);
+    double squared = 0, impulse = 0;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++) {
+            const size_t k = c * n + i;
+            const double dp = view->mass[i] * (u[k] - stage->ub[k]);
+            const double r = dp - stage->s * newton->f[k];
+            newton->r[k] = r;
+            squared += r * r * view->inv_mass[i];
+            impulse += dp * dp * view->inv_mass[i];
+        }
+    newton->norm = sqrt(squared);
+    newton->impulse = sqrt(impulse);
+}
+
+/* |r| that rounding causes: of x, times a stiffness of m omega^2, and of u */
+static double noise(const struct newton *newton, const struct newton_stage *stage,
+                    const double *u) {
+    const struct cs_view *view = newton->host->view;
+    const size_t n3 = 3 * (size_t)view->n;
+    const double length = newton->host->vector->max_norm(n3, newton->x);
+    const double speed = newton->host->vector->max_norm(n3, u);
+    return 4 * DBL_EPSILON * sqrt(newton->mass) *
+           (stage->s * view->omega * view->omega * length +
+            (1 + 2 * stage->s * stage->gv * view->delta) * speed);
+}
+
+/* du from A du = -r. A free fall has M du = -r, which is the better start of the linear solver
+ * than 0 where it is a good one: no tolerance may spoil it. */
+static enum cs_step find_direction(struct newton *newton, const struct newton_stage *stage,
+                                   double rtol) {
+    const struct cs_host *host = newton->host;
+    const struct cs_view *view = host->view;
+    const size_t n = view->n;
+    const uint32_t flags = newton->norm < NEAR * newton->impulse ? 0 : CS_SOLVE_PSD;
+    enum cs_step status =
+        host->solve_setup(host->ctx, stage->t, newton->x, newton->v, 1, -stage->s * stage->gv,
+                          -stage->s * stage->gx, flags);
+    if (status != CS_STEP_OK)
+        return status;
+    newton->done++;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++) {
+            newton->b[c * n + i] = -newton->r[c * n + i];
+            newton->du[c * n + i] = view->inv_mass[i] * newton->b[c * n + i];
+        }
+    host->apply(host->ctx, newton->du, newton->f);
+    host->vector->linear_sum(3 * n, 1, newton->b, -1, newton->f, newton->f);
+    const double left = host->vector->dot(3 * n, newton->f, newton->f);
+    if (!(left < host->vector->dot(3 * n, newton->b, newton->b) / 4))
+        memset(newton->du, 0, 3 * n * sizeof *newton->du);
+    return host->solve(host->ctx, newton->b, rtol, newton->du);
+}
+
+/* P(u) + s w.(u - u0), and X, V of u */
+static double potential(struct newton *newton, const struct newton_stage *stage,
+                        const double *u) {
+    const struct cs_host *host = newton->host;
+    const size_t n = host->view->n;
+    place(newton, stage, u);
+    double inertia = 0;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++) {
+            const double du = u[c * n + i] - stage->ub[c * n + i];
+            inertia += 0.5 * host->view->mass[i] * du * du;
+        }
+    return inertia +
+           stage->s / stage->gx * host->energy(host->ctx, stage->t, newton->x, newton->zero);
+}
+
+/* Goes from u along du; false where no length is good. */
+static bool search(struct newton *newton, const struct newton_stage *stage, double *u) {
+    const struct cs_host *host = newton->host;
+    const size_t n3 = 3 * (size_t)host->view->n;
+    const double norm = newton->norm;
+    const double slope = host->vector->dot(n3, newton->r, newton->du);
+    double start = (double)NAN, work = 0;
+    memcpy(newton->u0, u, n3 * sizeof *u);
+    double a = 1;
+    for (int k = 0; k <= LINE_HALVINGS; k++, a /= 2) {
+        host->vector->linear_sum(n3, 1, newton->u0, a, newton->du, u);
+        evaluate(newton, stage, u);
+        if (newton->norm <= (1 - LINE_DECREASE * a) * norm)
+            return true;
+        if (isnan(start)) {
+            // only now, for most searches end above
+            start = potential(newton, stage, newton->u0);
+            host->force(host->ctx, stage->t, newton->x, newton->v,
+                        CS_PART_DAMPING | CS_PART_DRAG | CS_PART_WIND, newton->f);
+            work = stage->s * host->vector->dot(n3, newton->f, newton->du);
+        }
+        if (potential(newton, stage, u) - a * work <= start + LINE_DECREASE * a * slope &&
+            isfinite(newton->norm))
+            return true;
+    }
+    return false;
+}
+
+enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stage, double *u,
+                          bool *converged) {
+    *converged = false;
+    evaluate(newton, stage, u);
+    for (int64_t k = 0; isfinite(newton->norm); k++) {
+        const double goal = newton->rtol * newton->impulse + noise(newton, stage, u);
+        *converged = newton->norm <= goal;
+        if (*converged || k == newton->iterations)
+            break;
+        // the goal moves with the impulse: half of it is safe to aim at
+        const double enough = 0.5 * goal / newton->norm;
+        const enum cs_step status =
+            find_direction(newton, stage, enough > LINEAR_RTOL ? enough : LINEAR_RTOL);
+        if (status != CS_STEP_OK)
+            return status;
+        if (!search(newton, stage, u))
+            break;
+    }
+    return CS_STEP_OK;
+}
+
+enum cs_step newton_step(struct newton *newton, const struct newton_stage *stage, double *u,
+                         bool *converged) {
+    const size_t n3 = 3 * (size_t)newton->host->view->n;
+    *converged = false;
+    evaluate(newton, stage, u);
+    if (!isfinite(newton->norm))
+        return CS_STEP_OK;
+    const enum cs_step status = find_direction(newton, stage, newton->rtol);
+    if (status != CS_STEP_OK)
+        return status;
+    newton->host->vector->linear_sum(n3, 1, u, 1, newton->du, u);
+    place(newton, stage, u);
+    *converged = isfinite(newton->host->vector->dot(n3, newton->x, newton->v));
+    return CS_STEP_OK;
+}

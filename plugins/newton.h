@@ -1,0 +1,71 @@
+/* newton.h - the one nonlinear equation of all implicit methods, and its solution.
+ *
+ * A stage asks for a velocity u, from which position and velocity of the stage follow:
+ *   r(u) = M (u - ub) - s f(t, X, V) = 0,   X = xb + gx u,   V = vb + gv u
+ * so that a method is a table of coefficients (t, s, gx, gv) and of known vectors. Newton:
+ *   A du = -r,   A = M - s gv D - s gx K,   K = df/dx, D = df/dv of springs, dampers and drag
+ * with the exact force in r. A is the host's matrix with compressed springs clamped (Teran et
+ * al. 2005) while |r| is large: positive definite, so that du goes downhill. Once |r| is below
+ * a tenth of the impulse it is the exact one, unless that is indefinite, which gives Newton's
+ * convergence back.
+ *
+ * Line search: u + a du with a = 1, 1/2, ... is taken where |r| falls, or where the incremental
+ * potential (Martin et al. 2011; Gast et al. 2015)
+ *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (elastic + gravity)(X) - s w.(u - u0)
+ * falls by 1e-4 of what its slope r.du promises. Dampers, drag and wind have no potential:
+ * their force w is frozen at the start u0 of the search, where P then has the slope of r.
+ *
+ * Norms of r are |r|^2 = sum r_i^2 / m_i. Done: |r| <= rtol |M (u - ub)|, the impulse of the
+ * stage, or |r| below what rounding of x and u alone may cause.
+ */
+#ifndef NEWTON_H
+#define NEWTON_H
+
+#include <clothsim/integrator.h>
+
+/* Options that all methods with a Newton iteration have, as fields and as rows. */
+#define NEWTON_FIELDS                                                                          \
+    double dt, rtol;                                                                           \
+    int64_t iterations
+#define NEWTON_ROWS(struct_)                                                                   \
+    CS_OPTION(struct_, dt, "s", 0, 0, 10, "longest step; 0: one step a frame"),                \
+        CS_OPTION(struct_, rtol, "", 1e-6, 1e-14, 0.1,                                         \
+                  "residual of Newton's iteration, relative to the impulse of the step"),      \
+        CS_OPTION(struct_, iterations, "", 30, 1, 1000,                                        \
+                  "most Newton iterations; then the step is halved, up to 8 times")
+
+struct newton_stage {
+    double t, s, gx, gv;
+    const double *xb, *ub; /* (3,n) in m and m/s */
+    const double *vb;      /* (3,n) in m/s; NULL: 0 */
+};
+
+struct newton {
+    const struct cs_host *host;
+    double rtol;
+    int64_t iterations;
+    double *x, *v;        /* (3,n): X and V of the last u */
+    double *r, *f;        /* (3,n) */
+    double *b, *du, *u0;  /* (3,n) */
+    double *zero;         /* (3,n): stays 0 */
+    double norm, impulse; /* |r| and |M (u - ub)| of the last u, in sqrt(J) */
+    double mass;          /* kg, of the free particles */
+    uint64_t done;        /* iterations so far */
+};
+
+/* Takes the memory; [create]. */
+enum cs_step newton_init(struct newton *newton, const struct cs_host *host, double rtol,
+                         int64_t iterations);
+
+/* Solves a stage from the start u (3,n), in place; X and V of the solution are left in
+ * newton->x and newton->v. *converged is false where the iterations or the line search came to
+ * their end; u is then of no use. */
+typedef enum cs_step newton_solver(struct newton *newton, const struct newton_stage *stage,
+                                   double *u, bool *converged);
+newton_solver newton_solve;
+
+/* One Newton step of full length and no test but for numbers that are finite; newton->rtol is
+ * the relative residual of its linear solve. */
+newton_solver newton_step;
+
+#endif

@@ -1,0 +1,128 @@
+/* ros2.c - Rosenbrock method of two stages with one matrix: two linear solves a step.
+ *
+ * For y = (x, v), y' = F(t, y), J about dF/dy at (t, y), g = (1 - 1/sqrt 2) h:
+ *   (I - g J) k1 = F(t, y)
+ *   (I - g J) k2 = F(t + h, y + h k1) - 2 k1
+ *   y' = y + h (3/2 k1 + 1/2 k2)
+ * L-stable, and of order 2 with any J (Verwer et al. 1999), so that J may be the clamped one.
+ * Rows of x eliminated, with A = M - g D - g^2 K:
+ *   A kv = bv + g K bx,   kx = bx + g kv,   (bx, M^-1 bv) the right-hand side
+ * and g^2 K p = M p - g D p - A p, so that it is the K of A: the exact one of a nearly closed
+ * spring would be huge here and clamped there.
+ *
+ * A step that turns a spring by more than half its length, in a stage or in all, is refused and
+ * halved: the linearisation knows nothing of a rotation of a radian.
+ */
+#include "newton_methods.h"
+
+#include <string.h>
+
+struct ros2_options {
+    double dt, rtol;
+};
+
+static const struct cs_option rows[] = {
+    CS_OPTION(struct ros2_options, dt, "s", 0, 0, 10, "longest step; 0: one step a frame"),
+    CS_OPTION(struct ros2_options, rtol, "", 1e-6, 1e-15, 0.5,
+              "relative residual of the linear solves"),
+};
+
+struct method {
+    struct halving base;
+    double rtol;
+    double *k1, *k2; /* (3,n) in m/s2: kv of both stages, M^-1 b before */
+    double *bx, *b;  /* (3,n) right-hand side */
+    double *xn, *vn; /* (3,n) state of the second stage, then of the step's end */
+};
+
+/* b += g K bx, as (M bx - g D bx - A bx) / g; work: (3,n) */
+static void add_stiffness(struct method *self, double t, double g, const double *x,
+                          const double *v, double *work) {
+    const struct cs_host *host = self->base.loop.host;
+    const struct cs_view *view = host->view;
+    const size_t n = view->n;
+    host->jvp(host->ctx, t, x, v, CS_PART_LINEARISED, NULL, self->bx, work);
+    host->vector->linear_sum(3 * n, 1, self->b, -1, work, self->b);
+    host->apply(host->ctx, self->bx, work);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            self->b[c * n + i] += (view->mass[i] * self->bx[c * n + i] - work[c * n + i]) / g;
+}
+
+/* kv from A kv = b, started from a free fall: kv = M^-1 b */
+static enum cs_step solve(struct method *self, double *kv) {
+    const struct cs_host *host = self->base.loop.host;
+    const struct cs_view *view = host->view;
+    for (size_t c = 0, k = 0; c < 3; c++)
+        for (size_t i = 0; i < view->n; i++, k++)
+            kv[k] = view->inv_mass[i] * self->b[k];
+    return host->solve(host->ctx, self->b, self->rtol, kv);
+}
+
+static enum cs_step step(struct halving *base, double t, double h, double *x, double *v,
+                         bool *accepted) {
+    struct method *self = (struct method *)base;
+    const struct cs_host *host = base->loop.host;
+    const struct cs_view *view = host->view;
+    const size_t n = view->n;
+    const double g = (1 - 1 / sqrt(2)) * h;
+    double *k1 = self->k1, *k2 = self->k2, *bx = self->bx, *b = self->b;
+    enum cs_step status = host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, CS_SOLVE_PSD);
+    if (status != CS_STEP_OK)
+        return status;
+
+    host->force(host->ctx, t, x, v, CS_PART_ALL, b);
+    memcpy(bx, v, 3 * n * sizeof *v);
+    add_stiffness(self, t, g, x, v, k1);
+    if ((status = solve(self, k1)) != CS_STEP_OK)
+        return status;
+    for (size_t k = 0; k < 3 * n; k++) {
+        self->xn[k] = x[k] + h * (v[k] + g * k1[k]);
+        self->vn[k] = v[k] + h * k1[k];
+    }
+    if ((base->turned = springs_turned(view, x, self->xn)))
+        return CS_STEP_OK;
+
+    host->force(host->ctx, t + h, self->xn, self->vn, CS_PART_ALL, b);
+    for (size_t c = 0, k = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++, k++) {
+            b[k] -= 2 * view->mass[i] * k1[k];
+            bx[k] = self->vn[k] - 2 * (v[k] + g * k1[k]);
+        }
+    add_stiffness(self, t, g, x, v, k2);
+    if ((status = solve(self, k2)) != CS_STEP_OK)
+        return status;
+    for (size_t k = 0; k < 3 * n; k++) {
+        self->xn[k] = x[k] + h * (1.5 * (v[k] + g * k1[k]) + 0.5 * (bx[k] + g * k2[k]));
+        self->vn[k] = v[k] + h * (1.5 * k1[k] + 0.5 * k2[k]);
+    }
+    if ((base->turned = springs_turned(view, x, self->xn)))
+        return CS_STEP_OK;
+    memcpy(x, self->xn, 3 * n * sizeof *x);
+    memcpy(v, self->vn, 3 * n * sizeof *v);
+    *accepted = true;
+    return CS_STEP_OK;
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const struct ros2_options *asked = options;
+    struct halving *base = halving_create(host, sizeof(struct method), asked->dt, step);
+    if (!(*out = base))
+        return CS_STEP_FAIL;
+    struct method *self = (struct method *)base;
+    self->rtol = asked->rtol;
+    double **const arrays[] = {&self->k1, &self->k2, &self->bx, &self->b, &self->xn, &self->vn};
+    return halving_take(host, arrays, 6);
+}
+
+const struct cs_integrator ros2 = {
+    HALVING_METHOD(struct ros2_options, rows),
+    .name = "ros2",
+    .summary = "Rosenbrock method: two linear solves with one matrix, L-stable, no Newton",
+    .source = "Verwer et al. 1999",
+    .order = 2,
+    .order_damped = 2,
+    .needs = CS_NEED_JVP | CS_NEED_SOLVE | CS_NEED_SPRINGS,
+    .traits = CS_IMPLICIT,
+    .create = create,
+};

@@ -1,0 +1,129 @@
+/* sundials_common.c - context, right-hand side, messages and the loop; see sundials_common.h.
+ */
+#include "sundials_common.h"
+
+#include "sundials_solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+static void keep_message(int line, const char *function, const char *file, const char *message,
+                         SUNErrCode code, void *object, SUNContext context) {
+    struct sundials *self = object;
+    (void)line, (void)function, (void)file, (void)code, (void)context;
+    strncpy(self->message, message, sizeof self->message - 1);
+}
+
+static bool open_context(struct sundials *self) {
+    return !SUNContext_Create(SUN_COMM_NULL, &self->context) &&
+           !SUNContext_ClearErrHandlers(self->context) &&
+           !SUNContext_PushErrHandler(self->context, keep_message, self);
+}
+#else
+void sundials_keep_message(int code, const char *module, const char *function, char *message,
+                           void *object) {
+    struct sundials *self = object;
+    (void)module, (void)function;
+    // codes above 0 are warnings
+    if (code <= 0)
+        strncpy(self->message, message, sizeof self->message - 1);
+}
+
+static bool open_context(struct sundials *self) {
+    return !SUNContext_Create(NULL, &self->context);
+}
+#endif
+
+enum cs_step sundials_fail(struct sundials *self, int code, double t) {
+    const struct cs_host *host = self->host;
+    if (self->status != CS_STEP_OK)
+        return self->status;
+    char *name = self->library->code_name(code);
+    host->fail(host->ctx, "%s gave up at t = %.9g s: %s%s%s", self->library->name, t,
+               name ? name : "out of memory", self->message[0] ? ": " : "", self->message);
+    free(name);
+    return CS_STEP_FAIL;
+}
+
+int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t parts,
+                   bool moves, N_Vector slope) {
+    const struct cs_host *host = self->host;
+    const size_t n = host->view->n;
+    const double *x = sundials_data(y), *v = x + 3 * n;
+    double *dx = sundials_data(slope), *dv = dx + 3 * n;
+    host->force(host->ctx, t, x, v, parts, dv);
+    double finite = 0; /* 0, or not a number */
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++) {
+            dx[c * n + i] = moves ? v[c * n + i] : 0;
+            dv[c * n + i] *= host->view->inv_mass[i];
+            finite += 0 * dv[c * n + i];
+        }
+    return finite == 0 ? 0 : 1;
+}
+
+int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
+    return sundials_slope(object, t, y, CS_PART_ALL, true, slope);
+}
+
+enum cs_step sundials_restart(void *object, double t, const double *x, const double *v) {
+    (void)v; // is x + 3n
+    struct sundials *self = object;
+    sundials_wrap(self->state, (double *)x);
+    self->status = CS_STEP_OK;
+    self->message[0] = 0;
+    const int code = self->library->moved(self, t, 0);
+    return code < 0 ? sundials_fail(self, code, t) : CS_STEP_OK;
+}
+
+enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v) {
+    struct sundials *self = object;
+    const struct cs_host *host = self->host;
+    const struct sundials_library *library = self->library;
+    sundials_wrap(self->state, x);
+    self->status = CS_STEP_OK;
+    self->message[0] = 0;
+    int code = library->set_stop(self->memory, t1);
+    if (code < 0)
+        return sundials_fail(self, code, t0);
+    double t = t0;
+    for (int64_t steps = 0; t < t1; steps++) {
+        if (steps >= self->max_steps)
+            return host->fail(host->ctx, "more than %lld steps from t = %.9g s to %.9g s",
+                              (long long)self->max_steps, t0, t);
+        const double before = t;
+        bool changed = false;
+        code = library->evolve(self->memory, t1, self->state, &t, library->one_step);
+        if (code < 0 || self->status != CS_STEP_OK)
+            return sundials_fail(self, code, before);
+        const enum cs_step status = host->commit(host->ctx, t, t - before, x, v, &changed);
+        if (status != CS_STEP_OK)
+            return status;
+        if (changed && (code = library->moved(self, t, t - before)) < 0)
+            return sundials_fail(self, code, t);
+        // with its history a library can forget where to stop
+        if (changed && t < t1 && (code = library->set_stop(self->memory, t1)) < 0)
+            return sundials_fail(self, code, t);
+    }
+    return CS_STEP_OK;
+}
+
+enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
+                           const struct sundials_library *library, int n_vectors,
+                           double linear_rtol) {
+    self->host = host;
+    self->library = library;
+    self->linear_rtol = linear_rtol;
+    if (!open_context(self))
+        return host->fail(host->ctx, "SUNDIALS made no context: out of memory");
+    if (sundials_vectors_init(&self->vectors, host, n_vectors, self->context) != CS_STEP_OK)
+        return CS_STEP_FAIL;
+    self->state = sundials_vectors_take(&self->vectors);
+    return linear_rtol > 0 ? sundials_solver_init(self) : CS_STEP_OK;
+}
+
+void sundials_close(struct sundials *self) {
+    if (self->context)
+        SUNContext_Free(&self->context);
+}

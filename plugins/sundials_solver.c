@@ -1,0 +1,60 @@
+/* sundials_solver.c - (I - g J) z = b of a Newton iteration, by the host's solver.
+ *
+ * Eliminating z_x leaves half the unknowns and the host's matrix, with K = df/dx, D = df/dv:
+ *   (M - g D - g^2 K) z_v = M b_v + g K b_x,   z_x = b_x + g z_v.
+ * Nothing is kept from one iteration to the next.
+ */
+#include "sundials_solver.h"
+
+#include <string.h>
+
+static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
+    (void)solver;
+    return SUNLINEARSOLVER_MATRIX_EMBEDDED;
+}
+
+/* A code that the library knows: any other that is not 0, -1 too, it takes for success. */
+#define SOLVE_FAILED SUNLS_PSOLVE_FAIL_UNREC
+
+static int solve_reduced(SUNLinearSolver solver, SUNMatrix none, N_Vector z, N_Vector b,
+                         sunrealtype tolerance) {
+    (void)none, (void)tolerance;
+    struct sundials *self = solver->content;
+    const struct cs_host *host = self->host;
+    const size_t n = host->view->n;
+    N_Vector y;
+    double t, g;
+    if (self->library->system(self->memory, &t, &y, &g) < 0)
+        return SOLVE_FAILED;
+
+    const double *x = sundials_data(y), *v = x + 3 * n;
+    const double *bx = sundials_data(b), *bv = bx + 3 * n;
+    double *zx = sundials_data(z), *zv = zx + 3 * n;
+    host->jvp(host->ctx, t, x, v, CS_PART_LINEARISED, bx, NULL, self->b);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            self->b[c * n + i] = host->view->mass[i] * bv[c * n + i] + g * self->b[c * n + i];
+    memset(zv, 0, 3 * n * sizeof *zv);
+    self->status = host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, 0);
+    if (self->status == CS_STEP_OK)
+        self->status = host->solve(host->ctx, self->b, self->linear_rtol, zv);
+    if (self->status != CS_STEP_OK)
+        return SOLVE_FAILED;
+
+    // pinned rows of b are 0, for their derivatives are, and so are those of z
+    host->vector->linear_sum(3 * n, 1, bx, g, zv, zx);
+    return 0;
+}
+
+enum cs_step sundials_solver_init(struct sundials *self) {
+    const struct cs_host *host = self->host;
+    self->b = host->alloc(host->ctx, 3 * sizeof(double) * host->view->n);
+    if (!self->b)
+        return CS_STEP_FAIL;
+    self->solver_ops.gettype = solver_type;
+    self->solver_ops.solve = solve_reduced;
+    self->solver.content = self;
+    self->solver.ops = &self->solver_ops;
+    self->solver.sunctx = self->context;
+    return CS_STEP_OK;
+}

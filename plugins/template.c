@@ -1,0 +1,124 @@
+/* template.c - explicit midpoint method, to start an integrator module of your own from.
+ *
+ *   x_m = x + h/2 v,  v_m = v + h/2 f(t, x, v)/m
+ *   x'  = x + h v_m,  v'  = v + h f(t + h/2, x_m, v_m)/m       (Runge 1895)
+ *
+ * Build it against the installed header, look at it, run it, and get its card:
+ *   cc -std=c17 -O2 -shared -fPIC $(pkg-config --cflags clothsim) -o template.so template.c -lm
+ *   clothsim integrators --plugin ./template.so midpoint
+ *   clothsim run SCENE.json --plugin ./template.so --integrator midpoint:dt=0.0005
+ *   clothsim conform ./template.so
+ * Manual: clothsim-integrator(7).
+ */
+#include <clothsim/integrator.h>
+#include <math.h>
+
+/* What a user can set, and its table: type, unit, default, range, meaning. A method of fixed
+ * steps calls its step dt, an adaptive one its tolerance rtol: the card sets them by these
+ * names. */
+struct options {
+    double dt;
+};
+
+static const struct cs_option rows[] = {
+    CS_OPTION(struct options, dt, "s", 0.0005, 1e-9, 1, "longest step"),
+};
+
+/* What the method remembers. */
+struct midpoint {
+    const struct cs_host *host;
+    double dt;
+    double *f;      /* (3,n) force in N */
+    double *middle; /* (6n) the state half a step on: x, then v */
+};
+
+/* All memory is taken here. What host->alloc gives is zeroed and freed by the host; NULL was
+ * reported already. The options are gone after the call: copy what is needed. */
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const size_t n = host->view->n;
+    struct midpoint *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->host = host;
+    self->dt = ((const struct options *)options)->dt;
+    self->f = host->alloc(host->ctx, 3 * n * sizeof *self->f);
+    self->middle = host->alloc(host->ctx, 6 * n * sizeof *self->middle);
+    return self->f && self->middle ? CS_STEP_OK : CS_STEP_FAIL;
+}
+
+/* The state was set from outside. A method that keeps earlier steps forgets them here; this one
+ * keeps none. */
+static enum cs_step restart(void *self, double t, const double *x, const double *v) {
+    (void)self, (void)t, (void)x, (void)v;
+    return CS_STEP_OK;
+}
+
+/* (x1, v1) = (x, v) + h (velocity, f/m). A pinned particle has f = 0 and 1/m = 0, and needs no
+ * case of its own. */
+static void move(const struct midpoint *self, double h, const double *x, const double *v,
+                 const double *velocity, double *x1, double *v1) {
+    const struct cs_view *view = self->host->view;
+    const size_t n = view->n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++) {
+            x1[k] = x[k] + h * velocity[k];
+            v1[k] = v[k] + h * self->f[k] * view->inv_mass[i];
+        }
+}
+
+static void step(struct midpoint *self, double t, double h, double *x, double *v) {
+    const struct cs_host *host = self->host;
+    double *xm = self->middle, *vm = xm + 3 * (size_t)host->view->n;
+    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    move(self, h / 2, x, v, v, xm, vm);
+    host->force(host->ctx, t + h / 2, xm, vm, CS_PART_ALL, self->f);
+    move(self, h, x, v, vm, x, v);
+}
+
+/* From t0 to exactly t1, in equal steps not longer than dt. */
+static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
+    struct midpoint *self = object;
+    const struct cs_host *host = self->host;
+    // a dt that fits is not spoilt by the rounding of t1 - t0
+    const double n = ceil((t1 - t0) / self->dt * (1 - 1e-9)), h = (t1 - t0) / n;
+    enum cs_step status = CS_STEP_OK;
+    for (double i = 0; i < n && status == CS_STEP_OK; i++) {
+        const double t = t0 + i * h, end = i + 1 < n ? t0 + (i + 1) * h : t1;
+        bool changed;
+        step(self, t, h, x, v);
+        // contact, strain limit, blow-up: what is not CS_STEP_OK goes up at once, and where
+        // changed is true a method with a memory starts anew
+        status = host->commit(host->ctx, end, h, x, v, &changed);
+    }
+    return status;
+}
+
+/* What is claimed here is what `clothsim conform` measures. */
+static const struct cs_integrator midpoint = {
+    .size = sizeof midpoint,
+    .name = "midpoint",
+    .summary = "explicit midpoint method",
+    .source = "C. Runge, Mathematische Annalen 46 (1895)",
+    .order = 2,
+    .order_damped = 2,
+    .needs = 0,  /* only the force; CS_NEED_JVP, CS_NEED_SOLVE and others ask for more */
+    .traits = 0, /* CS_IMPLICIT, CS_ADAPTIVE, CS_SYMPLECTIC, ... */
+    .fidelity = CS_FIDELITY_ODE,
+    .fails = NULL, /* names of the checks that it is known to fail, closed by NULL */
+    .options = rows,
+    .n_options = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .create = create,
+    .restart = restart,
+    .advance = advance,
+};
+
+static const struct cs_integrator *const integrators[] = {&midpoint};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

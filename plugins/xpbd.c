@@ -1,0 +1,237 @@
+/* xpbd.c - extended position based dynamics: springs as constraints with compliance.
+ *
+ * With h the step, y = x + h v + h^2 f/m the place that the outer forces alone lead to, and for
+ * a spring of stiffness k and rest length L, unit direction n, C = |x_b - x_a| - L and
+ * compliance a = 1/(k h^2), the springs in turn, `iterations` times over, from x = y and l = 0:
+ *   dl = (-C - a l - g n.(d - d_old)) / ((1 + g) (w_a + w_b) + a),   g = c/(k h)
+ *   l += dl, x_b += w_b dl n, x_a -= w_a dl n,   w the inverse masses
+ * (Macklin et al. 2016, eq. 18 and 26; d = x_b - x_a, c the axial damping). Then v = (x' -
+ * x)/h. Relative damping is a constraint d = d_old of compliance 1/(c h) beside the spring.
+ * Outer forces, drag too, are those at the start of the step.
+ *
+ * As the iterations grow the result settles, but not on implicit Euler: the directions that the
+ * multipliers l belong to are those at which they were found. The difference vanishes with h.
+ * Mode pbd forgets the multipliers after every iteration, so that each corrects the same share
+ * (w_a + w_b) / (w_a + w_b + a) of what is left (Mueller et al. 2007, eq. 10 and 11, with that
+ * share as k): springs are the stiffer the more iterations, and nothing settles.
+ */
+#include "fixed_step.h"
+
+#include <float.h>
+#include <string.h>
+
+enum mode { XPBD, PBD };
+static const char *const modes[] = {"xpbd", "pbd", NULL};
+
+struct xpbd_options {
+    double dt;
+    int64_t iterations, substeps;
+    int32_t mode;
+};
+
+static const struct cs_option rows[] = {
+    CS_OPTION(struct xpbd_options, dt, "s", 0, 0, 10, "longest step; 0: one step a frame"),
+    CS_OPTION(struct xpbd_options, iterations, "", 10, 1, 1e6,
+              "passes over the springs in a step"),
+    CS_OPTION(struct xpbd_options, substeps, "", 1, 1, 1e6,
+              "equal parts that each step of dt is cut into, each a step of its own with all "
+              "its iterations: many parts with one iteration beat one part with many (Macklin "
+              "et al. 2019)"),
+    CS_OPTION_CHOICE(struct xpbd_options, mode, modes, XPBD,
+                     "xpbd keeps the multipliers over the iterations of a step; pbd forgets "
+                     "them, so that stiffness grows with the iterations"),
+};
+
+struct xpbd {
+    struct fixed_step loop; /* first: the loop's functions take it for the whole */
+    int64_t iterations, substeps;
+    bool forgets;    /* mode pbd */
+    double *f;       /* (3,n) in N: outer forces */
+    double *old;     /* (3,n) in m: where the step began */
+    double *spring;  /* (n_springs) multipliers of the springs, kg m */
+    double *damper;  /* (n_springs, 3) of the relative dampers; NULL: there are none */
+    uint64_t passes; /* over the springs */
+};
+
+/* Moves the ends of a spring apart by what m l is at each; push (3). */
+static void move_ends(const struct cs_view *view, const uint32_t ends[2], const double push[3],
+                      double *x) {
+    const size_t n = view->n;
+    for (size_t c = 0; c < 3; c++) {
+        x[c * n + ends[0]] -= view->inv_mass[ends[0]] * push[c];
+        x[c * n + ends[1]] += view->inv_mass[ends[1]] * push[c];
+    }
+}
+
+static void difference(const struct cs_view *view, const uint32_t ends[2], const double *x,
+                       double d[3]) {
+    for (size_t c = 0; c < 3; c++)
+        d[c] = x[c * view->n + ends[1]] - x[c * view->n + ends[0]];
+}
+
+static void project_spring(struct xpbd *self, size_t s, double h, double weight, double *x) {
+    const struct cs_view *view = self->loop.host->view;
+    const uint32_t *ends = view->ends + 2 * s;
+    const double k = view->stiffness[s], compliance = 1 / (k * h * h);
+    const double gamma = view->axial[s] ? view->damping[s] / (k * h) : 0;
+    double d[3], d_old[3], squared = DBL_MIN, moved = 0;
+    difference(view, ends, x, d);
+    difference(view, ends, self->old, d_old);
+    for (int c = 0; c < 3; c++)
+        squared += d[c] * d[c];
+    // two particles in one place have no direction: d is 0, and nothing moves
+    const double length = sqrt(squared);
+    for (int c = 0; c < 3; c++)
+        moved += d[c] / length * (d[c] - d_old[c]);
+    const double change =
+        (view->length[s] - length - compliance * self->spring[s] - gamma * moved) /
+        ((1 + gamma) * weight + compliance);
+    self->spring[s] += change;
+    for (int c = 0; c < 3; c++)
+        d[c] *= change / length;
+    move_ends(view, ends, d, x);
+}
+
+static void project_damper(struct xpbd *self, size_t s, double h, double weight, double *x) {
+    const struct cs_view *view = self->loop.host->view;
+    const uint32_t *ends = view->ends + 2 * s;
+    const double compliance = 1 / (view->damping[s] * h);
+    double d[3], d_old[3], *kept = self->damper + 3 * s;
+    difference(view, ends, x, d);
+    difference(view, ends, self->old, d_old);
+    for (int c = 0; c < 3; c++) {
+        d[c] = (d_old[c] - d[c] - compliance * kept[c]) / (weight + compliance);
+        kept[c] += d[c];
+    }
+    move_ends(view, ends, d, x);
+}
+
+static void forget(struct xpbd *self) {
+    const size_t n_springs = self->loop.host->view->n_springs;
+    memset(self->spring, 0, n_springs * sizeof *self->spring);
+    if (self->damper)
+        memset(self->damper, 0, 3 * n_springs * sizeof *self->damper);
+}
+
+/* one pass, in the order of forces */
+static void sweep(struct xpbd *self, double h, double *x) {
+    const struct cs_view *view = self->loop.host->view;
+    for (size_t s = 0; s < view->n_springs; s++) {
+        const double weight =
+            view->inv_mass[view->ends[2 * s]] + view->inv_mass[view->ends[2 * s + 1]];
+        // between two pinned ends there is nothing to move
+        if (weight <= 0)
+            continue;
+        project_spring(self, s, h, weight, x);
+        if (self->damper && !view->axial[s] && view->damping[s] > 0)
+            project_damper(self, s, h, weight, x);
+    }
+    self->passes++;
+}
+
+static enum cs_step step(struct fixed_step *loop, double t, double h, double *x, double *v) {
+    struct xpbd *self = (struct xpbd *)loop;
+    const struct cs_host *host = loop->host;
+    const size_t n = host->view->n;
+    host->force(host->ctx, t, x, v, CS_PART_GRAVITY | CS_PART_DRAG | CS_PART_WIND, self->f);
+    memcpy(self->old, x, 3 * n * sizeof *x);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++) {
+            v[k] += h * self->f[k] * host->view->inv_mass[i];
+            x[k] += h * v[k];
+        }
+
+    forget(self);
+    for (int64_t i = 0; i < self->iterations; i++) {
+        if (self->forgets && i > 0)
+            forget(self);
+        sweep(self, h, x);
+    }
+    // (x - old) / h by what the springs moved, so that free flight keeps every bit of v
+    for (size_t k = 0; k < 3 * n; k++)
+        v[k] += (x[k] - (self->old[k] + h * v[k])) / h;
+    return CS_STEP_OK;
+}
+
+/* The loop with each of its steps cut into equal parts. */
+static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
+    struct xpbd *self = object;
+    const struct fixed_step asked = self->loop;
+    double n;
+    const enum cs_step status = fixed_step_count(&self->loop, t1 - t0, &n);
+    if (status != CS_STEP_OK)
+        return status;
+    const bool told = self->loop.told;
+    self->loop.dt = (t1 - t0) / n / (double)self->substeps;
+    self->loop.chosen = true;
+    const enum cs_step end = fixed_step_advance(self, t0, t1, x, v);
+    self->loop = asked;
+    self->loop.told = told;
+    return end;
+}
+
+static bool has_relative_dampers(const struct cs_view *view) {
+    for (size_t s = 0; s < view->n_springs; s++)
+        if (view->damping[s] > 0 && !view->axial[s])
+            return true;
+    return false;
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const struct xpbd_options *asked = options;
+    const struct cs_view *view = host->view;
+    const size_t vectors = 3 * sizeof(double) * (size_t)view->n;
+    const size_t springs = sizeof(double) * (size_t)view->n_springs;
+    struct xpbd *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->loop = (struct fixed_step){.host = host,
+                                     .dt = asked->dt > 0 ? asked->dt : HUGE_VAL,
+                                     .chosen = asked->dt <= 0,
+                                     .step = step};
+    self->iterations = asked->iterations;
+    self->substeps = asked->substeps;
+    self->forgets = asked->mode == PBD;
+    if (!(self->f = host->alloc(host->ctx, vectors)) ||
+        !(self->old = host->alloc(host->ctx, vectors)) ||
+        !(self->spring = host->alloc(host->ctx, springs)))
+        return CS_STEP_FAIL;
+    if (has_relative_dampers(view) && !(self->damper = host->alloc(host->ctx, 3 * springs)))
+        return CS_STEP_FAIL;
+    return CS_STEP_OK;
+}
+
+static void stats(const void *object, struct cs_stats *out) {
+    out->newton = ((const struct xpbd *)object)->passes;
+}
+
+static const struct cs_integrator xpbd = {
+    .size = sizeof(struct cs_integrator),
+    .name = "xpbd",
+    .summary = "springs as constraints, one after the other; stable and cheap, damps, settles "
+               "beside implicit Euler",
+    .source = "Macklin, Mueller, Chentanez 2016; small steps: Macklin et al. 2019; pbd: "
+              "Mueller et al. 2007",
+    .order = 1,
+    .order_damped = 1,
+    .needs = CS_NEED_SPRINGS,
+    .traits = CS_IMPLICIT,
+    .fidelity = CS_FIDELITY_CONSISTENT,
+    .options = rows,
+    .n_options = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct xpbd_options),
+    .create = create,
+    .restart = fixed_step_restart,
+    .advance = advance,
+    .stats = stats,
+};
+
+static const struct cs_integrator *const integrators[] = {&xpbd};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

@@ -1,0 +1,156 @@
+/* What a scene or a method does not need costs nothing: no call, no array; and a frame takes
+ * nothing from the heap. */
+#include "allocations.h"
+#include "fixture.h"
+
+#include "sim/host.h"
+
+#include <string.h>
+
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}, \"springs\": "  \
+    "{\"damping\": 0.01}, \"pins\": [\"top-left\", \"top-right\"]%s}]%s}"
+#define WIND                                                                                   \
+    ", \"forces\": {\"drag\": 0.01, \"wind\": {\"direction\": [0, 0, 1], \"strength\": 2}}"
+#define COLLIDERS                                                                              \
+    ", \"colliders\": [{\"floor\": {\"height\": -0.45}, \"friction\": 0.3},"                   \
+    " {\"sphere\": {\"centre\": [0, 0, -0.3], \"radius\": 0.25}}]"
+
+/* methods that ask for nothing, for the solver, and for own blocks */
+static const char *const methods[] = {"symplectic-euler", "velocity-verlet",
+                                      "implicit-linearised", "implicit-block"};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+static const struct cs_counts *run(struct fixture *cloth, const char *method, const char *body,
+                                   const char *scene) {
+    fixture_open(cloth, method, SCENE, body, scene);
+    fixture_start(cloth);
+    fixture_frames(cloth, 3);
+    return &cloth->session.run.counts;
+}
+
+START_TEST(bare_scene_makes_no_calls) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture cloth;
+        const struct cs_counts *counts = run(&cloth, methods[k], "", "");
+        ck_assert_uint_gt(counts->steps, 0);
+        ck_assert_uint_gt(counts->forces, 0);
+        ck_assert_uint_eq(counts->normals, 0);
+        ck_assert_uint_eq(counts->contact_tests, 0);
+        ck_assert_uint_eq(counts->contacts, 0);
+        ck_assert_uint_eq(counts->limit_moves, 0);
+        ck_assert_uint_eq(counts->energies, 0);
+        ck_assert_ptr_null(cloth.system->normals);
+        ck_assert_ptr_null(cloth.system->area);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* and where they are needed they are made: once a force with wind, once a particle, collider
+ * and step */
+START_TEST(full_scene_makes_its_calls) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture cloth;
+        const struct cs_counts *counts =
+            run(&cloth, methods[k], ", \"strain_limit\": 1.001", WIND COLLIDERS);
+        ck_assert_uint_ge(counts->normals, counts->steps);
+        ck_assert_uint_eq(counts->contact_tests, counts->steps * 2 * 34);
+        ck_assert_uint_gt(counts->contacts, 0);
+        ck_assert_uint_gt(counts->limit_moves, 0);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+START_TEST(method_gets_what_it_needs_and_no_more) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture cloth;
+        run(&cloth, methods[k], "", "");
+        const uint32_t needs = cloth.session.integrator->needs;
+        const struct cs_run_host *host = cloth.session.run.host;
+        const struct cs_plan_row *rows = cloth.system->plan.rows;
+        ck_assert((needs & CS_NEED_SOLVE) == 0 ? !host->linear.factors
+                                               : !!host->linear.factors);
+        ck_assert((needs & CS_NEED_SOLVE) == 0 ? !host->kept_x : !!host->kept_x);
+        ck_assert(rows[CS_FEATURE_SOLVER].built == !!(needs & CS_NEED_SOLVE));
+        ck_assert(rows[CS_FEATURE_SPRING_LIST].built == !!(needs & CS_NEED_SPRINGS));
+        ck_assert(!cloth.system->view.ends == !(needs & CS_NEED_SPRINGS));
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* The solver's memory is that of the plan, beside the method's own. */
+START_TEST(solver_takes_what_was_planned) {
+    struct fixture with, without;
+    run(&with, "implicit-linearised", "", "");
+    run(&without, "symplectic-euler", "", "");
+    const size_t planned = with.system->plan.rows[CS_FEATURE_SOLVER].bytes;
+    ck_assert_uint_ge(with.session.run.host->arena.used, planned);
+    ck_assert_uint_lt(without.session.run.host->arena.used, planned);
+    fixture_close(&with);
+    fixture_close(&without);
+}
+END_TEST
+
+/* the counter sees this program and what it loads */
+START_TEST(allocations_are_counted) {
+    const uint64_t before = allocations;
+    void *volatile memory = malloc(10);
+    ck_assert_uint_gt(allocations, before);
+    free(memory);
+    const uint64_t later = allocations;
+    char *volatile copy = strdup("in the library");
+    ck_assert_uint_gt(allocations, later);
+    free(copy);
+}
+END_TEST
+
+/* allocations of three frames of a method, in a scene that has everything */
+static uint64_t taken_by(const char *method) {
+    struct fixture cloth;
+    struct cs_error error = {0};
+    fixture_open(&cloth, method, SCENE, ", \"strain_limit\": 1.01", WIND COLLIDERS);
+    fixture_start(&cloth);
+    const uint64_t before = allocations;
+    for (int frame = 0; frame < 3 && !error.status; frame++)
+        cs_run_frame(&cloth.session.run, &error);
+    const uint64_t taken = allocations - before;
+    ck_assert_msg(!error.status, "%s", error.message);
+    ck_assert_uint_gt(cloth.session.run.counts.steps, 0);
+    fixture_close(&cloth);
+    return taken;
+}
+
+/* Every method that is not a foreign library's. */
+START_TEST(frame_takes_nothing_from_the_heap) {
+    struct cs_registry registry = {0};
+    struct cs_error error = {0};
+    uint32_t tried = 0;
+    cs_registry_open_all(&registry, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    for (uint32_t k = 0; k < registry.n; k++) {
+        const struct cs_integrator *integrator = registry.entries[k].integrator;
+        if (!integrator || integrator->traits & CS_LIBRARY_BITS)
+            continue;
+        const uint64_t taken = taken_by(integrator->name);
+        ck_assert_msg(taken == 0, "%s took memory %llu times", integrator->name,
+                      (unsigned long long)taken);
+        tried++;
+    }
+    ck_assert_uint_ge(tried, METHODS);
+    cs_registry_finish(&registry);
+}
+END_TEST
+
+int main(void) {
+    allocations_begin();
+    const TTest *const tests[] = {bare_scene_makes_no_calls,
+                                  full_scene_makes_its_calls,
+                                  method_gets_what_it_needs_and_no_more,
+                                  solver_takes_what_was_planned,
+                                  allocations_are_counted,
+                                  frame_takes_nothing_from_the_heap};
+    return fixture_run("leave out", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,194 @@
+/* What the methods on SUNDIALS promise beside numbers: nothing from the heap in a step, no
+ * crash where making one fails half-way, and reasons for what cannot be.
+ */
+#include "allocations.h"
+#include "fixture.h"
+
+#include "base/options.h"
+#include "model/vector.h"
+#include "sim/host.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+/* a cloth that falls on a ball and a floor: commits that move the state are most */
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"start\": \"flat\","                        \
+    " \"velocity\": [0, -2, 0]}, \"mass\": {\"total\": 0.2},"                                  \
+    " \"springs\": {\"damping\": 0.01}}],"                                                     \
+    " \"colliders\": [{\"floor\": {\"height\": -0.5}, \"friction\": 0.3},"                     \
+    " {\"sphere\": {\"centre\": [0.03, -0.3, 0.02], \"radius\": 0.25}}]}"
+
+static const char *const methods[] = {"cvode-bdf", "cvode-adams",     "ark-erk",
+                                      "ark-dirk",  "ark-erk:order=8", "ark-imex"};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+/* SUNDIALS takes its own small tables at the first step after create, and nothing later. */
+START_TEST(steps_take_nothing) {
+    allocations_begin();
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture cloth;
+        struct cs_error error = {0};
+        fixture_open(&cloth, methods[k], SCENE);
+        fixture_start(&cloth);
+        fixture_frames(&cloth, 1);
+        const uint64_t before = allocations;
+        for (int frame = 0; frame < 20 && !error.status; frame++)
+            cs_run_frame(&cloth.session.run, &error);
+        const uint64_t taken = allocations - before;
+        ck_assert_msg(!error.status, "%s: %s", methods[k], error.message);
+        ck_assert_msg(taken == 0, "%s: %llu allocations", methods[k],
+                      (unsigned long long)taken);
+        ck_assert_uint_gt(cloth.session.run.counts.contacts, 0);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* a host whose memory ends after so many requests */
+struct poor_host {
+    void *taken[256];
+    int n, most;
+    bool told;
+};
+
+static void *poor_alloc(void *ctx, size_t bytes) {
+    struct poor_host *poor = ctx;
+    if (poor->n >= poor->most)
+        return NULL;
+    const size_t whole = (bytes + 63) / 64 * 64;
+    void *memory = aligned_alloc(64, whole);
+    ck_assert_ptr_nonnull(memory);
+    poor->taken[poor->n++] = memset(memory, 0, whole);
+    return memory;
+}
+
+static enum cs_step poor_fail(void *ctx, const char *format, ...) {
+    (void)format;
+    ((struct poor_host *)ctx)->told = true;
+    return CS_STEP_FAIL;
+}
+
+static void poor_note(void *ctx, const char *format, ...) {
+    (void)ctx, (void)format;
+}
+
+static enum cs_step create_and_destroy(const struct fixture *cloth, struct poor_host *poor) {
+    const struct cs_integrator *method = cloth->session.integrator;
+    const struct cs_host host = {.size = sizeof host,
+                                 .ctx = poor,
+                                 .view = &cloth->system->view,
+                                 .vector = &cs_vector_kernels,
+                                 .alloc = poor_alloc,
+                                 .fail = poor_fail,
+                                 .note = poor_note};
+    void *self = NULL;
+    const enum cs_step status = method->create(&host, cloth->session.options, &self);
+    if (self && method->destroy)
+        method->destroy(self);
+    for (int i = 0; i < poor->n; i++)
+        free(poor->taken[i]);
+    return status;
+}
+
+START_TEST(create_may_fail_anywhere) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture cloth;
+        fixture_open(&cloth, methods[k], SCENE);
+        int most = 0;
+        enum cs_step status = CS_STEP_FAIL;
+        for (; status != CS_STEP_OK && most < 256; most++) {
+            struct poor_host poor = {.most = most};
+            status = create_and_destroy(&cloth, &poor);
+        }
+        ck_assert_int_eq(status, CS_STEP_OK);
+        ck_assert_int_gt(most, 20);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+START_TEST(failures_have_reasons) {
+    static const struct {
+        const char *integrator, *reason;
+    } rows[] = {{"ark-erk:max_steps=2,rtol=1e-10", "more than 2 steps"},
+                {"ark-dirk:max_steps=2,rtol=1e-10", "more than 2 steps"},
+                {"cvode-adams:max_steps=2,rtol=1e-10", "more than 2 steps"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct fixture cloth;
+        struct cs_error error = {0};
+        fixture_open(&cloth, rows[k].integrator, SCENE);
+        fixture_stir(&cloth, 0.01, 1);
+        fixture_start(&cloth);
+        cs_run_frame(&cloth.session.run, &error);
+        ck_assert_msg(error.status == CS_ERR_MODULE, "%s did not fail", rows[k].integrator);
+        ck_assert_msg(strstr(error.message, rows[k].reason), "%s", error.message);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+static enum cs_step broken_solve(void *ctx, const double *b, double rtol, double *u) {
+    (void)b, (void)rtol, (void)u;
+    struct cs_run_host *host = ctx;
+    // in parentheses: Check has a macro of that name
+    return (host->calls.fail)(ctx, "the solver is broken");
+}
+
+/* A failure of the host's solver ends the run with the host's words, and no step follows it. */
+START_TEST(failed_solve_ends_the_run) {
+    static const char *const implicit[] = {"cvode-bdf", "ark-dirk", "ark-imex"};
+    for (size_t k = 0; k < sizeof implicit / sizeof *implicit; k++) {
+        struct fixture cloth;
+        struct cs_error error = {0};
+        fixture_open(&cloth, implicit[k], SCENE);
+        fixture_stir(&cloth, 0.01, 1);
+        fixture_start(&cloth);
+        fixture_frames(&cloth, 1);
+        const uint64_t steps = cloth.session.run.counts.steps;
+        cloth.session.run.host->calls.solve = broken_solve;
+        ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
+        ck_assert_msg(strstr(error.message, "the solver is broken"), "%s", error.message);
+        ck_assert_uint_eq(cloth.session.run.counts.steps, steps);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* a state that is no number is refused by the library's own name for it */
+START_TEST(codes_are_named) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture cloth;
+        struct cs_error error = {0};
+        fixture_open(&cloth, methods[k], SCENE);
+        cloth.x[7] = (double)NAN;
+        fixture_start(&cloth);
+        ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
+        ck_assert_msg(strstr(error.message, "gave up at t = 0 s: "), "%s", error.message);
+        ck_assert_msg(strstr(error.message, "_FAIL") || strstr(error.message, "_ERR"), "%s",
+                      error.message);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* 990 steps; a new start at order 1 after every step that touches takes 13400. */
+START_TEST(history_survives_contact) {
+    struct fixture cloth;
+    fixture_open(&cloth, "cvode-bdf:rtol=1e-5", SCENE);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, 30);
+    const struct cs_counts *counts = &cloth.session.run.counts;
+    ck_assert_uint_gt(counts->contacts, counts->steps);
+    ck_assert_msg(counts->steps < 3000, "%llu steps", (unsigned long long)counts->steps);
+    fixture_close(&cloth);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {steps_take_nothing,    create_may_fail_anywhere,
+                                  failures_have_reasons, failed_solve_ends_the_run,
+                                  codes_are_named,       history_survives_contact};
+    return fixture_run("sundials", tests, sizeof tests / sizeof *tests);
+}

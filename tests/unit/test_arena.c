@@ -1,0 +1,102 @@
+/* Memory by lifetime: aligned, zeroed, apart from each other, and counted. */
+#include "base/arena.h"
+#include "unit.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+static bool is_zero(const unsigned char *bytes, size_t n) {
+    for (size_t i = 0; i < n; i++)
+        if (bytes[i])
+            return false;
+    return true;
+}
+
+/* sizes round the alignment and round a block, each filled with its own number */
+START_TEST(pieces_are_aligned_zeroed_and_apart) {
+    static const size_t sizes[] = {1,     63,    64,    65,    0,       1000, 65536 - 64,
+                                   65536, 65537, 40000, 40000, 1000000, 64,   3};
+    enum { N = sizeof sizes / sizeof *sizes };
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    unsigned char *pieces[N];
+    size_t sum = 0;
+    for (size_t k = 0; k < N; k++) {
+        pieces[k] = cs_arena_take(&arena, sizes[k], &error);
+        ck_assert_ptr_nonnull(pieces[k]);
+        ck_assert_uint_eq((uintptr_t)pieces[k] % 64, 0);
+        ck_assert(is_zero(pieces[k], sizes[k]));
+        memset(pieces[k], (int)k + 1, sizes[k]);
+        sum += sizes[k];
+    }
+    for (size_t k = 0; k < N; k++)
+        for (size_t i = 0; i < sizes[k]; i++)
+            ck_assert_uint_eq(pieces[k][i], k + 1);
+    ck_assert_uint_eq(arena.used, sum);
+    UNIT_ASSERT_OK(&error);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+/* and the arena can be used again; what it gives is zeroed again */
+START_TEST(finish_empties) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    for (int round = 0; round < 3; round++) {
+        unsigned char *bytes = cs_arena_take(&arena, 200000, &error);
+        ck_assert(is_zero(bytes, 200000));
+        memset(bytes, 0xff, 200000);
+        cs_arena_finish(&arena);
+        ck_assert_uint_eq(arena.used, 0);
+        ck_assert_ptr_null(arena.blocks);
+    }
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+/* a sanitizer would stop the program instead of refusing */
+const char *__asan_default_options(void);
+const char *__asan_default_options(void) {
+    return "allocator_may_return_null=1";
+}
+
+/* no sum of sizes wraps round to a small piece; the first message stays */
+START_TEST(impossible_sizes_are_refused) {
+    static const size_t sizes[][2] = {{SIZE_MAX, 1},
+                                      {SIZE_MAX - 63, 1},
+                                      {SIZE_MAX / 2, 1},
+                                      {SIZE_MAX / 8 + 1, 8},
+                                      {SIZE_MAX, SIZE_MAX}};
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        struct cs_arena arena = {0};
+        struct cs_error error = {0};
+        ck_assert_ptr_nonnull(cs_arena_take(&arena, 8, &error));
+        ck_assert_ptr_null(cs_arena_take_n(&arena, sizes[k][0], sizes[k][1], &error));
+        UNIT_ASSERT_FAILED(&error, CS_ERR_MEMORY, "out of memory");
+        ck_assert_uint_eq(arena.used, 8);
+        // what it held is still there, and it goes on
+        struct cs_error later = {0};
+        ck_assert_ptr_nonnull(cs_arena_take(&arena, 8, &later));
+        UNIT_ASSERT_OK(&later);
+        cs_arena_finish(&arena);
+    }
+}
+END_TEST
+
+START_TEST(text_is_copied) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    char text[] = "particle";
+    char *copy = cs_arena_take_text(&arena, text, &error);
+    text[0] = 'x';
+    ck_assert_str_eq(copy, "particle");
+    ck_assert_str_eq(cs_arena_take_text(&arena, "", &error), "");
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {pieces_are_aligned_zeroed_and_apart, finish_empties,
+                                  impossible_sizes_are_refused, text_is_copied};
+    return unit_run("arena", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,180 @@
+/* Projection contact of one particle against closed forms. */
+#include "model/contact.h"
+#include "sheet.h"
+
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1]}, \"mass\": {\"particle\": 2}, \"pins\": "    \
+    "[%s]}], \"colliders\": [%s]}"
+#define FLOOR(more) "{\"floor\": {\"height\": 0.5}" more "}"
+
+static struct cs_contact_counts resolve(struct sheet *sheet) {
+    return cs_contact_resolve(&sheet->system, sheet->x, sheet->v);
+}
+
+START_TEST(particle_is_put_on_the_floor_with_its_skin) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "", FLOOR(", \"thickness\": 0.02"));
+    sheet_put(&one, 0, 0.3, -0.1, 4, 0, 0, 0);
+    const struct cs_contact_counts counts = resolve(&one);
+    ck_assert_uint_eq(counts.tests, 1);
+    ck_assert_uint_eq(counts.pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 0.3, 0.52, 4, 1e-15);
+    sheet_close(&one);
+}
+END_TEST
+
+/* on the surface or in front of it nothing happens, whatever the velocity */
+START_TEST(particle_in_front_is_left_alone) {
+    static const double heights[] = {0.5, 0.5000001, 3};
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "", FLOOR(""));
+    for (size_t k = 0; k < 3; k++) {
+        sheet_put(&one, 0, 0, heights[k], 0, 1, -2, 3);
+        const struct cs_contact_counts counts = resolve(&one);
+        ck_assert_uint_eq(counts.tests, 1);
+        ck_assert_uint_eq(counts.pushed, 0);
+        SHEET_ASSERT_AT(&one, one.x, 0, 0, heights[k], 0, 0);
+        SHEET_ASSERT_AT(&one, one.v, 0, 1, -2, 3, 0);
+    }
+    sheet_close(&one);
+}
+END_TEST
+
+/* along the normal only, from a point that is 1.5 m behind the plane and its skin of 0.1 m */
+START_TEST(particle_is_put_on_a_plane) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "",
+               "{\"plane\": {\"point\": [1, 2, 3], \"normal\": [2, 0, 1.5]}, \"thickness\": "
+               "0.1}");
+    sheet_put(&one, 0, 1 - 1.4 * 0.8 - 0.6, 2 + 5, 3 - 1.4 * 0.6 + 0.8, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 1 + 0.1 * 0.8 - 0.6, 7, 3 + 0.1 * 0.6 + 0.8, 1e-14);
+    sheet_close(&one);
+}
+END_TEST
+
+START_TEST(particle_is_put_on_a_sphere) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "",
+               "{\"sphere\": {\"centre\": [1, 2, 3], \"radius\": 0.5}, \"thickness\": 0.1}");
+    sheet_put(&one, 0, 1 + 0.2 * 2 / 3, 2 - 0.2 / 3, 3 + 0.2 * 2 / 3, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 1.4, 1.8, 3.4, 1e-14);
+    // the very centre has no normal: upwards
+    sheet_put(&one, 0, 1, 2, 3, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 1, 2.6, 3, 1e-14);
+    sheet_close(&one);
+}
+END_TEST
+
+/* ka of the normal velocity is taken away, and -e turns it round; the rest is kept */
+START_TEST(normal_velocity_is_absorbed) {
+    static const struct {
+        const char *absorption;
+        double left; /* of -2 m/s */
+    } rows[] = {{"1", 0}, {"0.5", -1}, {"0", -2}, {"-0.5", 1}, {"-1", 2}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct sheet one;
+        char collider[128];
+        snprintf(collider, sizeof collider, FLOOR(", \"absorption\": %s"), rows[k].absorption);
+        sheet_open(&one, 0, SCENE, "", collider);
+        sheet_put(&one, 0, 0, 0.4, 0, 3, -2, -4);
+        resolve(&one);
+        SHEET_ASSERT_AT(&one, one.v, 0, 3, rows[k].left, -4, 1e-15);
+        // on its way out it is put on the surface and keeps its velocity
+        sheet_put(&one, 0, 0, 0.4, 0, 3, 2, -4);
+        ck_assert_uint_eq(resolve(&one).pushed, 1);
+        SHEET_ASSERT_AT(&one, one.v, 0, 3, 2, -4, 0);
+        sheet_close(&one);
+    }
+}
+END_TEST
+
+/* One second on a slope of 30 degrees in steps of 10 ms, the velocity alone: below
+ * tan(30 degrees) of friction the particle slides at g (sin - mu cos) t, above it sticks. */
+START_TEST(slope_is_slid_down_or_stuck_to) {
+    const double angle = acos(-1) / 6, g = 9.81, dt = 0.01;
+    static const double parts[] = {0, 0.5, 0.999, 1.001, 3}; // of tan(angle)
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        const double mu = parts[k] * tan(angle);
+        char collider[160];
+        snprintf(collider, sizeof collider,
+                 "{\"plane\": {\"normal\": [%.17g, %.17g, 0]}, \"friction\": %.17g}",
+                 sin(angle), cos(angle), mu);
+        struct sheet one;
+        sheet_open(&one, 0, SCENE, "", collider);
+        for (int step = 0; step < 100; step++) {
+            sheet_put(&one, 0, -1e-9 * sin(angle), -1e-9 * cos(angle), 0, one.v[0],
+                      one.v[1] - g * dt, one.v[2]);
+            ck_assert_uint_eq(resolve(&one).pushed, 1);
+        }
+        const double speed = parts[k] > 1 ? 0 : g * (sin(angle) - mu * cos(angle));
+        SHEET_ASSERT_AT(&one, one.v, 0, speed * cos(angle), -speed * sin(angle), 0, 1e-13);
+        sheet_close(&one);
+    }
+}
+END_TEST
+
+/* friction goes by the normal velocity that was changed: 1.5 times the inward one here */
+START_TEST(friction_counts_the_bounce) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "", FLOOR(", \"absorption\": -0.5, \"friction\": 0.2"));
+    sheet_put(&one, 0, 0, 0.4, 0, 3, -2, -4);
+    resolve(&one);
+    const double kept = 1 - 0.2 * 1.5 * 2 / 5;
+    SHEET_ASSERT_AT(&one, one.v, 0, kept * 3, 1, -kept * 4, 1e-15);
+    sheet_close(&one);
+}
+END_TEST
+
+START_TEST(pinned_particle_is_not_tested) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "0", FLOOR(""));
+    sheet_put(&one, 0, 0, -1, 0, 0, 0, 0);
+    const struct cs_contact_counts counts = resolve(&one);
+    ck_assert_uint_eq(counts.tests, 0);
+    ck_assert_uint_eq(counts.pushed, 0);
+    ck_assert_double_eq(one.x[1], -1);
+    sheet_close(&one);
+}
+END_TEST
+
+/* so that the blow-up test still finds it */
+START_TEST(particle_that_is_not_finite_stays_so) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "", FLOOR(", \"friction\": 1"));
+    sheet_put(&one, 0, 0, (double)NAN, 0, 0, -1, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 0);
+    ck_assert_double_nan(one.x[1]);
+    sheet_close(&one);
+}
+END_TEST
+
+START_TEST(corner_of_floor_and_wall_holds) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "",
+               FLOOR("") ", {\"plane\": {\"normal\": [-1, 0, 0]}, \"thickness\": 0.1}");
+    sheet_put(&one, 0, 2, -3, 1, 5, -5, 1);
+    const struct cs_contact_counts counts = resolve(&one);
+    ck_assert_uint_eq(counts.tests, 2);
+    ck_assert_uint_eq(counts.pushed, 2);
+    SHEET_ASSERT_AT(&one, one.x, 0, -0.1, 0.5, 1, 1e-15);
+    SHEET_ASSERT_AT(&one, one.v, 0, 0, 0, 1, 0);
+    sheet_close(&one);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {particle_is_put_on_the_floor_with_its_skin,
+                                  particle_in_front_is_left_alone,
+                                  particle_is_put_on_a_plane,
+                                  particle_is_put_on_a_sphere,
+                                  normal_velocity_is_absorbed,
+                                  slope_is_slid_down_or_stuck_to,
+                                  friction_counts_the_bounce,
+                                  pinned_particle_is_not_tested,
+                                  particle_that_is_not_finite_stays_so,
+                                  corner_of_floor_and_wall_holds};
+    return unit_run("contact", tests, sizeof tests / sizeof *tests);
+}

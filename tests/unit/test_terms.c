@@ -1,0 +1,179 @@
+/* The outer forces against closed forms, and the parts of the sum. */
+#include "model/normals.h"
+#include "model/terms.h"
+#include "sheet.h"
+
+/* hanging in the xy plane: its normals are +z */
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3], \"size\": [3, 2]}, \"mass\": "               \
+    "{\"areal_density\": 0.5}, \"springs\": {\"damping\": 0.2}, \"pins\": [5]}],"              \
+    " \"forces\": {%s}}"
+
+enum { N = 12, VALUES = 3 * N };
+
+static void force(const struct sheet *sheet, uint32_t parts, double f[VALUES]) {
+    if (cs_terms_need_normals(&sheet->system, parts))
+        cs_normals_update(&sheet->system, sheet->x);
+    for (size_t i = 0; i < VALUES; i++)
+        f[i] = 1e9; // the sum overwrites
+    cs_terms_force(&sheet->system, 0, sheet->x, sheet->v, parts, f);
+}
+
+/* share of the area: a cell of 1 m2 inside, halves and quarters at the border */
+static double area_of(size_t i) {
+    const size_t row = i / 4, column = i % 4;
+    return (row == 0 || row == 2 ? 0.5 : 1) * (column == 0 || column == 3 ? 0.5 : 1);
+}
+
+START_TEST(gravity_is_mass_times_g) {
+    struct sheet sheet;
+    double f[VALUES];
+    sheet_open(&sheet, 0, SCENE, "\"gravity\": [1, -2, 3]");
+    force(&sheet, CS_PART_GRAVITY, f);
+    for (size_t i = 0; i < N; i++) {
+        const double m = i == 5 ? 0 : 0.5 * area_of(i); // pinned: 0
+        SHEET_ASSERT_AT(&sheet, f, i, m, -2 * m, 3 * m, 1e-14);
+    }
+    double energy = 0;
+    for (size_t i = 0; i < N; i++)
+        energy -= 0.5 * area_of(i) * (sheet.x[i] - 2 * sheet.x[N + i] + 3 * sheet.x[2 * N + i]);
+    ck_assert_double_eq_tol(cs_term_gravity.energy(&sheet.system, sheet.x), energy, 1e-14);
+    sheet_close(&sheet);
+}
+END_TEST
+
+START_TEST(drag_is_against_the_velocity) {
+    for (int by_area = 0; by_area < 2; by_area++) {
+        struct sheet sheet;
+        double f[VALUES];
+        sheet_open(&sheet, 0, SCENE,
+                   by_area ? "\"drag\": 0.3, \"drag_unit\": \"Pa s/m\"" : "\"drag\": 0.3");
+        sheet_stir(&sheet, 0, 2);
+        force(&sheet, CS_PART_DRAG, f);
+        for (size_t i = 0; i < N; i++) {
+            const double c = i == 5 ? 0 : -0.3 * (by_area ? area_of(i) : 1);
+            SHEET_ASSERT_AT(&sheet, f, i, c * sheet.v[i], c * sheet.v[N + i],
+                            c * sheet.v[2 * N + i], 1e-14);
+        }
+        sheet_close(&sheet);
+    }
+}
+END_TEST
+
+/* strength times |w.n| along w: the same from in front and behind, nothing edge-on */
+START_TEST(wind_is_by_the_angle_of_the_cloth) {
+    static const struct {
+        const char *wind;
+        double w[3], facing; /* unit direction, |w.n| */
+        bool by_area;
+    } rows[] = {
+        {"[0, 0, 5], \"strength\": 4", {0, 0, 1}, 1, true},
+        {"[0, 0, -1], \"strength\": 4", {0, 0, -1}, 1, true},
+        {"[1, 0, 0], \"strength\": 4", {1, 0, 0}, 0, true},
+        {"[0, 3, 4], \"strength\": 4", {0, 0.6, 0.8}, 0.8, true},
+        {"[0, 3, 4], \"strength\": 4, \"strength_unit\": \"N\"", {0, 0.6, 0.8}, 0.8, false},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct sheet sheet;
+        double f[VALUES];
+        char forces[160];
+        snprintf(forces, sizeof forces, "\"wind\": {\"direction\": %s}", rows[k].wind);
+        sheet_open(&sheet, 0, SCENE, forces);
+        force(&sheet, CS_PART_WIND, f);
+        for (size_t i = 0; i < N; i++) {
+            const double push =
+                i == 5 ? 0 : 4 * rows[k].facing * (rows[k].by_area ? area_of(i) : 1);
+            SHEET_ASSERT_AT(&sheet, f, i, push * rows[k].w[0], push * rows[k].w[1],
+                            push * rows[k].w[2], 1e-14);
+        }
+        sheet_close(&sheet);
+    }
+}
+END_TEST
+
+#define EVERYTHING "\"drag\": 0.3, \"wind\": {\"direction\": [1, 0.3, 0.2], \"strength\": 4}"
+
+/* every bit alone adds up to all of them, and none gives nothing */
+START_TEST(parts_add_up) {
+    struct sheet sheet;
+    double all[VALUES], sum[VALUES] = {0}, f[VALUES];
+    sheet_open(&sheet, 0, SCENE, EVERYTHING);
+    sheet_stir(&sheet, 0.2, 2);
+    force(&sheet, CS_PART_ALL, all);
+    for (uint32_t part = 1; part <= CS_PART_WIND; part *= 2) {
+        double size = 0;
+        force(&sheet, part, f);
+        for (size_t i = 0; i < VALUES; i++) {
+            sum[i] += f[i];
+            size = fmax(size, fabs(f[i]));
+        }
+        ck_assert_msg(size > 1e-3, "part %u is not there", part);
+    }
+    for (size_t i = 0; i < VALUES; i++)
+        ck_assert_double_eq_tol(sum[i], all[i], 1e-12);
+    force(&sheet, 0, f);
+    for (size_t i = 0; i < VALUES; i++)
+        ck_assert_double_eq(f[i], 0);
+    sheet_close(&sheet);
+}
+END_TEST
+
+START_TEST(only_wind_needs_normals) {
+    struct sheet sheet;
+    sheet_open(&sheet, 0, SCENE, EVERYTHING);
+    ck_assert(cs_terms_need_normals(&sheet.system, CS_PART_WIND));
+    ck_assert(cs_terms_need_normals(&sheet.system, CS_PART_ALL));
+    ck_assert(!cs_terms_need_normals(&sheet.system, CS_PART_LINEARISED));
+    sheet_close(&sheet);
+    sheet_open(&sheet, 0, SCENE, "\"drag\": 0.3");
+    ck_assert(!cs_terms_need_normals(&sheet.system, CS_PART_ALL));
+    sheet_close(&sheet);
+}
+END_TEST
+
+/* in the order of the sum, and only those with something to add */
+START_TEST(scene_has_only_its_terms) {
+    static const struct {
+        const char *forces;
+        const struct cs_term *terms[4];
+    } rows[] = {
+        {"\"gravity\": [0, 0, 0]", {&cs_term_springs}},
+        {"", {&cs_term_springs, &cs_term_gravity}},
+        {"\"gravity\": [0, 0, 0], \"drag\": 1", {&cs_term_springs, &cs_term_drag}},
+        {EVERYTHING, {&cs_term_springs, &cs_term_gravity, &cs_term_drag, &cs_term_wind}},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct sheet sheet;
+        sheet_open(&sheet, 0, SCENE, rows[k].forces);
+        for (uint32_t t = 0; t < 4; t++)
+            ck_assert_ptr_eq(t < sheet.system.n_terms ? sheet.system.terms[t] : NULL,
+                             rows[k].terms[t]);
+        sheet_close(&sheet);
+    }
+}
+END_TEST
+
+/* which the Jacobian test does not see, as it never moves them */
+START_TEST(derivative_is_zero_on_pins) {
+    struct sheet sheet;
+    double d[VALUES], df[VALUES];
+    sheet_open(&sheet, 0, SCENE, EVERYTHING);
+    sheet_stir(&sheet, 0.2, 2);
+    for (size_t i = 0; i < VALUES; i++)
+        d[i] = 1 + (double)(i % 7);
+    cs_normals_update(&sheet.system, sheet.x);
+    cs_terms_jvp(&sheet.system, 0, sheet.x, sheet.v, CS_PART_ALL, d, d, df);
+    SHEET_ASSERT_AT(&sheet, df, 5, 0, 0, 0, 0);
+    ck_assert_double_ne(df[6], 0);
+    sheet_close(&sheet);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {
+        gravity_is_mass_times_g,           drag_is_against_the_velocity,
+        wind_is_by_the_angle_of_the_cloth, parts_add_up,
+        only_wind_needs_normals,           scene_has_only_its_terms,
+        derivative_is_zero_on_pins};
+    return unit_run("terms", tests, sizeof tests / sizeof *tests);
+}

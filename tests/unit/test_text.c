@@ -1,0 +1,133 @@
+/* Growable text, and numbers that read back the same. */
+#include "base/text.h"
+#include "unit.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+
+static void check_real(double value, const char *expected) {
+    struct cs_text text = {0};
+    cs_text_add_real(&text, value);
+    ck_assert_str_eq(cs_text_get(&text), expected);
+    cs_text_finish(&text);
+}
+
+START_TEST(reals_are_short) {
+    check_real(0, "0");
+    check_real(-0.0, "-0");
+    check_real(1, "1");
+    check_real(-2.5, "-2.5");
+    check_real(0.1, "0.1");
+    check_real(640, "640");
+    check_real(123456, "123456");
+    check_real(1e6, "1000000");
+    check_real(1e9, "1e+09");
+    check_real(1e-5, "1e-05");
+    check_real(1 / 3.0, "0.3333333333333333");
+    check_real(1 / 60.0, "0.016666666666666666");
+    check_real(HUGE_VAL, "null");
+    check_real((double)NAN, "null");
+}
+END_TEST
+
+/* 100 000 bit patterns from all over the range */
+START_TEST(reals_read_back_the_same) {
+    uint64_t bits = 1;
+    static const double edges[] = {DBL_MIN, DBL_MAX, -DBL_MAX, DBL_EPSILON, 4.9e-324, 1e23};
+    for (size_t k = 0; k < 100000; k++) {
+        double value, back;
+        bits = bits * 6364136223846793005u + 1442695040888963407u;
+        memcpy(&value, &bits, sizeof value);
+        if (k < sizeof edges / sizeof *edges)
+            value = edges[k];
+        if (!isfinite(value))
+            continue;
+        struct cs_text text = {0};
+        cs_text_add_real(&text, value);
+        ck_assert_msg(cs_parse_real(cs_text_get(&text), &back), "%s", cs_text_get(&text));
+        ck_assert_int_eq(memcmp(&back, &value, sizeof value), 0);
+        cs_text_finish(&text);
+    }
+}
+END_TEST
+
+START_TEST(only_whole_finite_numbers_are_read) {
+    static const char *const wrong[] = {"",    " ",   " 1",  "1 ",  "1x",    "0x10",
+                                        "nan", "inf", "1,5", "1e",  "1e999", "--1",
+                                        "+",   ".",   "e5",  "1_0", "1\n",   "-1e400"};
+    double value = 7;
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        ck_assert_msg(!cs_parse_real(wrong[k], &value), "\"%s\" was read", wrong[k]);
+        ck_assert_double_eq(value, 7);
+    }
+    ck_assert(cs_parse_real("-1.5e+3", &value) && value == -1500);
+    ck_assert(cs_parse_real(".5", &value) && value == 0.5);
+    ck_assert(cs_parse_real("+2.", &value) && value == 2);
+}
+END_TEST
+
+START_TEST(text_grows) {
+    struct cs_text text = {0};
+    ck_assert_str_eq(cs_text_get(&text), "");
+    for (int i = 0; i < 5000; i++)
+        cs_text_add(&text, "%d,", i % 10);
+    ck_assert_uint_eq(text.length, 10000);
+    ck_assert_uint_eq(strlen(cs_text_get(&text)), 10000);
+    for (size_t i = 0; i < 5000; i++)
+        ck_assert(text.bytes[2 * i] == (char)('0' + i % 10) && text.bytes[2 * i + 1] == ',');
+    ck_assert(!text.failed);
+    cs_text_finish(&text);
+    ck_assert_str_eq(cs_text_get(&text), "");
+}
+END_TEST
+
+/* a failed text stays as it is */
+START_TEST(failed_text_takes_nothing_more) {
+    struct cs_text text = {.failed = true};
+    cs_text_add(&text, "more");
+    cs_text_add_real(&text, 1);
+    cs_text_add_json(&text, "more");
+    ck_assert_str_eq(cs_text_get(&text), "");
+    cs_text_finish(&text);
+}
+END_TEST
+
+START_TEST(json_strings_are_escaped) {
+    struct cs_text text = {0};
+    cs_text_add_json(&text, "a \"b\" \\ \n\t\x01 \xc3\xa4");
+    ck_assert_str_eq(cs_text_get(&text), "\"a \\\"b\\\" \\\\ \\u000a\\u0009\\u0001 \xc3\xa4\"");
+    cs_text_finish(&text);
+}
+END_TEST
+
+START_TEST(nearest_word_is_found) {
+    static const char *const words[] = {"stretch", "shear", "bend", "damping", NULL};
+    static const struct {
+        const char *word, *nearest;
+    } rows[] = {
+        {"strech", "stretch"}, {"Shear", "shear"}, {"bnd", "bend"}, {"dampnig", "damping"},
+        {"dam", "damping"},    {"colour", NULL},   {"x", NULL},     {"stretch", "stretch"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const char *found = cs_nearest(rows[k].word, words);
+        ck_assert_msg(rows[k].nearest ? found && !strcmp(found, rows[k].nearest) : !found,
+                      "%s: found %s", rows[k].word, found ? found : "none");
+    }
+    // longer than the table of the distance
+    char endless[200];
+    memset(endless, 'a', sizeof endless - 1);
+    endless[sizeof endless - 1] = 0;
+    cs_nearest(endless, words);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {reals_are_short,
+                                  reals_read_back_the_same,
+                                  only_whole_finite_numbers_are_read,
+                                  text_grows,
+                                  failed_text_takes_nothing_more,
+                                  json_strings_are_escaped,
+                                  nearest_word_is_found};
+    return unit_run("text", tests, sizeof tests / sizeof *tests);
+}
