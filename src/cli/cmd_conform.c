@@ -1,0 +1,236 @@
+/* cmd_conform.c - clothsim conform: the card of a method, as text or JSON. */
+#include "base/file.h"
+#include "cli/commands.h"
+#include "cli/print.h"
+#include "sim/registry.h"
+#include "study/conform.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { CONFORM_JSON, CONFORM_LIST, CONFORM_ONLY, CONFORM_PLUGIN, CONFORM_QUIET, CONFORM_ROWS };
+enum { NOTE_COLUMN = 55, METHODS_MAX = 64 };
+
+static const struct cs_arg rows[CONFORM_ROWS] = {
+    [CONFORM_JSON] = {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
+                      false},
+    [CONFORM_LIST] = {"list", 0, NULL, "list the checks", false},
+    [CONFORM_ONLY] = {"only", 0, "CHECK", "one check", false},
+    [CONFORM_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
+                        true},
+    [CONFORM_QUIET] = {"quiet", 'q', NULL, "print only claims that failed, and the count",
+                       false},
+};
+
+/* What is written while the checks run: each is printed as soon as it is done. */
+struct output {
+    const struct cs_args *args;
+    const struct cs_conform *card; /* that is being made */
+    bool text, quiet, first;       /* first: no row is in the JSON yet */
+    struct cs_text json;
+    uint32_t counts[CS_VERDICTS]; /* over all methods */
+};
+
+static bool is_bad(const struct cs_conform_row *row) {
+    return row->verdict == CS_VERDICT_FAIL || row->verdict == CS_VERDICT_STALE;
+}
+
+static void print_row(const struct cs_conform_row *row) {
+    struct cs_text out = {0};
+    char figure[32] = "", bound[32] = "", left[128];
+    struct cs_error ignored = {0};
+    if (!isnan(row->bound)) {
+        snprintf(figure, sizeof figure, "%.3g", row->figure);
+        snprintf(bound, sizeof bound, "<= %.3g", row->bound);
+    }
+    snprintf(left, sizeof left, "%-9s %-20s %10s %-13s", cs_verdict_text(row->verdict),
+             row->check, figure, bound);
+    // one line a check, however long: it is read by programs as well
+    cs_text_add(&out, "%-*s%s%s\n", NOTE_COLUMN, left, row->note,
+                row->verdict == CS_VERDICT_STALE ? " (it is named in fails, and does not fail)"
+                                                 : "");
+    cs_print_out(stdout, &out, &ignored);
+}
+
+static void add_number(struct cs_text *json, const char *key, double value) {
+    if (isfinite(value))
+        cs_text_add(json, ", \"%s\": %.17g", key, value);
+    else
+        cs_text_add(json, ", \"%s\": null", key);
+}
+
+static void add_json(struct output *output, const struct cs_conform_row *row) {
+    struct cs_text *json = &output->json;
+    cs_text_add(json, "%s\n    {\"check\": \"%s\", \"verdict\": \"%s\"",
+                output->first ? "" : ",", row->check, cs_verdict_text(row->verdict));
+    add_number(json, "figure", row->figure);
+    add_number(json, "bound", row->bound);
+    cs_text_add(json, ", \"note\": ");
+    cs_text_add_json(json, row->note);
+    cs_text_add(json, "}");
+    output->first = false;
+}
+
+static const char *fidelity_text(uint32_t fidelity) {
+    static const char *const texts[] = {"ODE", "implicit Euler in its limit", "consistent only",
+                                        "another model"};
+    return fidelity < sizeof texts / sizeof *texts ? texts[fidelity] : "unknown";
+}
+
+static void print_head(const struct cs_conform *card) {
+    const struct cs_integrator *method = card->method;
+    printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
+           card->settings ? ":" : "", card->settings ? card->settings : "", method->order,
+           method->order_damped, fidelity_text(method->fidelity));
+}
+
+static void report(void *ctx, const struct cs_conform_row *row) {
+    struct output *output = ctx;
+    if (output->text && output->first)
+        print_head(output->card);
+    if (output->text && (!output->quiet || is_bad(row)))
+        print_row(row);
+    add_json(output, row);
+}
+
+/* The card of one method; settings: what stands behind its name. */
+static enum cs_status print_card(struct output *output, struct cs_registry *registry,
+                                 const struct cs_integrator *method, const char *settings,
+                                 struct cs_error *error) {
+    const struct cs_registered *euler = NULL;
+    struct cs_error ignored = {0};
+    if (method->fidelity != CS_FIDELITY_ODE)
+        cs_registry_find(registry, "backward-euler", &euler, &ignored);
+    struct cs_conform card = {
+        .method = method,
+        .settings = settings,
+        .implicit_euler = euler ? euler->integrator : NULL,
+        .only = cs_args_get(output->args, CONFORM_ONLY),
+        .report = report,
+        .ctx = output,
+    };
+    output->card = &card;
+    cs_text_add(&output->json, "%s\n  {\"integrator\": \"%s\", \"settings\": ",
+                output->json.length > 1 ? "," : "", method->name);
+    cs_text_add_json(&output->json, settings ? settings : "");
+    cs_text_add(&output->json, ", \"checks\": [");
+    output->first = true;
+    cs_conform_check(&card, error);
+    output->card = NULL;
+    cs_text_add(&output->json, "]}");
+    for (int k = 0; k < CS_VERDICTS; k++)
+        output->counts[k] += card.counts[k];
+    return error->status;
+}
+
+static bool is_file(const char *operand) {
+    const size_t length = strlen(operand);
+    return strchr(operand, '/') || (length > 3 && !strcmp(operand + length - 3, ".so"));
+}
+
+/* Every method of a module file. */
+static enum cs_status print_file(struct output *output, struct cs_registry *registry,
+                                 const char *file, struct cs_error *error) {
+    const struct cs_integrator *methods[METHODS_MAX];
+    const uint32_t before = registry->n;
+    if (cs_registry_add_file(registry, file, error))
+        return error->status;
+    // taken down first: the search for another one may sort the entries
+    uint32_t n = 0;
+    for (uint32_t k = before; k < registry->n && n < METHODS_MAX; k++)
+        methods[n++] = registry->entries[k].integrator;
+    for (uint32_t k = 0; k < n && !error->status; k++)
+        print_card(output, registry, methods[k], NULL, error);
+    return error->status;
+}
+
+/* NAME or NAME:key=value,... */
+static enum cs_status print_named(struct output *output, struct cs_registry *registry,
+                                  const char *operand, struct cs_error *error) {
+    char name[64];
+    const size_t length = strcspn(operand, ":");
+    const struct cs_registered *found;
+    snprintf(name, sizeof name, "%.*s", (int)length, operand);
+    if (cs_registry_find(registry, name, &found, error))
+        return error->status;
+    return print_card(output, registry, found->integrator,
+                      operand[length] ? operand + length + 1 : NULL, error);
+}
+
+static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *registry,
+                                  struct cs_error *error) {
+    const char *const *files;
+    uint32_t n;
+    if (cs_args_all(args, CONFORM_PLUGIN, &files, &n, error))
+        return error->status;
+    for (uint32_t i = 0; i < n; i++)
+        if (cs_registry_add_file(registry, files[i], error))
+            return error->status;
+    return CS_OK;
+}
+
+/* The JSON where it was asked for, and the count. */
+static enum cs_status finish(struct output *output, struct cs_error *error) {
+    const char *file = cs_args_get(output->args, CONFORM_JSON);
+    cs_text_add(&output->json, "\n]\n");
+    if (output->text)
+        printf("%u pass, %u fail, %u expected, %u stale, %u not applicable\n",
+               output->counts[CS_VERDICT_PASS], output->counts[CS_VERDICT_FAIL],
+               output->counts[CS_VERDICT_EXPECTED], output->counts[CS_VERDICT_STALE],
+               output->counts[CS_VERDICT_NONE]);
+    if (file && output->json.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the JSON");
+    else if (file && strcmp(file, "-") != 0)
+        cs_file_write(file, cs_text_get(&output->json), output->json.length, error);
+    else if (file)
+        fputs(cs_text_get(&output->json), stdout);
+    const uint32_t bad = output->counts[CS_VERDICT_FAIL] + output->counts[CS_VERDICT_STALE];
+    if (bad > 0)
+        cs_fail(error, CS_ERR_CHECK, "%u claim%s failed", bad, bad == 1 ? "" : "s");
+    return error->status;
+}
+
+static enum cs_status print_list(struct cs_error *error) {
+    struct cs_text out = {0};
+    cs_conform_print_checks(&out);
+    return cs_print_out(stdout, &out, error);
+}
+
+static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
+    const char *file = cs_args_get(args, CONFORM_JSON);
+    struct cs_registry registry = {0};
+    struct output output = {.args = args,
+                            .text = !file || strcmp(file, "-") != 0,
+                            .quiet = cs_args_get(args, CONFORM_QUIET)};
+    if (cs_args_get(args, CONFORM_LIST))
+        return print_list(error);
+    if (args->n_operands == 0)
+        return cs_fail(error, CS_ERR_USAGE, "expected an integrator or a module file");
+    cs_text_add(&output.json, "[");
+    add_plugins(args, &registry, error);
+    for (uint32_t k = 0; k < args->n_operands && !error->status; k++) {
+        if (is_file(args->operands[k]))
+            print_file(&output, &registry, args->operands[k], error);
+        else
+            print_named(&output, &registry, args->operands[k], error);
+    }
+    if (!error->status)
+        finish(&output, error);
+    cs_text_finish(&output.json);
+    cs_registry_finish(&registry);
+    return error->status;
+}
+
+const struct cs_command cs_command_conform = {
+    .name = "conform",
+    .operands = "NAME[:OPTIONS]|FILE.so ...",
+    .summary = "measure what an integrator claims: its conformance card",
+    .notes =
+        "A claim that fails is expected where the integrator's descriptor names the check.\n",
+    .rows = rows,
+    .n_rows = CONFORM_ROWS,
+    .least = 0,
+    .most = 64,
+    .main = conform,
+};

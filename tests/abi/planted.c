@@ -1,0 +1,194 @@
+/* planted.c - symplectic Euler with one thing wrong: PLANT says which. Each is a module of its
+ * own, for the tests of what clothsim refuses and of what its conformance card finds. */
+#include <clothsim/integrator.h>
+#include <math.h>
+#include <stdlib.h>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+enum plant {
+    /* against the contract: refused, or ended with a message */
+    WRONG_ABI,
+    SMALL_STRUCTS,
+    NO_INTEGRATORS,
+    NO_ADVANCE,
+    DEFAULT_OUTSIDE,
+    OPTION_OUTSIDE,
+    BAD_NAME,
+    NO_SYMBOL,
+    CRASHES,
+    ABORTS,
+    FAILS_SILENTLY,
+    RETURNS_NAN,
+    FLUSHES_AT_LOAD,
+    FLUSHES_IN_ADVANCE,
+    /* against its own claims: found by the card */
+    NOTHING_WRONG,
+    WRONG_ORDER,
+    LEAKS_MOMENTUM,
+    TAKES_MEMORY,
+    KEEPS_MEMORY,
+    MOVES_PINS,
+    COUNTS_RUNS,
+    STALE_CLAIM,
+    UNKNOWN_CHECK,
+    FORGETS_COMMIT,
+    IGNORES_FAILURE
+};
+
+struct options {
+    double dt;
+};
+
+struct planted {
+    const struct cs_host *host;
+    double dt, *f; /* (3,n) in N */
+    double *b, *u; /* (3,n) of IGNORES_FAILURE */
+};
+
+static const struct cs_option rows[] = {
+    {.name = "dt",
+     .unit = "s",
+     .help = "longest step",
+     .type = CS_REAL,
+     .count = 1,
+     .offset = PLANT == OPTION_OUTSIDE ? 4 : 0,
+     .def = PLANT == DEFAULT_OUTSIDE ? 20 : 1e-3,
+     .min = 1e-9,
+     .max = 10},
+};
+
+static unsigned runs; /* of COUNTS_RUNS: nothing may be kept from run to run */
+
+static void flush_to_zero(void) {
+#if defined(__SSE2__)
+    _mm_setcsr(_mm_getcsr() | 0x8040u);
+#endif
+}
+
+__attribute__((constructor)) static void loaded(void) {
+    if (PLANT == FLUSHES_AT_LOAD)
+        flush_to_zero();
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    int *volatile nowhere = NULL;
+    if (PLANT == CRASHES)
+        *nowhere = 1;
+    if (PLANT == ABORTS)
+        abort();
+    if (PLANT == FAILS_SILENTLY)
+        return CS_STEP_FAIL;
+    struct planted *self = host->alloc(host->ctx, sizeof *self);
+    const size_t length = 3 * (size_t)host->view->n;
+    if (!self || !(self->f = host->alloc(host->ctx, 3 * length * sizeof *self->f)))
+        return CS_STEP_FAIL;
+    self->b = self->f + length;
+    self->u = self->b + length;
+    *out = self;
+    self->host = host;
+    self->dt = ((const struct options *)options)->dt;
+    runs++;
+    return CS_STEP_OK;
+}
+
+static enum cs_step restart(void *self, double t, const double *x, const double *v) {
+    (void)self, (void)t, (void)x, (void)v;
+    return CS_STEP_OK;
+}
+
+/* f = M u with M u = f, and nobody looks whether u was found */
+static void solve(struct planted *self, double t, const double *x, const double *v) {
+    const struct cs_host *host = self->host;
+    const uint32_t n = host->view->n;
+    for (uint32_t k = 0; k < 3 * n; k++) {
+        self->b[k] = self->f[k];
+        self->u[k] = 0;
+    }
+    host->solve_setup(host->ctx, t, x, v, 1, 0, 0, 0);
+    host->solve(host->ctx, self->b, 1e-14, self->u);
+    for (uint32_t k = 0; k < 3 * n; k++)
+        self->f[k] = self->u[k] * host->view->mass[k % n];
+}
+
+static void step(struct planted *self, double t, double h, double *x, double *v) {
+    const struct cs_host *host = self->host;
+    const uint32_t n = host->view->n;
+    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    if (PLANT == IGNORES_FAILURE)
+        solve(self, t, x, v);
+    for (uint32_t k = 0; k < 3 * n; k++) {
+        v[k] += h * self->f[k] * host->view->inv_mass[k % n];
+        if (PLANT == LEAKS_MOMENTUM)
+            v[k] *= 1 - 1e-4 * h;
+        x[k] += h * v[k];
+    }
+    for (uint32_t i = 0; PLANT == MOVES_PINS && i < n; i++)
+        x[i] += host->view->inv_mass[i] > 0 ? 0 : 1e-12;
+    if (PLANT == RETURNS_NAN)
+        x[0] = (double)NAN;
+    if (PLANT == COUNTS_RUNS)
+        x[0] += 1e-12 * runs;
+}
+
+/* volatile: a compiler may not leave the pair out */
+static void use_memory(void) {
+    void *volatile memory = malloc(200);
+    if (PLANT != KEEPS_MEMORY)
+        free(memory);
+}
+
+static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
+    struct planted *self = object;
+    const double n = ceil((t1 - t0) / self->dt * (1 - 1e-9)), h = (t1 - t0) / n;
+    enum cs_step status = CS_STEP_OK;
+    for (double i = 0; i < n && status == CS_STEP_OK; i++) {
+        const double end = i + 1 < n ? t0 + (i + 1) * h : t1;
+        bool changed;
+        step(self, t0 + i * h, h, x, v);
+        if (PLANT == TAKES_MEMORY || PLANT == KEEPS_MEMORY)
+            use_memory();
+        if (PLANT != FORGETS_COMMIT)
+            status = self->host->commit(self->host->ctx, end, h, x, v, &changed);
+    }
+    if (PLANT == FLUSHES_IN_ADVANCE)
+        flush_to_zero();
+    return status;
+}
+
+static const char *const fails[] = {PLANT == UNKNOWN_CHECK ? "free-fal" : "pins", NULL};
+
+static const struct cs_integrator planted = {
+    .size = sizeof planted,
+    .name = PLANT == BAD_NAME ? "Planted!" : "planted",
+    .summary = "symplectic Euler with one thing wrong",
+    .source = "tests",
+    .order = PLANT == WRONG_ORDER ? 2 : 1,
+    .order_damped = 1,
+    .needs = PLANT == IGNORES_FAILURE ? CS_NEED_SOLVE : 0,
+    .traits = CS_SYMPLECTIC,
+    .fidelity = CS_FIDELITY_ODE,
+    .fails = PLANT == STALE_CLAIM || PLANT == UNKNOWN_CHECK ? fails : NULL,
+    .options = rows,
+    .n_options = 1,
+    .options_size = sizeof(struct options),
+    .create = create,
+    .restart = restart,
+    .advance = PLANT == NO_ADVANCE ? NULL : advance,
+};
+
+static const struct cs_integrator *const all[] = {&planted};
+
+#ifdef HIDDEN
+#define SYMBOL hidden_module
+#else
+#define SYMBOL clothsim_module
+#endif
+CS_EXPORT const struct cs_module SYMBOL = {
+    .abi = PLANT == WRONG_ABI ? CS_ABI + 1 : CS_ABI,
+    .size = PLANT == SMALL_STRUCTS ? 16 : sizeof(struct cs_integrator),
+    .n = PLANT == NO_INTEGRATORS ? 0 : 1,
+    .integrators = all,
+};
