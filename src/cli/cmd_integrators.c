@@ -26,6 +26,21 @@ static const struct {
     {CS_NOT_GALILEAN, "not Galilean"},
 };
 
+/* what the method's result is, in the words of clothsim-integrator(7) */
+static const char *fidelity_text(uint32_t fidelity) {
+    switch ((enum cs_fidelity)fidelity) {
+    case CS_FIDELITY_ODE:
+        return "converges to the equation of motion";
+    case CS_FIDELITY_IMPLICIT_EULER:
+        return "implicit Euler as its iterations grow";
+    case CS_FIDELITY_CONSISTENT:
+        return "meets the equation of motion only as the step goes to 0";
+    case CS_FIDELITY_OTHER:
+        return "another model: no error against the equation of motion";
+    }
+    return "unknown";
+}
+
 static void add_traits(uint32_t given, const char *before, struct cs_text *out) {
     for (uint32_t i = 0; i < sizeof traits / sizeof *traits; i++)
         if (given & traits[i].trait) {
@@ -126,6 +141,13 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
     cs_print_hanging("source", integrator->source, DETAIL_COLUMN, &out);
     cs_print_hanging("order", cs_text_get(&order), DETAIL_COLUMN, &out);
     cs_print_hanging("traits", list.length ? cs_text_get(&list) : "none", DETAIL_COLUMN, &out);
+    cs_print_hanging("fidelity", fidelity_text(integrator->fidelity), DETAIL_COLUMN, &out);
+    struct cs_text fails = {0};
+    for (const char *const *check = integrator->fails; check && *check; check++)
+        cs_text_add(&fails, "%s%s", fails.length ? ", " : "", *check);
+    if (fails.length)
+        cs_print_hanging("fails", cs_text_get(&fails), DETAIL_COLUMN, &out);
+    cs_text_finish(&fails);
     cs_print_hanging("module", found->file, DETAIL_COLUMN, &out);
     cs_text_finish(&order);
     cs_text_finish(&list);

@@ -8,5 +8,10 @@ extern const struct cs_command cs_command_run;
 extern const struct cs_command cs_command_integrators;
 extern const struct cs_command cs_command_scene;
 extern const struct cs_command cs_command_golden;
+extern const struct cs_command cs_command_conform;
+extern const struct cs_command cs_command_stability;
+extern const struct cs_command cs_command_advise;
+extern const struct cs_command cs_command_compare;
+extern const struct cs_command cs_command_plot;
 
 #endif

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 void cs_progress_begin(struct cs_progress *progress, bool quiet) {
-    *progress = (struct cs_progress){.shown = !quiet && isatty(STDERR_FILENO)};
+    *progress = (struct cs_progress){.shown = !quiet && isatty(STDERR_FILENO), .what = "frame"};
     progress->start = progress->last = cs_clock_wall();
 }
 
@@ -25,7 +25,7 @@ void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t tota
         return;
     const double left = (now - progress->start) / done * (total - done);
     char line[80];
-    snprintf(line, sizeof line, "frame %u of %u, %u %%, %.0f:%02u left", done, total,
+    snprintf(line, sizeof line, "%s %u of %u, %u %%, %.0f:%02u left", progress->what, done, total,
              (uint32_t)(100.0 * done / total), (left - (uint32_t)left % 60) / 60,
              (uint32_t)left % 60);
     write_line(progress, line);

@@ -7,6 +7,7 @@
 
 struct cs_progress {
     bool shown;         /* stderr is a terminal, and nobody asked for quiet */
+    const char *what;   /* is counted: "frame" */
     double start, last; /* s */
     int width;          /* of the line that is there */
 };

@@ -1,6 +1,7 @@
 #include "cli/run_job.h"
 
 #include "base/clock.h"
+#include "base/file.h"
 #include "base/options.h"
 #include "cli/print.h"
 #include "cli/progress.h"
@@ -58,6 +59,8 @@ static enum cs_status check_outputs(const struct cs_job_settings *settings,
         return error->status;
     if (settings->json && strcmp(settings->json, "-") &&
         cs_output_check_file(settings->json, error))
+        return error->status;
+    if (settings->watch && cs_output_check_file(settings->watch, error))
         return error->status;
     return cs_output_check(settings->states, true, error);
 }
@@ -158,6 +161,37 @@ static enum cs_status print_hash(uint32_t number, const char *hash, struct cs_er
     return cs_print_out(stdout, &line, error);
 }
 
+/* Looks whether the run is still sound, and keeps the row for --watch. */
+static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
+    struct cs_watch_row row;
+    cs_watch_look(&job->watch, &job->session.run, &row);
+    if (!job->settings->watch)
+        return CS_OK;
+    cs_watch_print_row(&row, job->session.run.frame, &job->watch_rows);
+    if (job->watch_rows.failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for --watch");
+    return CS_OK;
+}
+
+static enum cs_status begin_watch(struct cs_job *job, struct cs_error *error) {
+    if (cs_watch_begin(&job->watch, &job->session.run, error))
+        return error->status;
+    if (job->settings->watch)
+        cs_watch_print_head(&job->watch_rows);
+    return watch_frame(job, error);
+}
+
+/* Also of a run that failed: its last rows say how. */
+static void write_watch(struct cs_job *job, struct cs_error *error) {
+    struct cs_error failure = {0};
+    if (!job->settings->watch || job->watch_rows.failed)
+        return;
+    cs_file_write(job->settings->watch, job->watch_rows.bytes, job->watch_rows.length,
+                  &failure);
+    if (!error->status)
+        *error = failure;
+}
+
 /* Everything that one finished frame leaves behind. */
 static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
@@ -166,6 +200,8 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
     struct cs_job_frame frame = {0};
     cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
     memcpy(frame.hash, job->hash, sizeof frame.hash);
+    if (watch_frame(job, error))
+        return error->status;
     if (settings->states &&
         cs_output_state(settings->states, run->frame, run->x, run->v, n, error))
         return error->status;
@@ -205,7 +241,9 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
     if (settings->states && cs_output_state(settings->states, 0, run->x, run->v, n, error))
         return error->status;
-    run_frames(job, error);
+    if (!begin_watch(job, error))
+        run_frames(job, error);
+    write_watch(job, error);
     /* the first failure wins: a later one of the writer changes nothing */
     if (job->writer)
         cs_frames_finish(job->writer, &job->encode_seconds, error);
@@ -220,6 +258,7 @@ void cs_job_finish(struct cs_job *job) {
     cs_text_finish(&job->scene);
     cs_text_finish(&job->method);
     cs_text_finish(&job->renderer);
+    cs_text_finish(&job->watch_rows);
     free(job->kept);
     *job = (struct cs_job){0};
 }

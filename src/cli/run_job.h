@@ -7,12 +7,14 @@
 #include "io/frames.h"
 #include "study/picture.h"
 #include "study/session.h"
+#include "study/watch.h"
 
 struct cs_job_settings {
     struct cs_session_settings session;
     uint32_t frames;                    /* 0: one second of them */
     uint32_t every;                     /* draw each so-many-th frame */
     const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
+    const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
     int gl;                             /* enum cs_gl */
     uint32_t level;                     /* zlib */
     bool fast, hash, overwrite, quiet;
@@ -34,6 +36,8 @@ struct cs_job {
     uint32_t frames;           /* asked for */
     struct cs_job_frame *kept; /* (run.frame), owned; only where JSON is written */
     size_t kept_capacity;
+    struct cs_watch watch;           /* is it still sound */
+    struct cs_text watch_rows;       /* CSV; empty unless asked for */
     struct cs_text scene;            /* the resolved scene, indented by two */
     struct cs_text method;           /* "NAME:key=value,..." with every option */
     struct cs_text renderer;         /* description; empty unless pictures are drawn */

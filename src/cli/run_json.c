@@ -40,6 +40,12 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
         add_real(out, ", \"bound\": ", run->blow_up.bound);
         cs_text_add(out, "}");
     }
+    cs_text_add(out, ",\n  \"verdict\": \"%s\"", cs_fate_word(job->watch.worst));
+    if (job->watch.found) {
+        add_real(out, ",\n  \"unstable_from\": {\"time\": ", job->watch.first.t);
+        cs_text_add(out, ", \"particle\": %u, \"particles\": %u}", job->watch.first.particle,
+                    job->watch.first.particles);
+    }
     cs_text_add(out, ",\n  \"frames_asked\": %u,\n  \"frames_done\": %u", job->frames,
                 run->frame);
     add_real(out, ",\n  \"time\": ", run->t);

@@ -59,6 +59,15 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
     cs_text_finish(&outcome);
 }
 
+/* Only where the watch has something to say. */
+static void add_watch(const struct cs_job *job, struct cs_text *out) {
+    struct cs_text found = {0};
+    cs_watch_print(&job->watch, &job->session.system, &found);
+    if (found.length)
+        cs_print_hanging("watch", cs_text_get(&found), VALUE_COLUMN, out);
+    cs_text_finish(&found);
+}
+
 /* Only what was at work has a row. */
 static void add_counts(const struct cs_job *job, struct cs_text *out) {
     const struct cs_counts *c = &job->session.run.counts;
@@ -118,6 +127,7 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     add_row(out, "scene", "%s", job->session.scene.path);
     cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
     add_frames(job, out);
+    add_watch(job, out);
     add_counts(job, out);
     add_measures(job, out);
     if (job->settings->session.timed)

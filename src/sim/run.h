@@ -83,9 +83,9 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
  * clock is read between steps and never reaches the state. */
 void cs_run_set_budget(struct cs_run *run, double cpu_seconds);
 
-/* Steps to the next frame, t = (frame + 1) / fps. A blow-up, an interrupt or an end of the budget sets run->outcome
- * and returns CS_OK with run->frame as it was. CS_ERR_MODULE: the method failed; the message
- * says where and why. */
+/* Steps to the next frame, t = (frame + 1) / fps. A blow-up, an interrupt or an end of the
+ * budget sets run->outcome and returns CS_OK with run->frame as it was. CS_ERR_MODULE: the
+ * method failed; the message says where and why. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);
 
 void cs_run_finish(struct cs_run *run);

@@ -23,7 +23,7 @@ struct cs_golden_row {
     struct cs_golden_run run;
     char *line;  /* the fields above point into it */
     char *hash;  /* of the state (hash.tsv) or of the pixels (image.tsv) */
-    char *note;  /* builds ("any", "sundials") or the image's renderer */
+    char *note;  /* builds ("any", or the library that is needed) or the image's renderer */
     char *image; /* name of the picture; NULL in hash.tsv */
     char found[CS_HASH_DIGITS], renderer[256];
     struct cs_text message; /* what differs; empty: nothing */

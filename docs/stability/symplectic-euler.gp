@@ -1,0 +1,26 @@
+# gnuplot symplectic-euler.gp
+set terminal pngcairo size 1280,760 font 'sans,13' background '#ffffff'
+set output 'symplectic-euler.png'
+set datafile separator ','
+set title "symplectic-euler: which steps survive, scenes/hang.json\n0.5 s of motion a cell" font 'sans,16' noenhanced
+set xlabel 'stiffness  [N/m]'
+set ylabel 'dt  [s]' offset 1,0
+set logscale xy
+set format y '10^{%T}'
+set format x '10^{%T}'
+set tics out nomirror
+set mxtics 10
+set mytics 10
+set border 3 lc rgb '#555555'
+set key outside right top Left reverse spacing 1.35 samplen 2.2 width -2
+set style fill solid 1.0 border lc rgb '#ffffff'
+set xrange [5.62341:177828]
+set yrange [6.35326e-06:0.0361838]
+plot \
+  'symplectic-euler.csv' using 1:($4==0?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#9fd3b5' title 'bounded', \
+  'symplectic-euler.csv' using 1:($4==3?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#e8825a' title 'global instability', \
+  'symplectic-euler_border.csv' using 1:5 every ::1 with lines lw 2 dt (4,4) lc rgb '#6b7078' title 'theory: row sums', \
+  'symplectic-euler_border.csv' using 1:4 every ::1 with lines lw 2 dt (10,5) lc rgb '#23262b' title 'theory: at the start', \
+  'symplectic-euler_border.csv' using 1:3 every ::1 with lines lw 3 lc rgb '#23262b' title 'theory: worst on the way', \
+  'symplectic-euler_border.csv' using 1:2 every ::1 with points pt 7 ps 1.5 lc rgb '#23262b' title 'border, bisected', \
+  'symplectic-euler_border.csv' using 1:2 every ::1 with points pt 7 ps 0.9 lc rgb '#ffffff' notitle ''

@@ -1,0 +1,233 @@
+/* cmd_compare.c - clothsim compare: error against cost of methods on a scene. */
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/print.h"
+#include "cli/progress.h"
+#include "study/compare_report.h"
+#include "study/compare_sheet.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    COMPARE_INTEGRATORS,
+    COMPARE_TIME,
+    COMPARE_SET,
+    COMPARE_PLUGIN,
+    COMPARE_OUT,
+    COMPARE_RUNS,
+    COMPARE_BUDGET,
+    COMPARE_ACCURACY,
+    COMPARE_REFERENCE,
+    COMPARE_CACHE,
+    COMPARE_FRESH,
+    COMPARE_PICTURES,
+    COMPARE_GL,
+    COMPARE_QUIET,
+    COMPARE_ROWS
+};
+
+static const struct cs_arg rows[COMPARE_ROWS] = {
+    [COMPARE_INTEGRATORS] = {"integrators", 'i', "LIST",
+                             "methods, NAME:KEY=VALUE,KEY=LOW..HIGH,NAME...; dt and rtol may "
+                             "be ranges (default: all methods)",
+                             false},
+    [COMPARE_TIME] = {"time", 't', "SECONDS", "simulated time (default: 0.5)", false},
+    [COMPARE_SET] = {"set", 's', "PATH=VALUE",
+                     "another value for a key of the scene; may be repeated", true},
+    [COMPARE_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
+                        true},
+    [COMPARE_OUT] = {"out", 'o', "DIR",
+                     "folder of compare.csv, compare.json, compare.md and the diagrams "
+                     "(default: compare)",
+                     false},
+    [COMPARE_RUNS] = {"runs", 0, "N", "timed runs of each cell, at least (default: 5)", false},
+    [COMPARE_BUDGET] = {"budget", 0, "SECONDS",
+                        "processor time that one run may take (default: 0.25)", false},
+    [COMPARE_ACCURACY] = {"accuracy", 0, "METRES",
+                          "error that must still mean something (default: 1e-6)", false},
+    [COMPARE_REFERENCE] = {"reference", 0, "NAME:KEY=VALUE,...",
+                           "method of the reference; give two of different families", true},
+    [COMPARE_CACHE] = {"cache", 0, "DIR", "where references are kept (default: DIR of -o)",
+                       false},
+    [COMPARE_FRESH] = {"fresh", 0, NULL, "measure anew what an earlier compare.csv holds",
+                       false},
+    [COMPARE_PICTURES] = {"pictures", 0, NULL,
+                          "draw the last frame of the methods at equal step and at equal cost, "
+                          "coloured by their error",
+                          false},
+    [COMPARE_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
+    [COMPARE_QUIET] = {"quiet", 'q', NULL, "no progress and no rows, only the verdict", false},
+};
+
+/* What the calls from within a comparison need. */
+struct screen {
+    struct cs_compare compare;
+    struct cs_progress progress;
+    bool quiet;
+    struct cs_error error; /* of printing */
+};
+
+static void show(struct screen *screen, struct cs_text *text) {
+    cs_progress_end(&screen->progress);
+    cs_print_out(stdout, text, &screen->error);
+}
+
+static void show_reference(void *ctx, uint32_t done, uint32_t total, const char *what) {
+    struct screen *screen = ctx;
+    (void)what;
+    screen->progress.what = "reference, run";
+    cs_progress_show(&screen->progress, done, total);
+    if (done == total)
+        cs_progress_end(&screen->progress);
+}
+
+static void show_begin(void *ctx) {
+    struct screen *screen = ctx;
+    struct cs_text text = {0};
+    cs_table_add_reference(&screen->compare, &text);
+    if (!screen->quiet) {
+        cs_text_add(&text, "\n");
+        cs_table_add_head(&text);
+    }
+    show(screen, &text);
+    cs_progress_begin(&screen->progress, screen->quiet);
+    screen->progress.what = "cell";
+}
+
+static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
+    struct screen *screen = ctx;
+    struct cs_text text = {0};
+    if (screen->quiet)
+        return;
+    cs_table_add_row(cell, &text);
+    show(screen, &text);
+    if (!taken)
+        cs_progress_show(&screen->progress, screen->compare.done, screen->compare.sweep.n);
+}
+
+static enum cs_status read_real(const struct cs_args *args, uint32_t row, double *value,
+                                struct cs_error *error) {
+    const char *text = cs_args_get(args, row);
+    if (text && (!cs_parse_real(text, value) || !(*value > 0)))
+        return cs_fail(error, CS_ERR_USAGE, "--%s: expected a number above 0, found \"%.60s\"",
+                       rows[row].name, text);
+    return CS_OK;
+}
+
+static enum cs_status read_reference(struct cs_args *args, struct cs_compare_settings *settings,
+                                     struct cs_error *error) {
+    const char *const *methods;
+    uint32_t n;
+    if (cs_args_all(args, COMPARE_REFERENCE, &methods, &n, error))
+        return error->status;
+    if (n != 0 && n != 2)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--reference: found %u, expected two methods of different families", n);
+    for (uint32_t k = 0; k < n; k++)
+        settings->reference[k] = methods[k];
+    return CS_OK;
+}
+
+/* Whole frames that cover the time. */
+static enum cs_status read_frames(const struct cs_args *args,
+                                  struct cs_compare_settings *settings,
+                                  struct cs_error *error) {
+    double seconds = 0.5;
+    struct cs_session session;
+    struct cs_session_settings asked = settings->course.session;
+    asked.integrator = "velocity-verlet";
+    if (read_real(args, COMPARE_TIME, &seconds, error) ||
+        cs_session_open_plan(&session, &asked, error))
+        return error->status;
+    const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
+    if (!(frames <= 1e6))
+        cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
+    settings->course.frames = (uint32_t)frames;
+    cs_session_close(&session);
+    return error->status;
+}
+
+static enum cs_status read_settings(struct cs_args *args, struct cs_compare_settings *settings,
+                                    struct cs_error *error) {
+    const char *folder = cs_args_get(args, COMPARE_OUT),
+               *cache = cs_args_get(args, COMPARE_CACHE);
+    struct cs_session_settings *session = &settings->course.session;
+    *settings = (struct cs_compare_settings){
+        .methods = cs_args_get(args, COMPARE_INTEGRATORS),
+        .accuracy = 1e-6,
+        .budget = 0.25,
+        .runs = 5,
+        .folder = folder ? folder : "compare",
+        .fresh = cs_args_get(args, COMPARE_FRESH),
+    };
+    settings->cache = cache ? cache : settings->folder;
+    session->scene = args->operands[0];
+    session->stop = cs_interrupt_catch();
+    if (cs_args_whole(args, COMPARE_RUNS, 1, 100, &settings->runs, error) ||
+        read_real(args, COMPARE_BUDGET, &settings->budget, error) ||
+        read_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||
+        read_reference(args, settings, error) ||
+        cs_args_overrides(args, COMPARE_SET, &session->overrides, &session->n_overrides,
+                          error) ||
+        cs_args_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error))
+        return error->status;
+    return read_frames(args, settings, error);
+}
+
+static enum cs_status print_verdict(struct screen *screen, struct cs_error *error) {
+    struct cs_ranking ranking;
+    struct cs_text text = {0};
+    if (cs_ranking_make(&ranking, &screen->compare, error))
+        return error->status;
+    cs_text_add(&text, "\n");
+    cs_table_add_methods(&screen->compare, &text);
+    cs_text_add(&text, "\n");
+    cs_ranking_print(&ranking, "", &screen->compare, &text);
+    cs_compare_warn(&screen->compare, "warning: ", &text);
+    cs_ranking_finish(&ranking);
+    return cs_print_out(stdout, &text, error);
+}
+
+static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
+    struct cs_compare_settings settings;
+    struct screen screen = {.quiet = cs_args_get(args, COMPARE_QUIET)};
+    int gl = CS_GL_AUTO;
+    if (read_settings(args, &settings, error) ||
+        cs_args_choice(args, COMPARE_GL, cs_gl_names, &gl, error))
+        return error->status;
+    settings.reference_progress = show_reference;
+    settings.begun = show_begin;
+    settings.row = show_row;
+    settings.ctx = &screen;
+    cs_progress_begin(&screen.progress, screen.quiet);
+    if (!cs_compare_run(&screen.compare, &settings, error)) {
+        cs_progress_end(&screen.progress);
+        if (!cs_compare_write_report(&screen.compare, error) &&
+            !print_verdict(&screen, error) && cs_args_get(args, COMPARE_PICTURES))
+            cs_sheet_write(&screen.compare, (enum cs_gl)gl, error);
+    }
+    cs_progress_end(&screen.progress);
+    cs_compare_finish(&screen.compare);
+    return error->status ? error->status
+           : screen.error.status
+               ? cs_fail(error, screen.error.status, "%s", screen.error.message)
+               : CS_OK;
+}
+
+const struct cs_command cs_command_compare = {
+    .name = "compare",
+    .operands = "SCENE",
+    .summary = "error against run time of integrators on a scene",
+    .notes =
+        "Rows are kept in compare.csv as they finish: an interrupted comparison goes on\n"
+        "when it is run again. Contact, strain limit and velocity loss are switched off.\n\n"
+        "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
+    .rows = rows,
+    .n_rows = COMPARE_ROWS,
+    .least = 1,
+    .most = 1,
+    .main = compare,
+};

@@ -1,0 +1,65 @@
+/* compare_cell.h - one row of a comparison: a method at one step or tolerance, and its end. */
+#ifndef CS_CELL_H
+#define CS_CELL_H
+
+#include "base/status.h"
+#include "base/text.h"
+#include "sim/run.h"
+
+/* Numbers that do not apply are NAN: an error beyond the horizon, an order that is not steady.
+ */
+struct cs_cell {
+    char method[64];
+    char options[192]; /* "dt=0.001", as behind the method's name; "" where nothing is set */
+    char control[16];  /* "dt", "rtol", or "" */
+    char
+        outcome[48]; /* "finished", "blew up: not finite", "over budget", "failed", "refused" */
+    char note[240];  /* the method's reason, or its remarks */
+    char key[40];    /* hash of everything that the row depends on */
+    char family[24]; /* see cs_family_names */
+    bool adaptive;
+    double value;                      /* of control */
+    double step;                       /* mean length of an internal step in s */
+    double time;                       /* reached, in s */
+    double error, max_error;           /* m at the end: mass-weighted RMS, largest */
+    double path_error, max_path_error; /* m over all frames */
+    double velocity_error;             /* m/s at the end, mass-weighted RMS */
+    double energy_error; /* largest |E - E_ref| over frames / largest kinetic energy */
+    double centre_error, box_error; /* m, largest over frames: centre of mass, bounding box */
+    double strain;                  /* largest over frames */
+    double bar;                     /* m, error of the reference itself */
+    double order;                   /* slope from the row before, where it is steady */
+    double achieved;                /* error / rtol of an adaptive method */
+    double work; /* force evaluations, Jacobian products and solver iterations */
+    double evals, jvps, solves, iterations, setups, steps, rejected, newton, clamped;
+    double cpu, cpu_low, cpu_high; /* s: median and quartiles */
+    double wall;                   /* s, median */
+    double runs, outliers;         /* timed ones; those far above the median */
+};
+
+enum cs_cell_type { CS_CELL_TEXT, CS_CELL_NUMBER, CS_CELL_FLAG };
+
+/* A column of compare.csv; every writer and the reader work by this table. */
+struct cs_column {
+    const char *name;  /* as in the file */
+    const char *label; /* of an axis, with its unit; NULL: cannot be drawn */
+    enum cs_cell_type type;
+    size_t offset, size;
+};
+extern const struct cs_column cs_columns[];
+extern const uint32_t cs_n_columns;
+
+/* Kinds of methods, closed by NULL: in the order of the legend. */
+extern const char *const cs_family_names[];
+const char *cs_family_of(const struct cs_integrator *integrator);
+
+const struct cs_column *cs_column_find(const char *name);
+/* Names of the columns that can be drawn, closed by NULL. */
+const char *const *cs_column_axes(void);
+double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column);
+
+/* A cell of which nothing is known yet. */
+void cs_cell_init(struct cs_cell *cell, const char *method);
+bool cs_cell_is_finished(const struct cs_cell *cell);
+
+#endif

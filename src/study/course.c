@@ -1,0 +1,163 @@
+#include "study/course.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool has_strain_limit(const struct cs_scene *scene) {
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        if (!isnan(cs_scene_bodies(scene)[b].strain_limit))
+            return true;
+    return false;
+}
+
+void cs_course_describe_changes(const struct cs_scene *scene, struct cs_text *out) {
+    const bool parts[] = {scene->colliders.n > 0, has_strain_limit(scene),
+                          scene->forces.velocity_loss > 0};
+    const char *const names[] = {"contact", "strain limit", "velocity loss"};
+    bool any = false;
+    for (int k = 0; k < 3; k++)
+        if (parts[k]) {
+            cs_text_add(out, "%s%s", any ? ", " : "", names[k]);
+            any = true;
+        }
+}
+
+static void make_smooth(struct cs_scene *scene) {
+    scene->colliders.n = 0;
+    scene->forces.velocity_loss = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
+}
+
+static enum cs_status keep_start(struct cs_course *course, struct cs_error *error) {
+    const size_t values = 6 * (size_t)course->session.system.view.n;
+    course->start = malloc(values * sizeof *course->start);
+    if (!course->start)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the start of a run");
+    memcpy(course->start, course->session.system.state, values * sizeof *course->start);
+    return CS_OK;
+}
+
+enum cs_status cs_course_open(struct cs_course *course,
+                              const struct cs_course_settings *settings, const char *integrator,
+                              struct cs_error *error) {
+    struct cs_session_settings asked = settings->session;
+    struct cs_session *session = &course->session;
+    *course = (struct cs_course){.frames = settings->frames, .stop = settings->session.stop};
+    asked.integrator = integrator;
+    if (cs_session_open_plan(session, &asked, error))
+        return error->status;
+    make_smooth(&session->scene);
+    cs_plan_make(&session->plan, &session->scene, session->integrator->needs, asked.render);
+    if (cs_system_build(&session->system, &session->scene, &session->plan, error) ||
+        keep_start(course, error))
+        cs_course_close(course);
+    return error->status;
+}
+
+static void keep_state(struct cs_track *track, const struct cs_run *run) {
+    if (!track)
+        return;
+    memcpy(cs_track_state(track, run->frame), run->x, 6 * track->n * sizeof *run->x);
+    track->done = run->frame;
+}
+
+/* One frame, or all that are left, between two looks at the clocks. */
+static enum cs_status step_timed(struct cs_course *course, uint32_t last,
+                                 struct cs_course_end *end, struct cs_error *error) {
+    struct cs_run *run = &course->session.run;
+    const double cpu = cs_clock_cpu(), wall = cs_clock_wall();
+    while (run->frame < last && run->outcome == CS_RUNNING && !error->status)
+        cs_run_frame(run, error);
+    end->cpu += cs_clock_cpu() - cpu;
+    end->wall += cs_clock_wall() - wall;
+    return error->status;
+}
+
+/* Copies are not timed; where there are none, the clocks are read twice in all. */
+static enum cs_status step_frames(struct cs_course *course, struct cs_track *track,
+                                  struct cs_course_end *end, struct cs_error *error) {
+    struct cs_run *run = &course->session.run;
+    keep_state(track, run);
+    while (run->frame < course->frames && run->outcome == CS_RUNNING) {
+        if (step_timed(course, track ? run->frame + 1 : course->frames, end, error))
+            return error->status;
+        keep_state(track, run);
+    }
+    return CS_OK;
+}
+
+static void keep_notes(struct cs_course_end *end, const struct cs_run *run) {
+    for (uint32_t k = 0; k < run->n_notes; k++) {
+        const size_t used = strlen(end->note);
+        snprintf(end->note + used, sizeof end->note - used, "%s%s", k ? "; " : "",
+                 run->notes[k]);
+    }
+}
+
+/* Two ways to fail: the method's own, which is a row, and the world's. */
+static enum cs_status judge(struct cs_course_end *end, const struct cs_error *failure,
+                            struct cs_error *error) {
+    if (failure->status == CS_ERR_MODULE) {
+        end->failed = true;
+        snprintf(end->note, sizeof end->note, "%.239s", failure->message);
+        return CS_OK;
+    }
+    if (failure->status)
+        return cs_fail(error, failure->status, "%s", failure->message);
+    if (end->outcome == CS_INTERRUPTED)
+        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
+    return CS_OK;
+}
+
+enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_track *track,
+                             struct cs_course_end *end, struct cs_error *error) {
+    struct cs_session *session = &course->session;
+    struct cs_error failure = {0};
+    *end = (struct cs_course_end){0};
+    memcpy(session->system.state, course->start,
+           6 * (size_t)session->system.view.n * sizeof *course->start);
+    if (!cs_run_begin(&session->run, &session->system, session->integrator, session->options,
+                      false, course->stop, &failure)) {
+        if (budget > 0)
+            cs_run_set_budget(&session->run, budget);
+        step_frames(course, track, end, &failure);
+        end->outcome = session->run.outcome;
+        const bool blew_up = end->outcome == CS_NOT_FINITE || end->outcome == CS_UNBOUNDED;
+        end->time = blew_up ? session->run.blow_up.time : session->run.t;
+        end->counts = session->run.counts;
+        keep_notes(end, &session->run);
+        cs_run_finish(&session->run);
+    }
+    return judge(end, &failure, error);
+}
+
+void cs_course_close(struct cs_course *course) {
+    cs_session_close(&course->session);
+    free(course->start);
+    *course = (struct cs_course){0};
+}
+
+enum cs_status cs_track_init(struct cs_track *track, const struct cs_course *course,
+                             struct cs_error *error) {
+    *track = (struct cs_track){.n = course->session.system.view.n,
+                               .frames = course->frames,
+                               .fps = course->session.scene.time.fps};
+    track->states = calloc((size_t)track->frames + 1, 6 * (size_t)track->n * sizeof(double));
+    if (!track->states)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u states", track->frames + 1);
+    return CS_OK;
+}
+
+double *cs_track_state(const struct cs_track *track, uint32_t frame) {
+    return track->states + 6 * (size_t)track->n * frame;
+}
+
+void cs_track_finish(struct cs_track *track) {
+    free(track->states);
+    *track = (struct cs_track){0};
+}

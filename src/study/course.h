@@ -1,0 +1,65 @@
+/* course.h - one method on the smooth form of a scene: opened, run, and recorded.
+ *
+ * Contact, strain limit and velocity loss act after steps and are no part of the equation of
+ * motion; with them the result would depend on the step whatever the method. They are off.
+ */
+#ifndef CS_COURSE_H
+#define CS_COURSE_H
+
+#include "study/session.h"
+
+/* The scene and how long; what every run of a comparison shares. */
+struct cs_course_settings {
+    struct cs_session_settings session; /* integrator is not looked at */
+    uint32_t frames;
+};
+
+/* Zeroed: closed. Must stay where it is while open. */
+struct cs_course {
+    struct cs_session session; /* system built; the run is not begun */
+    double *start;             /* (6n) the state at time 0, owned */
+    uint32_t frames;
+    const volatile sig_atomic_t *stop; /* borrowed */
+};
+
+/* States of the frames 0..frames of one run. */
+struct cs_track {
+    double *states; /* (frames + 1, 6n), owned */
+    uint32_t n;     /* particles */
+    uint32_t frames, done;
+    double fps;
+};
+
+/* What one run came to, beside its states. */
+struct cs_course_end {
+    enum cs_outcome outcome;
+    bool failed;      /* the method gave up: outcome does not say so */
+    double time;      /* reached, s */
+    double cpu, wall; /* s, of stepping only */
+    struct cs_counts counts;
+    char note[240]; /* the method's remarks, or why it failed */
+};
+
+/* Opens a scene for a method, "NAME:key=value,...", without what is no equation of motion. */
+enum cs_status cs_course_open(struct cs_course *course,
+                              const struct cs_course_settings *settings, const char *integrator,
+                              struct cs_error *error);
+
+/* Adds what of a scene is switched off, as words ("contact, strain limit"); nothing where
+ * nothing is. The scene is one that was not opened by cs_course_open. */
+void cs_course_describe_changes(const struct cs_scene *scene, struct cs_text *out);
+
+/* Runs from the start to the last frame within a budget in s (<= 0: none). Only stepping is
+ * timed; track may be NULL: then nothing is kept. A method that gives up is a result.
+ * CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
+enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_track *track,
+                             struct cs_course_end *end, struct cs_error *error);
+void cs_course_close(struct cs_course *course);
+
+enum cs_status cs_track_init(struct cs_track *track, const struct cs_course *course,
+                             struct cs_error *error);
+/* x of a frame; v stands 3n behind it. */
+double *cs_track_state(const struct cs_track *track, uint32_t frame);
+void cs_track_finish(struct cs_track *track);
+
+#endif

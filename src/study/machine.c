@@ -1,0 +1,37 @@
+#include "study/machine.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void read_processor(char *name, size_t size) {
+    char line[256];
+    FILE *file = fopen("/proc/cpuinfo", "re");
+    while (file && fgets(line, sizeof line, file))
+        if (!strncmp(line, "model name", 10) && strchr(line, ':')) {
+            snprintf(name, size, "%s", strchr(line, ':') + 2);
+            name[strcspn(name, "\n")] = 0;
+            break;
+        }
+    if (file)
+        fclose(file);
+}
+
+void cs_machine_look(struct cs_machine *machine) {
+    *machine = (struct cs_machine){.version = CS_VERSION,
+#ifdef __clang__
+                                   .compiler = "clang " __clang_version__,
+#else
+                                   .compiler = "gcc " __VERSION__,
+#endif
+#ifdef __OPTIMIZE__
+                                   .flags = "optimised, -ffp-contract=off",
+#else
+                                   .flags = "NOT optimised, -ffp-contract=off",
+#endif
+                                   .processors = sysconf(_SC_NPROCESSORS_ONLN)};
+    read_processor(machine->processor, sizeof machine->processor);
+    if (getloadavg(&machine->load, 1) != 1)
+        machine->load = 0;
+}

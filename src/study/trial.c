@@ -1,0 +1,166 @@
+#include "study/trial.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct cs_option *find_dt(const struct cs_integrator *integrator) {
+    for (uint32_t r = 0; r < integrator->n_options; r++)
+        if (!strcmp(integrator->options[r].name, "dt") &&
+            integrator->options[r].type == CS_REAL)
+            return integrator->options + r;
+    return NULL;
+}
+
+bool cs_trial_takes_dt(const struct cs_integrator *integrator) {
+    return !(integrator->traits & CS_ADAPTIVE) && find_dt(integrator);
+}
+
+bool cs_trial_set_dt(const struct cs_integrator *integrator, void *options, double dt) {
+    const struct cs_option *row = find_dt(integrator);
+    if (!cs_trial_takes_dt(integrator) || !(dt >= row->min && dt <= row->max))
+        return false;
+    memcpy((char *)options + row->offset, &dt, sizeof dt);
+    return true;
+}
+
+/* -1..1 out of an index, by multiplication and shifts */
+static double noise_of(uint64_t index) {
+    uint64_t bits = (index + 1) * 0x9e3779b97f4a7c15u;
+    bits = (bits ^ bits >> 31) * 0xbf58476d1ce4e5b9u;
+    bits ^= bits >> 29;
+    return (double)(bits >> 11) * 0x1p-52 - 1;
+}
+
+void cs_trial_shake(struct cs_system *system, double shake) {
+    const size_t n = system->view.n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            if (system->inv_mass[i] > 0)
+                system->state[c * n + i] += shake * noise_of(3 * i + c);
+}
+
+/* particles above the speed limit; *fastest the fastest of all */
+static uint32_t count_fast(const struct cs_run *run, double limit, uint32_t *fastest,
+                           double *speed) {
+    const size_t n = run->system->view.n;
+    const double *v = run->v;
+    uint32_t count = 0;
+    double largest = -1;
+    for (size_t i = 0; i < n; i++) {
+        const double squared = v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i];
+        count += !(squared <= limit * limit);
+        if (!(squared <= largest)) {
+            largest = squared;
+            *fastest = (uint32_t)i;
+        }
+    }
+    *speed = sqrt(largest > 0 ? largest : 0);
+    return count;
+}
+
+static void note_excess(struct cs_trial *trial, const struct cs_run *run, double limit) {
+    struct cs_trial_excess *excess = &trial->excess;
+    uint32_t fastest = 0;
+    double speed;
+    const uint32_t count = count_fast(run, limit, &fastest, &speed);
+    trial->speed = fmax(trial->speed, speed);
+    if (count && !excess->found) {
+        excess->found = true;
+        excess->time = run->t;
+        excess->particle = fastest;
+    }
+    excess->particles = count > excess->particles ? count : excess->particles;
+}
+
+static void take_sample(struct cs_trial *trial, const struct cs_trial_settings *settings,
+                        const struct cs_run *run) {
+    const struct cs_energy energy = cs_measure_energy(run->system, run->x, run->v);
+    const double whole = energy.kinetic + energy.elastic + energy.gravity;
+    if (run->frame == 0)
+        trial->start_energy = whole;
+    trial->end_energy = whole;
+    trial->kinetic = fmax(trial->kinetic, energy.kinetic);
+    trial->elastic = fmax(trial->elastic, energy.elastic);
+    trial->held = fmax(trial->held, energy.kinetic + energy.elastic);
+    double *half = run->t < settings->seconds / 2 ? &trial->early : &trial->late;
+    *half = fmax(*half, energy.kinetic + energy.elastic);
+    trial->gained = fmax(trial->gained, whole - trial->start_energy);
+    trial->mean_kinetic += energy.kinetic;
+    trial->strain = fmax(trial->strain, cs_measure_strain(run->system, run->x));
+    note_excess(trial, run, settings->limits.speed);
+    if (!trial->beyond &&
+        (trial->held > settings->limits.energy || trial->gained > settings->limits.gain)) {
+        trial->beyond = true;
+        trial->beyond_time = run->t;
+    }
+    if (settings->sampled)
+        settings->sampled(settings->ctx, run, &energy);
+}
+
+/* Whole steps between two samples, so that dt is not shortened to meet them. */
+static double choose_fps(const struct cs_trial_settings *settings) {
+    const double space = settings->seconds / settings->samples;
+    if (settings->dt <= 0)
+        return 1 / space;
+    const double steps = fmax(1, floor(space / settings->dt));
+    return 1 / (steps * settings->dt);
+}
+
+static void run_samples(struct cs_trial *trial, const struct cs_trial_settings *settings,
+                        struct cs_run *run, struct cs_error *error) {
+    const double frames = ceil(settings->seconds * run->system->scene->time.fps * (1 - 1e-9));
+    if (settings->budget > 0)
+        cs_run_set_budget(run, settings->budget);
+    take_sample(trial, settings, run);
+    while (run->frame < frames && run->outcome == CS_RUNNING && !error->status &&
+           !(settings->stop_early && trial->beyond)) {
+        cs_run_frame(run, error);
+        if (!error->status && run->outcome == CS_RUNNING)
+            take_sample(trial, settings, run);
+    }
+    trial->outcome = run->outcome;
+    trial->blow_up = run->blow_up;
+    trial->end = run->t;
+    trial->steps = run->counts.steps;
+    trial->step = run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->dt;
+    trial->seconds = run->advance_seconds;
+    trial->mean_kinetic /= run->frame + 1;
+}
+
+/* a method that gives up is a result */
+static enum cs_status judge(struct cs_trial *trial, struct cs_error *error) {
+    if (error->status == CS_ERR_MODULE) {
+        trial->failed = true;
+        snprintf(trial->message, sizeof trial->message, "%.300s", error->message);
+        *error = (struct cs_error){0};
+    }
+    if (trial->outcome == CS_INTERRUPTED)
+        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
+    return error->status;
+}
+
+enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settings *settings,
+                            struct cs_error *error) {
+    struct cs_session session;
+    *trial = (struct cs_trial){0};
+    if (cs_session_open_plan(&session, &settings->session, error))
+        return error->status;
+    if (settings->dt > 0 &&
+        !cs_trial_set_dt(session.integrator, session.options, settings->dt)) {
+        cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" takes no dt of %g s",
+                session.integrator->name, settings->dt);
+        goto done;
+    }
+    session.scene.time.fps = choose_fps(settings);
+    if (cs_system_build(&session.system, &session.scene, &session.plan, error))
+        goto done;
+    cs_trial_shake(&session.system, settings->shake);
+    if (!cs_run_begin(&session.run, &session.system, session.integrator, session.options, false,
+                      settings->session.stop, error))
+        run_samples(trial, settings, &session.run, error);
+    judge(trial, error);
+done:
+    cs_session_close(&session);
+    return error->status;
+}

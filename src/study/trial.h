@@ -1,0 +1,74 @@
+/* trial.h - one run of a scene for a study: no pictures, only how it behaved.
+ *
+ * The method's `dt` is set from outside and the state is sampled at equal spaces of time, so
+ * that runs with different steps can be held against each other.
+ */
+#ifndef CS_TRIAL_H
+#define CS_TRIAL_H
+
+#include "study/session.h"
+
+/* What a particle or the whole may reach before a run counts as unstable; HUGE_VAL: no limit.
+ */
+struct cs_trial_limits {
+    double speed;  /* m/s, of one particle */
+    double energy; /* J, kinetic and elastic */
+    double gain;   /* J, of the whole energy above that of the start */
+};
+
+struct cs_trial_settings {
+    struct cs_session_settings session; /* integrator with its options; render is not used */
+    double dt;                          /* s, the method's step; 0: leave the options alone */
+    double seconds;                     /* to simulate */
+    uint32_t samples;                   /* about so many; at least 1 */
+    double shake;                       /* m, largest move of a free particle at the start */
+    double budget;                      /* s of processor time; 0: none */
+    struct cs_trial_limits limits;
+    bool stop_early; /* once the energy is beyond its limit */
+    /* called at the start and at each sample; may be NULL */
+    void (*sampled)(void *ctx, const struct cs_run *run, const struct cs_energy *energy);
+    void *ctx;
+};
+
+/* A particle that was faster than the limit. */
+struct cs_trial_excess {
+    bool found;
+    double time;        /* s, of the first sample that shows it */
+    uint32_t particle;  /* the fastest there */
+    uint32_t particles; /* most at one time */
+};
+
+struct cs_trial {
+    enum cs_outcome outcome;
+    bool failed; /* the method gave up: message says why */
+    char message[320];
+    struct cs_blow_up blow_up; /* where outcome says so */
+    double end;                /* s simulated */
+    uint64_t steps;
+    double step;                     /* s, mean length of a step */
+    double start_energy, end_energy; /* J, whole */
+    double early, late;              /* J, largest kinetic + elastic of each half of the time */
+    double kinetic, elastic;         /* J, largest */
+    double held;                     /* J, largest kinetic + elastic */
+    double gained;                   /* J, largest energy above the start's */
+    double mean_kinetic;             /* J, over the samples */
+    double speed, strain;            /* largest */
+    double seconds;                  /* wall time in the method */
+    bool beyond;                     /* held or gained passed its limit */
+    double beyond_time;              /* s */
+    struct cs_trial_excess excess;
+};
+
+/* CS_OK with a verdict's numbers even where the run blew up or the method failed. An error is
+ * one of the scene, the command or memory, or CS_ERR_INTERRUPT. */
+enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settings *settings,
+                            struct cs_error *error);
+
+/* Sets the method's `dt`; false if it has none or is adaptive. */
+bool cs_trial_set_dt(const struct cs_integrator *integrator, void *options, double dt);
+bool cs_trial_takes_dt(const struct cs_integrator *integrator);
+
+/* Moves the free particles by up to `shake` m in each direction, the same on every machine. */
+void cs_trial_shake(struct cs_system *system, double shake);
+
+#endif

@@ -1,0 +1,180 @@
+#include "study/watch.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* how far above what nature allows a number must be before it is called an instability */
+#define ENERGY_FACTOR 2
+#define SPEED_FACTOR  3
+/* fastest particle over the mean speed of all, in motions that are sound */
+#define SPEED_SPREAD 4
+#define LEAST_ENERGY 1e-12
+#define LEAST_SPEED  1e-6
+
+static double length_of(const double a[3]) {
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* speed that the energy of the springs at one particle would give it, the largest of all */
+static enum cs_status spring_speed(const struct cs_run *run, double *speed,
+                                   struct cs_error *error) {
+    const struct cs_system *system = run->system;
+    const size_t n = system->view.n;
+    double *stored = calloc(n, sizeof *stored);
+    if (!stored)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %zu particles", n);
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *s = system->springs.runs + r;
+        for (uint32_t i = 0; i < s->count; i++) {
+            const uint32_t a = s->a + i, b = s->b + i;
+            const double d[3] = {run->x[b] - run->x[a], run->x[n + b] - run->x[n + a],
+                                 run->x[2 * n + b] - run->x[2 * n + a]};
+            const double stretch = length_of(d) - s->length;
+            stored[a] += 0.5 * s->stiffness * stretch * stretch;
+            stored[b] += 0.5 * s->stiffness * stretch * stretch;
+        }
+    }
+    double squared = 0;
+    for (size_t i = 0; i < n; i++)
+        squared = fmax(squared, 2 * stored[i] * system->inv_mass[i]);
+    *speed = sqrt(squared);
+    free(stored);
+    return CS_OK;
+}
+
+/* largest speed; count: particles above limit */
+static double fastest(const struct cs_run *run, double limit, uint32_t *particle,
+                      uint32_t *count) {
+    const size_t n = run->system->view.n;
+    double largest = -1;
+    *particle = *count = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double v[3] = {run->v[i], run->v[n + i], run->v[2 * n + i]};
+        const double speed = length_of(v);
+        *count += !(speed <= limit);
+        if (!(speed <= largest)) {
+            largest = speed;
+            *particle = (uint32_t)i;
+        }
+    }
+    return largest;
+}
+
+enum cs_status cs_watch_begin(struct cs_watch *watch, const struct cs_run *run,
+                              struct cs_error *error) {
+    const struct cs_system *system = run->system;
+    const struct cs_forces *forces = &system->scene->forces;
+    const struct cs_energy energy = cs_measure_energy(system, run->x, run->v);
+    double speed = 0;
+    uint32_t particle, count;
+    *watch =
+        (struct cs_watch){.held = energy.kinetic + energy.elastic, .gravity = energy.gravity};
+    if (spring_speed(run, &speed, error))
+        return error->status;
+    watch->start_speed = speed + fastest(run, HUGE_VAL, &particle, &count);
+    watch->pull = length_of(forces->gravity);
+    for (size_t i = 0; i < system->view.n; i++) {
+        if (system->inv_mass[i] <= 0)
+            continue;
+        const double push =
+            !system->normals
+                ? 0
+                : forces->wind.strength * system->inv_mass[i] *
+                      (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
+        watch->push = fmax(watch->push, push);
+        watch->mass += system->mass[i];
+        watch->wind_mass += system->mass[i] * push * push;
+    }
+    return CS_OK;
+}
+
+/* kinetic and elastic energy that there can be */
+static double available(const struct cs_watch *watch, double t) {
+    /* the wind's work, were it to push all the way in free flight */
+    const double blown = watch->wind_mass * t * t / 2;
+    return watch->held + watch->released + blown +
+           sqrt(2 * blown * 2 * (watch->held + watch->released));
+}
+
+void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_watch_row *row) {
+    const struct cs_system *system = run->system;
+    *row = (struct cs_watch_row){.t = run->t};
+    row->energy = cs_measure_energy(system, run->x, run->v);
+    row->strain = cs_measure_strain(system, run->x);
+    watch->released = fmax(watch->released, watch->gravity - row->energy.gravity);
+    const double energy = fmax(available(watch, run->t), LEAST_ENERGY);
+    const double mean = watch->mass > 0 ? sqrt(2 * energy / watch->mass) : 0;
+    const double fall = fmin((watch->pull + watch->push) * run->t, SPEED_SPREAD * mean);
+    row->energy_limit = ENERGY_FACTOR * energy;
+    row->speed_limit = SPEED_FACTOR * fmax(watch->start_speed + fall, LEAST_SPEED);
+    row->speed = fastest(run, row->speed_limit, &row->particle, &row->particles);
+    const double held = row->energy.kinetic + row->energy.elastic;
+    if (!isfinite(held + row->speed + row->strain))
+        row->verdict = CS_FATE_NOT_FINITE;
+    else if (held > row->energy_limit)
+        row->verdict = CS_FATE_GLOBAL;
+    else if (row->particles)
+        row->verdict = CS_FATE_LOCAL;
+    if (row->verdict > watch->worst)
+        watch->worst = row->verdict;
+    if (row->verdict >= CS_FATE_LOCAL && !watch->found) {
+        watch->found = true;
+        watch->first = *row;
+    }
+}
+
+/* "particle 12 (body 0, column 4, row 1)" */
+static void add_particle(const struct cs_system *system, uint32_t particle,
+                         struct cs_text *out) {
+    cs_text_add(out, "particle %u", particle);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        const uint32_t local = particle - range->first;
+        if (particle >= range->first && local < range->count)
+            cs_text_add(out, " (body %u, column %u, row %u)", b, local % range->columns,
+                        local / range->columns);
+    }
+}
+
+void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system,
+                    struct cs_text *out) {
+    const struct cs_watch_row *first = &watch->first;
+    if (!watch->found)
+        return;
+    cs_text_add(out, "%s from t = %.6g s on: ", cs_fate_word(first->verdict), first->t);
+    if (first->verdict == CS_FATE_GLOBAL)
+        cs_text_add(out, "%.3g J in motion and springs, where %.3g J can be",
+                    first->energy.kinetic + first->energy.elastic,
+                    first->energy_limit / ENERGY_FACTOR);
+    else {
+        cs_text_add(out, "%u particle%s, the fastest ", first->particles,
+                    first->particles == 1 ? "" : "s");
+        add_particle(system, first->particle, out);
+        cs_text_add(out, " at %.3g m/s beyond %.3g m/s", first->speed, first->speed_limit);
+    }
+    if (watch->worst > first->verdict)
+        cs_text_add(out, "; later %s", cs_fate_word(watch->worst));
+}
+
+void cs_watch_print_head(struct cs_text *out) {
+    cs_text_add(out, "frame,t,kinetic,elastic,gravity,energy,largest_strain,largest_velocity,"
+                     "particle,fast_particles,verdict\n");
+}
+
+void cs_watch_print_row(const struct cs_watch_row *row, uint32_t frame, struct cs_text *out) {
+    const struct cs_energy *energy = &row->energy;
+    const double values[] = {row->t,
+                             energy->kinetic,
+                             energy->elastic,
+                             energy->gravity,
+                             energy->kinetic + energy->elastic + energy->gravity,
+                             row->strain,
+                             row->speed};
+    cs_text_add(out, "%u", frame);
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+        cs_text_add(out, ",");
+        if (isfinite(values[k]))
+            cs_text_add_real(out, values[k]);
+    }
+    cs_text_add(out, ",%u,%u,%s\n", row->particle, row->particles, cs_fate_word(row->verdict));
+}

@@ -1,0 +1,49 @@
+/* watch.h - is a run still sound, judged by nothing but energy: no second run to compare with.
+ *
+ * What moves and is stretched cannot hold more than the start held, gravity released and the
+ * wind can have given; a particle can hardly be faster than a few times what a fall, the
+ * springs let go at it, or its share of that energy make of it.
+ */
+#ifndef CS_WATCH_H
+#define CS_WATCH_H
+
+#include "sim/run.h"
+#include "study/fate.h"
+
+/* What a run has at one time. */
+struct cs_watch_row {
+    double t;
+    struct cs_energy energy; /* J */
+    double strain, speed;    /* largest */
+    uint32_t particle;       /* the fastest */
+    uint32_t particles;      /* faster than the limit */
+    double speed_limit;      /* m/s */
+    double energy_limit;     /* J, of kinetic + elastic */
+    enum cs_fate verdict;    /* BOUNDED, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
+};
+
+struct cs_watch {
+    double held, gravity; /* J at the start: kinetic + elastic, of gravity */
+    double released;      /* J, most that gravity gave until now */
+    double start_speed;   /* m/s: largest, and what the springs at one particle could give it */
+    double pull, push;    /* m/s2, of gravity and of the wind at most */
+    double mass, wind_mass;    /* kg that can move; of it times (wind/gravity) for its work */
+    bool found;                /* a local instability was seen */
+    struct cs_watch_row first; /* when it began */
+    enum cs_fate worst;
+};
+
+/* At the start of a run (before its first frame), and after each frame. */
+enum cs_status cs_watch_begin(struct cs_watch *watch, const struct cs_run *run,
+                              struct cs_error *error);
+void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_watch_row *row);
+
+/* "local instability from t = 0.35 s on: ..." where there is something to say. */
+void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system,
+                    struct cs_text *out);
+
+/* CSV: energy, largest strain and largest velocity of a frame. */
+void cs_watch_print_head(struct cs_text *out);
+void cs_watch_print_row(const struct cs_watch_row *row, uint32_t frame, struct cs_text *out);
+
+#endif

@@ -1,0 +1,150 @@
+#include "study/workers.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MOST_WORKERS = 16 };
+
+/* In memory that all workers see. */
+struct shared {
+    atomic_uint next;
+    struct cs_error errors[MOST_WORKERS]; /* one a worker */
+};
+
+void *cs_workers_take(size_t bytes, struct cs_error *error) {
+    void *memory =
+        mmap(NULL, bytes + 1, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory != MAP_FAILED)
+        return memory;
+    cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    return NULL;
+}
+
+void cs_workers_give_back(void *memory, size_t bytes) {
+    if (memory)
+        munmap(memory, bytes + 1);
+}
+
+void cs_workers_tick(struct cs_workers *workers, uint32_t ticks) {
+    __atomic_fetch_add(workers->ticks, ticks, __ATOMIC_RELAXED);
+}
+
+/* A task that never comes back to look at its budget ends with its worker, by SIGPROF. */
+static void limit_task(const struct cs_workers *workers) {
+    const struct itimerval limit = {.it_value.tv_sec = (time_t)workers->most_seconds};
+    if (workers->most_seconds > 0)
+        setitimer(ITIMER_PROF, &limit, NULL);
+}
+
+static void serve(struct cs_workers *workers, struct shared *shared, uint32_t worker) {
+    struct cs_error *error = shared->errors + worker;
+    while (!error->status) {
+        const uint32_t task = atomic_fetch_add(&shared->next, 1);
+        if (task >= workers->n_tasks)
+            return;
+        limit_task(workers);
+        workers->task(workers->ctx, task, error);
+    }
+    /* no worker begins another task */
+    atomic_store(&shared->next, workers->n_tasks);
+}
+
+static void report(const struct cs_workers *workers) {
+    if (workers->progress)
+        workers->progress(workers->progress_ctx,
+                          __atomic_load_n(workers->ticks, __ATOMIC_RELAXED));
+}
+
+/* the first reason that a worker gave, or that it gave none */
+static void collect(struct shared *shared, uint32_t worker, int end, struct cs_error *error) {
+    if (error->status)
+        return;
+    if (shared->errors[worker].status)
+        *error = shared->errors[worker];
+    else if (WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF)
+        return;
+    else if (WIFSIGNALED(end))
+        cs_fail(error, CS_ERR_MODULE, "a worker was ended by signal %d (%s)", WTERMSIG(end),
+                strsignal(WTERMSIG(end)));
+    else if (WEXITSTATUS(end))
+        cs_fail(error, CS_ERR_MODULE, "a worker ended with code %d", WEXITSTATUS(end));
+    if (error->status)
+        atomic_store(&shared->next, UINT32_MAX / 2);
+}
+
+/* the process of a worker; < 0: there is none */
+static pid_t start(struct cs_workers *workers, struct shared *shared, uint32_t worker) {
+    const pid_t child = fork();
+    if (child)
+        return child;
+    serve(workers, shared, worker);
+    _exit(0);
+}
+
+/* true where a worker left one task and others wait */
+static bool wants_another(const struct cs_workers *workers, struct shared *shared, int end) {
+    return WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF &&
+           atomic_load(&shared->next) < workers->n_tasks;
+}
+
+static void tell_to_stop(const struct cs_workers *workers, const pid_t *children, uint32_t n) {
+    for (uint32_t k = 0; workers->stop && *workers->stop && k < n; k++)
+        if (children[k] > 0)
+            kill(children[k], SIGTERM);
+}
+
+/* Waits for all, looking often, so that progress shows and a signal is heard. */
+static void wait_for(struct cs_workers *workers, struct shared *shared, pid_t *children,
+                     uint32_t n, struct cs_error *error) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    uint32_t left = n;
+    while (left) {
+        for (uint32_t k = 0; k < n; k++) {
+            int end = 0;
+            if (children[k] <= 0 || waitpid(children[k], &end, WNOHANG) != children[k])
+                continue;
+            collect(shared, k, end, error);
+            children[k] = wants_another(workers, shared, end) ? start(workers, shared, k) : 0;
+            left -= children[k] <= 0;
+        }
+        tell_to_stop(workers, children, n);
+        if (left)
+            nanosleep(&pause, NULL);
+        report(workers);
+    }
+}
+
+enum cs_status cs_workers_run(struct cs_workers *workers, struct cs_error *error) {
+    struct shared *shared = cs_workers_take(sizeof *shared, error);
+    pid_t children[MOST_WORKERS];
+    uint32_t n = 0;
+    if (!shared)
+        return error->status;
+    /* what waits in the buffers is not to be written twice */
+    fflush(NULL);
+    while (n < workers->n_workers && n < workers->n_tasks && n < MOST_WORKERS) {
+        children[n] = start(workers, shared, n);
+        if (children[n] < 0) {
+            if (!n)
+                cs_fail(error, CS_ERR_MEMORY, "cannot start a worker: %s", strerror(errno));
+            break;
+        }
+        n++;
+    }
+    wait_for(workers, shared, children, n, error);
+    if (workers->stop && *workers->stop) {
+        *error = (struct cs_error){0};
+        cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
+    }
+    cs_workers_give_back(shared, sizeof *shared);
+    return error->status;
+}

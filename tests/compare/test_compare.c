@@ -1,0 +1,237 @@
+/* A whole comparison: rows, orders, the file and what an interrupt leaves of it. */
+#include "scene.h"
+#include "study/compare_csv.h"
+#include "study/compare_plot.h"
+#include "study/ranking.h"
+
+#include <math.h>
+#include <string.h>
+
+static volatile sig_atomic_t stop;
+
+struct watch {
+    uint32_t rows, taken, stop_after;
+};
+
+static void count_row(void *ctx, const struct cs_cell *cell, bool taken) {
+    struct watch *watch = ctx;
+    ck_assert(*cell->outcome);
+    watch->rows++;
+    watch->taken += taken;
+    stop = watch->rows == watch->stop_after;
+}
+
+struct place {
+    char scene[64], folder[64];
+};
+
+static void place_make(struct place *place, const char *damping) {
+    scene_write(place->scene, SMALL_SCENE, damping);
+    snprintf(place->folder, sizeof place->folder, "/tmp/clothsim-compare-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(place->folder));
+}
+
+static void place_remove(const struct place *place) {
+    char command[160];
+    snprintf(command, sizeof command, "rm -r %s %s", place->folder, place->scene);
+    ck_assert_int_eq(system(command), 0);
+}
+
+static enum cs_status run(struct cs_compare *compare, struct cs_compare_settings *settings,
+                          const struct place *place, const char *methods, struct watch *watch) {
+    struct cs_error error = {0};
+    *settings = (struct cs_compare_settings){
+        .course = {.session = {.scene = place->scene, .stop = &stop}, .frames = 6},
+        .methods = methods,
+        .reference = {"rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12"},
+        .accuracy = 1e-6,
+        .budget = 0.5,
+        .runs = 1,
+        .folder = place->folder,
+        .cache = place->folder,
+        .row = count_row,
+        .ctx = watch};
+    cs_compare_run(compare, settings, &error);
+    ck_assert_msg(!error.status || error.status == CS_ERR_INTERRUPT, "%s", error.message);
+    return error.status;
+}
+
+static const char *const METHODS =
+    "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"
+    "explicit-euler:dt=0.05,dopri5:rtol=1e-8..1e-4";
+
+START_TEST(orders_are_seen) {
+    struct place place;
+    struct watch watch = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    static const double orders[] = {1, 2, 4};
+    place_make(&place, "0.02");
+    run(&compare, &settings, &place, METHODS, &watch);
+    ck_assert_uint_eq(compare.sweep.n, 4 + 4 + 4 + 1 + 9);
+    ck_assert_uint_eq(watch.rows, compare.sweep.n);
+    for (uint32_t m = 0; m < 3; m++)
+        ck_assert_msg(fabs(compare.sweep.cells[4 * m + 3].order - orders[m]) < 0.1,
+                      "%s: order %g", compare.sweep.cells[4 * m].method,
+                      compare.sweep.cells[4 * m + 3].order);
+    const struct cs_cell *blown = compare.sweep.cells + 12;
+    ck_assert_msg(!strncmp(blown->outcome, "blew up", 7), "explicit Euler %s", blown->outcome);
+    ck_assert(isnan(blown->error) && blown->cpu > 0);
+    // tolerances are asked for and kept within reason
+    for (uint32_t k = 13; k < compare.sweep.n; k++)
+        ck_assert(compare.sweep.cells[k].achieved > 1e-4 &&
+                  compare.sweep.cells[k].achieved < 100);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(file_reads_back) {
+    struct place place;
+    struct watch watch = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    struct cs_cell *cells;
+    struct cs_error error = {0};
+    char path[128];
+    uint32_t n;
+    place_make(&place, "0.02");
+    run(&compare, &settings, &place, METHODS, &watch);
+    snprintf(path, sizeof path, "%s/compare.csv", place.folder);
+    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert_uint_eq(n, compare.sweep.n);
+    for (uint32_t k = 0; k < n; k++)
+        for (uint32_t c = 0; c < cs_n_columns; c++) {
+            const size_t at = cs_columns[c].offset;
+            const char *a = (const char *)(cells + k) + at,
+                       *b = (const char *)(compare.sweep.cells + k) + at;
+            const bool nan = cs_columns[c].type == CS_CELL_NUMBER &&
+                             isnan(cs_cell_number(cells + k, cs_columns + c));
+            if (cs_columns[c].type == CS_CELL_TEXT)
+                ck_assert_str_eq(a, b);
+            else if (nan)
+                ck_assert(isnan(cs_cell_number(compare.sweep.cells + k, cs_columns + c)));
+            else
+                ck_assert_mem_eq(a, b, cs_columns[c].size);
+        }
+    free(cells);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(quotes_read_back) {
+    struct cs_cell cell, *cells;
+    struct cs_text text = {0};
+    struct cs_error error = {0};
+    char path[] = "/tmp/clothsim-csv-XXXXXX";
+    uint32_t n;
+    cs_cell_init(&cell, "rk4");
+    snprintf(cell.note, sizeof cell.note, "a, \"b\" and \"\"");
+    snprintf(cell.options, sizeof cell.options, "dt=0.1,order=2");
+    cs_csv_add_head(&text);
+    cs_csv_add_cell(&text, &cell);
+    cs_csv_add_cell(&text, &cell);
+    // the end of a line that was being written
+    text.bytes[text.length - 8] = 0;
+    FILE *file = fdopen(mkstemp(path), "w");
+    fputs(text.bytes, file);
+    fclose(file);
+    cs_text_finish(&text);
+    ck_assert_msg(!cs_csv_read(path, &cells, &n, &error), "%s", error.message);
+    ck_assert_uint_eq(n, 1);
+    ck_assert_str_eq(cells->note, cell.note);
+    ck_assert_str_eq(cells->options, cell.options);
+    free(cells);
+    unlink(path);
+}
+END_TEST
+
+START_TEST(interrupted_comparison_goes_on) {
+    struct place place;
+    struct watch watch = {.stop_after = 5}, again = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    struct cs_cell *cells;
+    struct cs_error error = {0};
+    char path[128];
+    uint32_t n;
+    place_make(&place, "0.02");
+    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &watch), CS_ERR_INTERRUPT);
+    cs_compare_finish(&compare);
+    stop = 0;
+    snprintf(path, sizeof path, "%s/compare.csv", place.folder);
+    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert_uint_eq(n, 5);
+    free(cells);
+    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &again), CS_OK);
+    ck_assert_uint_eq(again.taken, 5);
+    ck_assert_uint_eq(again.rows, compare.sweep.n);
+    cs_compare_finish(&compare);
+    // another scene takes nothing over
+    struct watch other = {0};
+    scene_write(place.scene, SMALL_SCENE, "0.03");
+    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &other), CS_OK);
+    ck_assert_uint_eq(other.taken, 0);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(ranking_takes_the_cheapest) {
+    struct place place;
+    struct watch watch = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    struct cs_ranking ranking;
+    struct cs_error error = {0};
+    place_make(&place, "0.02");
+    run(&compare, &settings, &place, METHODS, &watch);
+    ck_assert(!cs_ranking_make(&ranking, &compare, &error));
+    ck_assert_uint_gt(ranking.n, 3);
+    for (uint32_t r = 0; r < ranking.n; r++) {
+        const struct cs_rank *rank = ranking.ranks + r;
+        ck_assert_double_le(rank->best->error, pow(10, rank->exponent));
+        for (uint32_t k = 0; k < compare.sweep.n; k++) {
+            const struct cs_cell *cell = compare.sweep.cells + k;
+            ck_assert(!(cell->error <= pow(10, rank->exponent)) ||
+                      !(cell->cpu < rank->best->cpu));
+        }
+        ck_assert(!rank->next || (rank->factor >= 1 && rank->low <= rank->factor &&
+                                  rank->factor <= rank->high));
+        ck_assert(!rank->next || strcmp(rank->next->method, rank->best->method) != 0);
+        ck_assert(ranking.front[rank->best - compare.sweep.cells]);
+    }
+    cs_ranking_finish(&ranking);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(list_is_read) {
+    struct cs_sweep sweep;
+    struct cs_error error = {0};
+    const struct cs_sweep_settings settings = {
+        .list = "rk4:dt=1e-3..4e-3,velocity-verlet,dopri5:rtol=1e-4..1e-3,atol=1e-9",
+        .fps = 60,
+        .omega = 1000};
+    ck_assert_msg(!cs_sweep_make(&sweep, &settings, &error), "%s", error.message);
+    ck_assert_uint_eq(sweep.n, 3 + 8 + 3);
+    ck_assert_str_eq(sweep.cells[0].options, "dt=0.004");
+    ck_assert_str_eq(sweep.cells[2].options, "dt=0.001");
+    ck_assert_double_le(sweep.cells[3].value, 1 / 60.0);
+    ck_assert_double_gt(sweep.cells[3].value, 2 / settings.omega);
+    ck_assert_str_eq(sweep.cells[11].options, "atol=1e-9,rtol=0.001");
+    cs_sweep_finish(&sweep);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {orders_are_seen,
+                                  file_reads_back,
+                                  quotes_read_back,
+                                  interrupted_comparison_goes_on,
+                                  ranking_takes_the_cheapest,
+                                  list_is_read};
+    return scene_tests("compare", tests, sizeof tests / sizeof *tests);
+}

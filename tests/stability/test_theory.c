@@ -1,0 +1,114 @@
+/* Linear theory from the code that runs: step limits of single oscillators, the fastest motion
+ * of a chain, and the verdicts of runs that are known. */
+#include "study/theory.h"
+#include "study/watch.h"
+
+#include "../physics/fixture.h"
+
+#include <math.h>
+
+#define PAIR                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"particle\": 1}, "              \
+    "\"springs\": {\"stretch\": 1}}]}"
+
+static double limit_of(const char *method, double square, double rate) {
+    struct fixture pair;
+    struct cs_error error = {0};
+    double limit = (double)NAN;
+    fixture_open(&pair, method, PAIR);
+    const struct cs_amplify amplify = {pair.session.integrator, pair.session.options, 0};
+    cs_amplify_limit(&amplify, square, rate, &limit, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    fixture_close(&pair);
+    return limit;
+}
+
+/* For w = 10/s and damping rate r, by the characteristic polynomials: symplectic Euler
+ * h^2 w^2 + 2 h r = 4, velocity Verlet with a predicted velocity h^2 w^2 + 4 h r = 4, forward
+ * Euler h = r / w^2 where underdamped, averaged Euler twice that, RK4 h w = 2 sqrt 2. The
+ * search ends within 2^(1/4) / 2^12 of the limit; what is left is the start that a method
+ * with history has not quite forgotten after 8 steps. */
+START_TEST(limits_of_one_oscillator) {
+    static const struct {
+        const char *method;
+        double rate, limit;
+    } rows[] = {{"symplectic-euler", 0, 0.2},
+                {"symplectic-euler", 4, 0.164},
+                {"position-verlet", 0, 0.2},
+                {"position-verlet", 4, 0.164},
+                {"position-verlet:loss=0.01", 0, 0.19950},
+                {"velocity-verlet", 0, 0.2},
+                {"velocity-verlet", 4, 0.1354},
+                {"explicit-euler", 4, 0.04},
+                {"averaged-euler", 4, 0.08},
+                {"explicit-euler", 100, 0.0202},
+                {"rk4", 0, 0.28284}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const double found = limit_of(rows[i].method, 100, rows[i].rate);
+        ck_assert_msg(fabs(found / rows[i].limit - 1) < 5e-3,
+                      "%s, rate %g: limit %.6g s, expected %.6g", rows[i].method, rows[i].rate,
+                      found, rows[i].limit);
+    }
+    ck_assert_double_eq(limit_of("explicit-euler", 100, 0), 0);
+    ck_assert(limit_of("implicit-linearised", 100, 0) > 1e100);
+    ck_assert(limit_of("backward-euler", 100, 4) > 1e100);
+}
+END_TEST
+
+/* A chain of n particles, both ends pinned: w^2 = 4 k/m sin^2(pi (n-2) / (2 (n-1))). */
+START_TEST(fastest_motion_of_a_chain) {
+    const double pi = 3.14159265358979323846;
+    struct fixture chain;
+    struct cs_modes modes;
+    struct cs_error error = {0};
+    fixture_open(&chain, "velocity-verlet",
+                 "{\"bodies\": [{\"cloth\": {\"grid\": [40, 1]}, \"mass\": {\"particle\": 0.5},"
+                 " \"springs\": {\"stretch\": 8, \"bend\": 0, \"damping\": 0.25}, "
+                 "\"pins\": [0, 39]}]}");
+    ck_assert_int_eq(cs_modes_init(&modes, chain.system, &error), CS_OK);
+    const double wave = sin(pi * 38 / (2.0 * 39));
+    const struct cs_mode mode = cs_modes_largest(&modes, chain.x, 1, 0);
+    ck_assert_double_eq_tol(mode.square / (4 * 8 / 0.5 * wave * wave), 1, 1e-3);
+    ck_assert_double_eq_tol(mode.rate / mode.square, 0.25 / 8, 1e-9);
+    cs_modes_finish(&modes);
+    fixture_close(&chain);
+}
+END_TEST
+
+/* Pulled apart by hand, one particle in a sound cloth is a local instability; thrown apart as a
+ * whole, it is a global one. */
+START_TEST(watch_tells_local_from_global) {
+    struct fixture cloth;
+    struct cs_watch watch;
+    struct cs_watch_row row;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "velocity-verlet",
+                 "{\"bodies\": [{\"cloth\": {\"grid\": [20, 20]}, \"mass\": {\"particle\": 1}, "
+                 "\"springs\": {\"stretch\": 100}, \"pins\": [\"top\"]}]}");
+    fixture_start(&cloth);
+    ck_assert_int_eq(cs_watch_begin(&watch, &cloth.session.run, &error), CS_OK);
+    fixture_frames(&cloth, 30);
+    cs_watch_look(&watch, &cloth.session.run, &row);
+    ck_assert_int_eq(row.verdict, CS_FATE_BOUNDED);
+    cloth.v[250] = 1.2 * row.speed_limit;
+    cs_watch_look(&watch, &cloth.session.run, &row);
+    ck_assert_int_eq(row.verdict, CS_FATE_LOCAL);
+    ck_assert_uint_eq(row.particle, 250);
+    ck_assert_uint_eq(row.particles, 1);
+    for (size_t i = 100; i < 400; i++)
+        cloth.v[i] = row.speed_limit;
+    cs_watch_look(&watch, &cloth.session.run, &row);
+    ck_assert_int_eq(row.verdict, CS_FATE_GLOBAL);
+    cloth.v[7] = (double)NAN;
+    cs_watch_look(&watch, &cloth.session.run, &row);
+    ck_assert_int_eq(row.verdict, CS_FATE_NOT_FINITE);
+    ck_assert_uint_eq(watch.first.particle, 250);
+    fixture_close(&cloth);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {limits_of_one_oscillator, fastest_motion_of_a_chain,
+                                  watch_tells_local_from_global};
+    return fixture_run("theory", tests, sizeof tests / sizeof *tests);
+}
