@@ -5,8 +5,15 @@
  *
  * Units are SI. State is one array of 6n doubles, component-major: x (3,n), then v (3,n), so
  * that v == x + 3n always holds and a solver may wrap x as a single vector of 6n.
- * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v. Pinned particles have v = 0 and zero rows
- * in f and df, so that no method needs a special case.
+ * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v. Pinned particles have inv_mass = 0 and zero
+ * rows in f and df, so that no method needs a special case. Their v is 0, or that of the path
+ * along which the scene moves them. It is constant from one restart to the next, and they are at
+ * x + h v after a step h: commit puts them there to the last bit, which is no change to speak of.
+ *
+ * A scene's events lie between two calls of advance. There x, v, view->inv_mass and the springs'
+ * constants may change, in place; restart follows. view->omega and view->delta hold for all of
+ * the run. Within an advance forces may depend on t (ramps are linear in it), and the list of
+ * springs is that of the t which the last call named; a matrix that a method keeps is not.
  *
  * Marks in brackets say when a call is allowed. Not on offer, on purpose: random numbers,
  * clock, files, threads.
@@ -47,7 +54,7 @@ enum cs_part {
     CS_PART_SHEAR = 1u << 1,
     CS_PART_BEND = 1u << 2,
     CS_PART_DAMPING = 1u << 3, /* the springs' dampers */
-    CS_PART_GRAVITY = 1u << 4,
+    CS_PART_GRAVITY = 1u << 4, /* and impacts over an interval: m a(t), wherever a particle is */
     CS_PART_DRAG = 1u << 5,
     CS_PART_WIND = 1u << 6,
     CS_PART_SPRINGS = 7u,
@@ -112,8 +119,8 @@ struct cs_host {
     enum cs_step (*solve_setup)(void *ctx, double t, const double *x, const double *v, double cm,
                                 double cd, double ck, uint32_t flags);
     enum cs_step (*solve)(void *ctx, const double *b, double rtol, double *u);
-    /* [advance] y (3,n) = A p with the A of the last solve_setup; p is 0 on pinned particles.
-     * Counted as a Jacobian product. */
+    /* [advance] y (3,n) = A p with the A of the last solve_setup; rows of pinned particles become
+     * 0. Counted as a Jacobian product. */
     void (*apply)(void *ctx, const double *p, double *y);
 
     /* [advance] MUST follow every accepted internal step of length dt that ended at time t:
@@ -148,7 +155,8 @@ struct cs_integrator {
     /* options: the filled, range-checked struct, valid only during the call: copy what you need.
      * All memory is taken here. On failure *self may be set, and destroy is called with it. */
     enum cs_step (*create)(const struct cs_host *host, const void *options, void **self);
-    /* The state was set from outside (first frame, event): forget all history. */
+    /* The state, the pins or the forces were changed from outside (first frame, event): forget
+     * all history, and what was derived from the view. */
     enum cs_step (*restart)(void *self, double t, const double *x, const double *v);
     /* From t0 to exactly t1 in as many internal steps as the method likes. In place. */
     enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);

@@ -58,6 +58,7 @@ struct cs_table {
     size_t size;          /* of the struct */
     bool optional;        /* the struct starts with `bool present` */
     bool one_of;          /* exactly one of the optional rows must be given */
+    uint32_t uncounted;   /* first rows that one_of leaves alone */
     const char *shorthand_text;   /* row that a plain string stands for, or NULL */
     const char *shorthand_number; /* row that a plain number stands for, or NULL */
 };

@@ -20,20 +20,6 @@ static void add_row(struct cs_text *out, const char *name, const char *format, .
     cs_text_add(out, "%-*s%s\n", VALUE_COLUMN, name, value);
 }
 
-/* "particle 312 (body 0, column 24, row 4)" */
-static void add_particle(const struct cs_system *system, uint32_t particle,
-                         struct cs_text *out) {
-    cs_text_add(out, "particle %u", particle);
-    for (uint32_t b = 0; b < system->plan.n_bodies; b++) {
-        const struct cs_body_range *range = system->bodies + b;
-        const uint32_t local = particle - range->first;
-        if (particle < range->first || local >= range->count)
-            continue;
-        cs_text_add(out, " (body %u, column %u, row %u)", b, local % range->columns,
-                    local / range->columns);
-    }
-}
-
 void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     cs_text_add(out, "%s", cs_outcome_text(run->outcome));
@@ -44,7 +30,7 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     if (!blown)
         return;
     cs_text_add(out, ", ");
-    add_particle(&job->session.system, run->blow_up.particle, out);
+    cs_system_print_particle(&job->session.system, run->blow_up.particle, out);
     if (run->outcome == CS_UNBOUNDED)
         cs_text_add(out, ", kinetic energy %.3g J beyond %.3g J", run->blow_up.energy,
                     run->blow_up.bound);

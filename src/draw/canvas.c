@@ -71,10 +71,11 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
     struct cs_cloth_picture *cloth = canvas->cloths + b;
     const struct cs_material *material = &cs_scene_bodies(canvas->scene)[b].material;
     const bool flat = material->shading == CS_SHADING_FLAT;
-    if (cs_mesh_init(&cloth->mesh, canvas->system->bodies + b, flat, &canvas->arena, error) !=
-        CS_OK)
+    if (cs_mesh_init(&cloth->mesh, canvas->system->bodies + b, flat, texture->width > 0,
+                     &canvas->arena, error) != CS_OK)
         return error->status;
-    cs_surface_init(&cloth->surface, flat ? NULL : cloth->mesh.indices, cloth->mesh.n_indices);
+    cs_surface_init(&cloth->surface, cloth->mesh.split ? NULL : cloth->mesh.indices,
+                    cloth->mesh.n_indices);
     set_style(&cloth->style, material, texture, canvas->scene->render.look);
     if (cloth->style.mode != CS_SURFACE_TEXTURED)
         return CS_OK;
@@ -180,6 +181,9 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     if (canvas->scene->render.ground)
         cs_backdrop_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
+        // the springs of a network lie behind the surface
+        if (look == CS_LOOK_SPRINGS && cs_scene_bodies(canvas->scene)[b].network.present)
+            continue;
         cs_surface_program_use(&canvas->program, &canvas->cloths[b].style);
         cs_surface_draw(&canvas->cloths[b].surface);
     }

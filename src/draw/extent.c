@@ -2,6 +2,7 @@
 
 #include "draw/matrix.h"
 #include "draw/mesh.h"
+#include "model/trimesh.h"
 
 static void grow(double low[3], double high[3], const double place[3], double reach) {
     for (int i = 0; i < 3; i++) {
@@ -36,6 +37,10 @@ double cs_extent_cell(const struct cs_system *system) {
     double cell = 0;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_cloth *cloth = &cs_scene_bodies(system->scene)[b].cloth;
+        if (system->bodies[b].mesh) {
+            cell = fmax(cell, system->bodies[b].mesh->edge);
+            continue;
+        }
         for (int i = 0; i < 2; i++)
             if (cloth->grid[i] > 1)
                 cell = fmax(cell, cloth->size[i] / (double)(cloth->grid[i] - 1));

@@ -1,6 +1,7 @@
 #include "draw/mesh.h"
 
 #include "draw/matrix.h"
+#include "model/trimesh.h"
 
 // drawing a particle farther away than this only upsets the rasteriser
 static const double bound = 1e5;
@@ -13,9 +14,20 @@ void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
     }
 }
 
+static uint32_t indices_of(const struct cs_body_range *range) {
+    if (range->mesh)
+        return 3 * range->mesh->n_triangles;
+    return range->columns > 1 && range->rows > 1 ? 6 * (range->columns - 1) * (range->rows - 1)
+                                                 : 0;
+}
+
 static void fill_indices(struct cs_mesh *mesh) {
     const uint32_t columns = mesh->range.columns;
     uint32_t *out = mesh->indices;
+    if (mesh->range.mesh) {
+        memcpy(out, mesh->range.mesh->triangles, mesh->n_indices * sizeof *out);
+        return;
+    }
     for (uint32_t row = 0; row + 1 < mesh->range.rows; row++)
         for (uint32_t column = 0; column + 1 < columns; column++) {
             const uint32_t top = row * columns + column, below = top + columns;
@@ -25,12 +37,12 @@ static void fill_indices(struct cs_mesh *mesh) {
 }
 
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_body_range *range, bool flat,
-                            struct cs_arena *arena, struct cs_error *error) {
-    const bool has_cells = range->columns > 1 && range->rows > 1;
+                            bool textured, struct cs_arena *arena, struct cs_error *error) {
     mesh->range = *range;
     mesh->flat = flat;
-    mesh->n_indices = has_cells ? 6 * (range->columns - 1) * (range->rows - 1) : 0;
-    mesh->n_vertices = flat ? mesh->n_indices : range->count;
+    mesh->split = flat || (textured && range->mesh && range->mesh->uv);
+    mesh->n_indices = indices_of(range);
+    mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
     mesh->vertices = cs_arena_take_n(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
     mesh->indices = cs_arena_take_n(arena, mesh->n_indices, sizeof *mesh->indices, error);
     mesh->normals = cs_arena_take_n(arena, range->count, 3 * sizeof *mesh->normals, error);
@@ -70,8 +82,7 @@ static double scaled(const double *values, uint32_t i, const double range[2]) {
     return t > 1 ? 1 : t > 0 ? t : 0;
 }
 
-static void update_smooth(struct cs_mesh *mesh, uint32_t n, const double *x,
-                          const double *values, const double range[2]) {
+static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->range.count);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
         double normal[3];
@@ -80,40 +91,59 @@ static void update_smooth(struct cs_mesh *mesh, uint32_t n, const double *x,
             for (uint32_t i = 0; i < 3; i++)
                 mesh->normals[3 * mesh->indices[k + corner] + i] += normal[i];
     }
-    for (uint32_t i = 0; i < mesh->range.count; i++) {
-        double place[3];
-        cs_mesh_place(n, x, mesh->range.first + i, place);
-        set_vertex(mesh->vertices + i, place, mesh->normals + 3 * (size_t)i,
-                   scaled(values, mesh->range.first + i, range));
-    }
 }
 
 void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const double *x, const double *values,
                     const double range[2]) {
-    if (!mesh->flat) {
-        update_smooth(mesh, n, x, values, range);
-        return;
+    double normal[3];
+    if (!mesh->flat)
+        sum_normals(mesh, n, x);
+    for (uint32_t k = 0; k < mesh->n_vertices; k++) {
+        const uint32_t i = mesh->split ? mesh->indices[k] : k, particle = mesh->range.first + i;
+        double place[3];
+        cs_mesh_place(n, x, particle, place);
+        if (mesh->flat && k % 3 == 0)
+            triangle_normal(mesh, n, x, mesh->indices + k, normal);
+        set_vertex(mesh->vertices + k, place,
+                   mesh->flat ? normal : mesh->normals + 3 * (size_t)i,
+                   scaled(values, particle, range));
     }
-    for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
-        double normal[3];
-        triangle_normal(mesh, n, x, mesh->indices + k, normal);
-        for (uint32_t corner = 0; corner < 3; corner++) {
-            const uint32_t particle = mesh->range.first + mesh->indices[k + corner];
-            double place[3];
-            cs_mesh_place(n, x, particle, place);
-            set_vertex(mesh->vertices + k + corner, place, normal,
-                       scaled(values, particle, range));
-        }
+}
+
+static void grid_uv(const struct cs_mesh *mesh, uint32_t i, double uv[2]) {
+    const uint32_t columns = mesh->range.columns, rows = mesh->range.rows;
+    uv[0] = columns > 1 ? (double)(i % columns) / (columns - 1) : 0;
+    uv[1] = rows > 1 ? (double)(i / columns) / (rows - 1) : 0;
+}
+
+// across and down the box of the mesh, seen from +z
+static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low[2],
+                     const double high[2], double uv[2]) {
+    for (int c = 0; c < 2; c++) {
+        const double width = high[c] - low[c], at = mesh->places[(size_t)c * mesh->n + i];
+        uv[c] = width > 0 ? (c ? high[c] - at : at - low[c]) / width : 0;
     }
 }
 
 void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
-    const uint32_t columns = mesh->range.columns, rows = mesh->range.rows;
+    const struct cs_trimesh *from = mesh->range.mesh;
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (size_t c = 0; from && c < 2; c++)
+        for (uint32_t i = 0; i < from->n; i++) {
+            low[c] = fmin(low[c], from->places[c * from->n + i]);
+            high[c] = fmax(high[c], from->places[c * from->n + i]);
+        }
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
-        const uint32_t i = mesh->flat ? mesh->indices[k] : k;
-        const double u = columns > 1 ? (double)(i % columns) / (columns - 1) : 0;
-        const double v = rows > 1 ? (double)(i / columns) / (rows - 1) : 0;
-        uv[2 * (size_t)k] = (float)(u * repeat[0]);
-        uv[2 * (size_t)k + 1] = (float)(v * repeat[1]);
+        const uint32_t i = mesh->split ? mesh->indices[k] : k;
+        double at[2];
+        if (!from)
+            grid_uv(mesh, i, at);
+        else if (from->uv)
+            at[0] = (double)from->uv[2 * (size_t)k],
+            at[1] = (double)from->uv[2 * (size_t)k + 1];
+        else
+            front_uv(from, i, low, high, at);
+        uv[2 * (size_t)k] = (float)(at[0] * repeat[0]);
+        uv[2 * (size_t)k + 1] = (float)(at[1] * repeat[1]);
     }
 }

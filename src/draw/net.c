@@ -2,10 +2,13 @@
 
 #include "draw/colour.h"
 #include "draw/mesh.h"
+#include "model/trimesh.h"
 
 #include <math.h>
 
 static uint32_t edges_of(const struct cs_body_range *body) {
+    if (body->mesh)
+        return body->mesh->n_edges;
     return (body->columns - 1) * body->rows + body->columns * (body->rows - 1);
 }
 
@@ -28,6 +31,10 @@ static void add(const struct cs_net *net, struct cs_lines *lines, const double *
 
 static void add_edges(const struct cs_net *net, struct cs_lines *lines, const double *x,
                       const struct cs_body_range *body) {
+    for (uint32_t e = 0; body->mesh && e < body->mesh->n_edges; e++) {
+        const uint32_t *ends = body->mesh->edges + 2 * (size_t)e;
+        add(net, lines, x, body->first + ends[0], body->first + ends[1]);
+    }
     for (uint32_t row = 0; row < body->rows; row++)
         for (uint32_t column = 0; column < body->columns; column++) {
             const uint32_t i = body->first + row * body->columns + column;
@@ -58,14 +65,19 @@ void cs_net_draw_edges(const struct cs_net *net, struct cs_lines *lines, const d
 }
 
 void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const double *x) {
-    // bend springs run along two stretch springs: wide and pale below, they frame them
+    // bend springs run along two stretch springs: wide and pale below, they frame them; the
+    // surface springs of a network are pale, or they would hide what is inside
+    enum { ALL, PLAIN, NETWORK };
     static const struct {
-        uint32_t kind, colour;
+        uint32_t kind, of, colour;
         double alpha, share, least, most;
-    } layers[] = {{CS_SPRING_BEND, 0x6fb3e8, 0.55, 0.17, 0.8, 2.4},
-                  {CS_SPRING_SHEAR, 0x2f9e62, 0.85, 0.05, 0.3, 0.7},
-                  {CS_SPRING_STRETCH, 0xc8321f, 0.95, 0.07, 0.4, 0.9}};
+    } layers[] = {{CS_SPRING_STRETCH, NETWORK, 0xc8321f, 0.25, 0.05, 0.3, 0.6},
+                  {CS_SPRING_BEND, ALL, 0x6fb3e8, 0.55, 0.17, 0.8, 2.4},
+                  {CS_SPRING_SHEAR, NETWORK, 0x1f7f4d, 0.3, 0.05, 0.25, 0.5},
+                  {CS_SPRING_SHEAR, PLAIN, 0x2f9e62, 0.85, 0.05, 0.3, 0.7},
+                  {CS_SPRING_STRETCH, PLAIN, 0xc8321f, 0.95, 0.07, 0.4, 0.9}};
     const struct cs_springs *springs = &net->system->springs;
+    const struct cs_body *bodies = cs_scene_bodies(net->system->scene);
     for (size_t layer = 0; layer < sizeof layers / sizeof *layers; layer++) {
         struct cs_line_style style = {.alpha = layers[layer].alpha, .lift = net->lift};
         cs_colour_linear(layers[layer].colour, style.colour);
@@ -73,8 +85,12 @@ void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const
             width(net, layers[layer].share, layers[layer].least, layers[layer].most);
         for (uint32_t r = 0; r < springs->n_runs; r++) {
             const struct cs_spring_run *run = springs->runs + r;
-            for (uint32_t i = 0; run->kind == layers[layer].kind && i < run->count; i++)
-                add(net, lines, x, run->a + i, run->b + i);
+            const uint32_t of = bodies[run->body].network.present ? NETWORK : PLAIN;
+            if (run->kind != layers[layer].kind ||
+                (layers[layer].of != ALL && layers[layer].of != of))
+                continue;
+            for (uint32_t i = 0; i < run->count; i++)
+                add(net, lines, x, cs_spring_a(run, i), cs_spring_b(run, i));
         }
         cs_lines_draw(lines, &style);
     }
@@ -100,7 +116,7 @@ void cs_net_draw_threads(const struct cs_net *net, struct cs_lines *lines, const
         const struct cs_body_range *body = net->system->bodies + b;
         const double *colour = cs_scene_bodies(net->system->scene)[b].material.colour;
         struct cs_line_style style = {.alpha = 1, .half_width = net->unit};
-        if (body->columns > 1 && body->rows > 1)
+        if (body->mesh || (body->columns > 1 && body->rows > 1))
             continue;
         for (int i = 0; i < 3; i++)
             style.colour[i] = (float)colour[i];

@@ -1,4 +1,4 @@
-/* net.h - cloth as lines: grid edges, springs by kind, pins. */
+/* net.h - cloth as lines: edges, springs by kind, pins. */
 #ifndef CS_DRAW_NET_H
 #define CS_DRAW_NET_H
 

@@ -46,7 +46,7 @@ static void add_row(const struct cs_option *row, struct cs_text *out) {
 
 static void add_rules(const struct cs_table *table, struct cs_text *out) {
     uint32_t n = 0;
-    for (uint32_t r = 0; table->one_of && r < table->n; r++)
+    for (uint32_t r = table->uncounted; table->one_of && r < table->n; r++)
         if (cs_option_is_optional(table->rows + r))
             cs_text_add(out, "%s*%s*",
                         n++ ? ", " : "Exactly one must be given of: ", table->rows[r].name);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/options.h"
 #include "io/json_path.h"
+#include "io/scene_mesh.h"
 #include "io/table_read.h"
 
 #include <stdio.h>
@@ -169,7 +170,8 @@ enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, cons
         (status = apply_overrides(root, overrides, n_overrides, error)))
         goto done;
     if ((status = cs_table_read(&reader, root, &cs_scene_table, scene)) ||
-        (status = read_integrator(&reader, root, scene)))
+        (status = read_integrator(&reader, root, scene)) ||
+        (status = cs_scene_read_meshes(&reader, root, scene)))
         goto done;
     status = check(&reader, root, scene);
 done:

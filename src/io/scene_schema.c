@@ -132,7 +132,7 @@ static void add_needs(const struct cs_table *table, int indent, struct cs_text *
         return;
     add_line(out, false, indent);
     n = 0;
-    for (uint32_t r = 0; r < table->n; r++)
+    for (uint32_t r = table->uncounted; r < table->n; r++)
         if (cs_option_is_optional(table->rows + r))
             cs_text_add(out, "%s{ \"required\": [\"%s\"] }", n++ ? ", " : "\"oneOf\": [",
                         table->rows[r].name);

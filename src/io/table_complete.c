@@ -52,7 +52,7 @@ static enum cs_status check_one_of(struct cs_reader *reader, const struct cs_jso
                                    const struct cs_table *table, const void *object) {
     struct cs_text given = {0}, choices = {0};
     uint32_t n = 0;
-    for (uint32_t r = 0; r < table->n; r++) {
+    for (uint32_t r = table->uncounted; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
         if (!cs_option_is_optional(row))
             continue;

@@ -10,10 +10,11 @@ void cs_bounds_set(struct cs_system *system, double *work) {
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
         for (uint32_t i = 0; i < run->count; i++) {
-            stiffness[run->a + i] += run->stiffness;
-            stiffness[run->b + i] += run->stiffness;
-            damping[run->a + i] += run->damping;
-            damping[run->b + i] += run->damping;
+            const uint32_t a = cs_spring_a(run, i), b = cs_spring_b(run, i);
+            stiffness[a] += cs_spring_stiffness(run, i);
+            stiffness[b] += cs_spring_stiffness(run, i);
+            damping[a] += run->damping;
+            damping[b] += run->damping;
         }
     }
 

@@ -36,8 +36,8 @@ static uint64_t sweep(const struct cs_system *system, uint32_t body, double limi
             continue;
         for (uint32_t j = 0; j < run->count; j++) {
             const uint32_t i = backwards ? run->count - 1 - j : j;
-            moves +=
-                shorten(system, run->a + i, run->b + i, limit * run->length, per_time, x, v);
+            moves += shorten(system, cs_spring_a(run, i), cs_spring_b(run, i),
+                             limit * cs_spring_length(run, i), per_time, x, v);
         }
     }
     return moves;

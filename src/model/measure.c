@@ -23,10 +23,10 @@ static double strain_of(const struct cs_spring_run *run, size_t n, const double 
                         uint32_t i) {
     double squared = 0;
     for (size_t c = 0; c < 3; c++) {
-        const double d = x[c * n + run->b + i] - x[c * n + run->a + i];
+        const double d = x[c * n + cs_spring_b(run, i)] - x[c * n + cs_spring_a(run, i)];
         squared += d * d;
     }
-    return sqrt(squared) / run->length - 1;
+    return sqrt(squared) / cs_spring_length(run, i) - 1;
 }
 
 double cs_measure_strain(const struct cs_system *system, const double *x) {
@@ -45,10 +45,10 @@ void cs_measure_particle_strain(const struct cs_system *system, const double *x,
         const struct cs_spring_run *run = system->springs.runs + r;
         for (uint32_t i = 0; i < run->count; i++) {
             const double strain = strain_of(run, system->view.n, x, i);
-            if (fabs(strain) > fabs(out[run->a + i]))
-                out[run->a + i] = strain;
-            if (fabs(strain) > fabs(out[run->b + i]))
-                out[run->b + i] = strain;
+            const uint32_t ends[2] = {cs_spring_a(run, i), cs_spring_b(run, i)};
+            for (int e = 0; e < 2; e++)
+                if (fabs(strain) > fabs(out[ends[e]]))
+                    out[ends[e]] = strain;
         }
     }
 }

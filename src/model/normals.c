@@ -1,5 +1,7 @@
 #include "model/normals.h"
 
+#include "model/trimesh.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -29,17 +31,41 @@ static void cross(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/* (right - left) x (up - down) at particle i of a grid */
+static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
+                         const double *x, double product[3]) {
+    const struct neighbours at = neighbours_of(body, i);
+    double across[3], upwards[3];
+    difference(x, (uint32_t)n, at.left, at.right, across);
+    difference(x, (uint32_t)n, at.down, at.up, upwards);
+    cross(across, upwards, product);
+}
+
+/* the sum of the normals of the triangles at particle i of a mesh */
+static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
+                         const double *x, double product[3]) {
+    const struct cs_trimesh *mesh = body->mesh;
+    const uint32_t end = mesh->around_end[i - body->first];
+    product[0] = product[1] = product[2] = 0;
+    for (uint32_t k = cs_trimesh_around_begin(mesh, i - body->first); k < end; k++) {
+        double normal[3];
+        cs_trimesh_normal(mesh, mesh->around[k], x, n, body->first, normal);
+        for (int c = 0; c < 3; c++)
+            product[c] += normal[c];
+    }
+}
+
 void cs_normals_update(const struct cs_system *system, const double *x) {
     const size_t n = system->view.n;
     double *nx = system->normals, *ny = nx + n, *nz = ny + n;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *body = system->bodies + b;
         for (uint32_t i = body->first; i < body->first + body->count; i++) {
-            const struct neighbours at = neighbours_of(body, i);
-            double across[3], upwards[3], product[3];
-            difference(x, (uint32_t)n, at.left, at.right, across);
-            difference(x, (uint32_t)n, at.down, at.up, upwards);
-            cross(across, upwards, product);
+            double product[3];
+            if (body->mesh)
+                mesh_product(body, i, n, x, product);
+            else
+                grid_product(body, i, n, x, product);
             const double squared =
                 product[0] * product[0] + product[1] * product[1] + product[2] * product[2];
             const double inverse = 1 / sqrt(squared + DBL_MIN);
@@ -50,26 +76,57 @@ void cs_normals_update(const struct cs_system *system, const double *x) {
     }
 }
 
-void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
-                          uint32_t i, const double *x, const double *dx, double dn[3]) {
-    const uint32_t n = system->view.n;
+/* product and its change; d(a x b) = da x b + a x db */
+static void add_product(const double a[3], const double b[3], const double da[3],
+                        const double db[3], double product[3], double change[3]) {
+    double whole[3], first[3], second[3];
+    cross(a, b, whole);
+    cross(da, b, first);
+    cross(a, db, second);
+    for (int c = 0; c < 3; c++) {
+        product[c] += whole[c];
+        change[c] += first[c] + second[c];
+    }
+}
+
+static void grid_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
+                        const double *x, const double *dx, double product[3],
+                        double change[3]) {
     const struct neighbours at = neighbours_of(body, i);
-    double across[3], upwards[3], d_across[3], d_upwards[3], product[3], first[3], second[3];
+    double across[3], upwards[3], d_across[3], d_upwards[3];
     difference(x, n, at.left, at.right, across);
     difference(x, n, at.down, at.up, upwards);
     difference(dx, n, at.left, at.right, d_across);
     difference(dx, n, at.down, at.up, d_upwards);
-    cross(across, upwards, product);
-    cross(d_across, upwards, first);
-    cross(across, d_upwards, second);
+    add_product(across, upwards, d_across, d_upwards, product, change);
+}
 
+static void mesh_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
+                        const double *x, const double *dx, double product[3],
+                        double change[3]) {
+    const struct cs_trimesh *mesh = body->mesh;
+    const uint32_t end = mesh->around_end[i - body->first], first = body->first;
+    for (uint32_t k = cs_trimesh_around_begin(mesh, i - first); k < end; k++) {
+        const uint32_t *corner = mesh->triangles + 3 * (size_t)mesh->around[k];
+        double a[3], b[3], da[3], db[3];
+        difference(x, n, first + corner[0], first + corner[1], a);
+        difference(x, n, first + corner[0], first + corner[2], b);
+        difference(dx, n, first + corner[0], first + corner[1], da);
+        difference(dx, n, first + corner[0], first + corner[2], db);
+        add_product(a, b, da, db, product, change);
+    }
+}
+
+void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
+                          uint32_t i, const double *x, const double *dx, double dn[3]) {
+    double product[3] = {0}, change[3] = {0}, normal[3], along = 0;
+    (body->mesh ? mesh_change : grid_change)(body, i, system->view.n, x, dx, product, change);
     const double inverse = 1 / sqrt(product[0] * product[0] + product[1] * product[1] +
                                     product[2] * product[2] + DBL_MIN);
-    double along = 0, normal[3];
     for (int c = 0; c < 3; c++) {
         normal[c] = product[c] * inverse;
-        along += normal[c] * (first[c] + second[c]);
+        along += normal[c] * change[c];
     }
     for (int c = 0; c < 3; c++)
-        dn[c] = (first[c] + second[c] - along * normal[c]) * inverse;
+        dn[c] = (change[c] - along * normal[c]) * inverse;
 }

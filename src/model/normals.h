@@ -1,4 +1,4 @@
-/* normals.h - particle normals of grids, for the wind. */
+/* normals.h - particle normals, for the wind. */
 #ifndef CS_NORMALS_H
 #define CS_NORMALS_H
 
@@ -6,7 +6,8 @@
 
 /* Writes system->normals (3,n): at each particle the unit vector along
  * (right - left) x (up - down), the particle itself standing in for a neighbour that is missing
- * (cloth thesis, eq. 4.6-4.9). Where that product is 0 the normal is 0. */
+ * (cloth thesis, eq. 4.6-4.9); of a mesh, along the sum of its triangles' normals, each as long
+ * as the triangle is large. Where that is 0 the normal is 0. */
 void cs_normals_update(const struct cs_system *system, const double *x);
 
 /* Change of the unit normal of particle i of a body when x changes along dx; normals fresh. */

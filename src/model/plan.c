@@ -1,6 +1,10 @@
 #include "model/plan.h"
 
+#include "model/event_key.h"
+#include "model/events.h"
+#include "model/shape.h"
 #include "model/springs.h"
+#include "model/trimesh.h"
 
 #include <clothsim/integrator.h>
 #include <math.h>
@@ -21,8 +25,15 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uin
     const struct cs_body *bodies = cs_scene_bodies(scene);
     plan->n_bodies = scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        plan->n += (uint32_t)(bodies[b].cloth.grid[0] * bodies[b].cloth.grid[1]);
-        *n_runs += cs_springs_of_grid(bodies + b, b, 0, NULL, &plan->n_springs);
+        const uint32_t before = plan->n_springs;
+        plan->n += (uint32_t)cs_shape_count(bodies + b);
+        *n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &plan->n_springs);
+        if (!bodies[b].mesh.present)
+            continue;
+        const uint32_t inner =
+            bodies[b].springs.stretch > 0 ? bodies[b].mesh.geometry->n_inner : 0;
+        plan->n_inner += inner;
+        plan->n_surface += plan->n_springs - before - inner;
     }
 }
 
@@ -36,6 +47,12 @@ static bool any_body(const struct cs_scene *scene, bool (*has)(const struct cs_b
 static bool has_damping(const struct cs_body *body) {
     return body->springs.damping > 0;
 }
+static bool has_gust(const struct cs_scene *scene) {
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (cs_scene_events(scene)[e].wind.present)
+            return true;
+    return false;
+}
 static bool has_limit(const struct cs_body *body) {
     return !isnan(body->strain_limit);
 }
@@ -48,29 +65,37 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const size_t n = plan->n, s = plan->n_springs, real = sizeof(double);
     const struct cs_forces *forces = &scene->forces;
     const double *g = forces->gravity;
-    const bool wind = forces->wind.present && forces->wind.strength > 0,
-               drag = forces->drag > 0;
+    const bool wind = (forces->wind.present && forces->wind.strength > 0) || has_gust(scene) ||
+                      cs_event_key_changes(scene, "forces.wind.strength"),
+               drag = forces->drag > 0 || cs_event_key_changes(scene, "forces.drag");
     const bool area = (wind && forces->wind.strength_unit == CS_WIND_PA) ||
                       (drag && forces->drag_unit == CS_DRAG_AREA);
     plan->state_bytes = (6 + 3 + 2) * n * real;
 
-    decide(plan, CS_FEATURE_SPRINGS, s > 0, n_runs * sizeof(struct cs_spring_run),
+    const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
+    decide(plan, CS_FEATURE_SPRINGS, s > 0,
+           n_runs * sizeof(struct cs_spring_run) + 2 * n_listed * real,
            "the bodies have springs", "no stiffness above 0");
-    decide(plan, CS_FEATURE_DAMPING, s > 0 && any_body(scene, has_damping), 0,
-           "springs.damping is above 0", "springs.damping is 0");
-    decide(plan, CS_FEATURE_GRAVITY, g[0] != 0 || g[1] != 0 || g[2] != 0, 0, "forces.gravity",
-           "forces.gravity is 0");
+    decide(plan, CS_FEATURE_DAMPING,
+           s > 0 && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),
+           0, "springs.damping is above 0", "springs.damping is 0");
+    decide(plan, CS_FEATURE_GRAVITY,
+           g[0] != 0 || g[1] != 0 || g[2] != 0 || cs_event_key_changes(scene, "forces.gravity"),
+           0, "forces.gravity", "forces.gravity is 0");
     decide(plan, CS_FEATURE_DRAG, drag, 0, "forces.drag is above 0", "forces.drag is 0");
     decide(plan, CS_FEATURE_WIND, wind, 3 * n * real, "forces.wind blows; it needs normals",
            forces->wind.present ? "forces.wind.strength is 0" : "no forces.wind");
     decide(plan, CS_FEATURE_AREA, area, n * real, "drag or wind are by area",
            "nothing is by area");
-    decide(plan, CS_FEATURE_VELOCITY_LOSS, forces->velocity_loss > 0, 0,
+    decide(plan, CS_FEATURE_VELOCITY_LOSS,
+           forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"), 0,
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
     decide(plan, CS_FEATURE_CONTACT, scene->colliders.n > 0, 0, "the scene has colliders",
            "no colliders");
     decide(plan, CS_FEATURE_STRAIN_LIMIT, s > 0 && any_body(scene, has_limit), 0,
            "a body has strain_limit", "no strain_limit");
+    decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, cs_events_bytes(scene, plan->n),
+           "the scene has events", "no events");
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
            s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),
            "the integrator asks for it", "the integrator does not ask for it");
@@ -84,6 +109,10 @@ void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
         out,
         "particles      %u\nbodies         %u\nsprings        %u\nstate          %zu bytes\n",
         plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
+    if (plan->n_surface)
+        cs_text_add(out, "on surfaces    %u springs\n", plan->n_surface);
+    if (plan->n_inner)
+        cs_text_add(out, "inside         %u springs\n", plan->n_inner);
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
         const struct cs_plan_row *row = plan->rows + f;
         cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", feature_names[f],

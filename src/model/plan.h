@@ -16,6 +16,7 @@
     X(VELOCITY_LOSS, "velocity loss")                                                          \
     X(CONTACT, "contact")                                                                      \
     X(STRAIN_LIMIT, "strain limit")                                                            \
+    X(EVENTS, "events")                                                                        \
     X(SPRING_LIST, "spring list")                                                              \
     X(SOLVER, "linear solver")                                                                 \
     X(RENDER, "renderer")
@@ -35,7 +36,8 @@ struct cs_plan_row {
 
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
-    size_t state_bytes; /* state, masses and start */
+    uint32_t n_surface, n_inner; /* springs on the surfaces of meshes, of networks in them */
+    size_t state_bytes;          /* state, masses and start */
     struct cs_plan_row rows[CS_FEATURES];
 };
 

@@ -29,6 +29,51 @@ struct cs_cloth {
     double bump;       /* m, height of the middle over the edges at time 0 */
     struct cs_place place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
+    double spin[3];     /* rad/s, about place.translate */
+};
+
+/* generated meshes, each of about the size of a cube of side 1 about the origin */
+enum cs_mesh_shape {
+    CS_MESH_BOX,
+    CS_MESH_SPHERE,
+    CS_MESH_TORUS,
+    CS_MESH_LIMBS, /* a rounded body with head, ears, arms and legs */
+    CS_MESH_SHAPES
+};
+enum { CS_MESH_DETAIL_MAX = 256 };
+
+struct cs_trimesh;
+
+/* either a file or a shape */
+struct cs_mesh_source {
+    bool present;
+    char file[CS_TEXT_MAX]; /* OBJ, relative to the scene file; "" = none */
+    int32_t shape;          /* enum cs_mesh_shape, -1: none */
+    int64_t detail;         /* how finely a shape is divided */
+    double scale[3];        /* times the coordinates of file or shape */
+    struct cs_place place;
+    double velocity[3]; /* m/s, of every free particle at time 0 */
+    double spin[3];     /* rad/s, about place.translate */
+
+    /* not in the tables: made by the reader, owned by the scene's arena */
+    const struct cs_trimesh *geometry;
+};
+
+enum cs_placement {
+    CS_PLACEMENT_RANDOM,
+    CS_PLACEMENT_OPPOSED_NORMALS,
+    CS_PLACEMENT_NEAREST,
+};
+
+/* springs through the inside of a closed mesh (soft-body thesis, sec. 6.3 and 6.4) */
+struct cs_network {
+    bool present;
+    int32_t placement;  /* enum cs_placement */
+    int64_t springs;    /* wanted from each particle */
+    int64_t candidates; /* of which the nearest is taken */
+    int64_t tries;      /* draws for one spring at most */
+    int64_t seed;
+    double surface; /* stiffness of surface springs over that of inner ones */
 };
 
 /* exactly one is not NAN */
@@ -88,7 +133,9 @@ struct cs_material {
 };
 
 struct cs_body {
-    struct cs_cloth cloth;
+    struct cs_cloth cloth; /* either this or the mesh */
+    struct cs_mesh_source mesh;
+    struct cs_network network;
     struct cs_mass mass;
     struct cs_spring_law springs;
     struct cs_list pins; /* struct cs_pin */
@@ -138,6 +185,55 @@ struct cs_forces {
     struct cs_wind wind;
 };
 
+/* what an event acts on */
+struct cs_aim {
+    int64_t body;             /* -1: every body */
+    struct cs_list particles; /* struct cs_pin; none: all of them */
+};
+
+struct cs_impact {
+    bool present;
+    struct cs_aim aim;
+    double direction[3]; /* made a unit vector by cs_scene_check */
+    double impulse;      /* N s, on all of them together */
+};
+struct cs_gust {
+    bool present;
+    double direction[3]; /* first component NAN: as it was */
+    double strength;     /* NAN: as it was */
+};
+struct cs_ramp {
+    bool present;
+    char key[CS_TEXT_MAX]; /* forces.gravity[1] */
+    double value;          /* NAN: not given, refused */
+};
+struct cs_path_point {
+    double at;       /* s; NAN: not given, refused */
+    double point[3]; /* m */
+};
+enum cs_motion { CS_MOTION_LINEAR, CS_MOTION_SMOOTH };
+struct cs_grab {
+    bool present;
+    struct cs_aim aim;
+    struct cs_list path; /* struct cs_path_point, at least one */
+    int32_t motion;      /* enum cs_motion */
+    bool relative;       /* points are shifts from where it was grabbed */
+};
+struct cs_hold {
+    bool present;
+    struct cs_aim aim;
+};
+
+/* exactly one of impact ... release; `at`, or `from` and `to` */
+struct cs_event {
+    double at, from, to; /* s; NAN: absent */
+    struct cs_impact impact;
+    struct cs_gust wind;
+    struct cs_ramp ramp;
+    struct cs_grab grab;
+    struct cs_hold pin, release;
+};
+
 struct cs_time {
     double fps; /* frame k shows t = k / fps */
 };
@@ -175,6 +271,7 @@ struct cs_scene {
     struct cs_list bodies;    /* struct cs_body, at least one */
     struct cs_list colliders; /* struct cs_collider */
     struct cs_forces forces;
+    struct cs_list events; /* struct cs_event */
     struct cs_time time;
     struct cs_camera camera;
     struct cs_light light;
@@ -192,9 +289,10 @@ struct cs_scene {
 };
 
 /* The root of the scene's tables, and names of its choices. */
-extern const struct cs_table cs_scene_table;
+extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table;
 extern const char *const cs_pin_names[];
 extern const char *const cs_look_names[];
+extern const char *const cs_mesh_shape_names[];
 #define CS_INTEGRATOR_DEFAULT "implicit-linearised"
 
 /* The colliders, bodies and pins of a scene with their type. */
@@ -204,6 +302,16 @@ static inline struct cs_body *cs_scene_bodies(const struct cs_scene *scene) {
 static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scene) {
     return scene->colliders.items;
 }
+
+static inline const struct cs_event *cs_scene_events(const struct cs_scene *scene) {
+    return scene->events.items;
+}
+/* 4096 x 4096 particles: about 10 GB with springs and solver */
+#define CS_PARTICLES_MAX 16777216.0
+
+/* true if a file named in a scene lies in the scene's folder or below: a scene from elsewhere
+ * must not open any file it names. */
+bool cs_scene_is_below(const char *file);
 
 /* Checks what single ranges cannot say (pins exist, one kind of mass, a size that fits in
  * memory, a camera that looks somewhere, ...) and normalises directions, quaternion and

@@ -1,14 +1,11 @@
 /* What single ranges cannot say about a scene. */
-#include "model/scene.h"
+#include "model/event_check.h"
 #include "model/shape.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-/* 4096 x 4096 particles: about 10 GB with springs and solver */
-#define PARTICLES_MAX 16777216.0
 
 /* Where the check stands, for messages. */
 struct place {
@@ -69,27 +66,32 @@ static enum cs_status check_matrix(const struct place *at, const char *path, con
     return CS_OK;
 }
 
-static enum cs_status check_place(const struct place *at, const char *body,
-                                  struct cs_cloth *cloth) {
+static enum cs_status check_place(const struct place *at, const char *body, const char *shape,
+                                  struct cs_place *place) {
     char path[128];
-    if (!isnan(cloth->place.matrix[0])) {
-        snprintf(path, sizeof path, "%s.cloth.place.matrix", body);
-        return check_matrix(at, path, cloth->place.matrix);
+    if (!isnan(place->matrix[0])) {
+        snprintf(path, sizeof path, "%s.%s.place.matrix", body, shape);
+        return check_matrix(at, path, place->matrix);
     }
-    snprintf(path, sizeof path, "%s.cloth.place.rotate", body);
-    return make_unit(at, path, cloth->place.rotate, 4);
+    snprintf(path, sizeof path, "%s.%s.place.rotate", body, shape);
+    return make_unit(at, path, place->rotate, 4);
 }
 
 static enum cs_status check_pins(const struct place *at, const char *body,
                                  const struct cs_body *of) {
     char path[128];
-    const int64_t count = of->cloth.grid[0] * of->cloth.grid[1];
+    const int64_t count = cs_shape_count(of);
     const struct cs_pin *pins = of->pins.items;
     for (uint32_t p = 0; p < of->pins.n; p++) {
         snprintf(path, sizeof path, "%s.pins[%u]", body, p);
         if (pins[p].index >= count)
             return refuse(at, path, "particle %lld does not exist (0..%lld)",
                           (long long)pins[p].index, (long long)count - 1);
+        if (of->mesh.present && pins[p].at >= 0)
+            return refuse(at, path,
+                          "found \"%s\", expected an index or a box: a mesh has no "
+                          "named corners or edges",
+                          cs_pin_names[pins[p].at]);
         for (int c = 0; c < 3 && pins[p].box.present; c++)
             if (pins[p].box.min[c] > pins[p].box.max[c])
                 return refuse(at, path, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
@@ -103,7 +105,7 @@ static enum cs_status check_mass(const struct place *at, const char *body,
     char path[128];
     const struct cs_spring_law *law = &of->springs;
     const int64_t *grid = of->cloth.grid;
-    const bool stretch = law->stretch > 0 && (grid[0] > 1 || grid[1] > 1);
+    const bool stretch = law->stretch > 0 && (of->mesh.present || grid[0] > 1 || grid[1] > 1);
     const bool shear = law->shear > 0 && grid[0] > 1 && grid[1] > 1;
     snprintf(path, sizeof path, "%s.mass.degree", body);
     if (!isnan(of->mass.degree) && !stretch && !shear)
@@ -111,25 +113,39 @@ static enum cs_status check_mass(const struct place *at, const char *body,
     return CS_OK;
 }
 
-/* below the scene's folder: a scene from elsewhere must not open any file it names */
+bool cs_scene_is_below(const char *file) {
+    return *file != '/' && strcmp(file, "..") && strncmp(file, "../", 3) &&
+           !strstr(file, "/../");
+}
+
 static enum cs_status check_texture(const struct place *at, const char *body,
                                     const char *texture) {
     char path[128];
     snprintf(path, sizeof path, "%s.material.texture", body);
-    if (*texture == '/' || !strcmp(texture, "..") || !strncmp(texture, "../", 3) ||
-        strstr(texture, "/../"))
+    if (!cs_scene_is_below(texture))
         return refuse(at, path,
                       "found \"%.60s\", expected a file in the scene's folder or below",
                       texture);
     return CS_OK;
 }
 
+static enum cs_status check_network(const struct place *at, const char *body,
+                                    const struct cs_body *of) {
+    char path[128];
+    snprintf(path, sizeof path, "%s.network", body);
+    if (of->network.present && !of->mesh.present)
+        return refuse(at, path, "a cloth has no inside, expected a closed mesh");
+    return CS_OK;
+}
+
 static enum cs_status check_body(const struct place *at, uint32_t b, struct cs_body *body) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u]", b);
-    if (!body->cloth.present)
-        return refuse(at, path, "found no shape, expected cloth");
-    if (check_place(at, path, &body->cloth) || check_mass(at, path, body) ||
+    if (body->cloth.present == body->mesh.present)
+        return refuse(at, path, "found %s, expected cloth or mesh",
+                      body->cloth.present ? "cloth and mesh" : "no shape");
+    if (check_network(at, path, body) || check_place(at, path, "cloth", &body->cloth.place) ||
+        check_place(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
         check_pins(at, path, body) || check_texture(at, path, body->material.texture))
         return at->error->status;
     return CS_OK;
@@ -143,11 +159,11 @@ static enum cs_status check_bodies(const struct place *at, struct cs_scene *scen
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         if (check_body(at, b, bodies + b))
             return at->error->status;
-        particles += (double)bodies[b].cloth.grid[0] * (double)bodies[b].cloth.grid[1];
+        particles += (double)cs_shape_count(bodies + b);
     }
-    if (particles > PARTICLES_MAX)
+    if (particles > CS_PARTICLES_MAX)
         return refuse(at, "bodies", "%.0f particles in all, expected at most %.0f", particles,
-                      PARTICLES_MAX);
+                      CS_PARTICLES_MAX);
     return CS_OK;
 }
 
@@ -200,7 +216,7 @@ enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_
         (scene->forces.wind.present &&
          make_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||
-        check_render(&at, &scene->render))
+        check_render(&at, &scene->render) || cs_events_check(scene, path_out, error))
         return error->status;
     return CS_OK;
 }

@@ -2,58 +2,7 @@
  * the schema and the man page all come from here. A default outside its range (NAN, -1) means:
  * absent unless given. */
 #include "model/scene.h"
-
-#include <math.h>
-
-#define BIG         1e9
-#define ABSENT      ((double)NAN)
-#define ROWS(array) .rows = array, .n = sizeof array / sizeof *array
-
-#define REAL(s, f, unit_, def_, min_, max_, help_)                                             \
-    {                                                                                          \
-        .name = #f, .unit = unit_, .help = help_, .type = CS_REAL, .count = 1,                 \
-        .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_                        \
-    }
-#define INT(s, f, unit_, def_, min_, max_, help_)                                              \
-    {                                                                                          \
-        .name = #f, .unit = unit_, .help = help_, .type = CS_INT, .count = 1,                  \
-        .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_                        \
-    }
-#define BOOL(s, f, def_, help_)                                                                \
-    {                                                                                          \
-        .name = #f, .unit = "", .help = help_, .type = CS_BOOL, .count = 1,                    \
-        .offset = offsetof(s, f), .def = def_                                                  \
-    }
-#define CHOICE(s, f, names_, def_, help_)                                                      \
-    {                                                                                          \
-        .name = #f, .unit = "", .help = help_, .type = CS_CHOICE, .count = 1,                  \
-        .offset = offsetof(s, f), .def = def_, .choices = names_                               \
-    }
-#define TEXT(s, f, help_)                                                                      \
-    {                                                                                          \
-        .name = #f, .unit = "", .help = help_, .type = CS_TEXT, .count = 1,                    \
-        .offset = offsetof(s, f)                                                               \
-    }
-#define VECTOR(s, f, n_, unit_, defs_, min_, max_, help_)                                      \
-    {                                                                                          \
-        .name = #f, .unit = unit_, .help = help_, .type = CS_VECTOR, .count = n_,              \
-        .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_                      \
-    }
-#define COUNTS(s, f, n_, unit_, defs_, min_, max_, help_)                                      \
-    {                                                                                          \
-        .name = #f, .unit = unit_, .help = help_, .type = CS_COUNTS, .count = n_,              \
-        .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_                      \
-    }
-#define TABLE(s, f, table_, help_)                                                             \
-    {                                                                                          \
-        .name = #f, .unit = "", .help = help_, .type = CS_TABLE, .count = 1,                   \
-        .offset = offsetof(s, f), .table = &table_                                             \
-    }
-#define LIST(s, f, table_, help_)                                                              \
-    {                                                                                          \
-        .name = #f, .unit = "", .help = help_, .type = CS_LIST, .count = 1,                    \
-        .offset = offsetof(s, f), .table = &table_                                             \
-    }
+#include "model/table_rows.h"
 
 static const double zero3[3] = {0, 0, 0};
 static const double one2[2] = {1, 1};
@@ -87,14 +36,59 @@ static const struct cs_option cloth_rows[] = {
     TABLE(struct cs_cloth, place, place_table, "rigid placement, about the cloth's centre"),
     VECTOR(struct cs_cloth, velocity, 3, "m/s", zero3, -BIG, BIG,
            "of every particle that is not pinned, at time 0"),
+    VECTOR(
+        struct cs_cloth, spin, 3, "rad/s", zero3, -BIG, BIG,
+        "angular velocity about the point that place moves the centre to, added to velocity"),
 };
 static const struct cs_table cloth_table = {ROWS(cloth_rows), .size = sizeof(struct cs_cloth),
                                             .optional = true};
 
+const char *const cs_mesh_shape_names[] = {"box", "sphere", "torus", "limbs", NULL};
+static const double one3[3] = {1, 1, 1};
+static const struct cs_option mesh_rows[] = {
+    TEXT(struct cs_mesh_source, file, "OBJ file, relative to the scene file"),
+    CHOICE(
+        struct cs_mesh_source, shape, cs_mesh_shape_names, -1,
+        "generated: fits a cube of side 1 about the origin; limbs: a rounded body with head, "
+        "ears, arms and legs"),
+    INT(struct cs_mesh_source, detail, "", 12, 3, CS_MESH_DETAIL_MAX,
+        "parts of a shape: of an edge of the box, of an edge of the icosahedron that becomes "
+        "the sphere, round the torus's tube, or of the height of limbs"),
+    VECTOR(struct cs_mesh_source, scale, 3, "", one3, 1e-6, 1e6,
+           "times the coordinates of file or shape, before the placement"),
+    TABLE(struct cs_mesh_source, place, place_table, "rigid placement, about the origin"),
+    VECTOR(struct cs_mesh_source, velocity, 3, "m/s", zero3, -BIG, BIG,
+           "of every particle that is not pinned, at time 0"),
+    VECTOR(struct cs_mesh_source, spin, 3, "rad/s", zero3, -BIG, BIG,
+           "about place.translate, added to the velocity"),
+};
+static const struct cs_table mesh_table = {
+    ROWS(mesh_rows), .size = sizeof(struct cs_mesh_source), .optional = true, .one_of = true};
+
+static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
+static const struct cs_option network_rows[] = {
+    CHOICE(struct cs_network, placement, placement_names, CS_PLACEMENT_NEAREST,
+           "random: any two particles; opposed-normals: only where their normals point away "
+           "from each other; nearest: the nearest of some such candidates"),
+    INT(struct cs_network, springs, "", 6, 1, 1000, "inner springs tried for each particle"),
+    INT(struct cs_network, candidates, "", 4, 1, 1000,
+        "of placement nearest, from which the nearest is taken"),
+    INT(struct cs_network, tries, "", 64, 1, 100000,
+        "draws for one spring; where none of them suits, there is none"),
+    INT(struct cs_network, seed, "", 1, 0, 4294967295.0, "of the draws"),
+    REAL(struct cs_network, surface, "", 4, 1e-6, 1e6,
+         "stiffness of the springs on the surface over that of the inner ones, which is "
+         "springs.stretch"),
+};
+static const struct cs_table network_table = {
+    ROWS(network_rows), .size = sizeof(struct cs_network), .optional = true};
+
 static const struct cs_option mass_rows[] = {
     REAL(struct cs_mass, particle, "kg", ABSENT, 1e-12, BIG, "of each particle"),
     REAL(struct cs_mass, areal_density, "kg/m2", ABSENT, 1e-12, BIG,
-         "each particle gets its share of the area: a quarter of every cell that it touches"),
+         "each particle gets its share of the area: a quarter of every cell, or a third of "
+         "every "
+         "triangle, that it touches"),
     REAL(struct cs_mass, total, "kg", ABSENT, 1e-12, BIG, "of the body, shared equally"),
     REAL(struct cs_mass, degree, "kg", ABSENT, 1e-12, BIG, "for each spring at the particle"),
 };
@@ -105,10 +99,12 @@ static const char *const damping_names[] = {"relative", "axial", NULL};
 static const char *const stiffness_names[] = {"N/m", "N", NULL};
 static const struct cs_option spring_rows[] = {
     REAL(struct cs_spring_law, stretch, "N/m", 50, 0, 1e12,
-         "stiffness between direct neighbours; 0: no such springs"),
+         "stiffness between direct neighbours, or along the edges of a mesh; 0: no such "
+         "springs"),
     REAL(struct cs_spring_law, shear, "N/m", 20, 0, 1e12,
-         "stiffness between diagonal neighbours"),
-    REAL(struct cs_spring_law, bend, "N/m", 8, 0, 1e12, "stiffness between second neighbours"),
+         "stiffness between diagonal neighbours of a grid"),
+    REAL(struct cs_spring_law, bend, "N/m", 8, 0, 1e12,
+         "stiffness between second neighbours, or across the edges of a mesh"),
     REAL(struct cs_spring_law, damping, "N s/m", 0, 0, 1e12, "damper beside every spring"),
     CHOICE(struct cs_spring_law, damping_model, damping_names, CS_DAMPING_AXIAL,
            "relative: on the whole relative velocity; axial: on its part along the spring"),
@@ -131,12 +127,14 @@ static const struct cs_option pin_rows[] = {
     CHOICE(struct cs_pin, at, cs_pin_names, -1,
            "a corner or an edge of the grid; a plain string means this"),
     INT(struct cs_pin, index, "", -1, 0, 4294967295.0,
-        "a particle of the body, row * columns + column; a plain number means this"),
+        "a particle of the body, row * columns + column, or a vertex from 0; a plain number "
+        "means "
+        "this"),
     TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
 };
-static const struct cs_table pin_table = {ROWS(pin_rows), .size = sizeof(struct cs_pin),
-                                          .one_of = true, .shorthand_text = "at",
-                                          .shorthand_number = "index"};
+const struct cs_table cs_pin_table = {ROWS(pin_rows), .size = sizeof(struct cs_pin),
+                                      .one_of = true, .shorthand_text = "at",
+                                      .shorthand_number = "index"};
 
 static const char *const shading_names[] = {"smooth", "flat", NULL};
 static const double red_cloth[3] = {0.60, 0.06, 0.07};
@@ -151,16 +149,19 @@ static const struct cs_option material_rows[] = {
            "normals: interpolated, or one a triangle"),
     TEXT(struct cs_material, texture, "PNG file, relative to the scene file; times the colour"),
     VECTOR(struct cs_material, texture_repeat, 2, "", one2, 1e-3, 1e4,
-           "how often the texture fits along a row and a column"),
+           "how often the texture fits along a row and a column, or a mesh's width and height"),
 };
 static const struct cs_table material_table = {ROWS(material_rows),
                                                .size = sizeof(struct cs_material)};
 
 static const struct cs_option body_rows[] = {
     TABLE(struct cs_body, cloth, cloth_table, "a rectangular grid of particles"),
+    TABLE(struct cs_body, mesh, mesh_table, "triangles, instead of cloth"),
+    TABLE(struct cs_body, network, network_table,
+          "springs through the inside of a closed mesh"),
     TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
-    TABLE(struct cs_body, springs, spring_table, "12-neighbour spring law"),
-    LIST(struct cs_body, pins, pin_table, "particles that keep their place"),
+    TABLE(struct cs_body, springs, spring_table, "spring law"),
+    LIST(struct cs_body, pins, cs_pin_table, "particles that keep their place"),
     REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
          "largest length of a stretch spring over its rest length; absent: no limit"),
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
@@ -284,6 +285,7 @@ static const struct cs_option scene_rows[] = {
     LIST(struct cs_scene, bodies, body_table, "what moves; at least one"),
     LIST(struct cs_scene, colliders, collider_table, "what bodies rest on and slide off"),
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
+    LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),
     TABLE(struct cs_scene, camera, camera_table, "look-at camera with perspective"),
     TABLE(struct cs_scene, light, light_table, "one light, at a point or from a direction"),

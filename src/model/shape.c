@@ -1,7 +1,22 @@
 #include "model/shape.h"
 
+#include "model/trimesh.h"
+
 #include <math.h>
 #include <string.h>
+
+int64_t cs_shape_count(const struct cs_body *body) {
+    return body->mesh.present ? body->mesh.geometry->n
+                              : body->cloth.grid[0] * body->cloth.grid[1];
+}
+
+const struct cs_place *cs_shape_placement(const struct cs_body *body) {
+    return body->mesh.present ? &body->mesh.place : &body->cloth.place;
+}
+
+const double *cs_shape_velocity(const struct cs_body *body) {
+    return body->mesh.present ? body->mesh.velocity : body->cloth.velocity;
+}
 
 /* rows of the rotation: the given matrix, or that of the unit quaternion */
 static void rotation_of(const struct cs_place *place, double r[9]) {
@@ -33,7 +48,18 @@ static double arch(double a) {
     return y * series;
 }
 
-void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const double *p = mesh->places, *shift = body->mesh.place.translate;
+    double r[9];
+    rotation_of(&body->mesh.place, r);
+    for (size_t i = 0; i < mesh->n; i++)
+        for (size_t c = 0; c < 3; c++)
+            x[c * n + first + i] = r[3 * c] * p[i] + r[3 * c + 1] * p[mesh->n + i] +
+                                   r[3 * c + 2] * p[2 * (size_t)mesh->n + i] + shift[c];
+}
+
+static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
     const struct cs_cloth *cloth = &body->cloth;
     const uint32_t columns = (uint32_t)cloth->grid[0], rows = (uint32_t)cloth->grid[1];
     double r[9];
@@ -54,9 +80,19 @@ void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, doub
         }
 }
 
-double cs_shape_area(const struct cs_body *body, uint32_t row, uint32_t column) {
+void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+    if (body->mesh.present)
+        place_mesh(body, n, first, x);
+    else
+        place_grid(body, n, first, x);
+}
+
+double cs_shape_area(const struct cs_body *body, uint32_t i) {
+    if (body->mesh.present)
+        return body->mesh.geometry->area[i];
     const uint32_t columns = (uint32_t)body->cloth.grid[0],
                    rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t row = i / columns, column = i % columns;
     /* half a cell to each side that has one; a single row or column keeps the whole size */
     const double width = columns > 1 ? body->cloth.size[0] / (columns - 1) *
                                            (0.5 * (column > 0) + 0.5 * (column + 1 < columns))
@@ -104,15 +140,13 @@ void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const 
                   bool *pinned) {
     const uint32_t columns = (uint32_t)body->cloth.grid[0],
                    rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t count = (uint32_t)cs_shape_count(body);
     const struct cs_pin *pins = body->pins.items;
     for (uint32_t p = 0; p < body->pins.n; p++)
-        for (uint32_t i = 0; i < rows; i++)
-            for (uint32_t j = 0; j < columns; j++) {
-                const uint32_t at = i * columns + j;
-                if ((pins[p].at >= 0 &&
-                     is_named((enum cs_pin_name)pins[p].at, i, j, rows, columns)) ||
-                    pins[p].index == (int64_t)at ||
-                    (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
-                    pinned[at] = true;
-            }
+        for (uint32_t at = 0; at < count; at++)
+            if ((pins[p].at >= 0 && is_named((enum cs_pin_name)pins[p].at, at / columns,
+                                             at % columns, rows, columns)) ||
+                pins[p].index == (int64_t)at ||
+                (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
+                pinned[at] = true;
 }

@@ -4,11 +4,17 @@
 
 #include "model/scene.h"
 
-/* Places of a grid's particles, placed rigidly: written to x[first..] of x (3,n). */
+/* Particles of a body, its placement and its velocity at time 0. */
+int64_t cs_shape_count(const struct cs_body *body);
+const struct cs_place *cs_shape_placement(const struct cs_body *body);
+const double *cs_shape_velocity(const struct cs_body *body);
+
+/* Places of a body's particles, placed rigidly: written to x[first..] of x (3,n). */
 void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x);
 
-/* Share of the rest area of grid particle (row, column) in m2: a quarter of each cell at it. */
-double cs_shape_area(const struct cs_body *body, uint32_t row, uint32_t column);
+/* Share of the rest area of the body's particle i in m2: a quarter of each cell at it, a third
+ * of each triangle. */
+double cs_shape_area(const struct cs_body *body, uint32_t i);
 
 /* Marks the body's pinned particles: pinned[0..count) = true. x as from cs_shape_place. */
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,

@@ -9,57 +9,27 @@
 #include <float.h>
 #include <math.h>
 
-uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uint32_t first,
-                            struct cs_spring_run *runs, uint32_t *n_springs) {
-    const struct cs_spring_law *law = &body->springs;
-    const uint32_t columns = (uint32_t)body->cloth.grid[0],
-                   rows = (uint32_t)body->cloth.grid[1];
-    const double dx = columns > 1 ? body->cloth.size[0] / (columns - 1) : 0;
-    const double dy = rows > 1 ? body->cloth.size[1] / (rows - 1) : 0;
-    const double stiffness[CS_SPRING_KINDS] = {law->stretch, law->shear, law->bend};
+/* what a part asks of a run: k is 0 without its elastic force, c without its dampers */
+struct asked {
+    double k, c;
+};
 
-    /* the six forward directions: steps right and down */
-    static const struct {
-        int32_t right, down;
-        uint32_t kind;
-    } forward[6] = {{1, 0, CS_SPRING_STRETCH}, {0, 1, CS_SPRING_STRETCH},
-                    {1, 1, CS_SPRING_SHEAR},   {-1, 1, CS_SPRING_SHEAR},
-                    {2, 0, CS_SPRING_BEND},    {0, 2, CS_SPRING_BEND}};
-
-    uint32_t n_runs = 0;
-    for (uint32_t i = 0; i < rows; i++)
-        for (uint32_t d = 0; d < 6; d++) {
-            const int32_t right = forward[d].right, down = forward[d].down;
-            const uint32_t reach = (uint32_t)(right < 0 ? -right : right);
-            const double k = stiffness[forward[d].kind];
-            if (i + (uint32_t)down >= rows || reach >= columns || k == 0)
-                continue;
-            const uint32_t row = first + i * columns, below = row + (uint32_t)down * columns;
-            const double length = sqrt(right * dx * (right * dx) + down * dy * (down * dy));
-            if (runs)
-                runs[n_runs] = (struct cs_spring_run){
-                    .a = row + (right < 0 ? reach : 0),
-                    .b = below + (right > 0 ? reach : 0),
-                    .count = columns - reach,
-                    .kind = forward[d].kind,
-                    .body = body_index,
-                    .first = *n_springs,
-                    .stiffness = law->stiffness_unit == CS_STIFFNESS_N ? k / length : k,
-                    .length = length,
-                    .damping = law->damping,
-                    .axial = law->damping_model == CS_DAMPING_AXIAL,
-                };
-            n_runs++;
-            *n_springs += columns - reach;
-        }
-    return n_runs;
+static struct asked asked_of(const struct cs_spring_run *run, uint32_t parts) {
+    return (struct asked){
+        parts & (CS_PART_STRETCH << run->kind) ? run->ends ? 1 : run->stiffness : 0,
+        parts & CS_PART_DAMPING ? run->damping : 0};
 }
 
-/* force of one piece; k and c are 0 where the part was not asked for */
-CS_INLINE void piece_force(uint32_t count, struct ends x, struct ends v, double k, double L,
-                           double c, const bool damped, const bool axial, double *restrict fx,
-                           double *restrict fy, double *restrict fz) {
+/* force of one piece; listed: length and stiffness are the spring's own, and times k */
+CS_INLINE void piece_force(const struct piece *piece, struct ends x, struct ends v,
+                           struct asked asked, const bool listed, const bool damped,
+                           const bool axial, double *restrict fx, double *restrict fy,
+                           double *restrict fz) {
+    const double c = asked.c, length = piece->run->length;
+    const uint32_t count = piece->count;
     for (uint32_t i = 0; i < count; i++) {
+        const double L = listed ? piece->lengths[i] : length;
+        const double k = listed ? asked.k * piece->stiffnesses[i] : asked.k;
         const double dx = x.bx[i] - x.ax[i];
         const double dy = x.by[i] - x.ay[i];
         const double dz = x.bz[i] - x.az[i];
@@ -86,48 +56,81 @@ CS_INLINE void piece_force(uint32_t count, struct ends x, struct ends v, double 
     }
 }
 
+/* three copies of the loop, so that a scene without damping never reads v */
+CS_INLINE void run_force(const struct cs_spring_run *run, uint32_t n, const double *x,
+                         const double *v, struct asked asked, const bool listed, double *f) {
+    double fx[PIECE], fy[PIECE], fz[PIECE];
+    struct gathered places, speeds;
+    const bool damped = asked.c != 0;
+    for (uint32_t start = 0; start < run->count; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        const struct ends xs = ends_of(&piece, x, n, &places);
+        const struct ends vs = damped ? ends_of(&piece, v, n, &speeds) : xs;
+        if (!damped)
+            piece_force(&piece, xs, vs, asked, listed, false, false, fx, fy, fz);
+        else if (run->axial)
+            piece_force(&piece, xs, vs, asked, listed, true, true, fx, fy, fz);
+        else
+            piece_force(&piece, xs, vs, asked, listed, true, false, fx, fy, fz);
+        scatter(&piece, fx, fy, fz, n, f);
+    }
+}
+
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const double *x, const double *v, uint32_t parts,
                                     double *f) {
-    double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        const double k = parts & (CS_PART_STRETCH << run->kind) ? run->stiffness : 0;
-        const double c = parts & CS_PART_DAMPING ? run->damping : 0;
-        if (k == 0 && c == 0)
+        const struct asked asked = asked_of(run, parts);
+        if (asked.k == 0 && asked.c == 0)
             continue;
-        for (uint32_t start = 0; start < run->count; start += PIECE) {
-            const uint32_t left = run->count - start, count = left < PIECE ? left : PIECE;
-            const uint32_t a = run->a + start, b = run->b + start;
-            const struct ends xs = ends_of(x, n, a, b), vs = ends_of(v, n, a, b);
-            /* three copies of the loop, so that a scene without damping never reads v */
-            if (c == 0)
-                piece_force(count, xs, vs, k, run->length, c, false, false, fx, fy, fz);
-            else if (run->axial)
-                piece_force(count, xs, vs, k, run->length, c, true, true, fx, fy, fz);
-            else
-                piece_force(count, xs, vs, k, run->length, c, true, false, fx, fy, fz);
-            scatter(count, fx, fy, fz, n, a, b, f);
-        }
+        if (run->ends)
+            run_force(run, n, x, v, asked, true, f);
+        else
+            run_force(run, n, x, v, asked, false, f);
     }
+}
+
+double cs_springs_shortest(const struct cs_springs *springs) {
+    double shortest = springs->n_runs ? HUGE_VAL : 0;
+    for (uint32_t r = 0; r < springs->n_runs; r++)
+        for (uint32_t i = 0; i < springs->runs[r].count; i++)
+            shortest = fmin(shortest, cs_spring_length(springs->runs + r, i));
+    return shortest;
 }
 
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts) {
+    struct gathered places;
     double energy = 0;
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
         if (!(parts & (CS_PART_STRETCH << run->kind)))
             continue;
-        const struct ends e = ends_of(x, n, run->a, run->b);
         double sum = 0;
-        for (uint32_t i = 0; i < run->count; i++) {
-            const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i], dz = e.bz[i] - e.az[i];
-            const double stretch = sqrt(dx * dx + dy * dy + dz * dz) - run->length;
-            sum += stretch * stretch;
+        for (uint32_t start = 0; start < run->count; start += PIECE) {
+            const struct piece piece = piece_of(run, start);
+            const struct ends e = ends_of(&piece, x, n, &places);
+            for (uint32_t i = 0; i < piece.count; i++) {
+                const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i];
+                const double dz = e.bz[i] - e.az[i];
+                const double stretch =
+                    sqrt(dx * dx + dy * dy + dz * dz) - cs_spring_length(run, start + i);
+                sum += (run->ends ? piece.stiffnesses[i] : 1) * (stretch * stretch);
+            }
         }
-        energy += 0.5 * run->stiffness * sum;
+        energy += 0.5 * (run->ends ? 1 : run->stiffness) * sum;
     }
+    return energy;
+}
+
+double cs_springs_energy_at_twice(const struct cs_springs *springs) {
+    double energy = 0;
+    for (uint32_t r = 0; r < springs->n_runs; r++)
+        for (uint32_t i = 0; i < springs->runs[r].count; i++) {
+            const double length = cs_spring_length(springs->runs + r, i);
+            energy += 0.5 * cs_spring_stiffness(springs->runs + r, i) * length * length;
+        }
     return energy;
 }
 
@@ -137,13 +140,17 @@ double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const dou
  *   axial      d (g.u) u + d [(w.du) u + (w.u) du],  du = (e - (u.e) u) / l
  *   relative   d g
  * moved: dx is given; turned: dv is given. */
-CS_INLINE void piece_jvp(uint32_t count, struct ends x, struct ends v, struct ends dx,
-                         struct ends dv, const struct cs_spring_run *run, double k, double c,
+CS_INLINE void piece_jvp(const struct piece *piece, struct ends x, struct ends v,
+                         struct ends dx, struct ends dv, struct asked asked, const bool listed,
                          const bool moved, const bool turned, double *restrict fx,
                          double *restrict fy, double *restrict fz) {
-    const double L = run->length;
-    const double axial = run->axial ? c : 0, relative = run->axial ? 0 : c;
+    const double axial = piece->run->axial ? asked.c : 0;
+    const double relative = piece->run->axial ? 0 : asked.c;
+    const double length = piece->run->length;
+    const uint32_t count = piece->count;
     for (uint32_t i = 0; i < count; i++) {
+        const double L = listed ? piece->lengths[i] : length;
+        const double k = listed ? asked.k * piece->stiffnesses[i] : asked.k;
         const double px = x.bx[i] - x.ax[i], py = x.by[i] - x.ay[i], pz = x.bz[i] - x.az[i];
         const double inverse = 1 / sqrt(px * px + py * py + pz * pz + DBL_MIN);
         const double ux = px * inverse, uy = py * inverse, uz = pz * inverse;
@@ -177,30 +184,39 @@ CS_INLINE void piece_jvp(uint32_t count, struct ends x, struct ends v, struct en
     }
 }
 
+CS_INLINE void run_jvp(const struct cs_spring_run *run, uint32_t n, const double *x,
+                       const double *v, struct asked asked, const bool listed, const double *dx,
+                       const double *dv, double *df) {
+    double fx[PIECE], fy[PIECE], fz[PIECE];
+    struct gathered places, speeds, moves, turns;
+    for (uint32_t start = 0; start < run->count; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        const struct ends xs = ends_of(&piece, x, n, &places);
+        const struct ends vs = ends_of(&piece, v, n, &speeds);
+        /* a direction that is not given stands for itself, and is not read */
+        const struct ends xd = dx ? ends_of(&piece, dx, n, &moves) : xs;
+        const struct ends vd = dv ? ends_of(&piece, dv, n, &turns) : xs;
+        if (dx && dv)
+            piece_jvp(&piece, xs, vs, xd, vd, asked, listed, true, true, fx, fy, fz);
+        else if (dx)
+            piece_jvp(&piece, xs, vs, xd, vd, asked, listed, true, false, fx, fy, fz);
+        else
+            piece_jvp(&piece, xs, vs, xd, vd, asked, listed, false, true, fx, fy, fz);
+        scatter(&piece, fx, fy, fz, n, df);
+    }
+}
+
 CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
                                   const double *v, uint32_t parts, const double *dx,
                                   const double *dv, double *df) {
-    double fx[PIECE], fy[PIECE], fz[PIECE];
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        const double k = parts & (CS_PART_STRETCH << run->kind) ? run->stiffness : 0;
-        const double c = parts & CS_PART_DAMPING ? run->damping : 0;
-        if ((k == 0 && c == 0) || (c == 0 && !dx))
+        const struct asked asked = asked_of(run, parts);
+        if ((asked.k == 0 && asked.c == 0) || (asked.c == 0 && !dx))
             continue;
-        for (uint32_t start = 0; start < run->count; start += PIECE) {
-            const uint32_t left = run->count - start, count = left < PIECE ? left : PIECE;
-            const uint32_t a = run->a + start, b = run->b + start;
-            const struct ends xs = ends_of(x, n, a, b), vs = ends_of(v, n, a, b);
-            /* a direction that is not given stands for itself, and is not read */
-            const struct ends xd = ends_of(dx ? dx : x, n, a, b);
-            const struct ends vd = ends_of(dv ? dv : v, n, a, b);
-            if (dx && dv)
-                piece_jvp(count, xs, vs, xd, vd, run, k, c, true, true, fx, fy, fz);
-            else if (dx)
-                piece_jvp(count, xs, vs, xd, vd, run, k, c, true, false, fx, fy, fz);
-            else
-                piece_jvp(count, xs, vs, xd, vd, run, k, c, false, true, fx, fy, fz);
-            scatter(count, fx, fy, fz, n, a, b, df);
-        }
+        if (run->ends)
+            run_jvp(run, n, x, v, asked, true, dx, dv, df);
+        else
+            run_jvp(run, n, x, v, asked, false, dx, dv, df);
     }
 }

@@ -1,8 +1,10 @@
 /* springs.h - springs as runs, and the kernels over them.
  *
  * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. The
- * 12 neighbours of a grid are six runs a row, so kernels vectorise inside a run. The order of
- * runs is the order of every sum, and the state hash depends on it.
+ * 12 neighbours of a grid are six runs a row, so kernels vectorise inside a run. A mesh has a
+ * run a kind, with lists of ends, lengths and stiffnesses; its ends are gathered into rows, and
+ * then the same kernels work on them. The order of runs, and of springs in a run, is the order
+ * of every sum, and the state hash depends on it.
  */
 #ifndef CS_SPRINGS_H
 #define CS_SPRINGS_H
@@ -12,6 +14,7 @@
 
 #include <clothsim/system.h>
 
+/* a grid's diagonals are shear springs, and so are the inner springs of a network */
 enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPRING_KINDS };
 
 struct cs_spring_run {
@@ -23,18 +26,37 @@ struct cs_spring_run {
     double length;    /* rest length in m */
     double damping;   /* N s/m */
     bool axial;       /* damping along the spring only */
+
+    /* lists of a mesh's run, or all NULL: spring i joins a + ends[2 i] and b + ends[2 i + 1] */
+    const uint32_t *ends;                /* (count, 2) */
+    const double *lengths, *stiffnesses; /* (count), instead of those above */
 };
+
+/* Ends and law of spring i of a run, of either kind. */
+static inline uint32_t cs_spring_a(const struct cs_spring_run *run, uint32_t i) {
+    return run->a + (run->ends ? run->ends[2 * (size_t)i] : i);
+}
+static inline uint32_t cs_spring_b(const struct cs_spring_run *run, uint32_t i) {
+    return run->b + (run->ends ? run->ends[2 * (size_t)i + 1] : i);
+}
+static inline double cs_spring_length(const struct cs_spring_run *run, uint32_t i) {
+    return run->lengths ? run->lengths[i] : run->length;
+}
+static inline double cs_spring_stiffness(const struct cs_spring_run *run, uint32_t i) {
+    return run->stiffnesses ? run->stiffnesses[i] : run->stiffness;
+}
 
 struct cs_springs {
     const struct cs_spring_run *runs;
     uint32_t n_runs, n; /* runs; springs */
 };
 
-/* Runs of one grid cloth whose particles start at `first`, appended at runs[0..]; runs may be
- * NULL to count. Kinds of stiffness 0 have no springs. Returns the number of
- * runs and adds the springs to *n_springs. */
-uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uint32_t first,
-                            struct cs_spring_run *runs, uint32_t *n_springs);
+/* Runs of one body whose particles start at `first`, appended at runs[0..]: of a cloth's rows,
+ * or one a kind of a mesh. lists takes the lengths and stiffnesses of a mesh, 2 doubles a
+ * spring. Both may be NULL to count. Kinds of stiffness 0 have no springs. Returns the number
+ * of runs and adds the springs to *n_springs. */
+uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
+                            struct cs_spring_run *runs, double *lists, uint32_t *n_springs);
 
 /* Adds the spring and damper forces of the chosen parts to f (3,n).
  *
@@ -46,9 +68,15 @@ uint32_t cs_springs_of_grid(const struct cs_body *body, uint32_t body_index, uin
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
                           const double *v, uint32_t parts, double *f);
 
+/* Smallest rest length in m; 0 without springs. */
+double cs_springs_shortest(const struct cs_springs *springs);
+
 /* Elastic energy in J of the springs of `parts`. */
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts);
+
+/* Elastic energy in J that all springs would hold at twice their rest lengths. */
+double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
 /* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df; dx or dv may be NULL. */
 void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,

@@ -1,6 +1,7 @@
 #include "model/system.h"
 
 #include "model/bounds.h"
+#include "model/events.h"
 #include "model/shape.h"
 #include "model/terms.h"
 
@@ -19,16 +20,22 @@ static double *take(struct cs_system *system, size_t n, struct cs_error *error) 
 
 static void build_springs(struct cs_system *system, struct cs_error *error) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
-    uint32_t n_runs = 0, n_springs = 0;
+    uint32_t n_runs = 0, n_springs = 0, n_listed = 0;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
-        n_runs += cs_springs_of_grid(bodies + b, b, 0, NULL, &n_springs);
+        n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL,
+                                     bodies[b].mesh.present ? &n_listed : &n_springs);
     struct cs_spring_run *runs = cs_arena_take_n(&system->arena, n_runs, sizeof *runs, error);
-    if (!runs)
+    double *lists = take(system, 2 * (size_t)n_listed, error);
+    if (error->status)
         return;
     n_runs = n_springs = 0;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
-        n_runs += cs_springs_of_grid(bodies + b, b, system->bodies[b].first, runs + n_runs,
-                                     &n_springs);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const uint32_t before = n_springs;
+        n_runs += cs_springs_of_body(bodies + b, b, system->bodies[b].first, runs + n_runs,
+                                     lists, &n_springs);
+        if (bodies[b].mesh.present)
+            lists += 2 * (size_t)(n_springs - before);
+    }
     system->springs = (struct cs_springs){.runs = runs, .n_runs = n_runs, .n = n_springs};
 }
 
@@ -46,10 +53,10 @@ static void build_spring_list(struct cs_system *system, struct cs_error *error) 
         const struct cs_spring_run *run = system->springs.runs + r;
         for (uint32_t i = 0; i < run->count; i++) {
             const size_t s = (size_t)run->first + i;
-            ends[2 * s] = run->a + i;
-            ends[2 * s + 1] = run->b + i;
-            length[s] = run->length;
-            stiffness[s] = run->stiffness;
+            ends[2 * s] = cs_spring_a(run, i);
+            ends[2 * s + 1] = cs_spring_b(run, i);
+            length[s] = cs_spring_length(run, i);
+            stiffness[s] = cs_spring_stiffness(run, i);
             damping[s] = run->damping;
             kind[s] = CS_PART_STRETCH << run->kind;
             axial[s] = run->axial;
@@ -68,8 +75,8 @@ static void count_degrees(const struct cs_system *system, double *degree) {
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
         for (uint32_t i = 0; i < run->count; i++) {
-            degree[run->a + i]++;
-            degree[run->b + i]++;
+            degree[cs_spring_a(run, i)]++;
+            degree[cs_spring_b(run, i)]++;
         }
     }
 }
@@ -90,8 +97,7 @@ static void fill_mass(struct cs_system *system) {
             else if (!isnan(mass->degree))
                 *m *= mass->degree;
             else
-                *m = mass->areal_density *
-                     cs_shape_area(bodies + b, i / range->columns, i % range->columns);
+                *m = mass->areal_density * cs_shape_area(bodies + b, i);
         }
     }
 }
@@ -101,9 +107,24 @@ static void fill_area(struct cs_system *system) {
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *range = system->bodies + b;
         for (uint32_t i = 0; i < range->count; i++)
-            system->area[range->first + i] =
-                cs_shape_area(bodies + b, i / range->columns, i % range->columns);
+            system->area[range->first + i] = cs_shape_area(bodies + b, i);
     }
+}
+
+/* v += spin x (x - centre) where the particle is free */
+static void spin_body(struct cs_system *system, const struct cs_body *body,
+                      const struct cs_body_range *range, const bool *pinned) {
+    const double *w = body->mesh.present ? body->mesh.spin : body->cloth.spin;
+    const double *centre = cs_shape_placement(body)->translate;
+    const size_t n = system->view.n;
+    if (w[0] == 0 && w[1] == 0 && w[2] == 0)
+        return;
+    for (size_t i = range->first; i < (size_t)range->first + range->count; i++)
+        for (size_t c = 0; c < 3 && !pinned[i]; c++) {
+            const size_t d = (c + 1) % 3, e = (c + 2) % 3;
+            system->state[(3 + c) * n + i] += w[d] * (system->state[e * n + i] - centre[e]) -
+                                              w[e] * (system->state[d * n + i] - centre[d]);
+        }
 }
 
 static void fill_state(struct cs_system *system, bool *pinned) {
@@ -111,11 +132,13 @@ static void fill_state(struct cs_system *system, bool *pinned) {
     const uint32_t n = system->view.n;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *range = system->bodies + b;
+        const double *velocity = cs_shape_velocity(bodies + b);
         cs_shape_place(bodies + b, n, range->first, system->state);
         cs_shape_pin(bodies + b, n, range->first, system->state, pinned + range->first);
         for (uint32_t i = range->first; i < range->first + range->count; i++)
             for (size_t c = 0; c < 3; c++)
-                system->state[(3 + c) * n + i] = pinned[i] ? 0 : bodies[b].cloth.velocity[c];
+                system->state[(3 + c) * n + i] = pinned[i] ? 0 : velocity[c];
+        spin_body(system, bodies + b, range, pinned);
     }
 }
 
@@ -159,9 +182,10 @@ static void take_arrays(struct cs_system *system, struct cs_error *error) {
     system->view.inv_mass = system->inv_mass;
     system->view.start = system->start;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const int64_t *grid = cs_scene_bodies(system->scene)[b].cloth.grid;
-        system->bodies[b] = (struct cs_body_range){first, (uint32_t)(grid[0] * grid[1]),
-                                                   (uint32_t)grid[0], (uint32_t)grid[1]};
+        const struct cs_body *body = cs_scene_bodies(system->scene) + b;
+        system->bodies[b] = (struct cs_body_range){
+            first, (uint32_t)cs_shape_count(body), (uint32_t)body->cloth.grid[0],
+            (uint32_t)body->cloth.grid[1], body->mesh.geometry};
         first += system->bodies[b].count;
     }
 }
@@ -184,7 +208,10 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
         return;
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
     choose_terms(system);
-    cs_bounds_set(system, work);
+    if (!is_built(&system->plan, CS_FEATURE_EVENTS))
+        cs_bounds_set(system, work);
+    else if (!cs_events_build(system, error))
+        cs_events_set_bounds(system, work);
 }
 
 enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *scene,
@@ -208,4 +235,20 @@ enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *
 void cs_system_finish(struct cs_system *system) {
     cs_arena_finish(&system->arena);
     *system = (struct cs_system){0};
+}
+
+void cs_system_print_particle(const struct cs_system *system, uint32_t particle,
+                              struct cs_text *out) {
+    cs_text_add(out, "particle %u", particle);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        const uint32_t local = particle - range->first;
+        if (particle < range->first || local >= range->count)
+            continue;
+        if (range->mesh)
+            cs_text_add(out, " (body %u, vertex %u)", b, local);
+        else
+            cs_text_add(out, " (body %u, column %u, row %u)", b, local % range->columns,
+                        local / range->columns);
+    }
 }

@@ -9,16 +9,21 @@
 
 #include <clothsim/integrator.h>
 
-/* The particles of one body: a grid of rows x columns from `first` on. */
+struct cs_term;
+struct cs_trimesh;
+
+/* The particles of one body, from `first` on: a grid of rows x columns, or a mesh (columns and
+ * rows 0). */
 struct cs_body_range {
     uint32_t first, count, columns, rows;
+    const struct cs_trimesh *mesh; /* borrowed from the scene; NULL: a grid */
 };
 
-struct cs_term;
+struct cs_events;
 
 struct cs_system {
     struct cs_view view;          /* what integrators see */
-    const struct cs_scene *scene; /* borrowed */
+    const struct cs_scene *scene; /* borrowed, or as the events have changed it */
     struct cs_plan plan;          /* what was built, what was left out */
     struct cs_body_range *bodies; /* (scene->bodies.n) */
     struct cs_springs springs;
@@ -30,7 +35,8 @@ struct cs_system {
     uint32_t *pinned, n_pinned; /* (n_pinned) particles, ascending */
     const struct cs_term *terms[8]; /* the forces that this scene has */
     uint32_t n_terms;
-    struct cs_arena arena; /* owns the arrays */
+    struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
+    struct cs_arena arena;    /* owns the arrays */
 };
 
 /* Builds the system of a checked scene by its plan. On failure CS_ERR_MEMORY and *system is
@@ -38,5 +44,9 @@ struct cs_system {
 enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *scene,
                                const struct cs_plan *plan, struct cs_error *error);
 void cs_system_finish(struct cs_system *system);
+
+/* Adds "particle 312 (body 0, column 24, row 4)", or "(body 0, vertex 312)" of a mesh. */
+void cs_system_print_particle(const struct cs_system *system, uint32_t particle,
+                              struct cs_text *out);
 
 #endif

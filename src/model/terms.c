@@ -3,7 +3,7 @@
 #include <string.h>
 
 const struct cs_term *const cs_terms[CS_TERMS] = {&cs_term_springs, &cs_term_gravity,
-                                                  &cs_term_drag, &cs_term_wind};
+                                                  &cs_term_drag, &cs_term_wind, &cs_term_push};
 
 static void clear_pinned(const struct cs_system *system, double *f) {
     for (uint32_t c = 0; c < 3; c++)

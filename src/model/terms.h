@@ -22,9 +22,10 @@ struct cs_term {
 };
 
 /* In the order in which forces are summed. */
-extern const struct cs_term cs_term_springs, cs_term_gravity, cs_term_drag, cs_term_wind;
+extern const struct cs_term cs_term_springs, cs_term_gravity, cs_term_drag, cs_term_wind,
+    cs_term_push;
 extern const struct cs_term *const cs_terms[];
-enum { CS_TERMS = 4 };
+enum { CS_TERMS = 5 };
 
 /* f (3,n) = sum of the chosen parts, 0 on pinned particles. With wind among them the normals of
  * x must be fresh (cs_normals_update). */

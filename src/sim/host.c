@@ -56,6 +56,12 @@ static void host_note(void *ctx, const char *format, ...) {
         memcpy(run->notes[run->n_notes++], message, sizeof message);
 }
 
+/* ramps move on with every time that the method asks about */
+static void move_values(struct cs_run_host *host, double t) {
+    if (host->run->system->events)
+        cs_events_move_values(host->run->system, t);
+}
+
 static void update_normals(struct cs_run_host *host, const double *x, uint32_t parts) {
     if (!cs_terms_need_normals(host->run->system, parts))
         return;
@@ -68,6 +74,7 @@ static void update_normals(struct cs_run_host *host, const double *x, uint32_t p
 static void host_force(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                        double *f) {
     struct cs_run_host *host = ctx;
+    move_values(host, t);
     update_normals(host, x, parts);
     const double begin = stage_begin(host);
     cs_terms_force(host->run->system, t, x, v, parts, f);
@@ -77,7 +84,7 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
 
 static double host_energy(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
-    (void)t;
+    move_values(host, t);
     host->run->counts.energies++;
     const struct cs_energy energy = cs_measure_energy(host->run->system, x, v);
     return energy.kinetic + energy.elastic + energy.gravity;
@@ -86,6 +93,7 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
 static void host_jvp(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                      const double *dx, const double *dv, double *df) {
     struct cs_run_host *host = ctx;
+    move_values(host, t);
     update_normals(host, x, parts);
     const double begin = stage_begin(host);
     cs_terms_jvp(host->run->system, t, x, v, parts, dx, dv, df);
@@ -96,7 +104,8 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
 static void host_diagonal(void *ctx, double t, const double *x, const double *v, double *kxx,
                           double *dvv) {
     struct cs_run_host *host = ctx;
-    (void)t, (void)v;
+    (void)v;
+    move_values(host, t);
     const double begin = stage_begin(host);
     cs_terms_diagonal(host->run->system, x, kxx, dvv);
     host->run->counts.diagonals++;
@@ -114,7 +123,8 @@ static void clamp(struct cs_run_host *host) {
 static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const double *v,
                                      double cm, double cd, double ck, uint32_t flags) {
     struct cs_run_host *host = ctx;
-    (void)t, (void)v;
+    (void)v;
+    move_values(host, t);
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
     if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
@@ -170,7 +180,8 @@ static void host_apply(void *ctx, const double *p, double *y) {
  * the start holds, what every spring would hold at twice its length, and what the outer forces
  * can give in free flight, sum m (|v| + a t)^2. */
 static double blow_up_bound(const struct cs_run_host *host, double t) {
-    return 100 * (host->bound_start + host->bound_speed + host->bound_push * t * t);
+    return 100 * (host->bound_start + host->bound_speed +
+                  host->bound_push * (t - host->bound_since) * (t - host->bound_since));
 }
 
 static void set_bound(struct cs_run_host *host) {
@@ -178,18 +189,18 @@ static void set_bound(struct cs_run_host *host) {
     const struct cs_forces *forces = &system->scene->forces;
     const size_t n = system->view.n;
     const double *x = system->state, *v = x + 3 * n, *g = forces->gravity;
+    const double *a = system->events ? system->events->push : NULL;
     const struct cs_energy energy = cs_measure_energy(system, x, v);
-    host->bound_start = energy.elastic;
+    host->bound_start = energy.elastic + cs_springs_energy_at_twice(&system->springs);
     host->bound_speed = 2 * energy.kinetic;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
-        const struct cs_spring_run *run = system->springs.runs + r;
-        host->bound_start += 0.5 * run->stiffness * run->length * run->length * run->count;
-    }
+    host->bound_push = 0;
     for (size_t i = 0; i < n; i++) {
         double push = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
         if (system->normals)
             push += forces->wind.strength * system->inv_mass[i] *
                     (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
+        if (a)
+            push += sqrt(a[i] * a[i] + a[n + i] * a[n + i] + a[2 * n + i] * a[2 * n + i]);
         host->bound_push += system->mass[i] * push * push;
     }
 }
@@ -302,12 +313,15 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
     const struct cs_plan_row *rows = host->run->system->plan.rows;
     *changed = false;
     host->run->counts.steps++;
+    move_values(host, t);
     if (rows[CS_FEATURE_STRAIN_LIMIT].built)
         limit_strain(host, dt, x, v, changed);
     if (rows[CS_FEATURE_CONTACT].built)
         resolve_contact(host, x, v, changed);
     if (rows[CS_FEATURE_VELOCITY_LOSS].built)
         lose_velocity(host, v, changed);
+    if (rows[CS_FEATURE_EVENTS].built)
+        cs_events_place(host->run->system, t, x, v);
     if (has_blown_up(host, t, x, v))
         return CS_STEP_HALT;
     if (host->stop && *host->stop) {
@@ -348,4 +362,22 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     host->kept_x =
         cs_arena_take_n(&host->arena, 3 * (size_t)system->view.n, sizeof(double), error);
     return cs_linear_init(&host->linear, system, &host->arena, error);
+}
+
+void cs_run_host_apply_events(struct cs_run_host *host, double t) {
+    struct cs_system *system = host->run->system;
+    cs_events_apply(system, t);
+    /* from the state that the event leaves, with the larger of what holds now and what ramps
+     * come to; a grab may pull all particles along */
+    set_bound(host);
+    const double start = host->bound_start, push = host->bound_push;
+    cs_events_move_values(system, system->events->end);
+    set_bound(host);
+    cs_events_move_values(system, t);
+    host->bound_since = t;
+    host->bound_start = fmax(host->bound_start, start);
+    host->bound_push = fmax(host->bound_push, push);
+    const double speed = cs_events_speed(system->events);
+    for (size_t i = 0; i < system->view.n; i++)
+        host->bound_speed += 2 * system->mass[i] * speed * speed;
 }

@@ -2,6 +2,7 @@
 #ifndef CS_HOST_H
 #define CS_HOST_H
 
+#include "model/events.h"
 #include "model/linear.h"
 #include "sim/guard.h"
 #include "sim/run.h"
@@ -27,11 +28,16 @@ struct cs_run_host {
     void *self;                                  /* the method's own */
     struct cs_error error;                       /* the method's first message */
     double bound_start, bound_speed, bound_push; /* of the kinetic energy, see blow_up_bound */
+    double bound_since;                          /* s, from which it holds */
     struct cs_arena arena;                       /* the method's memory and the solver's */
 };
 
 /* Fills the calls for a run over system. CS_ERR_MEMORY. */
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error);
+
+/* What happens at time t: the state, the pins and the values change, and so does the bound of
+ * the kinetic energy. The method must be restarted. */
+void cs_run_host_apply_events(struct cs_run_host *host, double t);
 
 #endif

@@ -50,6 +50,23 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
     return judge(run, step, guard, error);
 }
 
+/* From run->t to end, in one go but for the events on the way, at which the method starts anew.
+ * Those at the end itself belong to what follows. */
+static enum cs_step advance(struct cs_run *run, double end) {
+    const struct cs_events *events = run->system->events;
+    enum cs_step step = CS_STEP_OK;
+    for (double t = run->t, next; t < end && step == CS_STEP_OK; t = next) {
+        if (events && cs_events_are_due(events, t)) {
+            cs_run_host_apply_events(run->host, t);
+            step = run->integrator->restart(run->host->self, t, run->x, run->v);
+        }
+        next = events && events->end < end ? events->end : end;
+        if (step == CS_STEP_OK)
+            step = run->integrator->advance(run->host->self, t, next, run->x, run->v);
+    }
+    return step;
+}
+
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
                             bool timed, const volatile sig_atomic_t *stop,
@@ -76,8 +93,7 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
     const struct cs_guard guard = cs_guard_take();
-    const enum cs_step step =
-        run->integrator->advance(run->host->self, run->t, next, run->x, run->v);
+    const enum cs_step step = advance(run, next);
     run->advance_seconds += cs_clock_wall() - begin;
     if (run->integrator->stats) {
         run->counts.method.size = sizeof run->counts.method;

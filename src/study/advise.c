@@ -16,13 +16,6 @@ struct work {
     struct cs_workers workers;
 };
 
-static double shortest_spring(const struct cs_system *system) {
-    double length = system->springs.n_runs ? HUGE_VAL : 0;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++)
-        length = fmin(length, system->springs.runs[r].length);
-    return length;
-}
-
 /* A run with the advised step: its verdict and what a frame costs. */
 static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_settings *settings,
                                const struct cs_reference *reference, double frame,
@@ -112,11 +105,12 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
     struct cs_advise *advise = work->advise;
     struct cs_advice *row = advise->rows + task;
     struct cs_session session;
-    struct cs_trial_settings trial = {.session = advise->session,
-                                      .seconds = advise->seconds,
-                                      .samples = SAMPLES,
-                                      .shake = SHAKE * shortest_spring(&advise->opened.system),
-                                      .budget = advise->budget};
+    struct cs_trial_settings trial = {
+        .session = advise->session,
+        .seconds = advise->seconds,
+        .samples = SAMPLES,
+        .shake = SHAKE * cs_springs_shortest(&advise->opened.system.springs),
+        .budget = advise->budget};
     const double frame = 1 / advise->opened.scene.time.fps;
     trial.session.integrator = row->method = advise->names[task];
     if (cs_session_open_plan(&session, &trial.session, error))

@@ -3,16 +3,21 @@
 #include <math.h>
 #include <string.h>
 
-/* the stiffest spring at a particle */
-static const struct cs_spring_run *stiffest_at(const struct cs_system *system,
-                                               uint32_t particle) {
-    const struct cs_spring_run *found = NULL;
+struct spring {
+    double stiffness; /* N/m; 0: none */
+    uint32_t kind;
+};
+
+static struct spring stiffest_at(const struct cs_system *system, uint32_t particle) {
+    struct spring found = {0};
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
-        const bool touches = (particle >= run->a && particle < run->a + run->count) ||
-                             (particle >= run->b && particle < run->b + run->count);
-        if (touches && (!found || run->stiffness > found->stiffness))
-            found = run;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const double stiffness = cs_spring_stiffness(run, i);
+            if ((cs_spring_a(run, i) == particle || cs_spring_b(run, i) == particle) &&
+                stiffness > found.stiffness)
+                found = (struct spring){stiffness, run->kind};
+        }
     }
     return found;
 }
@@ -21,24 +26,17 @@ static const struct cs_spring_run *stiffest_at(const struct cs_system *system,
 static void add_binding(const struct cs_system *system, const struct cs_mode *mode,
                         struct cs_text *out) {
     static const char *const kinds[CS_SPRING_KINDS] = {"stretch", "shear", "bend"};
-    const struct cs_spring_run *spring = stiffest_at(system, mode->particle);
+    const struct spring spring = stiffest_at(system, mode->particle);
     const bool damped = mode->rate * mode->rate > 4 * mode->square;
-    cs_text_add(out, "particle %u", mode->particle);
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const struct cs_body_range *range = system->bodies + b;
-        const uint32_t local = mode->particle - range->first;
-        if (mode->particle >= range->first && local < range->count)
-            cs_text_add(out, " (column %u, row %u)", local % range->columns,
-                        local / range->columns);
-    }
+    cs_system_print_particle(system, mode->particle, out);
     if (damped)
         cs_text_add(out, " is damped at %.4g /s", mode->rate);
     else
         cs_text_add(out, " swings at %.4g /s, damped at %.3g /s", sqrt(fmax(mode->square, 0)),
                     mode->rate);
-    if (spring)
+    if (spring.stiffness > 0)
         cs_text_add(out, ": %.3g kg on %s springs of %.4g N/m", system->mass[mode->particle],
-                    kinds[spring->kind], spring->stiffness);
+                    kinds[spring.kind], spring.stiffness);
 }
 
 static void add_why(const struct cs_advise *advise, const struct cs_advice *row,

@@ -91,13 +91,6 @@ static enum cs_status find_theory(struct cs_session *session, double seconds, do
     return error->status;
 }
 
-static double shortest_spring(const struct cs_system *system) {
-    double length = system->springs.n_runs ? HUGE_VAL : 0;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++)
-        length = fmin(length, system->springs.runs[r].length);
-    return length;
-}
-
 /* A scene or a method that is refused before the first step is an outcome as well. */
 static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *ending,
                                    struct cs_error *error) {
@@ -128,7 +121,7 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
     if (scene->dt > 0 && cs_trial_set_dt(session.integrator, session.options, scene->dt))
         dt = scene->dt;
     if (!cs_system_build(&session.system, &session.scene, &session.plan, error)) {
-        cs_trial_shake(&session.system, 1e-4 * shortest_spring(&session.system));
+        cs_trial_shake(&session.system, 1e-4 * cs_springs_shortest(&session.system.springs));
         if (dt > 0 && cs_extreme_expects(row->expected, "theory"))
             find_theory(&session, scene->seconds, &ending.theory, error);
         if (!error->status && !cs_run_begin(&session.run, &session.system, session.integrator,

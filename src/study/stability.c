@@ -18,13 +18,6 @@ struct work {
     struct cs_workers workers;
 };
 
-static double shortest_spring(const struct cs_system *system) {
-    double length = HUGE_VAL;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++)
-        length = fmin(length, system->springs.runs[r].length);
-    return length < HUGE_VAL ? length : 0;
-}
-
 /* between the highest row that is stable with all below it and the next one */
 static enum cs_status find_border(struct cs_stability_column *column, uint32_t n_rows,
                                   const struct cs_trial_settings *trial,
@@ -47,11 +40,12 @@ static enum cs_status find_border(struct cs_stability_column *column, uint32_t n
 static enum cs_status make_column(struct work *work, struct cs_stability_column *column,
                                   struct cs_arena *arena, struct cs_error *error) {
     const struct cs_stability *map = work->map;
-    struct cs_trial_settings trial = {.session = map->settings->session,
-                                      .seconds = map->settings->seconds,
-                                      .samples = SAMPLES,
-                                      .shake = SHAKE * shortest_spring(&map->session.system),
-                                      .budget = map->settings->budget};
+    struct cs_trial_settings trial = {
+        .session = map->settings->session,
+        .seconds = map->settings->seconds,
+        .samples = SAMPLES,
+        .shake = SHAKE * cs_springs_shortest(&map->session.system.springs),
+        .budget = map->settings->budget};
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
         trial.shake *= map->own / column->value;
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,

@@ -26,12 +26,13 @@ static enum cs_status spring_speed(const struct cs_run *run, double *speed,
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *s = system->springs.runs + r;
         for (uint32_t i = 0; i < s->count; i++) {
-            const uint32_t a = s->a + i, b = s->b + i;
+            const uint32_t a = cs_spring_a(s, i), b = cs_spring_b(s, i);
             const double d[3] = {run->x[b] - run->x[a], run->x[n + b] - run->x[n + a],
                                  run->x[2 * n + b] - run->x[2 * n + a]};
-            const double stretch = length_of(d) - s->length;
-            stored[a] += 0.5 * s->stiffness * stretch * stretch;
-            stored[b] += 0.5 * s->stiffness * stretch * stretch;
+            const double stretch = length_of(d) - cs_spring_length(s, i);
+            const double energy = 0.5 * cs_spring_stiffness(s, i) * stretch * stretch;
+            stored[a] += energy;
+            stored[b] += energy;
         }
     }
     double squared = 0;
@@ -123,19 +124,6 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     }
 }
 
-/* "particle 12 (body 0, column 4, row 1)" */
-static void add_particle(const struct cs_system *system, uint32_t particle,
-                         struct cs_text *out) {
-    cs_text_add(out, "particle %u", particle);
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const struct cs_body_range *range = system->bodies + b;
-        const uint32_t local = particle - range->first;
-        if (particle >= range->first && local < range->count)
-            cs_text_add(out, " (body %u, column %u, row %u)", b, local % range->columns,
-                        local / range->columns);
-    }
-}
-
 void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system,
                     struct cs_text *out) {
     const struct cs_watch_row *first = &watch->first;
@@ -149,7 +137,7 @@ void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system
     else {
         cs_text_add(out, "%u particle%s, the fastest ", first->particles,
                     first->particles == 1 ? "" : "s");
-        add_particle(system, first->particle, out);
+        cs_system_print_particle(system, first->particle, out);
         cs_text_add(out, " at %.3g m/s beyond %.3g m/s", first->speed, first->speed_limit);
     }
     if (watch->worst > first->verdict)

@@ -25,6 +25,7 @@ small = [
     '{"bodies": [{%s}], "integrator": "velocity-verlet", "x-note": 1}' % body,
     '{"bodies": [{%s}], "integrator": {"name": "velocity-verlet", "dt": 0.1}}' % body,
     '{"bodies": [{%s}], "colliders": [{"floor": {}}]}' % body,
+    '{"bodies": [{%s}], "events": [{"at": 1, "pin": {}}, {"from": 1, "to": 2, "wind": {"direction": [1, 0, 0]}}]}' % body,
     '{}',
     '{"bodies": [{%s}], "bodys": []}' % body,
     '{"bodies": [{%s}]}' % cloth,
@@ -36,6 +37,9 @@ small = [
     '{"bodies": [{%s, "pins": ["midle"]}]}' % body,
     '{"bodies": [{%s}], "colliders": [{}]}' % body,
     '{"bodies": [{%s}], "colliders": [{"floor": {}, "friction": -1}]}' % body,
+    '{"bodies": [{%s}], "events": [{"at": 1}]}' % body,
+    '{"bodies": [{%s}], "events": [{"at": 1, "pin": {}, "release": {}}]}' % body,
+    '{"bodies": [{%s}], "events": [{"at": 1, "impact": {"impulse": 1}}]}' % body,
     '{"bodies": [{%s}], "forces": {"wind": {"strength": 1}}}' % body,
     '{"bodies": [{%s}], "render": {"look": "pretty"}}' % body,
 ]

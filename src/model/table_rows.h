@@ -1,0 +1,58 @@
+/* table_rows.h - one line for each row of the scene's tables. */
+#ifndef CS_TABLE_ROWS_H
+#define CS_TABLE_ROWS_H
+
+#include <clothsim/option.h>
+#include <math.h>
+
+#define BIG         1e9
+#define ABSENT      ((double)NAN)
+#define ROWS(array) .rows = array, .n = sizeof array / sizeof *array
+
+#define REAL(s, f, unit_, def_, min_, max_, help_)                                             \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_REAL, .count = 1,                 \
+        .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_                        \
+    }
+#define INT(s, f, unit_, def_, min_, max_, help_)                                              \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_INT, .count = 1,                  \
+        .offset = offsetof(s, f), .def = def_, .min = min_, .max = max_                        \
+    }
+#define BOOL(s, f, def_, help_)                                                                \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_BOOL, .count = 1,                    \
+        .offset = offsetof(s, f), .def = def_                                                  \
+    }
+#define CHOICE(s, f, names_, def_, help_)                                                      \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_CHOICE, .count = 1,                  \
+        .offset = offsetof(s, f), .def = def_, .choices = names_                               \
+    }
+#define TEXT(s, f, help_)                                                                      \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_TEXT, .count = 1,                    \
+        .offset = offsetof(s, f)                                                               \
+    }
+#define VECTOR(s, f, n_, unit_, defs_, min_, max_, help_)                                      \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_VECTOR, .count = n_,              \
+        .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_                      \
+    }
+#define COUNTS(s, f, n_, unit_, defs_, min_, max_, help_)                                      \
+    {                                                                                          \
+        .name = #f, .unit = unit_, .help = help_, .type = CS_COUNTS, .count = n_,              \
+        .offset = offsetof(s, f), .defs = defs_, .min = min_, .max = max_                      \
+    }
+#define TABLE(s, f, table_, help_)                                                             \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_TABLE, .count = 1,                   \
+        .offset = offsetof(s, f), .table = &table_                                             \
+    }
+#define LIST(s, f, table_, help_)                                                              \
+    {                                                                                          \
+        .name = #f, .unit = "", .help = help_, .type = CS_LIST, .count = 1,                    \
+        .offset = offsetof(s, f), .table = &table_                                             \
+    }
+
+#endif
