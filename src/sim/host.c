@@ -176,96 +176,6 @@ static void host_apply(void *ctx, const double *p, double *y) {
     stage_end(host, CS_STAGE_SOLVE, begin);
 }
 
-/* Kinetic energy that no passive system of this kind can reach by time t: a hundred times what
- * the start holds, what every spring would hold at twice its length, and what the outer forces
- * can give in free flight, sum m (|v| + a t)^2. */
-static double blow_up_bound(const struct cs_run_host *host, double t) {
-    return 100 * (host->bound_start + host->bound_speed +
-                  host->bound_push * (t - host->bound_since) * (t - host->bound_since));
-}
-
-static void set_bound(struct cs_run_host *host) {
-    const struct cs_system *system = host->run->system;
-    const struct cs_forces *forces = &system->scene->forces;
-    const size_t n = system->view.n;
-    const double *x = system->state, *v = x + 3 * n, *g = forces->gravity;
-    const double *a = system->events ? system->events->push : NULL;
-    const struct cs_energy energy = cs_measure_energy(system, x, v);
-    host->bound_start = energy.elastic + cs_springs_energy_at_twice(&system->springs);
-    host->bound_speed = 2 * energy.kinetic;
-    host->bound_push = 0;
-    for (size_t i = 0; i < n; i++) {
-        double push = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-        if (system->normals)
-            push += forces->wind.strength * system->inv_mass[i] *
-                    (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
-        if (a)
-            push += sqrt(a[i] * a[i] + a[n + i] * a[n + i] + a[2 * n + i] * a[2 * n + i]);
-        host->bound_push += system->mass[i] * push * push;
-    }
-}
-
-typedef double lanes __attribute__((vector_size(2 * sizeof(double))));
-
-static inline lanes load(const double *from) {
-    lanes out;
-    memcpy(&out, from, sizeof out);
-    return out;
-}
-
-/* Kinetic energy, and 0 or not a number by the places. In lanes: it runs after every step. */
-static void watch(size_t n, const double *mass, const double *x, const double *v,
-                  double *energy, double *places) {
-    enum { LANES = sizeof(lanes) / sizeof(double) };
-    // two sums of each, so that one addition need not wait for the one before
-    lanes e[2] = {{0}}, p[2] = {{0}};
-    size_t i = 0;
-    for (; i + 2 * LANES <= n; i += 2 * LANES)
-        for (size_t k = 0; k < 2; k++) {
-            const size_t at = i + k * LANES;
-            const lanes a = load(v + at), b = load(v + n + at), c = load(v + 2 * n + at);
-            const lanes sum = load(x + at) + load(x + n + at) + load(x + 2 * n + at);
-            e[k] += load(mass + at) * (a * a + b * b + c * c);
-            p[k] += sum - sum;
-        }
-    *energy = e[0][0] + e[0][1] + e[1][0] + e[1][1];
-    *places = p[0][0] + p[0][1] + p[1][0] + p[1][1];
-    for (; i < n; i++) {
-        const double sum = x[i] + x[n + i] + x[2 * n + i];
-        *energy += mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
-        *places += sum - sum;
-    }
-    *energy *= 0.5;
-}
-
-/* Kinetic energy decides: a number that is not finite anywhere makes it so. */
-static bool has_blown_up(struct cs_run_host *host, double t, const double *x, const double *v) {
-    struct cs_run *run = host->run;
-    const size_t n = run->system->view.n;
-    const double *mass = run->system->mass;
-    double energy = 0, places = 0;
-    watch(n, mass, x, v, &energy, &places);
-    const double bound = blow_up_bound(host, t);
-    if (places == 0 && energy <= bound)
-        return false;
-
-    uint32_t worst = 0;
-    double fastest = -1;
-    run->outcome = CS_UNBOUNDED;
-    for (size_t i = 0; i < n && run->outcome == CS_UNBOUNDED; i++) {
-        const double speed = v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i];
-        const double place = x[i] + x[n + i] + x[2 * n + i];
-        if (speed > fastest || !isfinite(speed + place)) {
-            fastest = speed;
-            worst = (uint32_t)i;
-        }
-        if (!isfinite(speed + place))
-            run->outcome = CS_NOT_FINITE;
-    }
-    run->blow_up = (struct cs_blow_up){t, worst, energy, bound};
-    return true;
-}
-
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
     const double begin = stage_begin(host);
@@ -291,22 +201,6 @@ static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
     *changed = true;
 }
 
-/* The clock of the process is a system call: it is read about once a millisecond. */
-static bool is_over(struct cs_budget *budget) {
-    enum { MOST_BETWEEN = 1024 };
-    if (budget->end == 0 || ++budget->steps < budget->between)
-        return false;
-    const double now = cs_clock_wall();
-    const bool seldom = now - budget->last > 1e-3;
-    budget->between = seldom ? budget->between / 2 : budget->between * 2;
-    budget->between = budget->between < 1              ? 1
-                      : budget->between > MOST_BETWEEN ? MOST_BETWEEN
-                                                       : budget->between;
-    budget->last = now;
-    budget->steps = 0;
-    return cs_clock_cpu() > budget->end;
-}
-
 static enum cs_step host_commit(void *ctx, double t, double dt, double *x, double *v,
                                 bool *changed) {
     struct cs_run_host *host = ctx;
@@ -322,13 +216,13 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
         lose_velocity(host, v, changed);
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
-    if (has_blown_up(host, t, x, v))
+    if (cs_bound_is_passed(&host->bound, host->run, t, x, v))
         return CS_STEP_HALT;
     if (host->stop && *host->stop) {
         host->run->outcome = CS_INTERRUPTED;
         return CS_STEP_HALT;
     }
-    if (is_over(&host->budget)) {
+    if (cs_budget_is_over(&host->budget)) {
         host->run->outcome = CS_OVER_BUDGET;
         return CS_STEP_HALT;
     }
@@ -356,7 +250,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .apply = host_apply,
         .commit = host_commit,
     };
-    set_bound(host);
+    cs_bound_set(&host->bound, system, 0);
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
     host->kept_x =
@@ -367,17 +261,5 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
 void cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
     cs_events_apply(system, t);
-    /* from the state that the event leaves, with the larger of what holds now and what ramps
-     * come to; a grab may pull all particles along */
-    set_bound(host);
-    const double start = host->bound_start, push = host->bound_push;
-    cs_events_move_values(system, system->events->end);
-    set_bound(host);
-    cs_events_move_values(system, t);
-    host->bound_since = t;
-    host->bound_start = fmax(host->bound_start, start);
-    host->bound_push = fmax(host->bound_push, push);
-    const double speed = cs_events_speed(system->events);
-    for (size_t i = 0; i < system->view.n; i++)
-        host->bound_speed += 2 * system->mass[i] * speed * speed;
+    cs_bound_follow_events(&host->bound, system, t);
 }

@@ -4,16 +4,10 @@
 
 #include "model/events.h"
 #include "model/linear.h"
+#include "sim/bound.h"
+#include "sim/budget.h"
 #include "sim/guard.h"
 #include "sim/run.h"
-
-/* Processor time that the run may use, looked at every few steps. */
-struct cs_budget {
-    double end;       /* cs_clock_cpu; 0: none */
-    double last;      /* cs_clock_wall of the last look */
-    uint32_t steps;   /* since then */
-    uint32_t between; /* steps from one look to the next */
-};
 
 struct cs_run_host {
     struct cs_host calls;    /* what the method sees */
@@ -25,11 +19,10 @@ struct cs_run_host {
     bool timed;
     const volatile sig_atomic_t *stop;
     struct cs_budget budget;
-    void *self;                                  /* the method's own */
-    struct cs_error error;                       /* the method's first message */
-    double bound_start, bound_speed, bound_push; /* of the kinetic energy, see blow_up_bound */
-    double bound_since;                          /* s, from which it holds */
-    struct cs_arena arena;                       /* the method's memory and the solver's */
+    void *self;            /* the method's own */
+    struct cs_error error; /* the method's first message */
+    struct cs_bound bound;
+    struct cs_arena arena; /* the method's memory and the solver's */
 };
 
 /* Fills the calls for a run over system. CS_ERR_MEMORY. */

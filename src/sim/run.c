@@ -85,8 +85,7 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
 }
 
 void cs_run_set_budget(struct cs_run *run, double cpu_seconds) {
-    run->host->budget = (struct cs_budget){
-        .end = cs_clock_cpu() + cpu_seconds, .last = cs_clock_wall(), .between = 1};
+    cs_budget_start(&run->host->budget, cpu_seconds);
 }
 
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {

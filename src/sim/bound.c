@@ -1,0 +1,107 @@
+#include "sim/bound.h"
+
+#include "model/events.h"
+#include "model/measure.h"
+
+#include <math.h>
+#include <string.h>
+
+static double energy_at(const struct cs_bound *bound, double t) {
+    const double passed = t - bound->since;
+    return 100 * (bound->start + bound->speed + bound->push * passed * passed);
+}
+
+void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t) {
+    const struct cs_forces *forces = &system->scene->forces;
+    const size_t n = system->view.n;
+    const double *x = system->state, *v = x + 3 * n, *g = forces->gravity;
+    const double *a = system->events ? system->events->push : NULL;
+    const struct cs_energy energy = cs_measure_energy(system, x, v);
+    bound->start = energy.elastic + cs_springs_energy_at_twice(&system->springs);
+    bound->speed = 2 * energy.kinetic;
+    bound->push = 0;
+    bound->since = t;
+    for (size_t i = 0; i < n; i++) {
+        double push = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+        if (system->normals)
+            push += forces->wind.strength * system->inv_mass[i] *
+                    (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
+        if (a)
+            push += sqrt(a[i] * a[i] + a[n + i] * a[n + i] + a[2 * n + i] * a[2 * n + i]);
+        bound->push += system->mass[i] * push * push;
+    }
+}
+
+void cs_bound_follow_events(struct cs_bound *bound, struct cs_system *system, double t) {
+    struct cs_bound now;
+    cs_bound_set(&now, system, t);
+    cs_events_move_values(system, system->events->end);
+    cs_bound_set(bound, system, t);
+    cs_events_move_values(system, t);
+    bound->start = fmax(bound->start, now.start);
+    bound->push = fmax(bound->push, now.push);
+    const double speed = cs_events_speed(system->events);
+    for (size_t i = 0; i < system->view.n; i++)
+        bound->speed += 2 * system->mass[i] * speed * speed;
+}
+
+typedef double lanes __attribute__((vector_size(2 * sizeof(double))));
+
+static inline lanes load(const double *from) {
+    lanes out;
+    memcpy(&out, from, sizeof out);
+    return out;
+}
+
+/* Kinetic energy, and 0 or not a number by the places. In lanes: it runs after every step. */
+static void watch(size_t n, const double *mass, const double *x, const double *v,
+                  double *energy, double *places) {
+    enum { LANES = sizeof(lanes) / sizeof(double) };
+    /* two sums of each, so that one addition need not wait for the one before */
+    lanes e[2] = {{0}}, p[2] = {{0}};
+    size_t i = 0;
+    for (; i + 2 * LANES <= n; i += 2 * LANES)
+        for (size_t k = 0; k < 2; k++) {
+            const size_t at = i + k * LANES;
+            const lanes a = load(v + at), b = load(v + n + at), c = load(v + 2 * n + at);
+            const lanes sum = load(x + at) + load(x + n + at) + load(x + 2 * n + at);
+            e[k] += load(mass + at) * (a * a + b * b + c * c);
+            p[k] += sum - sum;
+        }
+    *energy = e[0][0] + e[0][1] + e[1][0] + e[1][1];
+    *places = p[0][0] + p[0][1] + p[1][0] + p[1][1];
+    for (; i < n; i++) {
+        const double sum = x[i] + x[n + i] + x[2 * n + i];
+        *energy += mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        *places += sum - sum;
+    }
+    *energy *= 0.5;
+}
+
+/* Kinetic energy decides: a number that is not finite anywhere makes it so. */
+bool cs_bound_is_passed(const struct cs_bound *bound, struct cs_run *run, double t,
+                        const double *x, const double *v) {
+    const size_t n = run->system->view.n;
+    const double *mass = run->system->mass;
+    double energy = 0, places = 0;
+    watch(n, mass, x, v, &energy, &places);
+    const double most = energy_at(bound, t);
+    if (places == 0 && energy <= most)
+        return false;
+
+    uint32_t worst = 0;
+    double fastest = -1;
+    run->outcome = CS_UNBOUNDED;
+    for (size_t i = 0; i < n && run->outcome == CS_UNBOUNDED; i++) {
+        const double speed = v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i];
+        const double place = x[i] + x[n + i] + x[2 * n + i];
+        if (speed > fastest || !isfinite(speed + place)) {
+            fastest = speed;
+            worst = (uint32_t)i;
+        }
+        if (!isfinite(speed + place))
+            run->outcome = CS_NOT_FINITE;
+    }
+    run->blow_up = (struct cs_blow_up){t, worst, energy, most};
+    return true;
+}

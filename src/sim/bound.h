@@ -1,0 +1,26 @@
+/* bound.h - tells a blow-up: numbers that are not finite, or energy beyond all bound. */
+#ifndef CS_BOUND_H
+#define CS_BOUND_H
+
+#include "sim/run.h"
+
+/* Kinetic energy that no passive system of this kind can reach by time t: a hundred times what
+ * the start holds, what every spring would hold at twice its length, and what the outer forces
+ * can give in free flight, sum m (|v| + a (t - since))^2. */
+struct cs_bound {
+    double start, speed, push; /* J, J, J/s2 */
+    double since;              /* s */
+};
+
+/* From the state of the system now, at time t. */
+void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t);
+
+/* After the events at time t were applied: from the state that they leave, with the larger of
+ * what holds now and what ramps come to; a grab may pull all particles along. */
+void cs_bound_follow_events(struct cs_bound *bound, struct cs_system *system, double t);
+
+/* Runs after every step. true: run->outcome and run->blow_up say what happened. */
+bool cs_bound_is_passed(const struct cs_bound *bound, struct cs_run *run, double t,
+                        const double *x, const double *v);
+
+#endif
