@@ -14,8 +14,8 @@ set mytics 10
 set border 3 lc rgb '#555555'
 set key outside right top Left reverse spacing 1.35 samplen 2.2 width -2
 set style fill solid 1.0 border lc rgb '#ffffff'
-set xrange [5.62341:177828]
-set yrange [6.35326e-06:0.0361838]
+set xrange [4.64159:215443]
+set yrange [7.51872e-05:0.0399004]
 plot \
   'implicit-linearised.csv' using 1:($4==0?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#9fd3b5' title 'bounded', \
   'implicit-linearised.csv' using 1:($4==1?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#a9c9e8' title 'damped away', \

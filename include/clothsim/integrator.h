@@ -5,15 +5,17 @@
  *
  * Units are SI. State is one array of 6n doubles, component-major: x (3,n), then v (3,n), so
  * that v == x + 3n always holds and a solver may wrap x as a single vector of 6n.
- * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v. Pinned particles have inv_mass = 0 and zero
- * rows in f and df, so that no method needs a special case. Their v is 0, or that of the path
- * along which the scene moves them. It is constant from one restart to the next, and they are at
- * x + h v after a step h: commit puts them there to the last bit, which is no change to speak of.
+ * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v. Pinned particles have inv_mass = 0 and
+ * zero rows in f and df, so that no method needs a special case. Their v is 0, or that of the
+ * path along which the scene moves them. It is constant from one restart to the next, and they
+ * are at x + h v after a step h: commit puts them there to the last bit, which is no change to
+ * speak of.
  *
- * A scene's events lie between two calls of advance. There x, v, view->inv_mass and the springs'
- * constants may change, in place; restart follows. view->omega and view->delta hold for all of
- * the run. Within an advance forces may depend on t (ramps are linear in it), and the list of
- * springs is that of the t which the last call named; a matrix that a method keeps is not.
+ * A scene's events lie between two calls of advance. There x, v, view->inv_mass and the
+ * springs' constants may change, in place; restart follows. view->omega and view->delta hold
+ * for all of the run. Within an advance forces may depend on t (ramps are linear in it), and
+ * the list of springs is that of the t which the last call named; a matrix that a method keeps
+ * is not.
  *
  * Marks in brackets say when a call is allowed. Not on offer, on purpose: random numbers,
  * clock, files, threads.
@@ -28,8 +30,8 @@
 extern "C" {
 #endif
 
-#define CS_ABI 1u /* raised whenever a struct changes other than by growing at its end */
-#define CS_EXPORT __attribute__((visibility("default")))
+#define CS_ABI          1u /* raised whenever a struct changes other than by growing at its end */
+#define CS_EXPORT       __attribute__((visibility("default")))
 #define CS_PRINTF(a, b) __attribute__((format(printf, a, b)))
 
 enum cs_step {
@@ -54,11 +56,13 @@ enum cs_part {
     CS_PART_SHEAR = 1u << 1,
     CS_PART_BEND = 1u << 2,
     CS_PART_DAMPING = 1u << 3, /* the springs' dampers */
-    CS_PART_GRAVITY = 1u << 4, /* and impacts over an interval: m a(t), wherever a particle is */
+    CS_PART_GRAVITY =
+        1u << 4, /* and impacts over an interval: m a(t), wherever a particle is */
     CS_PART_DRAG = 1u << 5,
     CS_PART_WIND = 1u << 6,
     CS_PART_SPRINGS = 7u,
-    CS_PART_LINEARISED = 15u | 1u << 5, /* what solve and diagonal hold: springs, dampers, drag */
+    CS_PART_LINEARISED =
+        15u | 1u << 5, /* what solve and diagonal hold: springs, dampers, drag */
     CS_PART_ALL = 0x7fffffff
 };
 
@@ -81,7 +85,8 @@ enum cs_fidelity {
 };
 
 enum cs_solve_flag {
-    CS_SOLVE_PSD = 1u << 0 /* drop the transverse part of compressed springs (Teran et al. 2005) */
+    CS_SOLVE_PSD =
+        1u << 0 /* drop the transverse part of compressed springs (Teran et al. 2005) */
 };
 
 struct cs_host {
@@ -90,7 +95,8 @@ struct cs_host {
     const struct cs_view *view; /* valid until destroy returns */
     const struct cs_vector_kernels *vector;
 
-    /* [create] Zeroed, 64-byte aligned, freed by the host after destroy. NULL: already reported. */
+    /* [create] Zeroed, 64-byte aligned, freed by the host after destroy. NULL: already
+     * reported. */
     void *(*alloc)(void *ctx, size_t bytes);
     /* [create, restart, advance] Keeps the first message; returns CS_STEP_FAIL. */
     enum cs_step (*fail)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
@@ -98,15 +104,16 @@ struct cs_host {
     void (*note)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
 
     /* [restart, advance] f (3,n) in N, the sum of the chosen parts: overwritten. */
-    void (*force)(void *ctx, double t, const double *x, const double *v, uint32_t parts, double *f);
+    void (*force)(void *ctx, double t, const double *x, const double *v, uint32_t parts,
+                  double *f);
     /* [restart, advance] Kinetic + potential energy in J. Needs CS_NEED_ENERGY. */
     double (*energy)(void *ctx, double t, const double *x, const double *v);
     /* [restart, advance] df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, exact. Either
      * direction may be NULL. Needs CS_NEED_JVP. */
     void (*jvp)(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                 const double *dx, const double *dv, double *df);
-    /* [restart, advance] The own 3x3 blocks of the particles, kxx = df_i/dx_i and dvv = df_i/dv_i
-     * of CS_PART_LINEARISED, each (6,n) component-major: xx, xy, xz, yy, yz, zz.
+    /* [restart, advance] The own 3x3 blocks of the particles, kxx = df_i/dx_i and dvv =
+     * df_i/dv_i of CS_PART_LINEARISED, each (6,n) component-major: xx, xy, xz, yy, yz, zz.
      * Needs CS_NEED_DIAGONAL. */
     void (*diagonal)(void *ctx, double t, const double *x, const double *v, double *kxx,
                      double *dvv);
@@ -116,11 +123,11 @@ struct cs_host {
      * u (3,n) is the start of the iteration and its result; rows of pinned particles become 0.
      * The position derivative of axial damping is left out of A (it is not symmetric).
      * Needs CS_NEED_SOLVE. Without CS_SOLVE_PSD an indefinite A falls back to it, counted. */
-    enum cs_step (*solve_setup)(void *ctx, double t, const double *x, const double *v, double cm,
-                                double cd, double ck, uint32_t flags);
+    enum cs_step (*solve_setup)(void *ctx, double t, const double *x, const double *v,
+                                double cm, double cd, double ck, uint32_t flags);
     enum cs_step (*solve)(void *ctx, const double *b, double rtol, double *u);
-    /* [advance] y (3,n) = A p with the A of the last solve_setup; rows of pinned particles become
-     * 0. Counted as a Jacobian product. */
+    /* [advance] y (3,n) = A p with the A of the last solve_setup; rows of pinned particles
+     * become 0. Counted as a Jacobian product. */
     void (*apply)(void *ctx, const double *p, double *y);
 
     /* [advance] MUST follow every accepted internal step of length dt that ended at time t:
@@ -132,17 +139,17 @@ struct cs_host {
 /* What the host cannot count itself. */
 struct cs_stats {
     uint32_t size;
-    uint64_t rejected;  /* steps thrown away */
-    uint64_t newton;    /* nonlinear iterations */
-    uint64_t setups;    /* linear solver set-ups asked for by a library */
+    uint64_t rejected; /* steps thrown away */
+    uint64_t newton;   /* nonlinear iterations */
+    uint64_t setups;   /* linear solver set-ups asked for by a library */
 };
 
 struct cs_integrator {
     uint32_t size;
-    const char *name;    /* [a-z0-9-]+, e.g. "implicit-block" */
-    const char *summary; /* one line for `clothsim integrators` */
-    const char *source;  /* where the method was published */
-    uint32_t order;      /* on smooth scenes without damping; measured by the tests */
+    const char *name;      /* [a-z0-9-]+, e.g. "implicit-block" */
+    const char *summary;   /* one line for `clothsim integrators` */
+    const char *source;    /* where the method was published */
+    uint32_t order;        /* on smooth scenes without damping; measured by the tests */
     uint32_t order_damped; /* on smooth scenes with velocity-dependent forces */
     uint32_t needs, traits;
     uint32_t fidelity; /* enum cs_fidelity */
@@ -152,8 +159,9 @@ struct cs_integrator {
     uint32_t n_options;
     uint32_t options_size; /* sizeof the struct that the table describes */
 
-    /* options: the filled, range-checked struct, valid only during the call: copy what you need.
-     * All memory is taken here. On failure *self may be set, and destroy is called with it. */
+    /* options: the filled, range-checked struct, valid only during the call: copy what you
+     * need. All memory is taken here. On failure *self may be set, and destroy is called with
+     * it. */
     enum cs_step (*create)(const struct cs_host *host, const void *options, void **self);
     /* The state, the pins or the forces were changed from outside (first frame, event): forget
      * all history, and what was derived from the view. */

@@ -42,12 +42,12 @@ struct cs_option {
     const char *unit; /* SI, "" for a pure number */
     const char *help; /* lower case, no full stop */
     enum cs_type type;
-    uint32_t count;                /* components of a VECTOR or COUNTS; else 1 */
-    size_t offset;                 /* of the field in its struct */
-    double def, min, max;          /* REAL, INT, BOOL, CHOICE: default and range */
-    const double *defs;            /* VECTOR, COUNTS: defaults, or NULL: must be given */
-    const char *const *choices;    /* CHOICE: names, closed by NULL */
-    const struct cs_table *table;  /* TABLE, LIST: rows of the struct */
+    uint32_t count;               /* components of a VECTOR or COUNTS; else 1 */
+    size_t offset;                /* of the field in its struct */
+    double def, min, max;         /* REAL, INT, BOOL, CHOICE: default and range */
+    const double *defs;           /* VECTOR, COUNTS: defaults, or NULL: must be given */
+    const char *const *choices;   /* CHOICE: names, closed by NULL */
+    const struct cs_table *table; /* TABLE, LIST: rows of the struct */
 };
 
 /* Rows of one struct. An optional TABLE's struct starts with `bool present`: the reader sets
@@ -55,28 +55,28 @@ struct cs_option {
 struct cs_table {
     const struct cs_option *rows;
     uint32_t n;
-    size_t size;          /* of the struct */
-    bool optional;        /* the struct starts with `bool present` */
-    bool one_of;          /* exactly one of the optional rows must be given */
-    uint32_t uncounted;   /* first rows that one_of leaves alone */
+    size_t size;                  /* of the struct */
+    bool optional;                /* the struct starts with `bool present` */
+    bool one_of;                  /* exactly one of the optional rows must be given */
+    uint32_t uncounted;           /* first rows that one_of leaves alone */
     const char *shorthand_text;   /* row that a plain string stands for, or NULL */
     const char *shorthand_number; /* row that a plain number stands for, or NULL */
 };
 
 /* The four rows that integrator modules use; the C type of the field picks the option type,
  * and a field of any other type does not compile. C only (C++ modules fill the struct). */
-#define CS_TYPE_OF(struct_, field)                                                                 \
-    _Generic(((struct_ *)0)->field, double: CS_REAL, int64_t: CS_INT, bool: CS_BOOL)
-#define CS_OPTION(struct_, field, unit_, def_, min_, max_, help_)                                  \
-    {                                                                                              \
-        .name = #field, .unit = unit_, .help = help_, .type = CS_TYPE_OF(struct_, field),          \
-        .count = 1, .offset = offsetof(struct_, field), .def = def_, .min = min_, .max = max_      \
+#define CS_TYPE_OF(struct_, field)                                                             \
+    _Generic(((struct_ *)0)->field, double : CS_REAL, int64_t : CS_INT, bool : CS_BOOL)
+#define CS_OPTION(struct_, field, unit_, def_, min_, max_, help_)                              \
+    {                                                                                          \
+        .name = #field, .unit = unit_, .help = help_, .type = CS_TYPE_OF(struct_, field),      \
+        .count = 1, .offset = offsetof(struct_, field), .def = def_, .min = min_, .max = max_  \
     }
-#define CS_OPTION_CHOICE(struct_, field, names_, def_, help_)                                      \
-    {                                                                                              \
-        .name = #field, .unit = "", .help = help_, .type = CS_CHOICE,                              \
-        .count = _Generic(((struct_ *)0)->field, int32_t: 1), .offset = offsetof(struct_, field),  \
-        .def = def_, .choices = names_                                                             \
+#define CS_OPTION_CHOICE(struct_, field, names_, def_, help_)                                  \
+    {                                                                                          \
+        .name = #field, .unit = "", .help = help_, .type = CS_CHOICE,                          \
+        .count = _Generic(((struct_ *)0)->field, int32_t : 1),                                 \
+        .offset = offsetof(struct_, field), .def = def_, .choices = names_                     \
     }
 
 #ifdef __cplusplus

@@ -18,7 +18,8 @@ extern "C" {
 struct cs_vector_kernels {
     uint32_t size;
     /* z = a x + b y; z may be x or y */
-    void (*linear_sum)(size_t n, double a, const double *x, double b, const double *y, double *z);
+    void (*linear_sum)(size_t n, double a, const double *x, double b, const double *y,
+                       double *z);
     double (*dot)(size_t n, const double *x, const double *y);
     /* sum of (x w)^2: sqrt of its n-th part is the weighted RMS norm */
     double (*weighted_square)(size_t n, const double *x, const double *w);
@@ -31,8 +32,8 @@ struct cs_view {
     const double *mass;     /* (n) in kg, pinned particles too */
     const double *inv_mass; /* (n) in 1/kg; 0 for a pinned particle */
     const double *start;    /* (3,n) in m, positions at time 0 */
-    double omega;           /* bound on the largest angular frequency at rest [1/s], see numerics */
-    double delta;           /* bound on half the largest damping rate [1/s] */
+    double omega; /* bound on the largest angular frequency at rest [1/s], see numerics */
+    double delta; /* bound on half the largest damping rate [1/s] */
 
     /* spring list, only with CS_NEED_SPRINGS: in the order in which forces are summed */
     uint32_t n_springs;

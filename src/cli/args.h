@@ -63,6 +63,10 @@ enum cs_status cs_args_all(struct cs_args *args, uint32_t row, const char *const
 enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t min,
                              uint32_t max, uint32_t *value, struct cs_error *error);
 
+/* An option as a number above 0 and up to 1e9; *value is left alone where it was not given. */
+enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *value,
+                            struct cs_error *error);
+
 /* An option as one of names (closed by NULL); *index is left alone where it was not given. */
 enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
                               const char *const *names, int *index, struct cs_error *error);

@@ -19,6 +19,20 @@ enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t 
     return CS_OK;
 }
 
+enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *value,
+                            struct cs_error *error) {
+    const char *text = cs_args_get(args, row);
+    double read = 0;
+    if (!text)
+        return CS_OK;
+    if (!cs_parse_real(text, &read) || !(read > 0 && read <= 1e9))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--%s: expected a number above 0 and up to 1e9, found \"%.60s\"",
+                       args->command->rows[row].name, text);
+    *value = read;
+    return CS_OK;
+}
+
 enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
                               const char *const *names, int *index, struct cs_error *error) {
     const char *text = cs_args_get(args, row);

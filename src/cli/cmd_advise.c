@@ -5,7 +5,6 @@
 #include "cli/progress.h"
 #include "study/advise.h"
 
-#include <string.h>
 #include <unistd.h>
 
 enum {
@@ -41,16 +40,6 @@ static void show_progress(void *ctx, uint32_t done, uint32_t total) {
     cs_progress_show(ctx, done, total);
 }
 
-static enum cs_status read_real(const struct cs_args *args, uint32_t row, double *value,
-                                struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    if (text && (!cs_parse_real(text, value) || !(*value > 0 && *value <= 1e9)))
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--%s: expected a number above 0 and up to 1e9, found \"%.60s\"",
-                       rows[row].name, text);
-    return CS_OK;
-}
-
 static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     struct cs_progress progress;
@@ -67,8 +56,8 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         .ctx = &progress,
     };
     study.session.stop = study.stop = cs_interrupt_catch();
-    if (read_real(args, ADVISE_TIME, &study.seconds, error) ||
-        read_real(args, ADVISE_BUDGET, &study.budget, error) ||
+    if (cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
+        cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||
         cs_args_whole(args, ADVISE_JOBS, 1, 16, &study.workers, error) ||
         cs_args_all(args, ADVISE_INTEGRATORS, &study.methods, &study.n_methods, error) ||
         cs_args_overrides(args, ADVISE_SET, &study.session.overrides,

@@ -45,15 +45,17 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                      false},
     [COMPARE_RUNS] = {"runs", 0, "N", "timed runs of each cell, at least (default: 5)", false},
     [COMPARE_BUDGET] = {"budget", 0, "SECONDS",
-                        "processor time that one run may take (default: 0.25)", false},
+                        "processor time that one run may take (default: 50 s shared by the "
+                        "cells, at most 4 s each, so that all of them take up to about two "
+                        "minutes)",
+                        false},
     [COMPARE_ACCURACY] = {"accuracy", 0, "METRES",
                           "error that must still mean something (default: 1e-6)", false},
     [COMPARE_REFERENCE] = {"reference", 0, "NAME:KEY=VALUE,...",
                            "method of the reference; give two of different families", true},
     [COMPARE_CACHE] = {"cache", 0, "DIR", "where references are kept (default: DIR of -o)",
                        false},
-    [COMPARE_FRESH] = {"fresh", 0, NULL, "measure anew what an earlier compare.csv holds",
-                       false},
+    [COMPARE_FRESH] = {"fresh", 0, NULL, "write over the compare.csv that is there", false},
     [COMPARE_PICTURES] = {"pictures", 0, NULL,
                           "draw the last frame of the methods at equal step and at equal cost, "
                           "coloured by their error",
@@ -158,7 +160,6 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     *settings = (struct cs_compare_settings){
         .methods = cs_args_get(args, COMPARE_INTEGRATORS),
         .accuracy = 1e-6,
-        .budget = 0.25,
         .runs = 5,
         .folder = folder ? folder : "compare",
         .fresh = cs_args_get(args, COMPARE_FRESH),
@@ -221,10 +222,10 @@ const struct cs_command cs_command_compare = {
     .name = "compare",
     .operands = "SCENE",
     .summary = "error against run time of integrators on a scene",
-    .notes =
-        "Rows are kept in compare.csv as they finish: an interrupted comparison goes on\n"
-        "when it is run again. Contact, strain limit and velocity loss are switched off.\n\n"
-        "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
+    .notes = "Rows are kept in compare.csv as they finish: an interrupted comparison goes on\n"
+             "when it is run again, and other methods are added to it. Contact, strain limit\n"
+             "and velocity loss are switched off; events stay.\n\n"
+             "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
     .rows = rows,
     .n_rows = COMPARE_ROWS,
     .least = 1,

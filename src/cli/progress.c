@@ -25,8 +25,8 @@ void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t tota
         return;
     const double left = (now - progress->start) / done * (total - done);
     char line[80];
-    snprintf(line, sizeof line, "%s %u of %u, %u %%, %.0f:%02u left", progress->what, done, total,
-             (uint32_t)(100.0 * done / total), (left - (uint32_t)left % 60) / 60,
+    snprintf(line, sizeof line, "%s %u of %u, %u %%, %.0f:%02u left", progress->what, done,
+             total, (uint32_t)(100.0 * done / total), (left - (uint32_t)left % 60) / 60,
              (uint32_t)left % 60);
     write_line(progress, line);
     progress->last = now;

@@ -50,12 +50,34 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
     row->kind = CS_ADVICE_MEASURED;
     if (cs_stability_border(settings, reference, 0, row->safe, &row->limit, error))
         return error->status;
+    if (isnan(row->limit)) {
+        row->kind = CS_ADVICE_REFUSED;
+        snprintf(row->message, sizeof row->message,
+                 "one step a frame does not live, and the budget ends the search for less");
+        return CS_OK;
+    }
     if (!(row->limit > 0)) {
         row->kind = CS_ADVICE_NONE;
         return CS_OK;
     }
     *row->message = 0;
     row->safe = MARGIN * row->limit;
+    return try_safe(row, settings, reference, frame, error);
+}
+
+/* Where even a part of theory's limit does not live, what does is bisected: a motion that is
+ * large from the start passes the bound with less growth than theory allows. */
+static enum cs_status try_lower(struct cs_advice *row, const struct cs_trial_settings *settings,
+                                const struct cs_reference *reference, double frame,
+                                struct cs_error *error) {
+    double border;
+    if (cs_stability_border(settings, reference, 0, row->safe, &border, error) ||
+        !(border > 0 && border < HUGE_VAL))
+        return error->status;
+    row->kind = CS_ADVICE_LOWERED;
+    row->limit = border;
+    row->safe = MARGIN * border;
+    *row->message = 0;
     return try_safe(row, settings, reference, frame, error);
 }
 
@@ -78,7 +100,7 @@ static enum cs_status advise_fixed(struct cs_advice *row,
                  reference.message);
         return CS_OK;
     }
-    row->limit = reference.worst.dt;
+    row->limit = row->theory = reference.worst.dt;
     row->mode = reference.worst.mode;
     if (row->limit > 1e100)
         return try_frame(row, settings, &reference, frame, error);
@@ -88,7 +110,10 @@ static enum cs_status advise_fixed(struct cs_advice *row,
         return CS_OK;
     if (check && check_limit(row, settings, &reference, error))
         return error->status;
-    return try_safe(row, settings, &reference, frame, error);
+    if (try_safe(row, settings, &reference, frame, error) || cs_fate_is_stable(row->verdict) ||
+        row->verdict == CS_FATE_OVER_BUDGET)
+        return error->status;
+    return try_lower(row, settings, &reference, frame, error);
 }
 
 static enum cs_status advise_adaptive(struct cs_advice *row,

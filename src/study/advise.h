@@ -6,6 +6,7 @@
 
 enum cs_advice_kind {
     CS_ADVICE_THEORY,   /* the limit of linear theory along a trusted run */
+    CS_ADVICE_LOWERED,  /* 0.9 of theory's limit was tried and does not live: bisected */
     CS_ADVICE_MEASURED, /* theory knows no limit, but one was found by bisection */
     CS_ADVICE_FRAME,    /* one step a frame was tried and is stable */
     CS_ADVICE_NONE,     /* no step is stable without damping */
@@ -17,9 +18,10 @@ struct cs_advice {
     const char *method;
     enum cs_advice_kind kind;
     double limit, safe;       /* s: largest stable step, and the one advised */
-    struct cs_mode mode;      /* that binds it, with CS_ADVICE_THEORY */
+    double theory;            /* s, limit of linear theory; HUGE_VAL: none */
+    struct cs_mode mode;      /* that binds it, where theory has a limit */
     enum cs_fate verdict;     /* of a run with the safe step */
-    double measured;          /* s, bisected; 0: not asked for */
+    double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
     char message[320];
 };

@@ -45,6 +45,10 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     case CS_ADVICE_THEORY:
         add_binding(&advise->opened.system, &row->mode, out);
         break;
+    case CS_ADVICE_LOWERED:
+        add_binding(&advise->opened.system, &row->mode, out);
+        cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
+        break;
     case CS_ADVICE_MEASURED:
         cs_text_add(out, "no limit in linear theory; bisected, large motions set it");
         break;

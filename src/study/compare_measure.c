@@ -111,7 +111,7 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
     cs_cell_integrator(cell, integrator, sizeof integrator);
     if (!cs_course_open(&course, &compare->settings->course, integrator, error) &&
         !cs_track_init(&track, &course, error) &&
-        !cs_course_run(&course, compare->settings->budget, &track, &end, error)) {
+        !cs_course_run(&course, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
         // what did not get through is timed once, until it was known
         take_times(cell, &(double){end.cpu}, &(double){end.wall}, 1);

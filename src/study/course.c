@@ -91,6 +91,16 @@ static enum cs_status step_frames(struct cs_course *course, struct cs_track *tra
     return CS_OK;
 }
 
+/* A run with events leaves pins, values and times as they were at its end: the next one, and
+ * who measures, get the system as at the start. */
+static enum cs_status renew(struct cs_course *course, struct cs_error *error) {
+    struct cs_session *session = &course->session;
+    if (!session->system.events)
+        return CS_OK;
+    cs_system_finish(&session->system);
+    return cs_system_build(&session->system, &session->scene, &session->plan, error);
+}
+
 static void keep_notes(struct cs_course_end *end, const struct cs_run *run) {
     for (uint32_t k = 0; k < run->n_notes; k++) {
         const size_t used = strlen(end->note);
@@ -133,6 +143,8 @@ enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_
         keep_notes(end, &session->run);
         cs_run_finish(&session->run);
     }
+    if (renew(course, error))
+        return error->status;
     return judge(end, &failure, error);
 }
 

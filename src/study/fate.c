@@ -53,7 +53,9 @@ enum cs_fate cs_fate_of(const struct cs_trial *trial, const struct cs_trial *ref
         return CS_FATE_LOCAL;
     if (trial->outcome == CS_OVER_BUDGET)
         return CS_FATE_OVER_BUDGET;
-    if (whole && reference->kinetic > LEAST_ENERGY &&
+    if (!whole)
+        return CS_FATE_SHORT;
+    if (reference->kinetic > LEAST_ENERGY &&
         trial->mean_kinetic < 0.5 * reference->mean_kinetic)
         return CS_FATE_DAMPED;
     return CS_FATE_BOUNDED;

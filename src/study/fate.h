@@ -9,6 +9,8 @@
     X(CS_FATE_BOUNDED, "bounded", '.', "no sign of instability")                               \
     X(CS_FATE_DAMPED, "damped away", 'd',                                                      \
       "stable, but the mean kinetic energy is below half of the reference's")                  \
+    X(CS_FATE_SHORT, "not run to the end", '>',                                                \
+      "no sign of instability in the steps that a cell may take, fewer than its time needs")   \
     X(CS_FATE_LOCAL, "local instability", 'l',                                                 \
       "particles faster than five times the fastest of the reference, energy bounded")         \
     X(CS_FATE_GLOBAL, "global instability", 'G',                                               \
@@ -31,6 +33,11 @@ static inline bool cs_fate_is_stable(enum cs_fate verdict) {
     return verdict == CS_FATE_BOUNDED || verdict == CS_FATE_DAMPED;
 }
 
+/* Nor does one whose run was too short to call it stable. */
+static inline bool cs_fate_is_sound(enum cs_fate verdict) {
+    return cs_fate_is_stable(verdict) || verdict == CS_FATE_SHORT;
+}
+
 /* What a run may reach, from a trusted run of the same scene over the same time: speed 5 times
  * its fastest, energy 2 times what it held, gain half of that above what it gained. */
 struct cs_trial_limits cs_fate_limits(const struct cs_trial *reference);
@@ -38,8 +45,8 @@ struct cs_trial_limits cs_fate_limits(const struct cs_trial *reference);
 /* Judges a run that had those limits. Energy beyond them makes a global instability where it
  * grew by half from the first half of the run to the second, or where the mean kinetic energy
  * is ten times the reference's: a symplectic method near its limit makes a fast motion larger
- * and yet stays there for ever. whole: the run was to last as long as the reference; else it is
- * never "damped away". */
+ * and yet stays there for ever. whole: the run was to last as long as the reference; else
+ * CS_FATE_SHORT stands in place of the stable ones. */
 enum cs_fate cs_fate_of(const struct cs_trial *trial, const struct cs_trial *reference,
                         bool whole);
 

@@ -55,9 +55,9 @@ static bool is_accurate(const struct cs_cell *cell, const struct cs_compare *com
 static bool is_at_frame_step(const struct cs_cell *cell, const struct cs_compare *compare,
                              int exponent) {
     (void)exponent;
-    // more energy wrong than there ever is in the motion is no stability
+    // events cut steps; more energy wrong than there ever is in the motion is no stability
     return cs_cell_is_finished(cell) && !cell->adaptive && !(cell->energy_error > 1) &&
-           cell->step > (1 - 1e-6) / compare->fps;
+           cell->steps <= compare->settings->course.frames + compare->cuts;
 }
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,

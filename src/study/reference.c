@@ -55,7 +55,8 @@ static double growth_of(const struct cs_system *system,
                         const struct cs_trial_settings *settings) {
     double length = 0;
     for (uint32_t r = 0; r < system->springs.n_runs; r++)
-        length = fmax(length, system->springs.runs[r].length);
+        for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
+            length = fmax(length, cs_spring_length(system->springs.runs + r, i));
     return settings->shake > 0 && length > settings->shake
                ? log(length / settings->shake) / settings->seconds
                : 0;

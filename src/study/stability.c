@@ -18,12 +18,13 @@ struct work {
     struct cs_workers workers;
 };
 
-/* between the highest row that is stable with all below it and the next one */
+/* between the highest row that is stable with all below it and the next one; a row that was not
+ * run to the end does not stand for a stable one */
 static enum cs_status find_border(struct cs_stability_column *column, uint32_t n_rows,
                                   const struct cs_trial_settings *trial,
                                   struct cs_error *error) {
     uint32_t row = 0;
-    while (row < n_rows && cs_fate_is_stable(column->cells[row].verdict))
+    while (row < n_rows && cs_fate_is_sound(column->cells[row].verdict))
         row++;
     column->border = HUGE_VAL;
     if (row == n_rows)
@@ -33,7 +34,8 @@ static enum cs_status find_border(struct cs_stability_column *column, uint32_t n
         column->border = (double)NAN;
         return CS_OK;
     }
-    return cs_stability_border(trial, &column->reference, row ? column->cells[row - 1].dt : 0,
+    const bool known = row && cs_fate_is_stable(column->cells[row - 1].verdict);
+    return cs_stability_border(trial, &column->reference, known ? column->cells[row - 1].dt : 0,
                                column->cells[row].dt, &column->border, error);
 }
 

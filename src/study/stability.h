@@ -37,9 +37,9 @@ struct cs_stability_cell {
 };
 
 struct cs_stability_column {
-    double value;                    /* of the axis */
-    struct cs_reference reference;   /* with the curves of theory */
-    double border;                   /* s; 0: below all that was tried; HUGE_VAL: above */
+    double value;                  /* of the axis */
+    struct cs_reference reference; /* with the curves of theory */
+    double border; /* s; 0: below all that was tried; HUGE_VAL: above; NAN: unknown */
     struct cs_stability_cell *cells; /* (rows), by rising dt */
 };
 
@@ -75,13 +75,14 @@ double cs_axis_own(const struct cs_system *system, enum cs_axis axis);
 /* Values that the axis covers where none are asked for. */
 struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
 
-/* One cell, judged by a reference. */
+/* One cell, judged by a reference; CS_FATE_SHORT where CS_CELL_STEPS ended a sound run. */
 enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
                                 const struct cs_reference *reference, double dt,
                                 struct cs_stability_cell *cell, struct cs_error *error);
 
 /* The largest stable step: from a step on that is stable (0: none is known) and one that is
- * not (HUGE_VAL: none is known), found and bisected to 1 %. */
+ * not (HUGE_VAL: none is known), found and bisected to 1 % by runs over the whole time; NAN
+ * where the budget of one ran out. */
 enum cs_status cs_stability_border(const struct cs_trial_settings *settings,
                                    const struct cs_reference *reference, double stable,
                                    double unstable, double *border, struct cs_error *error);

@@ -7,13 +7,15 @@ enum { MOST_SEARCHES = 12, BISECTIONS = 14 };
 #define RESOLUTION 1.01 /* of the border: unstable step / stable step */
 #define LONGEST_DT 10
 
-enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
-                                const struct cs_reference *reference, double dt,
-                                struct cs_stability_cell *cell, struct cs_error *error) {
+/* over the time of the reference, but most_seconds at most */
+static enum cs_status try_step(const struct cs_trial_settings *settings,
+                               const struct cs_reference *reference, double dt,
+                               double most_seconds, struct cs_stability_cell *cell,
+                               struct cs_error *error) {
     struct cs_trial_settings asked = *settings;
     struct cs_trial trial;
     asked.dt = dt;
-    asked.seconds = fmin(reference->seconds, CS_CELL_STEPS * dt);
+    asked.seconds = fmin(reference->seconds, most_seconds);
     asked.limits = cs_fate_limits(&reference->trial);
     if (cs_trial_run(&trial, &asked, error))
         return error->status;
@@ -35,18 +37,25 @@ enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
     return CS_OK;
 }
 
-/* steps by a factor of 4 until both sides are known; a budget that runs out ends the search */
+enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
+                                const struct cs_reference *reference, double dt,
+                                struct cs_stability_cell *cell, struct cs_error *error) {
+    return try_step(settings, reference, dt, CS_CELL_STEPS * dt, cell, error);
+}
+
+/* Steps by a factor of 4 until both sides are known; *known is false where a budget ran out. */
 static enum cs_status enclose(const struct cs_trial_settings *settings,
                               const struct cs_reference *reference, double *stable,
-                              double *unstable, struct cs_error *error) {
+                              double *unstable, bool *known, struct cs_error *error) {
     struct cs_stability_cell cell;
     for (int k = 0; k < MOST_SEARCHES && (*stable <= 0 || *unstable > LONGEST_DT); k++) {
         const double dt = *stable > 0 ? 4 * *stable : *unstable / 4;
         if (!(dt <= LONGEST_DT))
             break;
-        if (cs_stability_try(settings, reference, dt, &cell, error))
+        if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
             return error->status;
-        if (cell.verdict == CS_FATE_OVER_BUDGET)
+        *known = cell.verdict != CS_FATE_OVER_BUDGET;
+        if (!*known)
             break;
         *(cs_fate_is_stable(cell.verdict) ? stable : unstable) = dt;
     }
@@ -57,15 +66,21 @@ enum cs_status cs_stability_border(const struct cs_trial_settings *settings,
                                    const struct cs_reference *reference, double stable,
                                    double unstable, double *border, struct cs_error *error) {
     struct cs_stability_cell cell;
-    if (enclose(settings, reference, &stable, &unstable, error))
+    bool known = true;
+    *border = (double)NAN;
+    if (enclose(settings, reference, &stable, &unstable, &known, error) || !known)
         return error->status;
     *border = stable <= 0 ? 0 : HUGE_VAL;
     if (stable <= 0 || unstable > LONGEST_DT)
         return CS_OK;
     for (int k = 0; k < BISECTIONS && unstable > RESOLUTION * stable; k++) {
         const double dt = sqrt(stable * unstable);
-        if (cs_stability_try(settings, reference, dt, &cell, error))
+        if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
             return error->status;
+        if (cell.verdict == CS_FATE_OVER_BUDGET) {
+            *border = (double)NAN;
+            return CS_OK;
+        }
         *(cs_fate_is_stable(cell.verdict) ? &stable : &unstable) = dt;
     }
     *border = sqrt(stable * unstable);

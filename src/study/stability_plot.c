@@ -5,10 +5,10 @@
 
 /* green to red for eyes of every kind, then violet and greys; by verdict */
 static const char *const colours[CS_FATES] = {
-    [CS_FATE_BOUNDED] = "#9fd3b5",    [CS_FATE_DAMPED] = "#a9c9e8",
-    [CS_FATE_LOCAL] = "#f6d365",      [CS_FATE_GLOBAL] = "#e8825a",
-    [CS_FATE_NOT_FINITE] = "#8e5c86", [CS_FATE_FAILED] = "#7f858d",
-    [CS_FATE_OVER_BUDGET] = "#dfe1e4"};
+    [CS_FATE_BOUNDED] = "#9fd3b5", [CS_FATE_DAMPED] = "#a9c9e8",
+    [CS_FATE_SHORT] = "#e3f1e8",   [CS_FATE_LOCAL] = "#f6d365",
+    [CS_FATE_GLOBAL] = "#e8825a",  [CS_FATE_NOT_FINITE] = "#8e5c86",
+    [CS_FATE_FAILED] = "#7f858d",  [CS_FATE_OVER_BUDGET] = "#dfe1e4"};
 
 static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
     const enum cs_axis axis = map->settings->axis;

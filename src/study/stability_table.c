@@ -65,7 +65,7 @@ static double drift_of(const struct cs_stability *map, uint32_t c) {
     double drift = (double)NAN;
     for (uint32_t r = 0; r < map->n_rows; r++) {
         const struct cs_stability_cell *cell = map->columns[c].cells + r;
-        if (!cs_fate_is_stable(cell->verdict))
+        if (!cs_fate_is_sound(cell->verdict))
             break;
         drift = isnan(cell->drift) ? drift : cell->drift;
     }

@@ -1,5 +1,7 @@
 #include "study/sweep.h"
 
+#include "base/file.h"
+#include "base/hash.h"
 #include "base/options.h"
 #include "sim/registry.h"
 
@@ -8,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEFAULT_STEPS = 8, MOST_POINTS = 64 };
+enum { DEFAULT_STEPS = 8, MOST_POINTS = 64, MODULE_BYTES_MAX = 1 << 28 };
 
 /* First step of an explicit method in units of the safe bound 2/omega, which is up to 1.5 times
  * below the limit of the leap-frog and twice below that of Runge-Kutta. */
@@ -22,10 +24,11 @@ struct entry {
     const char *control;
     double low, high; /* NAN: the default sweep */
     bool atol_is_fixed;
+    char module[CS_HASH_DIGITS]; /* hash of the file: a module built anew is another one */
 };
 
-static enum cs_status add(struct cs_sweep *sweep, const struct cs_cell *cell,
-                          struct cs_error *error) {
+enum cs_status cs_sweep_insert(struct cs_sweep *sweep, uint32_t at, const struct cs_cell *cell,
+                               struct cs_error *error) {
     if (sweep->n == sweep->capacity) {
         const uint32_t capacity = sweep->capacity ? 2 * sweep->capacity : 64;
         struct cs_cell *cells = realloc(sweep->cells, capacity * sizeof *cells);
@@ -34,7 +37,9 @@ static enum cs_status add(struct cs_sweep *sweep, const struct cs_cell *cell,
         sweep->cells = cells;
         sweep->capacity = capacity;
     }
-    sweep->cells[sweep->n++] = *cell;
+    struct cs_cell *place = sweep->cells + at;
+    memmove(place + 1, place, (sweep->n++ - at) * sizeof *place);
+    *place = *cell;
     return CS_OK;
 }
 
@@ -52,6 +57,7 @@ static enum cs_status add_point(struct cs_sweep *sweep, const struct entry *entr
     struct cs_cell cell;
     cs_cell_init(&cell, entry->integrator->name);
     snprintf(cell.family, sizeof cell.family, "%s", cs_family_of(entry->integrator));
+    snprintf(cell.key, sizeof cell.key, "%s", entry->module);
     cell.adaptive = entry->integrator->traits & CS_ADAPTIVE;
     snprintf(cell.options, sizeof cell.options, "%s", entry->fixed);
     snprintf(cell.control, sizeof cell.control, "%s", entry->control);
@@ -63,7 +69,7 @@ static enum cs_status add_point(struct cs_sweep *sweep, const struct entry *entr
     if (cell.adaptive && *entry->control && atol && !entry->atol_is_fixed)
         add_option(cell.options, sizeof cell.options, "atol",
                    fmin(fmax(value, atol->min), atol->max));
-    return add(sweep, &cell, error);
+    return cs_sweep_insert(sweep, sweep->n, &cell, error);
 }
 
 static enum cs_status refuse(struct cs_sweep *sweep, const char *name, const char *why,
@@ -72,7 +78,7 @@ static enum cs_status refuse(struct cs_sweep *sweep, const char *name, const cha
     cs_cell_init(&cell, name);
     snprintf(cell.outcome, sizeof cell.outcome, "refused");
     snprintf(cell.note, sizeof cell.note, "%.239s", why);
-    return add(sweep, &cell, error);
+    return cs_sweep_insert(sweep, sweep->n, &cell, error);
 }
 
 /* what the default sweep goes over, largest first */
@@ -150,12 +156,23 @@ static enum cs_status read_option(struct entry *entry, char *pair, struct cs_err
     return CS_OK;
 }
 
-static void begin_entry(struct entry *entry, const struct cs_integrator *integrator) {
+static void hash_module(const char *file, char digits[CS_HASH_DIGITS]) {
+    char *bytes;
+    size_t length;
+    struct cs_error unread = {0};
+    if (!cs_file_read(file, MODULE_BYTES_MAX, &bytes, &length, &unread))
+        cs_hash_bytes(bytes, length, digits);
+    free(bytes);
+}
+
+static void begin_entry(struct entry *entry, const struct cs_registered *registered) {
+    const struct cs_integrator *integrator = registered->integrator;
     *entry = (struct entry){
         .integrator = integrator, .low = (double)NAN, .high = (double)NAN, .control = ""};
     entry->table = (struct cs_table){.rows = integrator->options,
                                      .n = integrator->n_options,
                                      .size = integrator->options_size};
+    hash_module(registered->file, entry->module);
     const char *control = integrator->traits & CS_ADAPTIVE ? "rtol" : "dt";
     if (cs_option_find(&entry->table, control))
         entry->control = control;
@@ -189,7 +206,7 @@ static enum cs_status read_list(struct cs_sweep *sweep, struct cs_registry *regi
             return error->status;
         if (cs_registry_find(registry, name, &found, error))
             return error->status;
-        begin_entry(&entry, found->integrator);
+        begin_entry(&entry, found);
         if (options && read_option(&entry, options, error))
             return error->status;
     }
@@ -205,7 +222,7 @@ static enum cs_status take_all(struct cs_sweep *sweep, struct cs_registry *regis
         struct entry entry;
         if (!registry->entries[k].integrator)
             continue;
-        begin_entry(&entry, registry->entries[k].integrator);
+        begin_entry(&entry, registry->entries + k);
         if (expand(sweep, &entry, settings, error))
             return error->status;
     }

@@ -30,6 +30,10 @@ enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_setti
                              struct cs_error *error);
 void cs_sweep_finish(struct cs_sweep *sweep);
 
+/* Adds a cell at a place; those from there on move up. CS_ERR_MEMORY. */
+enum cs_status cs_sweep_insert(struct cs_sweep *sweep, uint32_t at, const struct cs_cell *cell,
+                               struct cs_error *error);
+
 /* "NAME:options" of a cell. */
 void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size);
 

@@ -127,10 +127,10 @@ static enum cs_status compute(struct cs_yardstick *yardstick, const struct cs_co
     return error->status;
 }
 
-enum cs_status cs_yardstick_get(struct cs_yardstick *yardstick,
-                                const struct cs_yardstick_settings *settings,
-                                struct cs_error *error) {
-    char chosen[2][256], key[CS_HASH_DIGITS];
+enum cs_status cs_yardstick_plan(struct cs_yardstick *yardstick,
+                                 const struct cs_yardstick_settings *settings, char *key,
+                                 struct cs_error *error) {
+    char chosen[2][256];
     struct cs_course probe = {0};
     *yardstick = (struct cs_yardstick){.accuracy = settings->accuracy};
     if (cs_yardstick_choose(settings, chosen, error))
@@ -139,9 +139,20 @@ enum cs_status cs_yardstick_get(struct cs_yardstick *yardstick,
         memcpy(yardstick->methods[2 * k], chosen[k], sizeof chosen[k]);
         cs_yardstick_tighten(chosen[k], yardstick->methods[2 * k + 1], sizeof chosen[k]);
     }
-    if (cs_course_open(&probe, settings->course, chosen[0], error))
+    if (!cs_course_open(&probe, settings->course, chosen[0], error))
+        cs_yardstick_key(yardstick, &probe, settings, key);
+    cs_course_close(&probe);
+    return error->status;
+}
+
+enum cs_status cs_yardstick_get(struct cs_yardstick *yardstick,
+                                const struct cs_yardstick_settings *settings,
+                                struct cs_error *error) {
+    char key[CS_HASH_DIGITS];
+    struct cs_course probe = {0};
+    if (cs_yardstick_plan(yardstick, settings, key, error) ||
+        cs_course_open(&probe, settings->course, yardstick->methods[0], error))
         return error->status;
-    cs_yardstick_key(yardstick, &probe.session.scene, settings, key);
     const bool found =
         settings->cache && cs_yardstick_read(yardstick, settings->cache, key, &probe);
     if (!found && !compute(yardstick, &probe, settings, error) && yardstick->agree &&

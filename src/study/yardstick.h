@@ -49,6 +49,12 @@ enum cs_status cs_yardstick_get(struct cs_yardstick *yardstick,
                                 struct cs_error *error);
 void cs_yardstick_finish(struct cs_yardstick *yardstick);
 
+/* Chooses the four runs without running them; key (CS_HASH_DIGITS characters) says of which
+ * scene, time and reference a comparison is. */
+enum cs_status cs_yardstick_plan(struct cs_yardstick *yardstick,
+                                 const struct cs_yardstick_settings *settings, char *key,
+                                 struct cs_error *error);
+
 /* Frames of pointwise errors: all or none. */
 uint32_t cs_yardstick_pointwise_frames(const struct cs_yardstick *yardstick);
 
@@ -63,7 +69,7 @@ enum cs_status cs_yardstick_choose(const struct cs_yardstick_settings *settings,
                                    char chosen[2][256], struct cs_error *error);
 
 /* Hash of all that it depends on: CS_HASH_DIGITS characters. */
-void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_scene *scene,
+void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_course *course,
                       const struct cs_yardstick_settings *settings, char *key);
 
 /* Reads or writes DIR/reference-KEY.state; a file that does not fit counts as none. */

@@ -20,17 +20,24 @@ struct header {
     struct cs_yardstick yardstick; /* pointers in it mean nothing */
 };
 
-void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_scene *scene,
+void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_course *course,
                       const struct cs_yardstick_settings *settings, char *key) {
     const struct cs_session_settings *session = &settings->course->session;
+    const struct cs_scene *scene = &course->session.scene;
+    const size_t values = 6 * (size_t)course->session.system.view.n;
+    char start[CS_HASH_DIGITS];
     struct cs_text all = {0};
+    // meshes and pictures are files of their own: the start is as they made it
+    cs_hash_doubles(course->start, values, start);
+    cs_text_add(&all, "%s|", start);
     cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
                 settings->course->frames, scene->time.fps, settings->accuracy);
     for (int k = 0; k < CS_YARDSTICK_RUNS; k++)
         cs_text_add(&all, "%s|", yardstick->methods[k]);
     for (uint32_t k = 0; k < session->n_overrides; k++)
         cs_text_add(&all, "%s=%s|", session->overrides[k].path, session->overrides[k].value);
-    for (uint32_t k = 0; k < session->n_plugins; k++)
+    // where the methods are chosen here, a module that is added changes nothing
+    for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
         cs_text_add(&all, "%s|", session->plugins[k]);
     cs_text_add(&all, "%s", scene->text);
     cs_hash_bytes(cs_text_get(&all), all.length, key);

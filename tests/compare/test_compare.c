@@ -1,60 +1,11 @@
-/* A whole comparison: rows, orders, the file and what an interrupt leaves of it. */
-#include "scene.h"
+/* A whole comparison: rows, orders, the file, the verdict. */
+#include "place.h"
 #include "study/compare_csv.h"
 #include "study/compare_plot.h"
 #include "study/ranking.h"
 
 #include <math.h>
 #include <string.h>
-
-static volatile sig_atomic_t stop;
-
-struct watch {
-    uint32_t rows, taken, stop_after;
-};
-
-static void count_row(void *ctx, const struct cs_cell *cell, bool taken) {
-    struct watch *watch = ctx;
-    ck_assert(*cell->outcome);
-    watch->rows++;
-    watch->taken += taken;
-    stop = watch->rows == watch->stop_after;
-}
-
-struct place {
-    char scene[64], folder[64];
-};
-
-static void place_make(struct place *place, const char *damping) {
-    scene_write(place->scene, SMALL_SCENE, damping);
-    snprintf(place->folder, sizeof place->folder, "/tmp/clothsim-compare-XXXXXX");
-    ck_assert_ptr_nonnull(mkdtemp(place->folder));
-}
-
-static void place_remove(const struct place *place) {
-    char command[160];
-    snprintf(command, sizeof command, "rm -r %s %s", place->folder, place->scene);
-    ck_assert_int_eq(system(command), 0);
-}
-
-static enum cs_status run(struct cs_compare *compare, struct cs_compare_settings *settings,
-                          const struct place *place, const char *methods, struct watch *watch) {
-    struct cs_error error = {0};
-    *settings = (struct cs_compare_settings){
-        .course = {.session = {.scene = place->scene, .stop = &stop}, .frames = 6},
-        .methods = methods,
-        .reference = {"rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12"},
-        .accuracy = 1e-6,
-        .budget = 0.5,
-        .runs = 1,
-        .folder = place->folder,
-        .cache = place->folder,
-        .row = count_row,
-        .ctx = watch};
-    cs_compare_run(compare, settings, &error);
-    ck_assert_msg(!error.status || error.status == CS_ERR_INTERRUPT, "%s", error.message);
-    return error.status;
-}
 
 static const char *const METHODS =
     "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"
@@ -147,37 +98,6 @@ START_TEST(quotes_read_back) {
 }
 END_TEST
 
-START_TEST(interrupted_comparison_goes_on) {
-    struct place place;
-    struct watch watch = {.stop_after = 5}, again = {0};
-    struct cs_compare compare;
-    struct cs_compare_settings settings;
-    struct cs_cell *cells;
-    struct cs_error error = {0};
-    char path[128];
-    uint32_t n;
-    place_make(&place, "0.02");
-    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &watch), CS_ERR_INTERRUPT);
-    cs_compare_finish(&compare);
-    stop = 0;
-    snprintf(path, sizeof path, "%s/compare.csv", place.folder);
-    ck_assert(!cs_csv_read(path, &cells, &n, &error));
-    ck_assert_uint_eq(n, 5);
-    free(cells);
-    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &again), CS_OK);
-    ck_assert_uint_eq(again.taken, 5);
-    ck_assert_uint_eq(again.rows, compare.sweep.n);
-    cs_compare_finish(&compare);
-    // another scene takes nothing over
-    struct watch other = {0};
-    scene_write(place.scene, SMALL_SCENE, "0.03");
-    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &other), CS_OK);
-    ck_assert_uint_eq(other.taken, 0);
-    cs_compare_finish(&compare);
-    place_remove(&place);
-}
-END_TEST
-
 START_TEST(ranking_takes_the_cheapest) {
     struct place place;
     struct watch watch = {0};
@@ -227,11 +147,7 @@ START_TEST(list_is_read) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {orders_are_seen,
-                                  file_reads_back,
-                                  quotes_read_back,
-                                  interrupted_comparison_goes_on,
-                                  ranking_takes_the_cheapest,
-                                  list_is_read};
+    const TTest *const tests[] = {orders_are_seen, file_reads_back, quotes_read_back,
+                                  ranking_takes_the_cheapest, list_is_read};
     return scene_tests("compare", tests, sizeof tests / sizeof *tests);
 }

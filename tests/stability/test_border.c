@@ -1,5 +1,5 @@
 /* The bisected border of stability against linear theory, on shipped scenes. */
-#include "study/advise.h"
+#include "study/stability.h"
 
 #include "../physics/fixture.h"
 
@@ -66,38 +66,8 @@ START_TEST(forward_euler_lives_by_damping) {
 }
 END_TEST
 
-/* The steps that advise names, against what is bisected beside them. */
-START_TEST(advice_is_within_a_fifth) {
-    static const char *const methods[] = {"symplectic-euler", "velocity-verlet"};
-    static const char *const scenes[] = {SCENES "/hang.json", SCENES "/mass_1.json"};
-    const struct cs_override grid = {"bodies[0].cloth.grid", "[20, 20]"};
-    for (size_t s = 0; s < 2; s++) {
-        struct cs_error error = {0};
-        struct cs_advise advise = {
-            .session = {.scene = scenes[s], .overrides = &grid, .n_overrides = 1},
-            .methods = methods,
-            .n_methods = 2,
-            .seconds = 0.5,
-            .budget = 20,
-            .check = true,
-            .workers = 2};
-        cs_advise_run(&advise, &error);
-        ck_assert_msg(!error.status, "%s", error.message);
-        for (uint32_t k = 0; k < advise.n; k++) {
-            const struct cs_advice *row = advise.rows + k;
-            ck_assert_int_eq(row->kind, CS_ADVICE_THEORY);
-            ck_assert_msg(fabs(row->limit / row->measured - 1) < 0.2,
-                          "%s, %s: %.6g s predicted, %.6g found", scenes[s], row->method,
-                          row->limit, row->measured);
-            ck_assert(cs_fate_is_stable(row->verdict));
-        }
-        cs_advise_finish(&advise);
-    }
-}
-END_TEST
-
 int main(void) {
     const TTest *const tests[] = {border_lies_on_the_worst_limit,
-                                  forward_euler_lives_by_damping, advice_is_within_a_fifth};
+                                  forward_euler_lives_by_damping};
     return fixture_run("border", tests, sizeof tests / sizeof *tests);
 }

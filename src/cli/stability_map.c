@@ -1,0 +1,115 @@
+#include "cli/stability_map.h"
+
+#include "base/file.h"
+#include "cli/print.h"
+#include "cli/progress.h"
+#include "cli/run_output.h"
+#include "io/gnuplot.h"
+
+#include <stdio.h>
+
+struct screen {
+    struct cs_progress progress;
+};
+
+static void show_progress(void *ctx, uint32_t done, uint32_t total) {
+    cs_progress_show(&((struct screen *)ctx)->progress, done, total);
+}
+
+/* One file of a map; print fills it. */
+static enum cs_status write_file(const struct cs_args *args, const char *folder,
+                                 const char *name, const char *ending, struct cs_text *text,
+                                 struct cs_error *error) {
+    struct cs_text path = {0};
+    cs_text_add(&path, "%s/%s%s", folder, name, ending);
+    if (text->failed || path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the files of a map");
+    else if (cs_args_get(args, STABILITY_OVERWRITE) ||
+             !cs_output_check_file(cs_text_get(&path), error))
+        cs_file_write(cs_text_get(&path), text->bytes, text->length, error);
+    cs_text_finish(&path);
+    cs_text_finish(text);
+    return error->status;
+}
+
+static enum cs_status write_files(const struct cs_args *args, const struct cs_stability *map,
+                                  const char *folder, struct cs_error *error) {
+    const char *name = map->integrator->name;
+    struct cs_text cells = {0}, borders = {0}, json = {0}, plot = {0};
+    cs_stability_print_csv(map, &cells);
+    cs_stability_print_borders_csv(map, &borders);
+    cs_stability_print_json(map, &json);
+    cs_stability_print_plot(map, name, &plot);
+    write_file(args, folder, name, ".csv", &cells, error);
+    if (!error->status)
+        write_file(args, folder, name, "_border.csv", &borders, error);
+    if (!error->status)
+        write_file(args, folder, name, ".json", &json, error);
+    if (!error->status)
+        write_file(args, folder, name, ".gp", &plot, error);
+    cs_text_finish(&borders);
+    cs_text_finish(&json);
+    cs_text_finish(&plot);
+    return error->status;
+}
+
+/* true where gnuplot made NAME.png of NAME.gp */
+static bool draw(const char *folder, const char *name) {
+    char script[128];
+    bool drawn = false;
+    struct cs_error ignored = {0};
+    snprintf(script, sizeof script, "%s.gp", name);
+    return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
+}
+
+enum cs_status cs_stability_map_one(const struct cs_args *args,
+                                    const struct cs_stability_settings *settings,
+                                    const char *folder, struct cs_error *error) {
+    struct screen screen;
+    struct cs_stability map;
+    struct cs_stability_settings asked = *settings;
+    const bool quiet = cs_args_get(args, STABILITY_QUIET);
+    asked.progress = show_progress;
+    asked.ctx = &screen;
+    cs_progress_begin(&screen.progress, quiet);
+    screen.progress.what = "cell";
+    cs_stability_run(&map, &asked, error);
+    cs_progress_end(&screen.progress);
+    if (!error->status && !cs_folder_make(folder, error) &&
+        !write_files(args, &map, folder, error) && !quiet) {
+        struct cs_text out = {0};
+        cs_stability_print_table(&map, &out);
+        cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
+                    folder, map.integrator->name,
+                    draw(folder, map.integrator->name) ? ", .png" : "; no gnuplot: no picture");
+        cs_print_out(stdout, &out, error);
+    }
+    cs_stability_finish(&map);
+    return error->status;
+}
+
+enum cs_status cs_stability_map_all(const struct cs_args *args,
+                                    struct cs_stability_settings *settings, const char *folder,
+                                    struct cs_error *error) {
+    struct cs_registry registry = {0};
+    for (uint32_t k = 0; k < settings->session.n_plugins; k++)
+        if (cs_registry_add_file(&registry, settings->session.plugins[k], error))
+            goto done;
+    if (cs_registry_open_all(&registry, error))
+        goto done;
+    for (uint32_t k = 0; k < registry.n && !error->status; k++) {
+        const struct cs_integrator *integrator = registry.entries[k].integrator;
+        if (!integrator)
+            continue;
+        if (cs_trial_takes_dt(integrator)) {
+            settings->session.integrator = integrator->name;
+            cs_stability_map_one(args, settings, folder, error);
+        } else if (!cs_args_get(args, STABILITY_QUIET))
+            printf("%s: not applicable, it %s\n\n", integrator->name,
+                   integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
+                                                    : "has no option dt");
+    }
+done:
+    cs_registry_finish(&registry);
+    return error->status;
+}

@@ -1,0 +1,97 @@
+/* The folder of a comparison: what an interrupt leaves, and what another run adds. */
+#include "place.h"
+#include "study/compare_csv.h"
+
+static const char *const METHODS =
+    "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"
+    "explicit-euler:dt=0.05,dopri5:rtol=1e-8..1e-4";
+
+START_TEST(interrupted_comparison_goes_on) {
+    struct place place;
+    struct watch watch = {.stop_after = 5}, again = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    struct cs_cell *cells;
+    struct cs_error error = {0};
+    char path[128];
+    uint32_t n;
+    place_make(&place, "0.02");
+    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &watch), CS_ERR_INTERRUPT);
+    cs_compare_finish(&compare);
+    stop = 0;
+    snprintf(path, sizeof path, "%s/compare.csv", place.folder);
+    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert_uint_eq(n, 5);
+    free(cells);
+    ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &again), CS_OK);
+    ck_assert_uint_eq(again.taken, 5);
+    ck_assert_uint_eq(again.rows, compare.sweep.n);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(other_methods_are_added) {
+    struct place place;
+    struct watch first = {0}, second = {0}, third = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    struct cs_cell *cells;
+    struct cs_error error = {0};
+    char path[128];
+    uint32_t n;
+    place_make(&place, "0.02");
+    run(&compare, &settings, &place, "rk4:dt=1e-3..8e-3,velocity-verlet:dt=1e-3..2e-3", &first);
+    cs_compare_finish(&compare);
+    // a shorter list keeps all rows, another step falls into its place
+    run(&compare, &settings, &place, "rk4:dt=5e-4..2e-3", &second);
+    ck_assert_uint_eq(second.taken, 6);
+    ck_assert_uint_eq(compare.sweep.n, 7);
+    for (uint32_t k = 0; k < 5; k++) {
+        ck_assert_str_eq(compare.sweep.cells[k].method, "rk4");
+        ck_assert_double_eq(compare.sweep.cells[k].value, 8e-3 / (1 << k));
+    }
+    ck_assert_double_eq_tol(compare.sweep.cells[4].order, 4, 0.1);
+    cs_compare_finish(&compare);
+    snprintf(path, sizeof path, "%s/compare.csv", place.folder);
+    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert_uint_eq(n, 7);
+    free(cells);
+    // another scene is no part of it
+    scene_write(place.scene, SMALL_SCENE, "0.03");
+    ck_assert_int_eq(run(&compare, &settings, &place, "rk4:dt=2e-3", &third), CS_ERR_USAGE);
+    ck_assert_uint_eq(third.rows, 0);
+    cs_compare_finish(&compare);
+    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    ck_assert_uint_eq(n, 7);
+    free(cells);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(over_budget_runs_again_with_more) {
+    struct place place;
+    struct watch first = {0}, second = {0}, third = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    place_make(&place, "0.02");
+    run_for(&compare, &settings, &place, "rk4:dt=2e-6", &first, 0.01);
+    ck_assert_str_eq(compare.sweep.cells->outcome, cs_outcome_text(CS_OVER_BUDGET));
+    cs_compare_finish(&compare);
+    run_for(&compare, &settings, &place, "rk4:dt=2e-6", &second, 0.01);
+    ck_assert_uint_eq(second.taken, 1);
+    cs_compare_finish(&compare);
+    // without one, a single cell has the most that there is
+    run_for(&compare, &settings, &place, "rk4:dt=2e-6", &third, 0);
+    ck_assert_uint_eq(third.taken, 0);
+    ck_assert_double_eq(compare.budget, CS_COMPARE_MOST);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {interrupted_comparison_goes_on, other_methods_are_added,
+                                  over_budget_runs_again_with_more};
+    return scene_tests("ledger", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,128 @@
+/* The steps that advise names on the shipped scenes, against limits bisected beside them. With
+ * "all": every scene and every explicit method with a fixed step, else two scenes.
+ *
+ * Found, linear theory / bisected: 0.83 to 1.02 where a limit is sharp; forward and averaged
+ * Euler 0.67 (free_fall) to 1.83 (jelly_drop), which advise lowers to what lives. */
+#include "study/advise.h"
+
+#include "../physics/fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define GRID  "bodies[0].cloth.grid", "[10, 10]"
+#define LIMBS "bodies[0].mesh.detail", "8"
+#define BALL  "bodies[0].mesh.detail", "6"
+
+/* of the methods below; the last two take very many steps on a fine mesh */
+enum { CAREFUL = 4, FEW_METHODS = 5, ALL_METHODS = 6 };
+
+static const struct row {
+    const char *scene;
+    struct cs_override overrides[2];
+    double seconds;
+    uint32_t n_methods; /* of the list below; 0: all */
+} rows[] = {{"hang", {{GRID}}, 0.5, 0},
+            {"mass_1", {{GRID}}, 0.5, 0},
+            {"bear_springs", {{LIMBS}}, 0.5, 0},
+            {"buckle", {{GRID}}, 0.1, 0},
+            {"disc_drape", {{0}}, 0.03, CAREFUL},
+            {"drum", {{GRID}}, 0.5, 0},
+            {"explosion", {{GRID}}, 0.5, 0},
+            {"explosion_cured", {{GRID}}, 0.5, 0},
+            {"flag_wind", {{GRID}}, 0.25, 0},
+            {"free_fall", {{GRID}}, 0.5, 0},
+            {"grab_release", {{GRID}}, 0.5, 0},
+            {"hang_by_one", {{LIMBS}, {"bodies[0].pins", "[40]"}}, 0.5, 0},
+            {"jelly_drop", {{BALL}}, 0.5, 0},
+            {"mass_0_5", {{GRID}}, 0.5, 0},
+            {"mass_1_5", {{GRID}}, 0.5, 0},
+            {"push", {{GRID}}, 0.5, 0},
+            {"sphere_fall", {{GRID}}, 0.5, 0},
+            {"sphere_rest", {{GRID}}, 0.5, 0},
+            {"sphere_rest_storm", {{GRID}}, 0.5, 0},
+            {"stiffness_2", {{GRID}}, 0.5, 0},
+            {"stiffness_50", {{GRID}}, 0.5, 0},
+            {"stiffness_200", {{GRID}}, 0.5, 0},
+            {"swing", {{GRID}}, 0.5, 0},
+            {"two_winds", {{GRID}}, 0.25, 0}};
+enum { FEW = 2, ALL = sizeof rows / sizeof *rows };
+
+static const char *const methods[] = {"symplectic-euler", "velocity-verlet",
+                                      "position-verlet",  "rk4",
+                                      "explicit-euler",   "averaged-euler"};
+static bool all;
+
+/* Methods that gain energy from what swings at the start: growth, not a limit, ends them. */
+static bool is_forward(const char *method) {
+    return !strcmp(method, "explicit-euler") || !strcmp(method, "averaged-euler");
+}
+
+static void check_advice(const struct row *row, const struct cs_advice *advice) {
+    const double ratio = advice->limit / advice->measured;
+    const double least = is_forward(advice->method) ? 0.6 : 0.8;
+    printf("%-18s %-17s advised from %.4g s, found %.4g: %.3f; theory %.3f\n", row->scene,
+           advice->method, advice->limit, advice->measured, ratio,
+           advice->theory / advice->measured);
+    ck_assert_double_gt(advice->theory / advice->measured, least);
+    ck_assert_double_lt(advice->theory / advice->measured,
+                        is_forward(advice->method) ? 2 : 1.2);
+    ck_assert(advice->kind == CS_ADVICE_THEORY ||
+              (advice->kind == CS_ADVICE_LOWERED && is_forward(advice->method)));
+    ck_assert_msg(ratio > least && ratio < 1.2, "%s, %s: %.6g s predicted, %.6g found",
+                  row->scene, advice->method, advice->limit, advice->measured);
+    ck_assert_msg(cs_fate_is_stable(advice->verdict), "%s, %s: advised %.6g s, but %s",
+                  row->scene, advice->method, advice->safe, cs_fate_word(advice->verdict));
+}
+
+static void check_scene(const struct row *row) {
+    char path[512];
+    struct cs_error error = {0};
+    snprintf(path, sizeof path, SCENES "/%s.json", row->scene);
+    struct cs_advise advise = {.session = {.scene = path, .overrides = row->overrides},
+                               .methods = methods,
+                               .n_methods = row->n_methods ? row->n_methods
+                                            : all          ? ALL_METHODS
+                                                           : FEW_METHODS,
+                               .seconds = row->seconds,
+                               .budget = 20,
+                               .check = true,
+                               .workers = 2};
+    while (advise.session.n_overrides < 2 && row->overrides[advise.session.n_overrides].path)
+        advise.session.n_overrides++;
+    cs_advise_run(&advise, &error);
+    ck_assert_msg(!error.status, "%s: %s", row->scene, error.message);
+    for (uint32_t k = 0; k < advise.n; k++)
+        check_advice(row, advise.rows + k);
+    cs_advise_finish(&advise);
+}
+
+START_TEST(advice_holds_on_two_scenes) {
+    for (int i = 0; i < FEW; i++)
+        check_scene(rows + i);
+}
+END_TEST
+
+/* in two parts, each with a time limit of its own */
+static void check_every_second(int first) {
+    for (int i = first; i < ALL; i += 2)
+        check_scene(rows + i);
+}
+
+START_TEST(advice_holds_on_even_scenes) {
+    check_every_second(0);
+}
+END_TEST
+
+START_TEST(advice_holds_on_odd_scenes) {
+    check_every_second(1);
+}
+END_TEST
+
+int main(int argc, char **argv) {
+    const TTest *const few[] = {advice_holds_on_two_scenes};
+    const TTest *const many[] = {advice_holds_on_even_scenes, advice_holds_on_odd_scenes};
+    all = argc > 1 && !strcmp(argv[1], "all");
+    return all ? fixture_run("advice", many, 2) : fixture_run("advice", few, 1);
+}
