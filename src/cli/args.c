@@ -26,6 +26,13 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
 }
 
 /* The row of "--name", "--name=value", "-n" or "-nvalue", and the value that hangs at it. */
+/* The long name; an option that may be repeated answers to its singular too (--integrator). */
+static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
+    const size_t whole = strlen(row->name);
+    const bool singular = row->many && whole == length + 1 && row->name[length] == 's';
+    return (whole == length || singular) && !strncmp(row->name, word, length);
+}
+
 static const struct cs_arg *find_row(const struct cs_command *command, const char *word,
                                      const char **attached) {
     *attached = NULL;
@@ -33,7 +40,7 @@ static const struct cs_arg *find_row(const struct cs_command *command, const cha
         const struct cs_arg *row = command->rows + r;
         if (word[1] == '-') {
             const size_t length = strcspn(word + 2, "=");
-            if (strlen(row->name) != length || strncmp(row->name, word + 2, length))
+            if (!is_called(row, word + 2, length))
                 continue;
             *attached = word[2 + length] ? word + 3 + length : NULL;
             return row;
