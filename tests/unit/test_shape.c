@@ -83,8 +83,7 @@ START_TEST(start_may_be_stretched_and_bumped) {
                                 flat ? -up : out, 1e-15);
             }
         ck_assert_double_eq_tol(sheet.system.springs.runs[0].length, 0.75, 1e-15);
-        ck_assert_double_eq_tol(cs_shape_area(cs_scene_bodies(&sheet.scene), 6), 0.75,
-                                1e-15);
+        ck_assert_double_eq_tol(cs_shape_area(cs_scene_bodies(&sheet.scene), 6), 0.75, 1e-15);
         sheet_close(&sheet);
     }
 }
