@@ -9,6 +9,7 @@
  *                     velocity-verlet, whose damping sees a predicted velocity
  */
 #include "explicit_steps.h"
+#include "leapfrog_limit.h"
 
 struct explicit_options {
     double dt;
@@ -32,12 +33,6 @@ static const struct cs_option lossy_rows[] = {
         "share of the motion lost in every step; the flag thesis takes 0.01, and any value "
         "above 0 is a drag that grows as dt shrinks"),
 };
-
-/* Root h of h^2 w^2 + q r h = s; HUGE_VAL where nothing limits the step. */
-static double leapfrog_limit(const struct cs_view *view, double q, double s) {
-    const double w = view->omega, qr = q * 2 * view->delta;
-    return 2 * s / (qr + sqrt(qr * qr + 4 * s * w * w));
-}
 
 static double explicit_euler_limit(const struct cs_view *view) {
     const double w = view->omega, r = 2 * view->delta;

@@ -47,7 +47,8 @@ enum cs_need {
     CS_NEED_DIAGONAL = 1u << 1,
     CS_NEED_ENERGY = 1u << 2,
     CS_NEED_SPRINGS = 1u << 3,
-    CS_NEED_SOLVE = 1u << 4
+    CS_NEED_SOLVE = 1u << 4,
+    CS_NEED_CLUSTERS = 1u << 5 /* and without groups that keep their shape there is no run */
 };
 
 /* Parts of the force, so that a method can split it. */
@@ -170,6 +171,11 @@ struct cs_integrator {
     enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);
     void (*stats)(const void *self, struct cs_stats *out); /* may be NULL */
     void (*destroy)(void *self); /* only foreign handles; may be NULL; self may be half made */
+
+    /* Later than ABI 1's first release: read only where `size` reaches behind it. May be NULL.
+     * Between two calls of advance: g (3,n) in m, the places that the method draws particles
+     * to when they are at x (3,n); x itself for those that it leaves alone. */
+    void (*goals)(const void *self, const double *x, double *g);
 };
 
 struct cs_module {

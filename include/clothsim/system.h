@@ -43,6 +43,15 @@ struct cs_view {
     const double *damping;   /* (n_springs) in N s/m, of the damper beside the spring */
     const uint32_t *kind;    /* (n_springs) CS_PART_STRETCH, CS_PART_SHEAR or CS_PART_BEND */
     const uint8_t *axial;    /* (n_springs) 1: damped along the spring only; 0: in every way */
+
+    /* groups of particles that keep their shape (shape matching), only with CS_NEED_CLUSTERS;
+     * their shape is that of `start`. A particle may be in several groups of its body. */
+    uint32_t n_clusters;
+    const uint32_t *cluster_begin; /* (n_clusters + 1) places in cluster_items */
+    const uint32_t *cluster_items; /* particles of each cluster, ascending */
+    const double *cluster_alpha;   /* (n_clusters) 0..1, share of the way to its shape */
+    const double *cluster_beta;    /* (n_clusters) 0..1, share of the linear deformation kept */
+    const double *cluster_step;    /* (n_clusters) s, step that alpha is for; 0: for any */
 };
 
 #ifdef __cplusplus

@@ -101,13 +101,15 @@ enum cs_status cs_stability_map_all(const struct cs_args *args,
         const struct cs_integrator *integrator = registry.entries[k].integrator;
         if (!integrator)
             continue;
-        if (cs_trial_takes_dt(integrator)) {
+        const bool other = integrator->fidelity == CS_FIDELITY_OTHER;
+        if (cs_trial_takes_dt(integrator) && !other) {
             settings->session.integrator = integrator->name;
             cs_stability_map_one(args, settings, folder, error);
         } else if (!cs_args_get(args, STABILITY_QUIET))
             printf("%s: not applicable, it %s\n\n", integrator->name,
-                   integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
-                                                    : "has no option dt");
+                   other                              ? "is of another model"
+                   : integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
+                                                      : "has no option dt");
     }
 done:
     cs_registry_finish(&registry);

@@ -194,6 +194,8 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
         cs_net_draw_springs(&canvas->net, &canvas->lines, frame->x);
         cs_net_draw_pins(&canvas->net, &canvas->lines, frame->x);
     }
+    if (look == CS_LOOK_GOALS && frame->goals)
+        cs_net_draw_goals(&canvas->net, &canvas->lines, frame->x, frame->goals);
     if (colours_by_value(look)) {
         gl.Disable(GL_DEPTH_TEST);
         cs_bar_draw(&canvas->bar, &canvas->lines, frame->range);

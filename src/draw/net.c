@@ -111,6 +111,30 @@ void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const do
     }
 }
 
+void cs_net_draw_goals(const struct cs_net *net, struct cs_lines *lines, const double *x,
+                       const double *goals) {
+    static const uint32_t colours[2] = {0x2b5fa8, 0xc8321f};
+    const struct cs_system *system = net->system;
+    const uint32_t n = system->view.n;
+    for (int dots = 0; dots < 2; dots++) {
+        struct cs_line_style style = {.alpha = dots ? 0.95 : 0.75, .lift = net->lift};
+        cs_colour_linear(colours[dots], style.colour);
+        style.half_width = dots ? width(net, 0.11, 0.5, 1.8) : width(net, 0.06, 0.35, 0.8);
+        for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+            const struct cs_body_range *body = system->bodies + b;
+            if (!cs_scene_bodies(system->scene)[b].shape_matching.present)
+                continue;
+            for (uint32_t i = body->first; i < body->first + body->count; i++) {
+                double at[3], goal[3];
+                cs_mesh_place(n, x, i, at);
+                cs_mesh_place(n, goals, i, goal);
+                cs_lines_add(lines, dots ? goal : at, goal);
+            }
+        }
+        cs_lines_draw(lines, &style);
+    }
+}
+
 void cs_net_draw_threads(const struct cs_net *net, struct cs_lines *lines, const double *x) {
     for (uint32_t b = 0; b < net->system->scene->bodies.n; b++) {
         const struct cs_body_range *body = net->system->bodies + b;

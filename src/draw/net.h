@@ -1,4 +1,4 @@
-/* net.h - cloth as lines: edges, springs by kind, pins. */
+/* net.h - cloth as lines: edges, springs by kind, pins, goals. */
 #ifndef CS_DRAW_NET_H
 #define CS_DRAW_NET_H
 
@@ -19,6 +19,10 @@ uint32_t cs_net_capacity(const struct cs_system *system);
 void cs_net_draw_edges(const struct cs_net *net, struct cs_lines *lines, const double *x);
 void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const double *x);
 void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x);
+/* A line from each particle to its goal, and a dot there; goals (3,n). A particle at its goal
+ * has the dot alone. */
+void cs_net_draw_goals(const struct cs_net *net, struct cs_lines *lines, const double *x,
+                       const double *goals);
 /* Bodies that are one row or column of particles and have no surface: a thread with knots. */
 void cs_net_draw_threads(const struct cs_net *net, struct cs_lines *lines, const double *x);
 

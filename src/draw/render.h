@@ -29,9 +29,10 @@ struct cs_frame {
     const double
         *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */
     double range[2]; /* values at the ends of the colours; lowest first */
+    const double *goals; /* (3,n) m, of look goals; else NULL */
 };
 
-#define CS_RENDERER_ABI 1u
+#define CS_RENDERER_ABI 2u
 struct cs_renderer {
     unsigned abi;
     const char *name; /* "osmesa" or "egl" */

@@ -2,7 +2,9 @@
 
 #include "io/json_path.h"
 #include "io/mesh_read.h"
+#include "model/clusters.h"
 #include "model/network.h"
+#include "model/shape.h"
 
 #include <stdio.h>
 
@@ -83,20 +85,46 @@ static enum cs_status read_mesh(struct cs_reader *reader, const struct cs_json *
     return cs_network_make(&body->network, mesh, reader->arena, reader->error);
 }
 
+/* the parts of a body that shape matching keeps */
+static enum cs_status cut_body(struct cs_reader *reader, const struct cs_json *root,
+                               struct cs_scene *scene, uint32_t b) {
+    struct cs_body *body = cs_scene_bodies(scene) + b;
+    struct cs_shape_matching *matching = &body->shape_matching;
+    const int64_t most = cs_shape_count(body) / CS_CLUSTER_LEAST;
+    /* a cloth beyond the memory is refused by the check */
+    if (!matching->present || (double)cs_shape_count(body) > CS_PARTICLES_MAX)
+        return CS_OK;
+    if (matching->clusters > 1 && matching->clusters > most) {
+        char message[160];
+        snprintf(message, sizeof message,
+                 "found %lld, expected at most %lld: a part has %d particles or more",
+                 (long long)matching->clusters, (long long)(most > 1 ? most : 1),
+                 CS_CLUSTER_LEAST);
+        return refuse(reader, root, b, "shape_matching.clusters", CS_ERR_SCENE, message);
+    }
+    struct cs_clusters *parts = cs_arena_take(reader->arena, sizeof *parts, reader->error);
+    if (!parts)
+        return reader->error->status;
+    matching->parts = parts;
+    return cs_clusters_make(body, parts, reader->arena, reader->error);
+}
+
 enum cs_status cs_scene_read_meshes(struct cs_reader *reader, const struct cs_json *root,
                                     struct cs_scene *scene) {
     double particles = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const struct cs_body *body = cs_scene_bodies(scene) + b;
-        /* a body that is cloth too is refused by the check */
-        if (!body->mesh.present || body->cloth.present)
+        /* a body of two shapes or none is refused by the check */
+        if (body->mesh.present == body->cloth.present)
             continue;
-        if (read_mesh(reader, root, scene, b))
+        if (body->mesh.present && read_mesh(reader, root, scene, b))
             return reader->error->status;
-        particles += body->mesh.geometry->n;
+        particles += body->mesh.present ? body->mesh.geometry->n : 0;
         if (particles > CS_PARTICLES_MAX)
             return refuse(reader, root, b, "mesh", CS_ERR_SCENE,
                           "more particles in the meshes so far than a scene may have");
+        if (cut_body(reader, root, scene, b))
+            return reader->error->status;
     }
     return CS_OK;
 }

@@ -1,5 +1,6 @@
 #include "model/plan.h"
 
+#include "model/clusters.h"
 #include "model/event_key.h"
 #include "model/events.h"
 #include "model/shape.h"
@@ -75,7 +76,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
     decide(plan, CS_FEATURE_SPRINGS, s > 0,
            n_runs * sizeof(struct cs_spring_run) + 2 * n_listed * real,
-           "the bodies have springs", "no stiffness above 0");
+           "the bodies have springs",
+           cs_scene_first_matched(scene) < plan->n_bodies
+               ? "no stiffness above 0, or shape_matching instead"
+               : "no stiffness above 0");
     decide(plan, CS_FEATURE_DAMPING,
            s > 0 && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),
            0, "springs.damping is above 0", "springs.damping is 0");
@@ -99,9 +103,35 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
            s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),
            "the integrator asks for it", "the integrator does not ask for it");
+    const bool clusters =
+        needs & CS_NEED_CLUSTERS && cs_scene_first_matched(scene) < plan->n_bodies;
+    size_t n_clusters, n_items;
+    cs_clusters_count(scene, &n_clusters, &n_items);
+    decide(plan, CS_FEATURE_CLUSTERS, clusters,
+           (n_clusters + 1 + n_items) * sizeof(uint32_t) + 3 * n_clusters * real,
+           "bodies have shape_matching, and the integrator asks for it",
+           needs & CS_NEED_CLUSTERS ? "no body has shape_matching"
+                                    : "the integrator does not ask for it");
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 24 * n) * real,
            "the integrator asks for it", "the integrator does not ask for it");
     decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
+}
+
+enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uint32_t needs,
+                             struct cs_error *error) {
+    const uint32_t matched = cs_scene_first_matched(scene);
+    if (matched < scene->bodies.n && !(needs & CS_NEED_CLUSTERS))
+        return cs_fail(error, CS_ERR_SCENE,
+                       "bodies[%u].shape_matching: no force law, so integrator \"%s\" cannot "
+                       "follow it, and no error can be measured; use --integrator "
+                       "shape-matching",
+                       matched, name);
+    if (matched == scene->bodies.n && needs & CS_NEED_CLUSTERS)
+        return cs_fail(error, CS_ERR_SCENE,
+                       "bodies: none has shape_matching, and without it integrator \"%s\" has "
+                       "nothing to match",
+                       name);
+    return CS_OK;
 }
 
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {

@@ -2,6 +2,7 @@
 #ifndef CS_PLAN_H
 #define CS_PLAN_H
 
+#include "base/status.h"
 #include "base/text.h"
 #include "model/scene.h"
 
@@ -18,6 +19,7 @@
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \
     X(SPRING_LIST, "spring list")                                                              \
+    X(CLUSTERS, "clusters")                                                                    \
     X(SOLVER, "linear solver")                                                                 \
     X(RENDER, "renderer")
 
@@ -45,6 +47,12 @@ struct cs_plan {
  */
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
                   bool render);
+
+/* Whether a method with such needs can follow the scene: shape matching is no force law, and a
+ * method that is made for it has nothing to do without. name: of the method, for the message,
+ * which starts with the JSON path. CS_ERR_SCENE. */
+enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uint32_t needs,
+                             struct cs_error *error);
 
 /* Prints it as aligned text, one feature a line. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);

@@ -76,6 +76,22 @@ struct cs_network {
     double surface; /* stiffness of surface springs over that of inner ones */
 };
 
+struct cs_clusters;
+
+/* a body that is drawn back to its shape (Mueller et al. 2005), not held by springs */
+struct cs_shape_matching {
+    bool present;
+    double alpha;      /* share of the way to the goals in a step; 1: rigid */
+    double beta;       /* share of the linear deformation in the goals */
+    double alpha_step; /* s, length of that step; 0: alpha holds for a step of any length */
+    int64_t clusters;  /* parts that keep their shapes, each on its own */
+    double overlap;    /* of parts: share of a part's longest side */
+    bool springs;      /* the body's springs act too */
+
+    /* not in the tables: made by the reader, owned by the scene's arena */
+    const struct cs_clusters *parts;
+};
+
 /* exactly one is not NAN */
 struct cs_mass {
     double particle;      /* kg each */
@@ -136,6 +152,7 @@ struct cs_body {
     struct cs_cloth cloth; /* either this or the mesh */
     struct cs_mesh_source mesh;
     struct cs_network network;
+    struct cs_shape_matching shape_matching;
     struct cs_mass mass;
     struct cs_spring_law springs;
     struct cs_list pins; /* struct cs_pin */
@@ -250,7 +267,14 @@ struct cs_light {
     double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
 };
 
-enum cs_look { CS_LOOK_LIT, CS_LOOK_WIREFRAME, CS_LOOK_SPRINGS, CS_LOOK_FORCE, CS_LOOK_STRAIN };
+enum cs_look {
+    CS_LOOK_LIT,
+    CS_LOOK_WIREFRAME,
+    CS_LOOK_SPRINGS,
+    CS_LOOK_FORCE,
+    CS_LOOK_STRAIN,
+    CS_LOOK_GOALS
+};
 struct cs_render {
     int64_t size[2]; /* pixels: width, height */
     int64_t samples; /* of multisampling: 1 or 4 */
@@ -301,6 +325,14 @@ static inline struct cs_body *cs_scene_bodies(const struct cs_scene *scene) {
 }
 static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scene) {
     return scene->colliders.items;
+}
+
+/* Number of the first body that is drawn to its shape; bodies.n: there is none. */
+static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
+    uint32_t b = 0;
+    while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].shape_matching.present)
+        b++;
+    return b;
 }
 
 static inline const struct cs_event *cs_scene_events(const struct cs_scene *scene) {

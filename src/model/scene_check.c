@@ -105,10 +105,11 @@ static enum cs_status check_mass(const struct place *at, const char *body,
     char path[128];
     const struct cs_spring_law *law = &of->springs;
     const int64_t *grid = of->cloth.grid;
+    const bool left_out = of->shape_matching.present && !of->shape_matching.springs;
     const bool stretch = law->stretch > 0 && (of->mesh.present || grid[0] > 1 || grid[1] > 1);
     const bool shear = law->shear > 0 && grid[0] > 1 && grid[1] > 1;
     snprintf(path, sizeof path, "%s.mass.degree", body);
-    if (!isnan(of->mass.degree) && !stretch && !shear)
+    if (!isnan(of->mass.degree) && (left_out || (!stretch && !shear)))
         return refuse(at, path, "a particle without springs would have no mass");
     return CS_OK;
 }
@@ -138,13 +139,28 @@ static enum cs_status check_network(const struct place *at, const char *body,
     return CS_OK;
 }
 
+/* what acts through springs cannot be asked of a body whose springs are left out */
+static enum cs_status check_matching(const struct place *at, const char *body,
+                                     const struct cs_body *of) {
+    char path[128];
+    const bool network = of->network.present;
+    if (!of->shape_matching.present || of->shape_matching.springs ||
+        (!network && isnan(of->strain_limit)))
+        return CS_OK;
+    snprintf(path, sizeof path, "%s.%s", body, network ? "network" : "strain_limit");
+    return refuse(
+        at, path,
+        "shape_matching leaves the springs out, expected shape_matching.springs true");
+}
+
 static enum cs_status check_body(const struct place *at, uint32_t b, struct cs_body *body) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u]", b);
     if (body->cloth.present == body->mesh.present)
         return refuse(at, path, "found %s, expected cloth or mesh",
                       body->cloth.present ? "cloth and mesh" : "no shape");
-    if (check_network(at, path, body) || check_place(at, path, "cloth", &body->cloth.place) ||
+    if (check_network(at, path, body) || check_matching(at, path, body) ||
+        check_place(at, path, "cloth", &body->cloth.place) ||
         check_place(at, path, "mesh", &body->mesh.place) || check_mass(at, path, body) ||
         check_pins(at, path, body) || check_texture(at, path, body->material.texture))
         return at->error->status;

@@ -83,6 +83,28 @@ static const struct cs_option network_rows[] = {
 static const struct cs_table network_table = {
     ROWS(network_rows), .size = sizeof(struct cs_network), .optional = true};
 
+static const struct cs_option matching_rows[] = {
+    REAL(struct cs_shape_matching, alpha, "", 0.5, 0, 1,
+         "share of the way to its goal that a particle goes in a step: 0 leaves it free, 1 "
+         "makes "
+         "the body rigid"),
+    REAL(
+        struct cs_shape_matching, beta, "", 0, 0, 1,
+        "share of the best linear transformation, at its old volume, in the goals; the rest is "
+        "the rotation"),
+    REAL(struct cs_shape_matching, alpha_step, "s", 1.0 / 60, 0, 10,
+         "step that alpha is meant for; others get the share of the same stiffness. 0: alpha "
+         "holds for a step of any length, so that shorter ones are stiffer"),
+    INT(struct cs_shape_matching, clusters, "", 1, 1, 1024,
+        "parts that keep their shapes, each its own"),
+    REAL(struct cs_shape_matching, overlap, "", 0.25, 0, 10,
+         "of parts: each takes in what its box holds when it is grown by that share of its "
+         "longest side; the more, the less they bend against each other"),
+    BOOL(struct cs_shape_matching, springs, 0, "the body's springs act as well"),
+};
+static const struct cs_table matching_table = {
+    ROWS(matching_rows), .size = sizeof(struct cs_shape_matching), .optional = true};
+
 static const struct cs_option mass_rows[] = {
     REAL(struct cs_mass, particle, "kg", ABSENT, 1e-12, BIG, "of each particle"),
     REAL(struct cs_mass, areal_density, "kg/m2", ABSENT, 1e-12, BIG,
@@ -159,6 +181,8 @@ static const struct cs_option body_rows[] = {
     TABLE(struct cs_body, mesh, mesh_table, "triangles, instead of cloth"),
     TABLE(struct cs_body, network, network_table,
           "springs through the inside of a closed mesh"),
+    TABLE(struct cs_body, shape_matching, matching_table,
+          "drawn back to its shape at time 0, for integrator shape-matching"),
     TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
     TABLE(struct cs_body, springs, spring_table, "spring law"),
     LIST(struct cs_body, pins, cs_pin_table, "particles that keep their place"),
@@ -263,7 +287,8 @@ static const struct cs_option light_rows[] = {
 };
 static const struct cs_table light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
 
-const char *const cs_look_names[] = {"lit", "wireframe", "springs", "force", "strain", NULL};
+const char *const cs_look_names[] = {"lit",    "wireframe", "springs", "force",
+                                     "strain", "goals",     NULL};
 static const double vga[2] = {640, 480};
 static const double paper[3] = {0.82, 0.86, 0.91};
 static const struct cs_option render_rows[] = {

@@ -53,8 +53,9 @@ struct cs_springs {
 
 /* Runs of one body whose particles start at `first`, appended at runs[0..]: of a cloth's rows,
  * or one a kind of a mesh. lists takes the lengths and stiffnesses of a mesh, 2 doubles a
- * spring. Both may be NULL to count. Kinds of stiffness 0 have no springs. Returns the number
- * of runs and adds the springs to *n_springs. */
+ * spring. Both may be NULL to count. Kinds of stiffness 0 have no springs, nor has a
+ * body that shape matching holds instead. Returns the number of runs and adds the springs to
+ * *n_springs. */
 uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, double *lists, uint32_t *n_springs);
 

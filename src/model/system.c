@@ -1,6 +1,7 @@
 #include "model/system.h"
 
 #include "model/bounds.h"
+#include "model/clusters.h"
 #include "model/events.h"
 #include "model/shape.h"
 #include "model/terms.h"
@@ -196,6 +197,8 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
         build_springs(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_SPRING_LIST))
         build_spring_list(system, error);
+    if (!error->status && is_built(&system->plan, CS_FEATURE_CLUSTERS))
+        cs_clusters_build(system, error);
     if (error->status)
         return;
     bool *pinned = work;

@@ -1,5 +1,6 @@
 #include "sim/bound.h"
 
+#include "model/clusters.h"
 #include "model/events.h"
 #include "model/measure.h"
 
@@ -17,7 +18,8 @@ void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double
     const double *x = system->state, *v = x + 3 * n, *g = forces->gravity;
     const double *a = system->events ? system->events->push : NULL;
     const struct cs_energy energy = cs_measure_energy(system, x, v);
-    bound->start = energy.elastic + cs_springs_energy_at_twice(&system->springs);
+    bound->start = energy.elastic + cs_springs_energy_at_twice(&system->springs) +
+                   cs_clusters_energy(system);
     bound->speed = 2 * energy.kinetic;
     bound->push = 0;
     bound->since = t;

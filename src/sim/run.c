@@ -107,6 +107,17 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     return CS_OK;
 }
 
+bool cs_run_has_goals(const struct cs_integrator *integrator) {
+    // a module that was built before the call was there has a shorter struct
+    const size_t needed = offsetof(struct cs_integrator, goals) + sizeof integrator->goals;
+    return integrator->size >= needed && integrator->goals;
+}
+
+void cs_run_goals(const struct cs_run *run, double *g) {
+    CS_ASSERT(cs_run_has_goals(run->integrator));
+    run->integrator->goals(run->host->self, run->x, g);
+}
+
 void cs_run_finish(struct cs_run *run) {
     if (!run->host)
         return;

@@ -88,6 +88,11 @@ void cs_run_set_budget(struct cs_run *run, double cpu_seconds);
  * method failed; the message says where and why. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);
 
+/* Whether a method can say where it draws particles to; g (3,n) in m: where, as the run
+ * stands. Nothing of the run changes. */
+bool cs_run_has_goals(const struct cs_integrator *integrator);
+void cs_run_goals(const struct cs_run *run, double *g);
+
 void cs_run_finish(struct cs_run *run);
 
 #endif

@@ -125,6 +125,16 @@ static enum cs_status advise_adaptive(struct cs_advice *row,
     return try_safe(row, settings, &none, frame, error);
 }
 
+/* A method that cannot follow the scene, which was opened with its own before, is a row. */
+static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
+    if (error->status != CS_ERR_SCENE)
+        return error->status;
+    row->kind = CS_ADVICE_REFUSED;
+    snprintf(row->message, sizeof row->message, "%.300s", error->message);
+    *error = (struct cs_error){0};
+    return CS_OK;
+}
+
 static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *error) {
     struct work *work = ctx;
     struct cs_advise *advise = work->advise;
@@ -138,8 +148,10 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
         .budget = advise->budget};
     const double frame = 1 / advise->opened.scene.time.fps;
     trial.session.integrator = row->method = advise->names[task];
-    if (cs_session_open_plan(&session, &trial.session, error))
-        return error->status;
+    if (cs_session_open_plan(&session, &trial.session, error)) {
+        cs_workers_tick(&work->workers, 1);
+        return refuse(row, error);
+    }
     const bool fixed = cs_trial_takes_dt(session.integrator);
     cs_session_close(&session);
     if (fixed)

@@ -132,7 +132,10 @@ uint32_t cs_probe_order(const struct cs_conform *card, bool damped) {
 static void build(struct cs_probe *probe, const struct cs_conform *card, const char *text) {
     const struct cs_integrator *method = probe->method;
     const struct cs_conform defaults = {.method = method};
-    if (cs_scene_read_text(&probe->scene, "conform", text, strlen(text), NULL, 0,
+    // what is made for bodies that keep their shape gets the checks' body as such a one
+    const struct cs_override matched = {"bodies[0].shape_matching.alpha", "0.5"};
+    const bool matches = method->needs & CS_NEED_CLUSTERS;
+    if (cs_scene_read_text(&probe->scene, "conform", text, strlen(text), &matched, matches,
                            &probe->error))
         return;
     probe->table = table_of(method);

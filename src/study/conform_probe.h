@@ -29,7 +29,8 @@ struct cs_probe {
 };
 
 /* Reads the scene and builds it for the card's method (or another one), options at the card's
- * settings. On failure the probe has ended, and error says why. close is to be called. */
+ * settings; the first body is matched (scene.h) where the method asks for clusters. On failure
+ * the probe has ended, and error says why. close is to be called. */
 bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
                    const struct cs_integrator *method, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

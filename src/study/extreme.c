@@ -153,7 +153,7 @@ static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error)
                    catalogue->rows + task, error);
 }
 
-/* the names that are asked for, or all that can be used */
+/* the names that are asked for, or all that can be used and follow the motion of springs */
 static enum cs_status list_methods(struct catalogue *catalogue, struct cs_registry *registry,
                                    struct cs_error *error) {
     const struct cs_extreme *extreme = catalogue->extreme;
@@ -168,7 +168,8 @@ static enum cs_status list_methods(struct catalogue *catalogue, struct cs_regist
     for (uint32_t k = 0; k < extreme->n_methods; k++)
         catalogue->methods[catalogue->n_methods++] = extreme->methods[k];
     for (uint32_t k = 0; k < registry->n && !extreme->n_methods; k++)
-        if (registry->entries[k].integrator)
+        if (registry->entries[k].integrator &&
+            registry->entries[k].integrator->fidelity != CS_FIDELITY_OTHER)
             catalogue->methods[catalogue->n_methods++] = registry->entries[k].integrator->name;
     return CS_OK;
 }

@@ -42,6 +42,12 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
 
 static enum cs_status take_values(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
+    if (picture->scene->render.look == CS_LOOK_GOALS) {
+        picture->goals = calloc(n, 3 * sizeof(double));
+        if (!picture->goals)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for the goals of %zu particles",
+                           n);
+    }
     if (!cs_picture_is_coloured(picture->scene))
         return CS_OK;
     picture->scalar = calloc(n, sizeof(double));
@@ -94,8 +100,10 @@ enum cs_status cs_picture_paint(struct cs_picture *picture, const struct cs_run 
     const double start = cs_clock_wall();
     if (picture->scalar)
         measure(picture, run);
+    if (picture->goals)
+        cs_run_goals(run, picture->goals);
     const struct cs_frame frame = {
-        run->x, picture->scalar, {picture->range[0], picture->range[1]}};
+        run->x, picture->scalar, {picture->range[0], picture->range[1]}, picture->goals};
     picture->renderer->paint(picture->canvas, &frame, image, error);
     picture->seconds += cs_clock_wall() - start;
     return error->status;
@@ -110,5 +118,6 @@ void cs_picture_close(struct cs_picture *picture) {
         picture->renderer->destroy(picture->canvas);
     free(picture->scalar);
     free(picture->work);
+    free(picture->goals);
     *picture = (struct cs_picture){0};
 }

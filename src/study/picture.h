@@ -14,6 +14,7 @@ struct cs_picture {
     struct cs_canvas *canvas;  /* owned */
     struct cs_image *textures; /* (scene->bodies.n), owned */
     double *scalar, *work;     /* (n), (3,n), owned; NULL unless the look colours by a value */
+    double *goals;             /* (3,n), owned; NULL unless the look shows them */
     double range[2];           /* of the colours of the last picture */
     double seconds;            /* spent in drawing */
 };

@@ -92,6 +92,20 @@ static enum cs_status choose_integrator(struct cs_session *session, const char *
     return CS_OK;
 }
 
+/* what the scene asks of a method, and only some can do */
+static enum cs_status check_method(const struct cs_session *session, bool render,
+                                   struct cs_error *error) {
+    const struct cs_integrator *method = session->integrator;
+    struct cs_error said = {0};
+    if (cs_plan_check(&session->scene, method->name, method->needs, &said))
+        return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
+    if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
+        return cs_fail(error, CS_ERR_SCENE,
+                       "%s: render.look: integrator \"%s\" has no goals that could be drawn",
+                       session->scene.path, method->name);
+    return CS_OK;
+}
+
 static enum cs_status open_plan(struct cs_session *session,
                                 const struct cs_session_settings *settings,
                                 struct cs_error *error) {
@@ -102,7 +116,8 @@ static enum cs_status open_plan(struct cs_session *session,
     for (uint32_t k = 0; k < settings->n_plugins; k++)
         if (cs_registry_add_file(&session->registry, settings->plugins[k], error))
             return error->status;
-    if (choose_integrator(session, settings->integrator, error))
+    if (choose_integrator(session, settings->integrator, error) ||
+        check_method(session, settings->render, error))
         return error->status;
     cs_plan_make(&session->plan, &session->scene, session->integrator->needs, settings->render);
     return CS_OK;

@@ -26,6 +26,7 @@ enum plant {
     FLUSHES_IN_ADVANCE,
     /* against its own claims: found by the card */
     NOTHING_WRONG,
+    OLDER, /* built before the call goals was there */
     WRONG_ORDER,
     LEAKS_MOMENTUM,
     TAKES_MEMORY,
@@ -160,8 +161,15 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
 
 static const char *const fails[] = {PLANT == UNKNOWN_CHECK ? "free-fal" : "pins", NULL};
 
+/* what stands behind an older struct is not to be looked at */
+static void not_there(const void *self, const double *x, double *g) {
+    (void)self, (void)x, (void)g;
+    abort();
+}
+#define SIZE (PLANT == OLDER ? offsetof(struct cs_integrator, goals) : sizeof planted)
+
 static const struct cs_integrator planted = {
-    .size = sizeof planted,
+    .size = SIZE,
     .name = PLANT == BAD_NAME ? "Planted!" : "planted",
     .summary = "symplectic Euler with one thing wrong",
     .source = "tests",
@@ -177,6 +185,7 @@ static const struct cs_integrator planted = {
     .create = create,
     .restart = restart,
     .advance = PLANT == NO_ADVANCE ? NULL : advance,
+    .goals = PLANT == OLDER ? not_there : NULL,
 };
 
 static const struct cs_integrator *const all[] = {&planted};
@@ -188,7 +197,7 @@ static const struct cs_integrator *const all[] = {&planted};
 #endif
 CS_EXPORT const struct cs_module SYMBOL = {
     .abi = PLANT == WRONG_ABI ? CS_ABI + 1 : CS_ABI,
-    .size = PLANT == SMALL_STRUCTS ? 16 : sizeof(struct cs_integrator),
+    .size = PLANT == SMALL_STRUCTS ? 16 : SIZE,
     .n = PLANT == NO_INTEGRATORS ? 0 : 1,
     .integrators = all,
 };

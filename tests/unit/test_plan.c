@@ -60,6 +60,11 @@ START_TEST(each_key_builds_its_feature) {
         {calm, 0, least},
         {CLOTH("") "}", CS_NEED_SPRINGS, least | BIT(SPRING_LIST)},
         {CLOTH("") "}", CS_NEED_SOLVE, least | BIT(SOLVER)},
+        {CLOTH("") "}", CS_NEED_CLUSTERS, least},
+        {CLOTH(", \"shape_matching\": {}") "}", 0, BIT(GRAVITY)},
+        {CLOTH(", \"shape_matching\": {}") "}", CS_NEED_CLUSTERS, BIT(GRAVITY) | BIT(CLUSTERS)},
+        {CLOTH(", \"shape_matching\": {\"springs\": true}") "}", CS_NEED_CLUSTERS,
+         least | BIT(CLUSTERS)},
         {CLOTH("") "}", CS_NEED_JVP | CS_NEED_DIAGONAL | CS_NEED_ENERGY, least},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -90,12 +95,18 @@ END_TEST
  * of bodies and the pins */
 START_TEST(system_takes_what_was_planned) {
     static const size_t arrays[] = {CS_FEATURE_SPRINGS, CS_FEATURE_WIND, CS_FEATURE_AREA,
-                                    CS_FEATURE_SPRING_LIST};
-    for (uint32_t needs = 0; needs <= CS_NEED_SPRINGS; needs += CS_NEED_SPRINGS) {
+                                    CS_FEATURE_SPRING_LIST, CS_FEATURE_CLUSTERS};
+    static const uint32_t needs[] = {0, CS_NEED_SPRINGS, CS_NEED_CLUSTERS};
+    for (int n = 0; n < 3; n++) {
         struct sheet sheet;
-        sheet_open(&sheet, needs,
-                   CLOTH("") ", \"forces\": {\"wind\": {\"direction\": [1, 0, 0],"
-                             " \"strength\": 2}}}");
+        sheet_open(
+            &sheet, needs[n],
+            CLOTH(", \"shape_matching\": {\"springs\": true, \"clusters\": 2}") ", \"forces\": "
+                                                                                "{\"wind\": "
+                                                                                "{\"direction\""
+                                                                                ": [1, 0, 0],"
+                                                                                " \"strength\":"
+                                                                                " 2}}}");
         size_t bytes = sheet.system.plan.state_bytes + sizeof(struct cs_body_range);
         for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
             bytes += sheet.system.plan.rows[arrays[k]].bytes;

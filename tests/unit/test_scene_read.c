@@ -160,10 +160,10 @@ START_TEST(messages_name_the_place) {
          "s.json:1:24: camera.eye[1]: found null, expected a number"},
         {"{\"render\": {\"look\": \"strian\"}}",
          "s.json:1:21: render.look: unknown choice \"strian\"; did you mean \"strain\"? "
-         "(lit, wireframe, springs, force, strain)"},
+         "(lit, wireframe, springs, force, strain, goals)"},
         {"{\"render\": {\"look\": 3}}",
          "s.json:1:21: render.look: found 3, expected one of lit, "
-         "wireframe, springs, force, strain"},
+         "wireframe, springs, force, strain, goals"},
         {"{\"render\": {\"ground\": 1}}",
          "s.json:1:23: render.ground: found 1, expected true or false"},
         {"{\"bodies\": {}}", "s.json:1:12: bodies: found an object, expected a list"},

@@ -1,0 +1,301 @@
+/* shape_matching.c - bodies that are drawn back to their shape instead of held by springs.
+ *
+ * A step of length h, with particles of mass m, their places q at time 0 and all forces f,
+ * those of other bodies' springs too: v += h f/m,  x += h v (symplectic Euler) A_pq = sum w (x
+ * - x_cm) (q - q_cm)^T,  A = A_pq A_qq^-1, over each cluster R: the rotation nearest to A_pq
+ * (shape_rotation.h) g = (beta A/cbrt(det A) + (1 - beta) R) (q - q_cm) + x_cm d = alpha (g -
+ * x),  x += d,  v += d/h (Mueller et al. 2005, eq. 3 to 12, in the order of the soft-body
+ * thesis, sec. 2: the goals are those of the places after the free step.) That order is an
+ * implicit Euler step of springs between particles and their goals, 1/(1 + (k/m) h^2) = 1 -
+ * alpha; so that alpha of a step alpha_step becomes alpha_h = alpha h^2 / ((1 - alpha)
+ * alpha_step^2 + alpha h^2) in one of h, with the same stiffness k = m alpha/((1 - alpha)
+ * alpha_step^2).
+ *
+ * A particle in several clusters has w = m/their number in each and takes the mean of its
+ * d. Then d has no momentum and, about x, no angular momentum: A_pq R^T is symmetric. A pinned
+ * particle weighs HEAVY times all free ones of its cluster, since one of its own mass would be
+ * no hold against the weight of many. Where the body is flat from the start (A_qq without
+ * inverse) A is R across it. Of a body that is squashed below an eighth of its volume, beta
+ * falls with the volume: it is drawn to its rigid shape, and out of its mirror image.
+ */
+#include "fixed_step.h"
+#include "leapfrog_limit.h"
+#include "shape_rotation.h"
+
+#include <string.h>
+
+#define HEAVY 1000
+
+enum rotation { POLAR, UNROOTED_PQ, UNROOTED_LINEAR };
+static const char *const rotations[] = {"polar", "unrooted-pq", "unrooted-linear", NULL};
+
+struct shape_options {
+    double dt;
+    int32_t rotation;
+};
+
+static const struct cs_option rows[] = {
+    CS_OPTION(struct shape_options, dt, "s", 0, 0, 10,
+              "longest step; 0: 0.9 of the stability limit of the springs, estimated at rest, "
+              "or one step a frame where there are none"),
+    CS_OPTION_CHOICE(
+        struct shape_options, rotation, rotations, POLAR,
+        "polar: the rotation nearest to A_pq; the others leave out the square root of the "
+        "polar "
+        "decomposition, as the soft-body thesis, sec. 2.1, holds possible, B (B^T B)^-1 with B "
+        "= A_pq or the linear transformation A: to show what that does, no use otherwise"),
+};
+
+/* what the places at time 0 and the pins make of a cluster */
+struct cluster {
+    double weight;     /* kg */
+    double centre[3];  /* m, of the places at time 0 */
+    double inverse[9]; /* 1/(kg m2), of A_qq */
+    double null[9];    /* projector on the directions in which the cluster is flat */
+    double size;       /* kg m2, trace of A_qq */
+    double turn[4];    /* the last rotation, as a quaternion */
+};
+
+struct shape {
+    struct fixed_step loop; /* first: the loop's functions take it for the whole */
+    int32_t rotation;
+    double *f;      /* (3,n) in N; then d of the particles in m */
+    double *held;   /* (n) 1/clusters that hold the particle; 0: none */
+    double *weight; /* kg, one an item of the clusters */
+    struct cluster *clusters;
+};
+
+static double coordinate(const struct cs_view *view, const double *x, size_t c, uint32_t item) {
+    return x[c * view->n + view->cluster_items[item]];
+}
+
+/* weighted mean of the places x of a cluster */
+static void find_centre(const struct shape *self, uint32_t k, const double *x,
+                        double centre[3]) {
+    const struct cs_view *view = self->loop.host->view;
+    const uint32_t begin = view->cluster_begin[k], end = view->cluster_begin[k + 1];
+    for (size_t c = 0; c < 3; c++) {
+        // about a particle of its own, so that a far place costs no figures
+        const double origin = coordinate(view, x, c, begin);
+        double sum = 0;
+        for (uint32_t item = begin; item < end; item++)
+            sum += self->weight[item] * (coordinate(view, x, c, item) - origin);
+        centre[c] = origin + sum / self->clusters[k].weight;
+    }
+}
+
+/* sum of w (x - centre) (q - q_cm)^T */
+static void find_moments(const struct shape *self, uint32_t k, const double *x,
+                         const double centre[3], double moments[9]) {
+    const struct cs_view *view = self->loop.host->view;
+    const struct cluster *cluster = self->clusters + k;
+    memset(moments, 0, 9 * sizeof *moments);
+    for (uint32_t item = view->cluster_begin[k]; item < view->cluster_begin[k + 1]; item++)
+        for (size_t j = 0; j < 3; j++) {
+            const double q = self->weight[item] *
+                             (coordinate(view, view->start, j, item) - cluster->centre[j]);
+            for (size_t i = 0; i < 3; i++)
+                moments[3 * i + j] += (coordinate(view, x, i, item) - centre[i]) * q;
+        }
+}
+
+/* b (b^T b)^-1 instead of b (b^T b)^-1/2: no rotation unless b is one */
+static void leave_out_root(const struct shape *self, const double a_pq[9], const double a[9],
+                           double r[9]) {
+    if (self->rotation != POLAR)
+        shape_inverse_transposed(self->rotation == UNROOTED_PQ ? a_pq : a, r);
+}
+
+/* t takes q - q_cm to the goal less x_cm; turn is that of the cluster, which follows */
+static void find_transformation(const struct shape *self, uint32_t k, const double a_pq[9],
+                                double turn[4], double t[9]) {
+    const struct cluster *cluster = self->clusters + k;
+    const double beta = self->loop.host->view->cluster_beta[k];
+    double a[9], across[9];
+    shape_rotation(a_pq, cluster->size, turn, t);
+    if (beta == 0 && self->rotation == POLAR)
+        return;
+    shape_product(a_pq, cluster->inverse, a);
+    shape_product(t, cluster->null, across);
+    for (int i = 0; i < 9; i++)
+        a[i] += across[i];
+    leave_out_root(self, a_pq, a, t);
+    const double volume = shape_determinant(a), least = 0.125;
+    const double share = volume >= least ? beta : volume > 0 ? beta * volume / least : 0;
+    const double scale = share / shape_cube_root(volume >= least ? volume : least);
+    for (int i = 0; i < 9; i++)
+        t[i] = scale * a[i] + (1 - share) * t[i];
+}
+
+/* Adds the way of each particle of a cluster to its goal, alpha of it, to d (3,n). */
+static void add_ways(const struct shape *self, uint32_t k, double alpha, const double *x,
+                     double turn[4], double *d) {
+    const struct cs_view *view = self->loop.host->view;
+    const double *rest = self->clusters[k].centre;
+    double centre[3], a_pq[9], t[9];
+    find_centre(self, k, x, centre);
+    find_moments(self, k, x, centre, a_pq);
+    find_transformation(self, k, a_pq, turn, t);
+    for (uint32_t item = view->cluster_begin[k]; item < view->cluster_begin[k + 1]; item++) {
+        const uint32_t particle = view->cluster_items[item];
+        const double share = alpha * self->held[particle];
+        double q[3];
+        for (size_t j = 0; j < 3; j++)
+            q[j] = coordinate(view, view->start, j, item) - rest[j];
+        for (size_t i = 0; i < 3; i++) {
+            const double goal = t[3 * i] * q[0] + t[3 * i + 1] * q[1] + t[3 * i + 2] * q[2];
+            d[i * view->n + particle] +=
+                share * (goal - (coordinate(view, x, i, item) - centre[i]));
+        }
+    }
+}
+
+/* alpha of a step of h, for the stiffness that the cluster's alpha means in its own step */
+static double alpha_of(const struct cs_view *view, uint32_t k, double h) {
+    const double alpha = view->cluster_alpha[k], step = view->cluster_step[k];
+    if (step == 0)
+        return alpha;
+    const double stiff = alpha * h * h, soft = (1 - alpha) * step * step;
+    return stiff > 0 ? stiff / (soft + stiff) : 0;
+}
+
+static void match(struct shape *self, double h, double *x, double *v) {
+    const struct cs_view *view = self->loop.host->view;
+    double *d = self->f;
+    memset(d, 0, 3 * sizeof *d * view->n);
+    for (uint32_t k = 0; k < view->n_clusters; k++)
+        add_ways(self, k, alpha_of(view, k, h), x, self->clusters[k].turn, d);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, at = c * view->n; i < view->n; i++, at++)
+            if (self->held[i] > 0 && view->inv_mass[i] > 0) {
+                x[at] += d[at];
+                v[at] += d[at] / h;
+            }
+}
+
+static enum cs_step step(struct fixed_step *loop, double t, double h, double *x, double *v) {
+    struct shape *self = (struct shape *)loop;
+    const struct cs_host *host = loop->host;
+    const size_t n = host->view->n;
+    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0, k = c * n; i < n; i++, k++) {
+            v[k] += h * (self->f[k] * host->view->inv_mass[i]);
+            x[k] += h * v[k];
+        }
+    match(self, h, x, v);
+    return CS_STEP_OK;
+}
+
+/* the weights of a cluster's items, and their sum */
+static void weigh(struct shape *self, uint32_t k) {
+    const struct cs_view *view = self->loop.host->view;
+    const uint32_t begin = view->cluster_begin[k], end = view->cluster_begin[k + 1];
+    double free = 0, pinned = 0;
+    for (uint32_t item = begin; item < end; item++) {
+        const uint32_t i = view->cluster_items[item];
+        self->weight[item] = view->mass[i] * self->held[i];
+        *(view->inv_mass[i] > 0 ? &free : &pinned) += self->weight[item];
+    }
+    const double factor = free > 0 && pinned > 0 ? HEAVY * free / pinned : 1;
+    for (uint32_t item = begin; item < end; item++)
+        if (!(view->inv_mass[view->cluster_items[item]] > 0))
+            self->weight[item] *= factor;
+    self->clusters[k].weight = free + factor * pinned;
+}
+
+/* The pins may be others now. The last rotations are kept: places alone do not say from which
+ * side a body that has become a line got there. */
+static enum cs_step restart(void *object, double t, const double *x, const double *v) {
+    struct shape *self = object;
+    const struct cs_view *view = self->loop.host->view;
+    for (uint32_t k = 0; k < view->n_clusters; k++) {
+        struct cluster *cluster = self->clusters + k;
+        double a_qq[9];
+        weigh(self, k);
+        find_centre(self, k, view->start, cluster->centre);
+        find_moments(self, k, view->start, cluster->centre, a_qq);
+        shape_pseudo_inverse(a_qq, cluster->inverse, cluster->null);
+        cluster->size = a_qq[0] + a_qq[4] + a_qq[8];
+    }
+    return fixed_step_restart(self, t, x, v);
+}
+
+/* where alpha = 1 would put the particles of x; the rotations of the run stay as they are */
+static void goals(const void *object, const double *x, double *g) {
+    const struct shape *self = object;
+    const struct cs_view *view = self->loop.host->view;
+    memset(g, 0, 3 * sizeof *g * view->n);
+    for (uint32_t k = 0; k < view->n_clusters; k++) {
+        double turn[4];
+        memcpy(turn, self->clusters[k].turn, sizeof turn);
+        add_ways(self, k, 1, x, turn, g);
+    }
+    for (size_t i = 0; i < 3 * (size_t)view->n; i++)
+        g[i] += x[i];
+}
+
+static void choose_dt(struct fixed_step *loop, double dt) {
+    const double limit = leapfrog_limit(loop->host->view, 2, 4);
+    loop->chosen = dt <= 0;
+    loop->dt = dt > 0 ? dt : 0.9 * limit;
+    if (loop->chosen && loop->dt < HUGE_VAL)
+        loop->host->note(loop->host->ctx, "dt automatic: at most %.6g s, for the springs",
+                         loop->dt);
+}
+
+static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
+    const struct shape_options *asked = options;
+    const struct cs_view *view = host->view;
+    struct shape *self = host->alloc(host->ctx, sizeof *self);
+    if (!self)
+        return CS_STEP_FAIL;
+    *out = self;
+    self->loop = (struct fixed_step){.host = host, .step = step};
+    self->rotation = asked->rotation;
+    choose_dt(&self->loop, asked->dt);
+    if (view->n_clusters == 0)
+        return host->fail(host->ctx, "no body has a shape to match");
+    const uint32_t n_items = view->cluster_begin[view->n_clusters];
+    if (!(self->f = host->alloc(host->ctx, 3 * sizeof(double) * view->n)) ||
+        !(self->held = host->alloc(host->ctx, sizeof(double) * view->n)) ||
+        !(self->weight = host->alloc(host->ctx, sizeof(double) * n_items)) ||
+        !(self->clusters = host->alloc(host->ctx, sizeof(struct cluster) * view->n_clusters)))
+        return CS_STEP_FAIL;
+    for (uint32_t item = 0; item < n_items; item++)
+        self->held[view->cluster_items[item]]++;
+    for (size_t i = 0; i < view->n; i++)
+        self->held[i] = self->held[i] > 0 ? 1 / self->held[i] : 0;
+    for (uint32_t k = 0; k < view->n_clusters; k++)
+        self->clusters[k].turn[3] = 1;
+    return CS_STEP_OK;
+}
+
+static const struct cs_integrator shape_matching = {
+    .size = sizeof(struct cs_integrator),
+    .name = "shape-matching",
+    .summary = "bodies drawn back to their shape, other particles by symplectic Euler; another "
+               "model, which cannot blow up by its stiffness",
+    .source = "Mueller, Heidelberger, Teschner, Gross 2005; rotation: Horn 1987",
+    .order = 1,
+    .order_damped = 1,
+    .needs = CS_NEED_CLUSTERS,
+    .traits = 0,
+    .fidelity = CS_FIDELITY_OTHER,
+    .options = rows,
+    .n_options = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct shape_options),
+    .create = create,
+    .restart = restart,
+    .advance = fixed_step_advance,
+    .goals = goals,
+};
+
+static const struct cs_integrator *const integrators[] = {&shape_matching};
+
+CS_EXPORT const struct cs_module clothsim_module = {
+    .abi = CS_ABI,
+    .size = sizeof(struct cs_integrator),
+    .n = sizeof integrators / sizeof integrators[0],
+    .integrators = integrators,
+};

@@ -1,0 +1,170 @@
+#include "shape_rotation.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { SWEEPS = 12, LARGEST = 4 };
+#define SAME 1e-12 /* of the size: eigenvalues that near are the same */
+#define FLAT 1e-10 /* of the largest eigenvalue */
+
+static double size_of(int n, const double *a, bool diagonal) {
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            sum += (i == j) == diagonal ? fabs(a[n * i + j]) : 0;
+    return sum;
+}
+
+/* columns p and q of m, then rows, turned by the angle of tangent s/c */
+static void turn_columns(int n, double *m, int p, int q, double c, double s) {
+    for (int i = 0; i < n; i++) {
+        const double left = m[n * i + p], right = m[n * i + q];
+        m[n * i + p] = c * left - s * right;
+        m[n * i + q] = s * left + c * right;
+    }
+}
+static void turn_rows(int n, double *m, int p, int q, double c, double s) {
+    for (int j = 0; j < n; j++) {
+        const double upper = m[n * p + j], lower = m[n * q + j];
+        m[n * p + j] = c * upper - s * lower;
+        m[n * q + j] = s * upper + c * lower;
+    }
+}
+
+/* makes a[p][q] zero; the smaller of the two angles that do */
+static void annihilate(int n, double *a, double *vectors, int p, int q) {
+    if (a[n * p + q] == 0)
+        return;
+    const double theta = (a[n * q + q] - a[n * p + p]) / (2 * a[n * p + q]);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    turn_columns(n, a, p, q, c, s);
+    turn_rows(n, a, p, q, c, s);
+    turn_columns(n, vectors, p, q, c, s);
+    a[n * p + q] = a[n * q + p] = 0;
+}
+
+void shape_eigen(int n, double *a, double *vectors) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            vectors[n * i + j] = i == j;
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        if (size_of(n, a, false) <= DBL_EPSILON / 16 * size_of(n, a, true))
+            return;
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++)
+                annihilate(n, a, vectors, p, q);
+    }
+}
+
+void shape_rotation_of(const double quaternion[4], double r[9]) {
+    const double x = quaternion[0], y = quaternion[1], z = quaternion[2], w = quaternion[3];
+    const double turned[9] = {
+        1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+        2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+        2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    memcpy(r, turned, sizeof turned);
+}
+
+/* Horn's matrix: its value at a unit quaternion is trace(r^T a) */
+static void horn(const double a[9], double m[16]) {
+    const double trace = a[0] + a[4] + a[8];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            m[4 * i + j] = a[3 * i + j] + a[3 * j + i] - (i == j ? trace : 0);
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        m[4 * i + 3] = m[12 + i] = a[3 * k + j] - a[3 * j + k];
+    }
+    m[15] = trace;
+}
+
+/* the last quaternion's shadow among those of the largest eigenvalue; one of them where it has
+ * none */
+static void choose(const double m[16], const double vectors[16], double same, double last[4]) {
+    int best = 0;
+    double shadow[4] = {0}, squared = 0;
+    for (int k = 1; k < LARGEST; k++)
+        if (m[5 * k] > m[5 * best])
+            best = k;
+    for (int k = 0; k < LARGEST; k++) {
+        double along = 0;
+        if (m[5 * k] < m[5 * best] - same)
+            continue;
+        for (int i = 0; i < LARGEST; i++)
+            along += vectors[4 * i + k] * last[i];
+        for (int i = 0; i < LARGEST; i++)
+            shadow[i] += along * vectors[4 * i + k];
+    }
+    for (int i = 0; i < LARGEST; i++)
+        squared += shadow[i] * shadow[i];
+    // a turn by nearly half a circle leaves a shadow of roundings
+    const double length = sqrt(squared);
+    for (int i = 0; i < LARGEST; i++)
+        last[i] = length > 1e-6 ? shadow[i] / length : vectors[4 * i + best];
+}
+
+void shape_rotation(const double a[9], double size, double last[4], double r[9]) {
+    double m[16], vectors[16];
+    horn(a, m);
+    shape_eigen(LARGEST, m, vectors);
+    choose(m, vectors, SAME * (size + size_of(LARGEST, m, true)), last);
+    shape_rotation_of(last, r);
+}
+
+static double cofactor(const double a[9], int i, int j) {
+    const int p = (i + 1) % 3, q = (i + 2) % 3, s = (j + 1) % 3, t = (j + 2) % 3;
+    return a[3 * p + s] * a[3 * q + t] - a[3 * p + t] * a[3 * q + s];
+}
+
+double shape_determinant(const double a[9]) {
+    return a[0] * cofactor(a, 0, 0) + a[1] * cofactor(a, 0, 1) + a[2] * cofactor(a, 0, 2);
+}
+
+void shape_product(const double a[9], const double b[9], double out[9]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] =
+                a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+bool shape_inverse_transposed(const double a[9], double out[9]) {
+    const double determinant = shape_determinant(a);
+    if (determinant == 0)
+        return false;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = cofactor(a, i, j) / determinant;
+    return true;
+}
+
+void shape_pseudo_inverse(const double a[9], double inverse[9], double null[9]) {
+    double values[9], vectors[9], largest = 0;
+    memcpy(values, a, sizeof values);
+    shape_eigen(3, values, vectors);
+    for (int k = 0; k < 3; k++)
+        largest = values[4 * k] > largest ? values[4 * k] : largest;
+    memset(inverse, 0, sizeof values);
+    memset(null, 0, sizeof values);
+    for (int k = 0; k < 3; k++) {
+        const bool is_flat = values[4 * k] <= FLAT * largest;
+        const double weight = is_flat ? 1 : 1 / values[4 * k];
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                (is_flat ? null : inverse)[3 * i + j] +=
+                    weight * vectors[3 * i + k] * vectors[3 * j + k];
+    }
+}
+
+double shape_cube_root(double d) {
+    enum { EIGHTHS = 400, STEPS = 8 };
+    double scale = 1, root = 1;
+    for (int k = 0; k < EIGHTHS && d > 8; k++, scale *= 2)
+        d /= 8;
+    for (int k = 0; k < EIGHTHS && d < 1; k++, scale /= 2)
+        d *= 8;
+    // Newton from 1 on 1..8
+    for (int k = 0; k < STEPS; k++)
+        root -= (root - d / (root * root)) / 3;
+    return scale * root;
+}

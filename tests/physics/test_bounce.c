@@ -1,0 +1,107 @@
+/* Floor with restitution and friction: what a particle, and a body that lands all at once, have
+ * left after the bounce. */
+#include "fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define E       0.6
+#define DROP    0.8
+#define GRAVITY 9.81
+
+/* on a floor at y = 0; a flat start is all particles at one height */
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [%d, %d], \"start\": \"flat\", \"velocity\": [%g, "  \
+    "0, 0], \"place\": {\"translate\": [0, 0.8, 0]}}, \"mass\": {\"total\": 1}, %s}],"         \
+    " \"colliders\": [{\"floor\": {}, \"absorption\": %g, \"friction\": %g}],"                 \
+    " \"time\": {\"fps\": 1000}}"
+
+/* a particle alone, and bodies of springs and of shape matching */
+static const struct {
+    const char *method, *law;
+    int columns, rows;
+} bodies[] = {{"symplectic-euler", "\"springs\": {}", 1, 1},
+              {"symplectic-euler", "\"springs\": {}", 4, 3},
+              {"shape-matching", "\"shape_matching\": {\"alpha\": 0.3}", 4, 3},
+              {"shape-matching", "\"shape_matching\": {\"alpha\": 1}", 4, 3}};
+enum { BODIES = sizeof bodies / sizeof *bodies };
+
+static void open_body(struct fixture *body, int k, double dt, double speed, double absorption,
+                      double friction) {
+    char method[64];
+    snprintf(method, sizeof method, "%s:dt=%.17g", bodies[k].method, dt);
+    fixture_open(body, method, SCENE, bodies[k].columns, bodies[k].rows, speed, bodies[k].law,
+                 absorption, friction);
+    fixture_start(body);
+}
+
+/* runs until the first contact, and gives the speed with which it was met */
+static double fall(struct fixture *body) {
+    double speed = 0;
+    while (body->session.run.counts.contacts == 0) {
+        speed = -body->v[body->n];
+        ck_assert_uint_lt(body->session.run.frame, 1000);
+        fixture_frames(body, 1);
+    }
+    // the step that met the floor was accelerated too
+    return speed + GRAVITY / body->system->scene->time.fps;
+}
+
+/* height that is reached after the first bounce */
+static double apex(struct fixture *body) {
+    double highest = 0;
+    fall(body);
+    while (body->v[body->n] > 0) {
+        fixture_frames(body, 1);
+        for (size_t i = 0; i < body->n; i++)
+            highest = fmax(highest, body->x[body->n + i]);
+    }
+    return highest;
+}
+
+/* It comes up to e^2 of the height; what the step that meets the floor leaves out of the way
+ * down, or adds to the speed, is of first order in h. */
+START_TEST(bounce_is_e_squared_of_the_drop) {
+    for (int k = 0; k < BODIES; k++)
+        for (double h = 1e-3; h > 1e-5; h /= 10) {
+            struct fixture body;
+            open_body(&body, k, h, 0, -E, 0);
+            const double bound = sqrt(2 * GRAVITY * DROP) * (1 + E) * h;
+            const double height = apex(&body);
+            ck_assert_msg(fabs(height - E * E * DROP) <= bound,
+                          "body %d, h = %g: %.6f m, expected %.6f m", k, h, height,
+                          E * E * DROP);
+            fixture_close(&body);
+        }
+}
+END_TEST
+
+/* Coulomb: the tangential speed loses friction times the change of the normal speed, (1 + e)
+ * times that of the impact; all of it where that is more. */
+START_TEST(tangential_speed_is_lost_by_the_impact) {
+    static const struct {
+        double speed, absorption, friction;
+    } rows[] = {{2, -E, 0.1}, {2, -E, 0}, {2, 1, 0.2}, {-3, -1, 0.1}, {0.5, -E, 0.2}};
+    for (int k = 0; k < BODIES; k++)
+        for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+            struct fixture body;
+            open_body(&body, k, 1e-3, rows[r].speed, rows[r].absorption, rows[r].friction);
+            const double impact = fall(&body);
+            const double share =
+                rows[r].absorption < 0 ? 1 - rows[r].absorption : rows[r].absorption;
+            const double left =
+                fmax(fabs(rows[r].speed) - rows[r].friction * share * impact, 0);
+            for (size_t i = 0; i < body.n; i++) {
+                ck_assert_double_eq_tol(body.v[i], copysign(left, rows[r].speed), 1e-11);
+                ck_assert_double_eq_tol(body.v[body.n + i], (share - 1) * impact, 1e-11);
+            }
+            fixture_close(&body);
+        }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {bounce_is_e_squared_of_the_drop,
+                                  tangential_speed_is_lost_by_the_impact};
+    return fixture_run("bounce", tests, sizeof tests / sizeof *tests);
+}
