@@ -58,7 +58,7 @@ enum cs_part {
     CS_PART_BEND = 1u << 2,
     CS_PART_DAMPING = 1u << 3, /* the springs' dampers */
     CS_PART_GRAVITY =
-        1u << 4, /* and impacts over an interval: m a(t), wherever a particle is */
+        1u << 4, /* and steady impacts and prods: m a(t), wherever a particle is */
     CS_PART_DRAG = 1u << 5,
     CS_PART_WIND = 1u << 6,
     CS_PART_SPRINGS = 7u,

@@ -13,5 +13,6 @@ extern const struct cs_command cs_command_stability;
 extern const struct cs_command cs_command_advise;
 extern const struct cs_command cs_command_compare;
 extern const struct cs_command cs_command_plot;
+extern const struct cs_command cs_command_soft_bench;
 
 #endif

@@ -5,12 +5,17 @@
 #include <signal.h>
 #include <string.h>
 
-static const struct cs_command *const commands[] = {
-    &cs_command_run,     &cs_command_integrators,
-    &cs_command_scene,   &cs_command_golden,
-    &cs_command_conform, &cs_command_compare,
-    &cs_command_plot,    &cs_command_stability,
-    &cs_command_advise,  NULL};
+static const struct cs_command *const commands[] = {&cs_command_run,
+                                                    &cs_command_integrators,
+                                                    &cs_command_scene,
+                                                    &cs_command_golden,
+                                                    &cs_command_conform,
+                                                    &cs_command_compare,
+                                                    &cs_command_plot,
+                                                    &cs_command_stability,
+                                                    &cs_command_advise,
+                                                    &cs_command_soft_bench,
+                                                    NULL};
 
 static const struct cs_command *find_command(const char *name) {
     for (uint32_t i = 0; commands[i]; i++)

@@ -9,6 +9,7 @@
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "draw/net.h"
+#include "draw/prods.h"
 #include "draw/render.h"
 #include "draw/shadow.h"
 #include "draw/target.h"
@@ -196,6 +197,8 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     }
     if (look == CS_LOOK_GOALS && frame->goals)
         cs_net_draw_goals(&canvas->net, &canvas->lines, frame->x, frame->goals);
+    if (canvas->scene->render.prods)
+        cs_prods_draw(&canvas->net, &canvas->lines, frame);
     if (colours_by_value(look)) {
         gl.Disable(GL_DEPTH_TEST);
         cs_bar_draw(&canvas->bar, &canvas->lines, frame->range);

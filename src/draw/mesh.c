@@ -1,7 +1,7 @@
 #include "draw/mesh.h"
 
 #include "draw/matrix.h"
-#include "model/trimesh.h"
+#include "model/faces.h"
 
 // drawing a particle farther away than this only upsets the rasteriser
 static const double bound = 1e5;
@@ -14,40 +14,18 @@ void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
     }
 }
 
-static uint32_t indices_of(const struct cs_body_range *range) {
-    if (range->mesh)
-        return 3 * range->mesh->n_triangles;
-    return range->columns > 1 && range->rows > 1 ? 6 * (range->columns - 1) * (range->rows - 1)
-                                                 : 0;
-}
-
-static void fill_indices(struct cs_mesh *mesh) {
-    const uint32_t columns = mesh->range.columns;
-    uint32_t *out = mesh->indices;
-    if (mesh->range.mesh) {
-        memcpy(out, mesh->range.mesh->triangles, mesh->n_indices * sizeof *out);
-        return;
-    }
-    for (uint32_t row = 0; row + 1 < mesh->range.rows; row++)
-        for (uint32_t column = 0; column + 1 < columns; column++) {
-            const uint32_t top = row * columns + column, below = top + columns;
-            *out++ = top, *out++ = below, *out++ = top + 1;
-            *out++ = top + 1, *out++ = below, *out++ = below + 1;
-        }
-}
-
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_body_range *range, bool flat,
                             bool textured, struct cs_arena *arena, struct cs_error *error) {
     mesh->range = *range;
     mesh->flat = flat;
     mesh->split = flat || (textured && range->mesh && range->mesh->uv);
-    mesh->n_indices = indices_of(range);
+    mesh->n_indices = 3 * cs_faces_count(range);
     mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
     mesh->vertices = cs_arena_take_n(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
     mesh->indices = cs_arena_take_n(arena, mesh->n_indices, sizeof *mesh->indices, error);
     mesh->normals = cs_arena_take_n(arena, range->count, 3 * sizeof *mesh->normals, error);
-    if (error->status == CS_OK)
-        fill_indices(mesh);
+    for (uint32_t t = 0; error->status == CS_OK && 3 * t < mesh->n_indices; t++)
+        cs_face_corners(range, t, mesh->indices + 3 * (size_t)t);
     return error->status;
 }
 

@@ -45,9 +45,7 @@ static void add_edges(const struct cs_net *net, struct cs_lines *lines, const do
         }
 }
 
-// a share of the distance between neighbours, so that fine grids keep gaps; in 480ths of the
-// height
-static double width(const struct cs_net *net, double share, double least, double most) {
+double cs_net_width(const struct cs_net *net, double share, double least, double most) {
     return fmin(fmax(share * net->cell, least * net->unit), most * net->unit);
 }
 
@@ -58,7 +56,7 @@ void cs_net_draw_edges(const struct cs_net *net, struct cs_lines *lines, const d
         struct cs_line_style style = {.alpha = 0.9, .lift = net->lift};
         for (int i = 0; i < 3; i++)
             style.colour[i] = (float)(0.012 + 0.45 * colour[i]);
-        style.half_width = width(net, 0.07, 0.35, 0.8);
+        style.half_width = cs_net_width(net, 0.07, 0.35, 0.8);
         add_edges(net, lines, x, net->system->bodies + b);
         cs_lines_draw(lines, &style);
     }
@@ -82,7 +80,7 @@ void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const
         struct cs_line_style style = {.alpha = layers[layer].alpha, .lift = net->lift};
         cs_colour_linear(layers[layer].colour, style.colour);
         style.half_width =
-            width(net, layers[layer].share, layers[layer].least, layers[layer].most);
+            cs_net_width(net, layers[layer].share, layers[layer].least, layers[layer].most);
         for (uint32_t r = 0; r < springs->n_runs; r++) {
             const struct cs_spring_run *run = springs->runs + r;
             const uint32_t of = bodies[run->body].network.present ? NETWORK : PLAIN;
@@ -103,7 +101,7 @@ void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const do
     for (int pass = 0; pass < 2; pass++) {
         struct cs_line_style style = {.alpha = 1, .lift = 2 * net->lift};
         cs_colour_linear(colours[pass], style.colour);
-        style.half_width = width(net, 0.4, 2.2, 5) - pass * 1.1 * net->unit;
+        style.half_width = cs_net_width(net, 0.4, 2.2, 5) - pass * 1.1 * net->unit;
         for (uint32_t i = 0; i < view->n; i++)
             if (view->inv_mass[i] == 0)
                 add(net, lines, x, i, i);
@@ -119,7 +117,8 @@ void cs_net_draw_goals(const struct cs_net *net, struct cs_lines *lines, const d
     for (int dots = 0; dots < 2; dots++) {
         struct cs_line_style style = {.alpha = dots ? 0.95 : 0.75, .lift = net->lift};
         cs_colour_linear(colours[dots], style.colour);
-        style.half_width = dots ? width(net, 0.11, 0.5, 1.8) : width(net, 0.06, 0.35, 0.8);
+        style.half_width =
+            dots ? cs_net_width(net, 0.11, 0.5, 1.8) : cs_net_width(net, 0.06, 0.35, 0.8);
         for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
             const struct cs_body_range *body = system->bodies + b;
             if (!cs_scene_bodies(system->scene)[b].shape_matching.present)
@@ -148,7 +147,7 @@ void cs_net_draw_threads(const struct cs_net *net, struct cs_lines *lines, const
         cs_lines_draw(lines, &style);
         for (uint32_t i = 0; i < body->count; i++)
             add(net, lines, x, body->first + i, body->first + i);
-        style.half_width = width(net, 0.3, 1.5, 5);
+        style.half_width = cs_net_width(net, 0.3, 1.5, 5);
         cs_lines_draw(lines, &style);
     }
 }

@@ -13,6 +13,10 @@ struct cs_net {
     double lift; /* m */
 };
 
+/* Half a line's width in pixels: a share of the cell, so that fine grids keep gaps, but within
+ * these bounds in units. */
+double cs_net_width(const struct cs_net *net, double share, double least, double most);
+
 /* Lines that the largest of these calls adds before it draws. */
 uint32_t cs_net_capacity(const struct cs_system *system);
 

@@ -25,6 +25,7 @@ struct cs_canvas_settings {
 
 /* What one picture shows beside the scene itself. */
 struct cs_frame {
+    double t;        /* s */
     const double *x; /* (3,n) positions in m */
     const double
         *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */

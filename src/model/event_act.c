@@ -1,6 +1,7 @@
 #include "model/event_act.h"
 
 #include "model/event_times.h"
+#include "model/prods.h"
 #include "model/shape.h"
 
 #include <math.h>
@@ -56,6 +57,8 @@ void cs_event_sum_pushes(struct cs_system *system) {
         if (state->active && impact->present)
             strike(system, impact, impact->impulse / (state->end - state->begin), events->push);
     }
+    if (events->prods)
+        cs_prods_add_push(system, events->push);
 }
 
 /* the marked particles are held by an event, which says how they move */
@@ -195,6 +198,8 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
     if (of->impact.present && !state->active)
         strike(system, &of->impact, of->impact.impulse,
                system->state + 3 * (size_t)system->view.n);
+    if (of->prod.present)
+        cs_prod_start(system, event);
     if (of->grab.present)
         begin_grab(system, event);
     if (of->pin.present) {
@@ -215,6 +220,8 @@ void cs_event_finish(struct cs_system *system, uint32_t event) {
     events->states[event].active = false;
     if (of->ramp.present || of->wind.present)
         end_value(system, event);
+    if (of->prod.present)
+        cs_prod_finish(system, event);
     for (uint32_t i = 0; i < system->view.n; i++)
         if (events->holders[i] == event + 1)
             let_go(system, i);
@@ -228,12 +235,7 @@ void cs_event_refresh_springs(struct cs_system *system) {
     double *damping = (double *)system->view.damping;
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_law *law = &bodies[runs[r].body].springs;
-        const double k = runs[r].kind == CS_SPRING_STRETCH ? law->stretch
-                         : runs[r].kind == CS_SPRING_SHEAR ? law->shear
-                                                           : law->bend;
-        /* the springs of a mesh have a stiffness each, which no ramp changes */
-        if (!runs[r].stiffnesses)
-            runs[r].stiffness = law->stiffness_unit == CS_STIFFNESS_N ? k / runs[r].length : k;
+        cs_springs_stiffen(runs + r, bodies + runs[r].body);
         runs[r].damping = law->damping;
         for (uint32_t i = 0; stiffness && i < runs[r].count; i++) {
             stiffness[runs[r].first + i] = cs_spring_stiffness(runs + r, i);

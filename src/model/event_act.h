@@ -15,7 +15,8 @@ void cs_event_set_value(struct cs_system *system, uint32_t event, double t);
 /* Goes on to the next chord of a grab's path if that begins at t. */
 void cs_event_turn(struct cs_events *events, uint32_t event, double t);
 
-/* Accelerations of all active impacts over an interval, from the particles that are free. */
+/* Accelerations of all active impacts and prods over an interval, on the particles that are
+ * free. */
 void cs_event_sum_pushes(struct cs_system *system);
 
 /* The springs' stiffness and damping, and the spring list, from the values of the scene. */

@@ -4,6 +4,7 @@
 #include "model/event_key.h"
 
 #include "model/shape.h"
+#include "model/sight.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -119,6 +120,57 @@ static enum cs_status check_wind(const struct look *at, struct cs_gust *gust) {
     return turns ? make_unit(at, ".wind.direction", gust->direction) : CS_OK;
 }
 
+/* what a viewpoint leaves out is the camera's and the picture's */
+static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint *of) {
+    const struct cs_camera *camera = &scene->camera;
+    if (isnan(of->eye[0]))
+        memcpy(of->eye, camera->eye, sizeof of->eye);
+    if (isnan(of->target[0]))
+        memcpy(of->target, camera->target, sizeof of->target);
+    if (isnan(of->up[0]))
+        memcpy(of->up, camera->up, sizeof of->up);
+    if (isnan(of->fov))
+        of->fov = camera->fov;
+    if (isnan(of->aspect))
+        of->aspect = (double)scene->render.size[0] / (double)scene->render.size[1];
+}
+
+/* a blow has a duration, a wind looks anew */
+static enum cs_status check_lengths(const struct look *at, bool once, struct cs_prod *prod) {
+    double *used = once ? &prod->duration : &prod->refresh;
+    const double other = once ? prod->refresh : prod->duration;
+    if (!isnan(other))
+        return once ? refuse(at, ".prod.refresh", "a blow is seen once, expected from and to")
+                    : refuse(at, ".prod.duration", "it lasts until to, expected at");
+    if (isnan(*used))
+        *used = once ? 1.0 / 60 : 60;
+    return CS_OK;
+}
+
+static enum cs_status check_prod(const struct look *at, bool once, struct cs_prod *prod) {
+    const struct cs_viewpoint *from = &prod->viewpoint;
+    const double *rectangle = prod->rectangle;
+    const char *key, *fault;
+    char place[64];
+    complete_viewpoint(at->scene, &prod->viewpoint);
+    fault = cs_sight_fault(from->eye, from->target, from->up, &key);
+    snprintf(place, sizeof place, ".prod.viewpoint.%s", fault ? key : "");
+    if (fault)
+        return refuse(at, place, "%s", fault);
+    if (!(rectangle[0] < rectangle[2]))
+        return refuse(at, ".prod.rectangle", "left = %.9g is not below right = %.9g",
+                      rectangle[0], rectangle[2]);
+    if (!(rectangle[1] < rectangle[3]))
+        return refuse(at, ".prod.rectangle", "top = %.9g is not below bottom = %.9g",
+                      rectangle[1], rectangle[3]);
+    if (isnan(prod->force))
+        return refuse(at, ".prod", "found no force");
+    if (prod->body >= at->scene->bodies.n)
+        return refuse(at, ".prod.body", "body %lld does not exist (0..%u)",
+                      (long long)prod->body, at->scene->bodies.n - 1);
+    return check_lengths(at, once, prod);
+}
+
 static enum cs_status check_ramp(const struct look *at, const struct cs_ramp *ramp) {
     struct cs_event_key key;
     struct cs_error said = {0};
@@ -181,6 +233,8 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
                    : check_aim(at, ".impact", &event->impact.aim);
     if (event->wind.present)
         return check_wind(at, &event->wind);
+    if (event->prod.present)
+        return check_prod(at, !isnan(event->at), &event->prod);
     if (event->ramp.present)
         return check_ramp(at, &event->ramp);
     if (event->grab.present)

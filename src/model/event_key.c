@@ -132,7 +132,7 @@ static enum cs_status check_changeable(const struct walk *walk) {
                    walk->path);
 }
 
-/* whether the number belongs to a body made of a mesh: its springs have a stiffness each */
+/* whether the number belongs to a body made of a mesh */
 static bool is_of_mesh(const struct walk *walk, const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
@@ -153,9 +153,8 @@ static enum cs_status check_there(const struct walk *walk, const struct cs_scene
                        "%.120s cannot change: the scene has no forces.wind", walk->path);
     const bool stiffness = !strncmp(walk->plain, "bodies.springs.", 15) &&
                            strcmp(walk->plain, "bodies.springs.damping") != 0;
-    if (stiffness && is_of_mesh(walk, scene))
-        return cs_fail(walk->error, CS_ERR_SCENE,
-                       "%.120s cannot change: the springs of a mesh have a stiffness each",
+    if (!strcmp(walk->plain, "bodies.springs.shear") && is_of_mesh(walk, scene))
+        return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: a mesh has none",
                        walk->path);
     if (stiffness && value <= 0)
         return cs_fail(walk->error, CS_ERR_SCENE,

@@ -3,9 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* times nearer than that are one: a step between them would be of rounding errors */
-#define SAME 1e-9
-
 static double begin_of(const struct cs_event *event) {
     return isnan(event->at) ? event->from : event->at;
 }
@@ -35,9 +32,9 @@ static double chord_end(const struct cs_event *event, uint32_t leg, uint32_t cho
     return chord + 1 == chords ? end : begin + (end - begin) * ((chord + 1) / (double)chords);
 }
 
-static double snap(const struct cs_scene *scene, double t) {
+double cs_event_time_snap(const struct cs_scene *scene, double t) {
     const double frame = floor(t * scene->time.fps + 0.5) / scene->time.fps;
-    return fabs(frame - t) <= SAME ? frame : t;
+    return fabs(frame - t) <= CS_EVENT_SAME ? frame : t;
 }
 
 static int compare(const void *left, const void *right) {
@@ -62,11 +59,11 @@ static uint32_t collect(const struct cs_scene *scene, double *times) {
     const struct cs_event *list = cs_scene_events(scene);
     uint32_t n = 0;
     for (uint32_t e = 0; e < scene->events.n; e++) {
-        times[n++] = snap(scene, begin_of(list + e));
-        times[n++] = snap(scene, end_of(list + e));
+        times[n++] = cs_event_time_snap(scene, begin_of(list + e));
+        times[n++] = cs_event_time_snap(scene, end_of(list + e));
         for (uint32_t leg = 0; list[e].grab.present && leg < list[e].grab.path.n; leg++)
             for (uint32_t c = 0; c < chords_of(&list[e].grab); c++)
-                times[n++] = snap(scene, chord_end(list + e, leg, c));
+                times[n++] = cs_event_time_snap(scene, chord_end(list + e, leg, c));
     }
     return n;
 }
@@ -78,7 +75,7 @@ void cs_event_times_fill(struct cs_events *events) {
     qsort(times, n, sizeof *times, compare);
     events->n_times = 1;
     for (uint32_t k = 1; k < n; k++)
-        if (times[k] - times[events->n_times - 1] > SAME)
+        if (times[k] - times[events->n_times - 1] > CS_EVENT_SAME)
             times[events->n_times++] = times[k];
     for (uint32_t e = 0; e < events->scene.events.n; e++) {
         events->states[e].begin = entry_of(events, begin_of(list + e));

@@ -6,6 +6,12 @@
 
 enum { CS_EVENT_CHORDS = 16 }; /* in which a smooth path is followed from point to point */
 
+/* s: times nearer than that are one, or a step between them would be of rounding errors */
+#define CS_EVENT_SAME 1e-9
+
+/* t, or the time of a frame that is so near to it. */
+double cs_event_time_snap(const struct cs_scene *scene, double t);
+
 /* An upper bound of the number of times. */
 size_t cs_event_times_count(const struct cs_scene *scene);
 

@@ -4,12 +4,13 @@
 #include "model/event_act.h"
 #include "model/event_key.h"
 #include "model/event_times.h"
+#include "model/prods.h"
 
 #include <math.h>
 #include <string.h>
 
 static bool pushes(const struct cs_event *event) {
-    return event->impact.present && isnan(event->at);
+    return (event->impact.present || event->prod.present) && isnan(event->at);
 }
 static bool grabs(const struct cs_event *event) {
     return event->grab.present;
@@ -89,9 +90,10 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
         return error->status;
     cs_event_times_fill(events);
     events->end = events->times[0];
+    events->look = HUGE_VAL;
     system->events = events;
     system->scene = &events->scene;
-    return CS_OK;
+    return cs_prods_any(system->scene) ? cs_prods_build(system, error) : CS_OK;
 }
 
 void cs_events_set_bounds(struct cs_system *system, double *work) {
@@ -118,8 +120,13 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
     cs_event_refresh_springs(system);
 }
 
-bool cs_events_are_due(const struct cs_events *events, double t) {
-    return events->next < events->n_times && events->times[events->next] <= t;
+double cs_events_next(const struct cs_events *events) {
+    /* a look so near to the end is made there */
+    return events->look + CS_EVENT_SAME < events->end ? events->look : events->end;
+}
+
+uint32_t cs_events_cuts(const struct cs_events *events, double t) {
+    return events->n_times + cs_prods_cuts(&events->scene, t);
 }
 
 static void list_pinned(struct cs_system *system) {
@@ -129,7 +136,8 @@ static void list_pinned(struct cs_system *system) {
             system->pinned[system->n_pinned++] = i;
 }
 
-void cs_events_apply(struct cs_system *system, double t) {
+/* the segment ends */
+static void turn(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
     const uint32_t n = events->scene.events.n;
     cs_events_move_values(system, t);
@@ -156,9 +164,21 @@ void cs_events_apply(struct cs_system *system, double t) {
         events->grabs |= holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
     }
     list_pinned(system);
-    cs_event_sum_pushes(system);
     cs_event_refresh_springs(system);
     cs_events_place(system, t, system->state, system->state + 3 * (size_t)system->view.n);
+}
+
+bool cs_events_apply(struct cs_system *system, double t) {
+    struct cs_events *events = system->events;
+    const bool turns = events->end <= t;
+    if (turns)
+        turn(system, t);
+    const bool others = events->prods && cs_prods_look(system, t);
+    if (turns || others)
+        cs_event_sum_pushes(system);
+    if (events->prods)
+        events->look = cs_prods_next(events->prods);
+    return turns || others;
 }
 
 void cs_events_move_values(struct cs_system *system, double t) {

@@ -23,6 +23,8 @@ struct cs_event_state {
     double corner[3];               /* m, where the leg began */
 };
 
+struct cs_prods;
+
 struct cs_events {
     struct cs_scene scene; /* the scene's values now; system->scene points to it */
     double *times;         /* (n_times) ascending */
@@ -31,10 +33,12 @@ struct cs_events {
     struct cs_event_state *states; /* (scene.events.n) */
     uint32_t *holders;             /* (n) number of the event that holds a particle + 1, or 0 */
     bool *marks;                   /* (n) work */
-    double *push;                  /* (3,n) in m/s2; NULL without impacts over an interval */
-    double *offsets;   /* (3,n) in m, from the point of the path; NULL without grabs */
-    double now;        /* s, of the ramps' values */
-    bool ramps, grabs; /* some are under way in the segment */
+    double *push;                  /* (3,n) in m/s2; NULL without steady impacts and prods */
+    double *offsets;        /* (3,n) in m, from the point of the path; NULL without grabs */
+    struct cs_prods *prods; /* NULL without */
+    double look;            /* s, when a prod looks anew; HUGE_VAL: never */
+    double now;             /* s, of the ramps' values */
+    bool ramps, grabs;      /* some are under way in the segment */
 };
 
 /* Bytes that the events of a scene with n particles take. */
@@ -47,12 +51,17 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
  * work has 2n doubles. */
 void cs_events_set_bounds(struct cs_system *system, double *work);
 
-/* true if something happens at t that has not happened yet */
-bool cs_events_are_due(const struct cs_events *events, double t);
+/* When something happens next that has not happened yet, in s: the segment ends, or within it a
+ * prod looks anew. */
+double cs_events_next(const struct cs_events *events);
 
-/* Everything that happens at t: ends before beginnings, each in the scene's order. Changes the
- * system's state, pins and values; opens the segment from t to events->end. */
-void cs_events_apply(struct cs_system *system, double t);
+/* Everything that happens at t: ends before beginnings, each in the scene's order, then looks
+ * of prods. Changes the system's state, pins and values; where the segment ended, opens the one
+ * from t to events->end. false if nothing changed: prods looked, and saw the same. */
+bool cs_events_apply(struct cs_system *system, double t);
+
+/* Times up to t, besides those of frames, at which a method may have to stop, or more. */
+uint32_t cs_events_cuts(const struct cs_events *events, double t);
 
 /* Sets ramped values to those at t, or at the end of the segment that is nearer. */
 void cs_events_move_values(struct cs_system *system, double t);

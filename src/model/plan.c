@@ -3,6 +3,7 @@
 #include "model/clusters.h"
 #include "model/event_key.h"
 #include "model/events.h"
+#include "model/prods.h"
 #include "model/shape.h"
 #include "model/springs.h"
 #include "model/trimesh.h"
@@ -100,6 +101,8 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "a body has strain_limit", "no strain_limit");
     decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, cs_events_bytes(scene, plan->n),
            "the scene has events", "no events");
+    decide(plan, CS_FEATURE_PRODS, cs_prods_any(scene), cs_prods_bytes(scene, plan->n),
+           "an event is a prod; it needs a test of what is seen", "no event is a prod");
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
            s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),
            "the integrator asks for it", "the integrator does not ask for it");

@@ -18,6 +18,7 @@
     X(CONTACT, "contact")                                                                      \
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \
+    X(PRODS, "prods")                                                                          \
     X(SPRING_LIST, "spring list")                                                              \
     X(CLUSTERS, "clusters")                                                                    \
     X(SOLVER, "linear solver")                                                                 \

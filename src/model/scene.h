@@ -224,6 +224,23 @@ struct cs_ramp {
     char key[CS_TEXT_MAX]; /* forces.gravity[1] */
     double value;          /* NAN: not given, refused */
 };
+/* of a picture that may be another than the camera's; values left out are the camera's and the
+ * picture's, filled in by cs_scene_check */
+struct cs_viewpoint {
+    double eye[3], target[3], up[3]; /* m; first component NAN: absent */
+    double fov;                      /* degrees, vertical; NAN: absent */
+    double aspect;                   /* width over height; NAN: absent */
+};
+struct cs_prod {
+    bool present;
+    struct cs_viewpoint viewpoint;
+    double
+        rectangle[4]; /* left, top, right, bottom: shares of width and height, from top left */
+    double force;     /* N on each particle that is seen; NAN: not given, refused */
+    double duration;  /* s, of what happens at once; NAN: absent */
+    double refresh; /* looks a second over an interval, 0: only at its beginning; NAN: absent */
+    int64_t body;   /* -1: every body */
+};
 struct cs_path_point {
     double at;       /* s; NAN: not given, refused */
     double point[3]; /* m */
@@ -246,6 +263,7 @@ struct cs_event {
     double at, from, to; /* s; NAN: absent */
     struct cs_impact impact;
     struct cs_gust wind;
+    struct cs_prod prod;
     struct cs_ramp ramp;
     struct cs_grab grab;
     struct cs_hold pin, release;
@@ -281,6 +299,7 @@ struct cs_render {
     int32_t look;    /* enum cs_look */
     double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
     double background[3]; /* linear RGB */
+    bool prods;           /* show what the prods of events see, and from where */
     bool ground;          /* draw a grid on the plane y = ground_height */
     double ground_height; /* m */
 };

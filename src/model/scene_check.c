@@ -1,6 +1,7 @@
 /* What single ranges cannot say about a scene. */
 #include "model/event_check.h"
 #include "model/shape.h"
+#include "model/sight.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -195,17 +196,10 @@ static enum cs_status check_colliders(const struct place *at, struct cs_scene *s
 }
 
 static enum cs_status check_camera(const struct place *at, const struct cs_camera *camera) {
-    double view[3], side[3];
-    for (int c = 0; c < 3; c++)
-        view[c] = camera->target[c] - camera->eye[c];
-    if (length_of(view, 3) < 1e-9)
-        return refuse(at, "camera.target", "is the same point as camera.eye");
-    for (int c = 0; c < 3; c++)
-        side[c] = view[(c + 1) % 3] * camera->up[(c + 2) % 3] -
-                  view[(c + 2) % 3] * camera->up[(c + 1) % 3];
-    if (length_of(side, 3) < 1e-9 * length_of(view, 3))
-        return refuse(at, "camera.up", "is along the view or zero, expected another direction");
-    return CS_OK;
+    char path[64];
+    const char *key, *fault = cs_sight_fault(camera->eye, camera->target, camera->up, &key);
+    snprintf(path, sizeof path, "camera.%s", fault ? key : "");
+    return fault ? refuse(at, path, "%s", fault) : CS_OK;
 }
 
 static enum cs_status check_light(const struct place *at, struct cs_light *light) {

@@ -70,7 +70,8 @@ static const struct cs_option network_rows[] = {
     CHOICE(struct cs_network, placement, placement_names, CS_PLACEMENT_NEAREST,
            "random: any two particles; opposed-normals: only where their normals point away "
            "from each other; nearest: the nearest of some such candidates"),
-    INT(struct cs_network, springs, "", 6, 1, 1000, "inner springs tried for each particle"),
+    INT(struct cs_network, springs, "", 6, 0, 1000,
+        "inner springs tried for each particle; 0: springs on the surface only"),
     INT(struct cs_network, candidates, "", 4, 1, 1000,
         "of placement nearest, from which the nearest is taken"),
     INT(struct cs_network, tries, "", 64, 1, 100000,
@@ -298,6 +299,8 @@ static const struct cs_option render_rows[] = {
     VECTOR(struct cs_render, range, 2, "N or 1", absent9, -BIG, BIG,
            "force or strain at the ends of the colours; absent: from each frame"),
     VECTOR(struct cs_render, background, 3, "", paper, 0, 1, "linear RGB"),
+    BOOL(struct cs_render, prods, 0,
+         "draw what the prods under way see, and their rectangles from their eyes"),
     BOOL(struct cs_render, ground, 0, "draw a grid of lines on the ground"),
     REAL(struct cs_render, ground_height, "m", 0, -BIG, BIG, "the grid lies at y = this"),
 };

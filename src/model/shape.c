@@ -1,5 +1,6 @@
 #include "model/shape.h"
 
+#include "model/sine.h"
 #include "model/trimesh.h"
 
 #include <math.h>
@@ -38,14 +39,9 @@ static double share_of(uint32_t i, uint32_t count) {
     return count > 1 ? (double)i / (count - 1) : 0.5;
 }
 
-/* sin(pi a) for a in 0..1, by the nested series of sin up to its 21st power; no libm, whose
- * bits differ between machines. Good to 1e-15, 0 at both ends. */
+/* sin(pi a) for a in 0..1, 0 at both ends */
 static double arch(double a) {
-    const double y = 3.14159265358979323846 * (a > 0.5 ? 1 - a : a);
-    double series = 1;
-    for (int k = 20; k > 0; k -= 2)
-        series = 1 - series * (y * y) / (k * (k + 1));
-    return y * series;
+    return cs_quarter_sine(2 * (a > 0.5 ? 1 - a : a));
 }
 
 static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {

@@ -22,14 +22,14 @@ struct cs_spring_run {
     uint32_t kind; /* enum cs_spring_kind */
     uint32_t body;
     uint32_t first;   /* number of the run's first spring */
-    double stiffness; /* N/m */
+    double stiffness; /* N/m; with lists: the law's, N/m or N, that they were made of */
     double length;    /* rest length in m */
     double damping;   /* N s/m */
     bool axial;       /* damping along the spring only */
 
     /* lists of a mesh's run, or all NULL: spring i joins a + ends[2 i] and b + ends[2 i + 1] */
     const uint32_t *ends;                /* (count, 2) */
-    const double *lengths, *stiffnesses; /* (count), instead of those above */
+    const double *lengths, *stiffnesses; /* (count) m, N/m, instead of those above */
 };
 
 /* Ends and law of spring i of a run, of either kind. */
@@ -58,6 +58,10 @@ struct cs_springs {
  * *n_springs. */
 uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, double *lists, uint32_t *n_springs);
+
+/* Sets a run's stiffness, and the list of them if it has one, by the law that its body has now;
+ * the lengths are there. A list that is right already is left alone. */
+void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
 
 /* Adds the spring and damper forces of the chosen parts to f (3,n).
  *

@@ -1,6 +1,6 @@
-/* Impacts over an interval: f = m a with the same a for all particles of an impact. To a method
- * they are gravity: what leaves springs out, or takes what is outside apart, has them with it.
- */
+/* Impacts and prods over an interval: f = m a, the same a for all particles of an impact, the
+ * same f for all that a prod sees. To a method they are gravity: what leaves springs out, or
+ * takes what is outside apart, has them with it. */
 #include "model/events.h"
 #include "model/terms.h"
 

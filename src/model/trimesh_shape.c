@@ -1,5 +1,6 @@
 /* Generated meshes: box, sphere and torus. Only + - * / and sqrt, so that the vertices have the
  * same bits on every machine. */
+#include "model/sine.h"
 #include "model/trimesh.h"
 
 #include <math.h>
@@ -146,20 +147,11 @@ static enum cs_status make_sphere(struct cs_trimesh *mesh, uint32_t d, struct cs
     return CS_OK;
 }
 
-/* sin(r pi / 2) for r in 0..1 by its series up to the 21st power: good to 1e-15 */
-static double quarter_sine(double r) {
-    const double y = 1.57079632679489661923 * r;
-    double series = 1;
-    for (int k = 20; k > 0; k -= 2)
-        series = 1 - series * (y * y) / (k * (k + 1));
-    return y * series;
-}
-
 /* cosine and sine of k m-ths of a turn */
 static void turn(uint32_t k, uint32_t m, double out[2]) {
     const uint32_t quarter = 4 * k / m;
     const double r = (double)(4 * k % m) / m;
-    const double c = quarter_sine(1 - r), s = quarter_sine(r);
+    const double c = cs_quarter_sine(1 - r), s = cs_quarter_sine(r);
     const double turned[4][2] = {{c, s}, {-s, c}, {-c, -s}, {s, -c}};
     memcpy(out, turned[quarter % 4], sizeof turned[0]);
 }

@@ -8,21 +8,16 @@
 #include <string.h>
 
 static double energy_at(const struct cs_bound *bound, double t) {
-    const double passed = t - bound->since;
-    return 100 * (bound->start + bound->speed + bound->push * passed * passed);
+    const double pushed = bound->pushed + sqrt(bound->push) * (t - bound->since);
+    return 100 * (bound->start + bound->speed + pushed * pushed);
 }
 
-void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t) {
+/* sum m a^2 of the outer forces in J/s2 */
+static double sum_push(const struct cs_system *system) {
     const struct cs_forces *forces = &system->scene->forces;
     const size_t n = system->view.n;
-    const double *x = system->state, *v = x + 3 * n, *g = forces->gravity;
-    const double *a = system->events ? system->events->push : NULL;
-    const struct cs_energy energy = cs_measure_energy(system, x, v);
-    bound->start = energy.elastic + cs_springs_energy_at_twice(&system->springs) +
-                   cs_clusters_energy(system);
-    bound->speed = 2 * energy.kinetic;
-    bound->push = 0;
-    bound->since = t;
+    const double *g = forces->gravity, *a = system->events ? system->events->push : NULL;
+    double sum = 0;
     for (size_t i = 0; i < n; i++) {
         double push = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
         if (system->normals)
@@ -30,12 +25,39 @@ void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double
                     (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
         if (a)
             push += sqrt(a[i] * a[i] + a[n + i] * a[n + i] + a[2 * n + i] * a[2 * n + i]);
-        bound->push += system->mass[i] * push * push;
+        sum += system->mass[i] * push * push;
     }
+    return sum;
+}
+
+void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t) {
+    const double *x = system->state, *v = x + 3 * (size_t)system->view.n;
+    const struct cs_energy energy = cs_measure_energy(system, x, v);
+    *bound = (struct cs_bound){
+        .start = energy.elastic + cs_springs_energy_at_twice(&system->springs) +
+                 cs_clusters_energy(system),
+        .speed = 2 * energy.kinetic,
+        .push = sum_push(system),
+        .since = t,
+    };
+}
+
+/* the larger of the forces now and at the end of the ramps, from t on */
+static void follow_looks(struct cs_bound *bound, struct cs_system *system, double t) {
+    bound->pushed += sqrt(bound->push) * (t - bound->since);
+    bound->since = t;
+    bound->push = sum_push(system);
+    cs_events_move_values(system, system->events->end);
+    bound->push = fmax(bound->push, sum_push(system));
+    cs_events_move_values(system, t);
 }
 
 void cs_bound_follow_events(struct cs_bound *bound, struct cs_system *system, double t) {
     struct cs_bound now;
+    if (system->events->begin < t) {
+        follow_looks(bound, system, t);
+        return;
+    }
     cs_bound_set(&now, system, t);
     cs_events_move_values(system, system->events->end);
     cs_bound_set(bound, system, t);

@@ -6,17 +6,21 @@
 
 /* Kinetic energy that no passive system of this kind can reach by time t: a hundred times what
  * the start holds, what every spring would hold at twice its length, and what the outer forces
- * can give in free flight, sum m (|v| + a (t - since))^2. */
+ * can give in free flight, sum m (|v| + a (t - since))^2. Where the outer forces change on the
+ * way, a t is the sum over the pieces. */
 struct cs_bound {
     double start, speed, push; /* J, J, J/s2 */
-    double since;              /* s */
+    double pushed;             /* sqrt(J), by the pieces before this one */
+    double since;              /* s, when the forces were last looked at */
 };
 
 /* From the state of the system now, at time t. */
 void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t);
 
 /* After the events at time t were applied: from the state that they leave, with the larger of
- * what holds now and what ramps come to; a grab may pull all particles along. */
+ * what holds now and what ramps come to; a grab may pull all particles along. Where prods only
+ * looked anew, the bound goes on with other forces: it would else follow a blow-up from look to
+ * look. */
 void cs_bound_follow_events(struct cs_bound *bound, struct cs_system *system, double t);
 
 /* Runs after every step. true: run->outcome and run->blow_up say what happened. */

@@ -258,8 +258,10 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     return cs_linear_init(&host->linear, system, &host->arena, error);
 }
 
-void cs_run_host_apply_events(struct cs_run_host *host, double t) {
+bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
-    cs_events_apply(system, t);
-    cs_bound_follow_events(&host->bound, system, t);
+    const bool changed = cs_events_apply(system, t);
+    if (changed)
+        cs_bound_follow_events(&host->bound, system, t);
+    return changed;
 }

@@ -30,7 +30,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error);
 
 /* What happens at time t: the state, the pins and the values change, and so does the bound of
- * the kinetic energy. The method must be restarted. */
-void cs_run_host_apply_events(struct cs_run_host *host, double t);
+ * the kinetic energy. true: the method must be restarted; false: nothing changed. */
+bool cs_run_host_apply_events(struct cs_run_host *host, double t);
 
 #endif

@@ -4,6 +4,7 @@
 #include "sim/crash.h"
 #include "sim/host.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,11 +57,9 @@ static enum cs_step advance(struct cs_run *run, double end) {
     const struct cs_events *events = run->system->events;
     enum cs_step step = CS_STEP_OK;
     for (double t = run->t, next; t < end && step == CS_STEP_OK; t = next) {
-        if (events && cs_events_are_due(events, t)) {
-            cs_run_host_apply_events(run->host, t);
+        if (events && cs_events_next(events) <= t && cs_run_host_apply_events(run->host, t))
             step = run->integrator->restart(run->host->self, t, run->x, run->v);
-        }
-        next = events && events->end < end ? events->end : end;
+        next = events ? fmin(cs_events_next(events), end) : end;
         if (step == CS_STEP_OK)
             step = run->integrator->advance(run->host->self, t, next, run->x, run->v);
     }

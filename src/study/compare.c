@@ -22,10 +22,10 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
         snprintf(compare->scene, sizeof compare->scene, "%.255s", asked.scene);
         compare->particles = system->view.n;
         compare->springs = course.session.plan.n_springs;
-        compare->cuts = system->events ? system->events->n_times : 0;
         compare->fps = course.session.scene.time.fps;
         compare->omega = fmax(system->view.omega, 1e-3);
         compare->time = settings->frames / compare->fps;
+        compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;
     }
     cs_course_close(&course);
     return error->status;

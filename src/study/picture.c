@@ -103,7 +103,7 @@ enum cs_status cs_picture_paint(struct cs_picture *picture, const struct cs_run 
     if (picture->goals)
         cs_run_goals(run, picture->goals);
     const struct cs_frame frame = {
-        run->x, picture->scalar, {picture->range[0], picture->range[1]}, picture->goals};
+        run->t, run->x, picture->scalar, {picture->range[0], picture->range[1]}, picture->goals};
     picture->renderer->paint(picture->canvas, &frame, image, error);
     picture->seconds += cs_clock_wall() - start;
     return error->status;

@@ -1,5 +1,8 @@
 #include "study/watch.h"
 
+#include "model/events.h"
+#include "model/prods.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -61,32 +64,62 @@ static double fastest(const struct cs_run *run, double limit, uint32_t *particle
     return largest;
 }
 
-enum cs_status cs_watch_begin(struct cs_watch *watch, const struct cs_run *run,
-                              struct cs_error *error) {
+/* largest acceleration in m/s2 of a particle by wind and events, were it seen by all prods */
+static double push_of(const struct cs_system *system, size_t i) {
+    const struct cs_wind *wind = &system->scene->forces.wind;
+    const struct cs_events *events = system->events;
+    const size_t n = system->view.n;
+    double push = 0;
+    if (system->normals)
+        push += wind->strength * system->inv_mass[i] *
+                (wind->strength_unit == CS_WIND_PA ? system->area[i] : 1);
+    if (events && events->push) {
+        const double *a = events->push + i;
+        push += length_of((double[3]){a[0], a[n], a[2 * n]});
+    }
+    if (events && events->prods)
+        push += cs_prods_force(events->prods, system->scene) * system->inv_mass[i];
+    return push;
+}
+
+/* from what there is now */
+static void start(struct cs_watch *watch, const struct cs_run *run) {
     const struct cs_system *system = run->system;
-    const struct cs_forces *forces = &system->scene->forces;
     const struct cs_energy energy = cs_measure_energy(system, run->x, run->v);
-    double speed = 0;
     uint32_t particle, count;
-    *watch =
-        (struct cs_watch){.held = energy.kinetic + energy.elastic, .gravity = energy.gravity};
-    if (spring_speed(run, &speed, error))
-        return error->status;
-    watch->start_speed = speed + fastest(run, HUGE_VAL, &particle, &count);
-    watch->pull = length_of(forces->gravity);
+    watch->since = run->t;
+    watch->held = energy.kinetic + energy.elastic;
+    watch->gravity = energy.gravity;
+    watch->released = 0;
+    watch->start_speed = fmax(watch->start_speed, fastest(run, HUGE_VAL, &particle, &count));
+    watch->pull = length_of(system->scene->forces.gravity);
+    watch->push = watch->mass = watch->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
         if (system->inv_mass[i] <= 0)
             continue;
-        const double push =
-            !system->normals
-                ? 0
-                : forces->wind.strength * system->inv_mass[i] *
-                      (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
+        const double push = push_of(system, i);
         watch->push = fmax(watch->push, push);
         watch->mass += system->mass[i];
         watch->wind_mass += system->mass[i] * push * push;
     }
+}
+
+enum cs_status cs_watch_begin(struct cs_watch *watch, const struct cs_run *run,
+                              struct cs_error *error) {
+    double speed = 0;
+    *watch = (struct cs_watch){0};
+    if (spring_speed(run, &speed, error))
+        return error->status;
+    start(watch, run);
+    watch->start_speed += speed;
     return CS_OK;
+}
+
+/* an event did something since the last look that no bound knows of */
+static bool is_disturbed(const struct cs_watch *watch, const struct cs_run *run) {
+    const struct cs_events *events = run->system->events;
+    return events &&
+           (events->begin >= watch->looked || events->ramps || cs_events_speed(events) > 0);
 }
 
 /* kinetic and elastic energy that there can be */
@@ -102,10 +135,14 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     *row = (struct cs_watch_row){.t = run->t};
     row->energy = cs_measure_energy(system, run->x, run->v);
     row->strain = cs_measure_strain(system, run->x);
+    if (is_disturbed(watch, run))
+        start(watch, run);
+    watch->looked = run->t;
     watch->released = fmax(watch->released, watch->gravity - row->energy.gravity);
-    const double energy = fmax(available(watch, run->t), LEAST_ENERGY);
+    const double passed = run->t - watch->since;
+    const double energy = fmax(available(watch, passed), LEAST_ENERGY);
     const double mean = watch->mass > 0 ? sqrt(2 * energy / watch->mass) : 0;
-    const double fall = fmin((watch->pull + watch->push) * run->t, SPEED_SPREAD * mean);
+    const double fall = fmin((watch->pull + watch->push) * passed, SPEED_SPREAD * mean);
     row->energy_limit = ENERGY_FACTOR * energy;
     row->speed_limit = SPEED_FACTOR * fmax(watch->start_speed + fall, LEAST_SPEED);
     row->speed = fastest(run, row->speed_limit, &row->particle, &row->particles);

@@ -2,7 +2,9 @@
  *
  * What moves and is stretched cannot hold more than the start held, gravity released and the
  * wind can have given; a particle can hardly be faster than a few times what a fall, the
- * springs let go at it, or its share of that energy make of it.
+ * springs let go at it, or its share of that energy make of it. What events give has no such
+ * bound: at the end of a frame in which one began or ended, a value moved or a path was
+ * followed, the watch starts anew from what there is.
  */
 #ifndef CS_WATCH_H
 #define CS_WATCH_H
@@ -23,10 +25,11 @@ struct cs_watch_row {
 };
 
 struct cs_watch {
+    double since, looked; /* s: the start, and the last look */
     double held, gravity; /* J at the start: kinetic + elastic, of gravity */
     double released;      /* J, most that gravity gave until now */
     double start_speed;   /* m/s: largest, and what the springs at one particle could give it */
-    double pull, push;    /* m/s2, of gravity and of the wind at most */
+    double pull, push;    /* m/s2, of gravity, and of wind and prods at most */
     double mass, wind_mass;    /* kg that can move; of it times (wind/gravity) for its work */
     bool found;                /* a local instability was seen */
     struct cs_watch_row first; /* when it began */

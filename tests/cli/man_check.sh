@@ -21,8 +21,8 @@ same() { # NAME: the lists a and b are equal
     fi
 }
 
-"$program" help | sed -n 's/^  \([a-z]*\)  .*/\1/p' | sort >"$work/a"
-sed -n '/^# COMMANDS/,/^# OPTIONS/s/^\*\([a-z]*\)\*.*/\1/p' "$root/man/clothsim.1.scd" |
+"$program" help | sed -n 's/^  \([a-z-]*\)  .*/\1/p' | sort >"$work/a"
+sed -n '/^# COMMANDS/,/^# OPTIONS/s/^\*\([a-z-]*\)\*.*/\1/p' "$root/man/clothsim.1.scd" |
     sort >"$work/b"
 same "commands"
 

@@ -150,6 +150,51 @@ START_TEST(springs_are_rebuilt) {
 }
 END_TEST
 
+/* a body of edges, hinges and a network; %s: stretch, bend, unit, and the events */
+#define JELLY                                                                                  \
+    "{\"bodies\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": 3, \"spin\": [1, 2, 3]},"    \
+    " \"network\": {\"springs\": 4, \"surface\": 3}, \"mass\": {\"total\": 1}, \"springs\":"   \
+    " {\"stretch\": %s, \"bend\": %s, \"stiffness_unit\": \"%s\"}}], \"events\": [%s]}"
+
+/* The same for a mesh, in both units; and half way of a ramp the energy is the mean of both
+ * ends'. */
+START_TEST(springs_of_a_mesh_follow_ramps) {
+    static const char *const units[] = {"N/m", "N"};
+    static const char at_once[] =
+        "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.stretch\", \"value\": 90}},"
+        "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.bend\", \"value\": 7}}";
+    for (size_t k = 0; k < 2; k++) {
+        struct fixture soft, stiff;
+        fixture_open(&soft, "implicit-linearised:dt=0.005", JELLY, "20", "1", units[k],
+                     at_once);
+        fixture_open(&stiff, "implicit-linearised:dt=0.005", JELLY, "90", "7", units[k], "");
+        ck_assert(soft.system->view.omega == stiff.system->view.omega);
+        fixture_start(&soft);
+        fixture_start(&stiff);
+        fixture_frames(&soft, 5);
+        fixture_frames(&stiff, 5);
+        ck_bits(soft.x, stiff.x, 6 * soft.n, units[k]);
+        fixture_close(&soft);
+        fixture_close(&stiff);
+
+        fixture_open(&soft, "velocity-verlet", JELLY, "20", "1", units[k],
+                     "{\"from\": 0, \"to\": 0.1, \"ramp\": {\"key\":"
+                     " \"bodies[0].springs.stretch\", \"value\": 0}}");
+        fixture_stir(&soft, 0.05, 0);
+        double energy[3];
+        cs_events_apply(soft.system, 0);
+        for (int share = 0; share < 3; share++) {
+            cs_events_move_values(soft.system, 0.05 * share);
+            energy[share] = cs_springs_energy(&soft.system->springs, (uint32_t)soft.n, soft.x,
+                                              CS_PART_SPRINGS);
+        }
+        ck_assert_double_eq_tol(energy[1], (energy[0] + energy[2]) / 2, 1e-12 * energy[0]);
+        ck_assert(energy[2] < 0.5 * energy[0] && energy[2] > 0);
+        fixture_close(&soft);
+    }
+}
+END_TEST
+
 /* Frame by frame the grabbed particles are on their path to the bit, whatever the method. */
 START_TEST(grab_is_exact) {
     for (size_t k = 0; k < METHODS; k++) {
@@ -336,6 +381,7 @@ int main(void) {
                                   impact_gives_its_impulse,
                                   ramp_is_linear_in_time,
                                   springs_are_rebuilt,
+                                  springs_of_a_mesh_follow_ramps,
                                   grab_is_exact,
                                   release_keeps_the_velocity,
                                   pins_come_and_go,

@@ -1,0 +1,449 @@
+/* What is seen from a viewpoint, against a ray test over every triangle and obstacle. */
+#include "model/sight.h"
+
+#include "model/trimesh.h"
+#include "sheet.h"
+
+/* two cloths, a closed mesh, and obstacles of every kind; %s: keys of the last sphere */
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [13, 9]}, \"mass\": {\"total\": 1}},"                \
+    " {\"mesh\": {\"shape\": \"sphere\", \"detail\": 4, \"place\":"                            \
+    " {\"translate\": [0.3, 0.2, -0.6]}}, \"mass\": {\"total\": 1}},"                          \
+    " {\"cloth\": {\"grid\": [6, 17], \"place\": {\"translate\": [0, 0, -1.2]}},"              \
+    " \"mass\": {\"total\": 1}}],"                                                             \
+    " \"colliders\": [{\"sphere\": {\"centre\": [0.2, -0.1, 0.3], \"radius\": 0.2}},"          \
+    " {\"plane\": {\"point\": [0, -0.4, 0], \"normal\": [0.1, 1, -0.2]}}, {\"floor\": "        \
+    "{\"height\": -0.45}},"                                                                    \
+    " {\"sphere\": {\"centre\": [0, 0, 0.5], \"radius\": 3}, \"visible\": false}]}"
+
+static uint64_t state = 88172645463325252u;
+
+/* from -1 to 1 */
+static double draw(void) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return (double)(state >> 11) / 4503599627370496.0 - 1;
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int c = 0; c < 3; c++)
+        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+/* a look at one particle: whether it is seen, and how clearly the least clear of all tests was passed */
+struct verdict {
+    bool seen;
+    double margin;
+};
+
+static void require(struct verdict *verdict, double by) {
+    verdict->seen &= by > 0;
+    verdict->margin = fmin(verdict->margin, fabs(by));
+}
+
+/* Moeller and Trumbore 1997: the ray from eye along way meets the triangle at share t of it */
+static void look_past_triangle(struct verdict *verdict, const struct sheet *sheet,
+                               const uint32_t corners[3], const double eye[3],
+                               const double way[3]) {
+    double p[3][3], a[3], b[3], s[3], h[3], q[3];
+    for (size_t k = 0; k < 3; k++)
+        for (size_t c = 0; c < 3; c++)
+            p[k][c] = sheet->x[c * sheet->n + corners[k]];
+    for (int c = 0; c < 3; c++) {
+        a[c] = p[1][c] - p[0][c];
+        b[c] = p[2][c] - p[0][c];
+        s[c] = eye[c] - p[0][c];
+    }
+    cross(way, b, h);
+    cross(s, a, q);
+    const double f = 1 / dot(a, h), u = f * dot(s, h), v = f * dot(way, q), t = f * dot(b, q);
+    const double inside = fmin(fmin(u, v), fmin(1 - u - v, fmin(t, 1 - t)));
+    require(verdict, -inside);
+}
+
+static void look_past_triangles(struct verdict *verdict, const struct sheet *sheet, uint32_t i,
+                                const double eye[3], const double way[3]) {
+    const struct cs_body_range *bodies = sheet->system.bodies;
+    for (uint32_t b = 0; b < 3; b++) {
+        const uint32_t columns = bodies[b].columns, first = bodies[b].first;
+        const uint32_t cells = b == 1 ? 0 : (columns - 1) * (bodies[b].rows - 1);
+        const uint32_t n = b == 1 ? bodies[b].mesh->n_triangles : 2 * cells;
+        for (uint32_t t = 0; t < n; t++) {
+            uint32_t corners[3];
+            const uint32_t cell = t % (cells ? cells : 1);
+            const uint32_t at = first + cell + (b == 1 ? 0 : cell / (columns - 1));
+            for (size_t k = 0; k < 3; k++)
+                corners[k] = b == 1      ? first + bodies[b].mesh->triangles[3 * (size_t)t + k]
+                             : t < cells ? at + (k == 1) + columns * (k == 2)
+                                         : at + columns + (k == 1) + (k == 2) * (1 - columns);
+            if (i != corners[0] && i != corners[1] && i != corners[2])
+                look_past_triangle(verdict, sheet, corners, eye, way);
+        }
+    }
+}
+
+static void look_past_obstacles(struct verdict *verdict, const struct sheet *sheet,
+                                const double eye[3], const double way[3]) {
+    const struct cs_collider *colliders = cs_scene_colliders(&sheet->scene);
+    const struct cs_sphere *sphere = &colliders[0].sphere;
+    /* |eye + t way - centre| = radius */
+    double to[3];
+    for (int c = 0; c < 3; c++)
+        to[c] = eye[c] - sphere->centre[c];
+    const double a = dot(way, way), b = dot(way, to),
+                 c = dot(to, to) - sphere->radius * sphere->radius;
+    const double inside = b * b - a * c, root = sqrt(fmax(inside, 0));
+    const double enters = (-b - root) / a, leaves = (-b + root) / a;
+    require(verdict, inside < 0 ? -inside : fmax(enters - 1, -leaves));
+
+    const double normal[3] = {colliders[1].plane.normal[0], colliders[1].plane.normal[1],
+                              colliders[1].plane.normal[2]};
+    double end[3];
+    for (int k = 0; k < 3; k++)
+        end[k] = eye[k] + way[k];
+    require(verdict, dot(eye, normal) + 0.4 * normal[1]);
+    require(verdict, dot(end, normal) + 0.4 * normal[1]);
+    require(verdict, eye[1] + 0.45);
+    require(verdict, end[1] + 0.45);
+}
+
+static struct verdict look_at(const struct sheet *sheet, const struct cs_prod *prod,
+                              uint32_t i) {
+    struct verdict verdict = {true, 1};
+    const struct cs_viewpoint *from = &prod->viewpoint;
+    double eye[3], way[3], view[3], right[3], up[3];
+    for (size_t c = 0; c < 3; c++) {
+        eye[c] = from->eye[c];
+        view[c] = from->target[c] - eye[c];
+        way[c] = sheet->x[c * sheet->n + i] - eye[c];
+        up[c] = from->up[c];
+    }
+    cross(view, up, right);
+    cross(right, view, up);
+    /* shares of the picture */
+    const double slope = tan(from->fov * 3.14159265358979323846 / 360);
+    const double depth = dot(way, view) / dot(view, view);
+    const double length = sqrt(dot(view, view));
+    const double across = 0.5 + dot(way, right) / sqrt(dot(right, right)) /
+                                    (2 * depth * length * slope * from->aspect);
+    const double down = 0.5 - dot(way, up) / sqrt(dot(up, up)) / (2 * depth * length * slope);
+    require(&verdict, depth);
+    require(&verdict, across - prod->rectangle[0]);
+    require(&verdict, prod->rectangle[2] - across);
+    require(&verdict, down - prod->rectangle[1]);
+    require(&verdict, prod->rectangle[3] - down);
+    look_past_triangles(&verdict, sheet, i, eye, way);
+    look_past_obstacles(&verdict, sheet, eye, way);
+    return verdict;
+}
+
+struct looker {
+    struct sheet sheet;
+    struct cs_arena arena;
+    struct cs_sight_work work;
+    bool *seen;
+};
+
+static void looker_open(struct looker *looker, const char *scene) {
+    struct cs_error error = {0};
+    *looker = (struct looker){0};
+    sheet_open(&looker->sheet, 0, "%s", scene);
+    const uint32_t n = (uint32_t)looker->sheet.n;
+    ck_assert_int_eq(cs_sight_work_init(&looker->work, n, &looker->arena, &error), CS_OK);
+    ck_assert_uint_eq(looker->arena.used, cs_sight_bytes(n));
+    looker->seen = cs_arena_take_n(&looker->arena, n, sizeof *looker->seen, &error);
+}
+
+static uint32_t look(struct looker *looker, const struct cs_prod *prod) {
+    struct cs_sight sight;
+    uint32_t count = 0;
+    cs_sight_make(&sight, prod);
+    cs_sight_find(&sight, &looker->sheet.system, looker->sheet.x, prod->body, &looker->work,
+                  looker->seen);
+    for (size_t i = 0; i < looker->sheet.n; i++)
+        count += looker->seen[i];
+    return count;
+}
+
+static void looker_close(struct looker *looker) {
+    cs_arena_finish(&looker->arena);
+    sheet_close(&looker->sheet);
+}
+
+static void draw_prod(struct cs_prod *prod, double distance) {
+    *prod = (struct cs_prod){.viewpoint = {.fov = 70 + 60 * draw(), .aspect = 1.5 + draw()},
+                             .body = -1};
+    for (int c = 0; c < 3; c++) {
+        prod->viewpoint.eye[c] = distance * draw();
+        prod->viewpoint.target[c] = 0.3 * draw();
+        prod->viewpoint.up[c] = draw();
+    }
+    for (int c = 0; c < 2; c++) {
+        prod->rectangle[c] = 0.25 + 0.25 * draw();
+        prod->rectangle[2 + c] = 0.75 + 0.25 * draw();
+    }
+}
+
+/* Random views of crumpled bodies, from afar and from their middle. */
+START_TEST(same_as_by_brute_force) {
+    struct looker looker;
+    uint32_t seen = 0, hidden = 0, unclear = 0;
+    looker_open(&looker, SCENE);
+    const size_t n = looker.sheet.n;
+    for (int k = 0; k < 60; k++) {
+        struct cs_prod prod;
+        memcpy(looker.sheet.x, looker.sheet.system.start, 3 * n * sizeof(double));
+        for (size_t i = 0; i < 3 * n; i++)
+            looker.sheet.x[i] += 0.02 * (1 + k % 5) * draw();
+        draw_prod(&prod, k % 3 ? 3 : 0.5);
+        look(&looker, &prod);
+        for (uint32_t i = 0; i < n; i++) {
+            const struct verdict expected = look_at(&looker.sheet, &prod, i);
+            if (expected.margin < 1e-8) {
+                unclear++;
+                continue;
+            }
+            ck_assert_msg(looker.seen[i] == expected.seen, "view %d, particle %u: %d", k, i,
+                          looker.seen[i]);
+            seen += expected.seen;
+            hidden += !expected.seen;
+        }
+    }
+    ck_assert_msg(seen > 1000 && hidden > 1000 && unclear < 10, "%u seen, %u not, %u unclear",
+                  seen, hidden, unclear);
+    looker_close(&looker);
+}
+END_TEST
+
+/* One body at a time: the others still hide it. */
+START_TEST(bodies_are_looked_at_alone) {
+    struct looker looker;
+    struct cs_prod prod;
+    looker_open(&looker, SCENE);
+    draw_prod(&prod, 0);
+    prod.viewpoint.eye[1] = prod.viewpoint.eye[2] = 2;
+    const uint32_t all = look(&looker, &prod);
+    uint32_t sum = 0, most = 0;
+    for (prod.body = 0; prod.body < 3; prod.body++) {
+        const uint32_t alone = look(&looker, &prod);
+        sum += alone;
+        most = alone > most ? alone : most;
+        for (uint32_t i = 0; i < looker.sheet.n; i++) {
+            const struct cs_body_range *body = looker.sheet.system.bodies + prod.body;
+            const bool is_its = i >= body->first && i < body->first + body->count;
+            ck_assert(!looker.seen[i] || is_its);
+        }
+    }
+    ck_assert_uint_eq(sum, all);
+    ck_assert_uint_lt(most, all);
+    looker_close(&looker);
+}
+END_TEST
+
+/* a cloth of 9 x 9 in the plane z = 0; another one at z = -2; %s: the obstacles */
+#define PAIR(size, colliders)                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [9, 9]}, \"mass\": {\"total\": 1}},"                 \
+    " {\"cloth\": {\"grid\": [9, 9], \"size\": " size ", \"place\": {\"translate\":"           \
+    " [0, 0, -2]}}, \"mass\": {\"total\": 1}}], \"colliders\": [" colliders "]}"
+
+static const struct cs_prod front = {.viewpoint = {.eye = {0, 0, 2},
+                                                   .target = {0, 0, 0},
+                                                   .up = {0, 1, 0},
+                                                   .fov = 90,
+                                                   .aspect = 1},
+                                     .rectangle = {0, 0, 1, 1},
+                                     .body = -1};
+
+/* The second cloth is twice as large and twice as far away, so that every line to it goes
+ * through a corner of the first: nothing is seen through seams, and of a third as large what
+ * stands out. */
+START_TEST(nothing_is_seen_through_seams) {
+    static const struct {
+        const char *scene;
+        uint32_t seen;
+    } rows[] = {{PAIR("[2, 2]", ""), 81},
+                {PAIR("[4, 4]", ""), 81 + 81 - 25},
+                {PAIR("[4, 2]", ""), 81 + 81 - 45}};
+    for (size_t k = 0; k < 3; k++) {
+        struct looker looker;
+        looker_open(&looker, rows[k].scene);
+        ck_assert_uint_eq(look(&looker, &front), rows[k].seen);
+        looker_close(&looker);
+    }
+}
+END_TEST
+
+/* Behind points on edges, from anywhere: lines along the planes between two triangles. */
+START_TEST(edges_are_tight) {
+    struct looker looker;
+    looker_open(&looker, PAIR("[1, 1]", ""));
+    const size_t n = looker.sheet.n;
+    for (int k = 0; k < 50; k++) {
+        struct cs_prod prod = front;
+        for (int c = 0; c < 3; c++)
+            prod.viewpoint.eye[c] += draw();
+        for (size_t i = 81; i < n; i++) {
+            /* inside an edge between two particles, across, down or diagonal */
+            const size_t row = 1 + i % 6, column = 1 + i / 6 % 6, from = 9 * row + column;
+            const size_t to = from + (size_t[]){1, 9, 8}[(i + (size_t)k) % 3];
+            const double share = 0.5 + 0.4 * draw(), depth = 1.5 + 0.4 * draw();
+            for (size_t c = 0; c < 3; c++) {
+                const double *x = looker.sheet.x + c * n, eye = prod.viewpoint.eye[c];
+                const double point = x[from] + share * (x[to] - x[from]);
+                looker.sheet.x[c * n + i] = eye + depth * (point - eye);
+            }
+        }
+        prod.body = 1;
+        ck_assert_uint_eq(look(&looker, &prod), 0);
+    }
+    looker_close(&looker);
+}
+END_TEST
+
+/* What touches an obstacle is seen on the near side and hidden on the far one. */
+START_TEST(obstacles_hide_what_is_behind) {
+    static const struct {
+        const char *scene;
+        uint32_t seen;
+    } rows[] = {
+        {PAIR("[1, 1]", "{\"sphere\": {\"centre\": [0, 0, 1], \"radius\": 0.01}}"), 80},
+        {PAIR("[1, 1]", "{\"sphere\": {\"centre\": [0, 0, -0.5], \"radius\": 0.5}}"), 81},
+        {PAIR("[1, 1]", "{\"sphere\": {\"centre\": [0, 0, 1], \"radius\": 0.9}}"), 0},
+        {PAIR("[1, 1]",
+              "{\"sphere\": {\"centre\": [0, 0, 1], \"radius\": 0.9}, \"visible\": false}"),
+         81},
+        {PAIR("[1, 1]", "{\"sphere\": {\"centre\": [0, 0, 3], \"radius\": 0.9}}"), 81},
+        {PAIR("[1, 1]", "{\"sphere\": {\"centre\": [0, 0, 2], \"radius\": 0.1}}"), 0},
+        {PAIR("[1, 1]", "{\"plane\": {\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}}"), 81},
+        {PAIR("[1, 1]", "{\"plane\": {\"point\": [0, 0, 0], \"normal\": [0, 0, -1]}}"), 0},
+        {PAIR("[1, 1]", "{\"plane\": {\"point\": [0, 0, 1], \"normal\": [0, 0, 1]}}"), 0},
+        {PAIR("[1, 1]", "{\"floor\": {\"height\": 0}}"), 45},
+        {PAIR("[1, 1]", "{\"floor\": {\"height\": 0.01}}"), 0},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct looker looker;
+        struct cs_prod prod = front;
+        prod.body = 0;
+        looker_open(&looker, rows[k].scene);
+        ck_assert_msg(look(&looker, &prod) == rows[k].seen, "obstacle %zu", k);
+        looker_close(&looker);
+    }
+}
+END_TEST
+
+/* What lies on a triangle, of another body at that, is seen on it from either side. */
+START_TEST(what_lies_on_a_surface_is_seen) {
+    struct looker looker;
+    looker_open(&looker, PAIR("[1, 1]", ""));
+    for (int k = 0; k < 50; k++) {
+        struct cs_prod prod = front;
+        prod.viewpoint.eye[2] *= k % 2 ? 1 : -1;
+        for (size_t i = 0; i < looker.sheet.n; i++) {
+            const double x = 0.4 * draw(), y = 0.4 * draw();
+            const double at[3] = {x, y, 0.3 * x - 0.2 * y};
+            for (size_t c = 0; c < 3 && i >= 81; c++)
+                looker.sheet.x[c * looker.sheet.n + i] = at[c];
+            if (i < 81)
+                looker.sheet.x[2 * looker.sheet.n + i] =
+                    0.3 * looker.sheet.x[i] - 0.2 * looker.sheet.x[looker.sheet.n + i];
+        }
+        for (int c = 0; c < 3; c++)
+            prod.viewpoint.eye[c] += draw();
+        prod.body = 1;
+        ck_assert_uint_eq(look(&looker, &prod), 81);
+    }
+    looker_close(&looker);
+}
+END_TEST
+
+/* A ground of two triangles that go on behind the eye hides what is below it. */
+START_TEST(ground_reaches_behind_the_eye) {
+    struct looker looker;
+    struct cs_prod prod = front;
+    looker_open(&looker, "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [20, 20],"
+                         " \"start\": \"flat\", \"place\": {\"translate\": [0, -0.5, 0]}},"
+                         " \"mass\": {\"total\": 1}},"
+                         " {\"cloth\": {\"grid\": [9, 9], \"size\": [2, 2], \"place\":"
+                         " {\"translate\": [0, 0, -2]}}, \"mass\": {\"total\": 1}}]}");
+    prod.viewpoint.eye[2] = 0;
+    prod.viewpoint.target[2] = -1;
+    prod.body = 1;
+    ck_assert_uint_eq(look(&looker, &prod), 7 * 9);
+    looker_close(&looker);
+}
+END_TEST
+
+/* Rectangles are closed; left and top are where the picture has them; a picture twice as wide
+ * shows twice as much. */
+START_TEST(rectangle_is_of_the_picture) {
+    static const struct {
+        double rectangle[4], aspect, fov;
+        uint32_t seen;
+    } rows[] = {{{0.375, 0.375, 0.625, 0.625}, 1, 90, 81},
+                {{0.5, 0.375, 0.625, 0.625}, 1, 90, 45},
+                {{0.5, 0.375, 0.625, 0.5}, 1, 90, 25},
+                {{0.5, 0.5, 0.53125, 0.625}, 1, 90, 10},
+                {{0.5, 0, 0.5625, 0.5}, 2, 90, 25},
+                {{0, 0, 0.4, 1}, 2, 90, 0},
+                {{0, 0, 0.3, 1}, 1, 90, 0},
+                {{0, 0, 0.3, 1}, 1, 40, 18}};
+    struct looker looker;
+    looker_open(&looker, PAIR("[1, 1]", ""));
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct cs_prod prod = front;
+        memcpy(prod.rectangle, rows[k].rectangle, sizeof prod.rectangle);
+        prod.viewpoint.aspect = rows[k].aspect;
+        prod.viewpoint.fov = rows[k].fov;
+        const uint32_t seen = look(&looker, &prod);
+        ck_assert_msg(seen == rows[k].seen, "%zu: %u", k, seen);
+        /* the ones to the right and above */
+        ck_assert(k != 2 || (looker.seen[4] && looker.seen[8] && !looker.seen[3]));
+    }
+    looker_close(&looker);
+}
+END_TEST
+
+START_TEST(view_is_a_tangent) {
+    for (double fov = 1; fov <= 170; fov += 0.5) {
+        struct cs_prod prod = front;
+        struct cs_sight sight;
+        prod.viewpoint.fov = fov;
+        cs_sight_make(&sight, &prod);
+        const double slope = tan(fov * (3.14159265358979323846 / 360));
+        ck_assert_msg(fabs(sight.high[1] / slope - 1) < 1e-14, "%g degrees", fov);
+        ck_assert(sight.low[1] == -sight.high[1] && sight.high[0] == sight.high[1]);
+        ck_assert(sight.axes[0][0] == 1 && sight.axes[1][1] == 1 && sight.axes[2][2] == -1);
+    }
+}
+END_TEST
+
+/* After a blow-up: what is not finite is not seen, and hides nothing. */
+START_TEST(places_that_are_not_finite) {
+    struct looker looker;
+    looker_open(&looker, PAIR("[2, 2]", ""));
+    for (size_t i = 0; i < 81; i++)
+        looker.sheet.x[i % 3 * looker.sheet.n + i] = i % 2 ? (double)NAN : (double)INFINITY;
+    looker.sheet.x[90] = -1e308;
+    ck_assert_uint_eq(look(&looker, &front), 80);
+    looker_close(&looker);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {same_as_by_brute_force,
+                                  bodies_are_looked_at_alone,
+                                  nothing_is_seen_through_seams,
+                                  edges_are_tight,
+                                  obstacles_hide_what_is_behind,
+                                  rectangle_is_of_the_picture,
+                                  what_lies_on_a_surface_is_seen,
+                                  ground_reaches_behind_the_eye,
+                                  view_is_a_tangent,
+                                  places_that_are_not_finite};
+    return unit_run("sight", tests, sizeof tests / sizeof *tests);
+}
