@@ -17,6 +17,8 @@
 #define DT_HELP "longest step; 0: one step a frame"
 #define DT_MAX  10
 
+enum { PIECE = 64 }; /* particles whose blocks are solved together */
+
 static const char *const hessians[] = {"clamped", "exact", NULL};
 
 struct linearised_options {
@@ -146,42 +148,86 @@ static enum cs_step restart_linearised(void *object, double t, const double *x,
     return CS_STEP_OK;
 }
 
-/* dv of particle i, over its force; false: its block is singular. */
-static bool solve_block(const struct block *self, size_t i, double h, const double *v) {
+/* The matrix of particle i, m I - h D_ii - h^2 K_ii. */
+static inline void block_of(const struct block *self, size_t i, double h, const double k[6],
+                            double a[6]) {
     const struct cs_view *view = self->loop.host->view;
-    const size_t n = view->n;
-    double k[6], d[6], a[6], f[3], vi[3], kv[3], b[3], dv[3];
-    cs_sym3_read(n, self->kxx, i, k);
-    cs_sym3_read(n, self->dvv, i, d);
+    double d[6];
+    cs_sym3_read(view->n, self->dvv, i, d);
     for (int c = 0; c < 6; c++)
         a[c] = -h * d[c] - h * h * k[c];
     a[0] += view->mass[i], a[3] += view->mass[i], a[5] += view->mass[i];
+}
 
-    cs_vec3_read(n, self->f, i, f);
-    cs_vec3_read(n, v, i, vi);
-    cs_sym3_mul(k, vi, kv);
-    for (int c = 0; c < 3; c++)
-        b[c] = h * (f[c] + h * kv[c]);
-    if (!cs_sym3_invert(a, a))
-        return false;
-    cs_sym3_mul(a, b, dv);
-    cs_vec3_write(n, self->f, i, dv);
-    return true;
+/* dv of some particles from `first` on. No particle is treated apart, and dv lies where no
+ * other pointer leads, so that the loop vectorises. false: a block is singular. */
+static inline bool solve_piece(const struct block *self, size_t first, size_t count, double h,
+                               const double *v, double dv[3][PIECE]) {
+    const size_t n = self->loop.host->view->n;
+    double determinant[PIECE];
+    for (size_t i = 0; i < count; i++) {
+        double k[6], a[6], f[3], vi[3], kv[3], b[3], out[3];
+        cs_sym3_read(n, self->kxx, first + i, k);
+        block_of(self, first + i, h, k, a);
+        cs_vec3_read(n, self->f, first + i, f);
+        cs_vec3_read(n, v, first + i, vi);
+        cs_sym3_mul(k, vi, kv);
+        for (int c = 0; c < 3; c++)
+            b[c] = h * (f[c] + h * kv[c]);
+        determinant[i] = cs_sym3_invert_any(a, a);
+        cs_sym3_mul(a, b, out);
+        for (int c = 0; c < 3; c++)
+            dv[c][i] = out[c];
+    }
+    bool regular = true;
+    for (size_t i = 0; i < count; i++)
+        regular &= cs_sym3_is_regular(determinant[i]);
+    return regular;
+}
+
+/* dv of every particle, over its force; false: a block is singular. */
+static bool solve_blocks(struct block *self, double h, const double *v) {
+    const struct cs_view *view = self->loop.host->view;
+    const size_t n = view->n;
+    bool regular = true;
+    for (size_t start = 0; start < n; start += PIECE) {
+        double dv[3][PIECE];
+        const size_t count = n - start < PIECE ? n - start : PIECE;
+        regular &= solve_piece(self, start, count, h, v, dv);
+        // a pinned particle keeps its zero force as dv
+        for (size_t c = 0; c < 3; c++)
+            for (size_t i = 0; i < count; i++)
+                self->f[c * n + start + i] = view->inv_mass[start + i] > 0 ? dv[c][i] : 0;
+    }
+    return regular;
+}
+
+/* The first free particle with a singular block, or n. */
+static size_t find_singular(const struct block *self, double h) {
+    const struct cs_view *view = self->loop.host->view;
+    for (size_t i = 0; i < view->n; i++) {
+        double k[6], a[6];
+        cs_sym3_read(view->n, self->kxx, i, k);
+        block_of(self, i, h, k, a);
+        if (view->inv_mass[i] > 0 && !cs_sym3_invert(a, a))
+            return i;
+    }
+    return view->n;
 }
 
 static enum cs_step step_block(struct fixed_step *loop, double t, double h, double *x,
                                double *v) {
     struct block *self = (struct block *)loop;
     const struct cs_host *host = loop->host;
-    const size_t n = host->view->n;
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
     host->diagonal(host->ctx, t, x, v, self->kxx, self->dvv);
-    for (size_t i = 0; i < n; i++)
-        // a pinned particle keeps its zero force as dv
-        if (host->view->inv_mass[i] > 0 && !solve_block(self, i, h, v))
+    if (!solve_blocks(self, h, v)) {
+        const size_t i = find_singular(self, h);
+        if (i < host->view->n)
             return host->fail(host->ctx, "the block of particle %zu is singular at t = %g s", i,
                               t);
-    move(n, h, self->f, x, v);
+    }
+    move(host->view->n, h, self->f, x, v);
     return CS_STEP_OK;
 }
 

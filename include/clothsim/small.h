@@ -37,22 +37,19 @@ static inline void cs_sym3_mul(const double a[6], const double p[3], double out[
     out[2] = a[2] * p[0] + a[4] * p[1] + a[5] * p[2];
 }
 
-/* The inverse by cofactors, definite or not. false if a is singular to working precision (the
- * determinant of a, scaled to a largest entry of 1, is below 1e-30) or not finite; inverse is
- * then not written. inverse may be a. */
-static inline bool cs_sym3_invert(const double a[6], double inverse[6]) {
+/* The inverse by cofactors, definite or not, without a branch, so that loops over many blocks
+ * vectorise. Returns the determinant of a scaled to a largest entry of 1: where that is not
+ * above 1e-30 in magnitude (cs_sym3_is_regular), a is singular to working precision or not
+ * finite, and inverse is worthless. inverse may be a. */
+static inline double cs_sym3_invert_any(const double a[6], double inverse[6]) {
     double largest = 0;
     for (int c = 0; c < 6; c++)
         largest = fabs(a[c]) > largest ? fabs(a[c]) : largest;
-    if (!(largest > 0 && largest < HUGE_VAL))
-        return false;
     // scaled, so that light particles do not underflow
     const double xx = a[0] / largest, xy = a[1] / largest, xz = a[2] / largest;
     const double yy = a[3] / largest, yz = a[4] / largest, zz = a[5] / largest;
     const double cxx = yy * zz - yz * yz, cxy = xz * yz - xy * zz, cxz = xy * yz - xz * yy;
     const double det = xx * cxx + xy * cxy + xz * cxz;
-    if (!(fabs(det) > 1e-30))
-        return false;
     const double scale = det * largest;
     inverse[0] = cxx / scale;
     inverse[1] = cxy / scale;
@@ -60,6 +57,21 @@ static inline bool cs_sym3_invert(const double a[6], double inverse[6]) {
     inverse[3] = (xx * zz - xz * xz) / scale;
     inverse[4] = (xy * xz - xx * yz) / scale;
     inverse[5] = (xx * yy - xy * xy) / scale;
+    return det;
+}
+
+/* Not a number is not regular. */
+static inline bool cs_sym3_is_regular(double scaled_determinant) {
+    return fabs(scaled_determinant) > 1e-30;
+}
+
+/* The same for one block: false if a is singular or not finite, and inverse is not written. */
+static inline bool cs_sym3_invert(const double a[6], double inverse[6]) {
+    double found[6];
+    if (!cs_sym3_is_regular(cs_sym3_invert_any(a, found)))
+        return false;
+    for (int c = 0; c < 6; c++)
+        inverse[c] = found[c];
     return true;
 }
 

@@ -57,7 +57,7 @@ static const struct cs_arg rows[RUN_ROWS] = {
     [RUN_WATCH] = {"watch", 0, "FILE",
                    "write energy, largest strain and largest velocity of each frame as CSV",
                    false},
-    [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a step and of a picture", false},
+    [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a run, and tell its peak memory", false},
     [RUN_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
     [RUN_FAST] = {"fast-render", 0, NULL,
                   "use all of the processor; pixels then depend on the machine", false},

@@ -51,11 +51,21 @@ static void add_verdict(const struct cs_session *session, struct cs_text *out) {
     cs_text_add(out, ", %s\n", session->integrator->name);
 }
 
+/* What was decided, and what it came to once the method had taken its own. */
+static void add_plan(const struct cs_session *session, struct cs_text *out) {
+    const size_t bytes = cs_run_bytes(&session->run);
+    cs_plan_print(&session->plan, out);
+    cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", "method", "built",
+                session->run.method_bytes, session->integrator->name);
+    cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f a particle\n", "in all", "", bytes,
+                (double)bytes / session->plan.n);
+}
+
 static enum cs_status print_scene(struct cs_args *args, const struct cs_session *session,
                                   struct cs_error *error) {
     struct cs_text out = {0};
     if (cs_args_get(args, SCENE_PLAN))
-        cs_plan_print(&session->plan, &out);
+        add_plan(session, &out);
     else if (cs_args_get(args, SCENE_RESOLVED)) {
         cs_scene_print(&session->scene, &session->option_table, session->options, 0, &out);
         cs_text_add(&out, "\n");
@@ -74,7 +84,10 @@ static enum cs_status open_scene(struct cs_args *args, struct cs_error *error) {
     if (cs_args_overrides(args, SCENE_SET, &settings.overrides, &settings.n_overrides, error) ||
         cs_args_all(args, SCENE_PLUGIN, &settings.plugins, &settings.n_plugins, error))
         return error->status;
-    if (!cs_session_open_plan(&session, &settings, error))
+    enum cs_status (*const open)(struct cs_session *, const struct cs_session_settings *,
+                                 struct cs_error *) =
+        cs_args_get(args, SCENE_PLAN) ? cs_session_open : cs_session_open_plan;
+    if (!open(&session, &settings, error))
         print_scene(args, &session, error);
     cs_session_close(&session);
     return error->status;

@@ -35,15 +35,20 @@ static void describe_method(const struct cs_session *session, struct cs_text *ou
     }
 }
 
-/* The scene with every value: what the scene hash is of. */
+/* The scene with every value; the scene hash is of it and of the meshes that it names. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     const struct cs_session *session = &job->session;
+    struct cs_text hashed = {0};
     cs_scene_print(&session->scene, &session->option_table, session->options, 2, &job->scene);
     describe_method(session, &job->method);
-    if (job->scene.failed || job->method.failed)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
-    cs_hash_bytes(job->scene.bytes, job->scene.length, job->scene_hash);
-    return CS_OK;
+    cs_text_add(&hashed, "%s", cs_text_get(&job->scene));
+    cs_scene_print_files(&session->scene, &hashed);
+    if (job->scene.failed || job->method.failed || hashed.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
+    else
+        cs_hash_bytes(hashed.bytes, hashed.length, job->scene_hash);
+    cs_text_finish(&hashed);
+    return error->status;
 }
 
 static uint32_t frames_of_one_second(const struct cs_scene *scene) {
@@ -65,10 +70,17 @@ static enum cs_status check_outputs(const struct cs_job_settings *settings,
     return cs_output_check(settings->states, true, error);
 }
 
+/* more than one, so that drawing and encoding can overlap the run */
+static bool has_processors(void) {
+    return sysconf(_SC_NPROCESSORS_ONLN) > 1;
+}
+
 static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
+    /* what prods see is drawn from the events, which move on with the run */
+    const bool beside = has_processors() && !job->session.scene.render.prods;
     if (cs_picture_open(&job->picture, &job->session.system, (enum cs_gl)settings->gl,
-                        settings->fast, error))
+                        settings->fast, beside, error))
         return error->status;
     cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));
     if (job->renderer.failed)
@@ -88,9 +100,8 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
         return CS_OK;
     if (cs_output_prepare(settings->folder, false, error))
         return error->status;
-    const bool threaded = sysconf(_SC_NPROCESSORS_ONLN) > 1;
     return cs_frames_create(settings->folder, (uint32_t)size[0], (uint32_t)size[1],
-                            (int)settings->level, threaded, &job->writer, error);
+                            (int)settings->level, has_processors(), &job->writer, error);
 }
 
 static enum cs_status keep(struct cs_job *job, const struct cs_job_frame *frame,
@@ -111,16 +122,16 @@ static enum cs_status keep(struct cs_job *job, const struct cs_job_frame *frame,
 
 /* Hands the picture over with what says where it came from. */
 static enum cs_status give_picture(struct cs_job *job, struct cs_error *error) {
-    const struct cs_run *run = &job->session.run;
+    const struct cs_job_picture *picture = &job->begun;
     const struct cs_scene *scene = &job->session.scene;
     char number[16];
     struct cs_text time = {0}, range = {0};
-    snprintf(number, sizeof number, "%u", run->frame);
-    cs_text_add_real(&time, run->t);
+    snprintf(number, sizeof number, "%u", picture->number);
+    cs_text_add_real(&time, picture->time);
     if (cs_picture_is_coloured(scene)) {
-        cs_text_add_real(&range, job->picture.range[0]);
+        cs_text_add_real(&range, picture->range[0]);
         cs_text_add(&range, "..");
-        cs_text_add_real(&range, job->picture.range[1]);
+        cs_text_add_real(&range, picture->range[1]);
         cs_text_add(&range, " %s", cs_picture_unit(scene));
     }
     const struct cs_png_text texts[] = {
@@ -129,7 +140,7 @@ static enum cs_status give_picture(struct cs_job *job, struct cs_error *error) {
         {"clothsim:frame", number},
         {"clothsim:time", cs_text_get(&time)},
         {"clothsim:integrator", cs_text_get(&job->method)},
-        {"clothsim:state-hash", job->hash},
+        {"clothsim:state-hash", picture->hash},
         {"clothsim:renderer", cs_text_get(&job->renderer)},
         {"clothsim:range", cs_text_get(&range)},
     };
@@ -137,21 +148,40 @@ static enum cs_status give_picture(struct cs_job *job, struct cs_error *error) {
     if (time.failed || range.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
     else
-        cs_frames_give(job->writer, run->frame, texts, n_texts, error);
+        cs_frames_give(job->writer, picture->number, texts, n_texts, error);
     cs_text_finish(&time);
     cs_text_finish(&range);
     return error->status;
 }
 
-static enum cs_status draw(struct cs_job *job, struct cs_job_frame *frame,
-                           struct cs_error *error) {
-    struct cs_image *image = cs_frames_take(job->writer);
-    if (cs_picture_paint(&job->picture, &job->session.run, image, error) ||
-        give_picture(job, error))
+/* Waits for the picture under way and hands it over. */
+static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
+    const double start = cs_clock_wall();
+    if (!job->begun.number)
+        return CS_OK;
+    const enum cs_status status = cs_picture_end(&job->picture, error);
+    job->wait_seconds += cs_clock_wall() - start;
+    if (!status && !give_picture(job, error))
+        job->drawn++;
+    job->begun.number = 0;
+    return error->status;
+}
+
+/* The picture of this frame; that of the one before has been drawn in the meantime. */
+static enum cs_status begin_picture(struct cs_job *job, struct cs_job_frame *frame,
+                                    struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    if (end_picture(job, error))
         return error->status;
-    frame->drawn = true;
+    const double start = cs_clock_wall();
+    struct cs_image *image = cs_frames_take(job->writer);
+    job->wait_seconds += cs_clock_wall() - start;
+    cs_picture_begin(&job->picture, run, image);
+    job->begun = (struct cs_job_picture){.number = run->frame, .time = run->t};
+    memcpy(job->begun.hash, job->hash, sizeof job->hash);
+    memcpy(job->begun.range, job->picture.range, sizeof job->begun.range);
     memcpy(frame->range, job->picture.range, sizeof frame->range);
-    job->drawn++;
+    frame->drawn = true;
     return CS_OK;
 }
 
@@ -205,7 +235,7 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
     if (settings->states &&
         cs_output_state(settings->states, run->frame, run->x, run->v, n, error))
         return error->status;
-    if (job->writer && run->frame % settings->every == 0 && draw(job, &frame, error))
+    if (job->writer && run->frame % settings->every == 0 && begin_picture(job, &frame, error))
         return error->status;
     if (cs_job_wants_json(settings) && keep(job, &frame, error))
         return error->status;
@@ -226,6 +256,18 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
+/* Also of a run that failed: its last picture is of a frame that was fine. The first failure
+ * wins: a later one of drawing or writing changes nothing. */
+static void finish_pictures(struct cs_job *job, struct cs_error *error) {
+    struct cs_error later = {0};
+    end_picture(job, &later);
+    const double start = cs_clock_wall();
+    cs_frames_finish(job->writer, &job->encode_seconds, &later);
+    job->wait_seconds += cs_clock_wall() - start;
+    if (!error->status)
+        *error = later;
+}
+
 enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
                           struct cs_error *error) {
     const double start = cs_clock_wall();
@@ -244,16 +286,16 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (!begin_watch(job, error))
         run_frames(job, error);
     write_watch(job, error);
-    /* the first failure wins: a later one of the writer changes nothing */
     if (job->writer)
-        cs_frames_finish(job->writer, &job->encode_seconds, error);
+        finish_pictures(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;
 }
 
 void cs_job_finish(struct cs_job *job) {
-    cs_frames_destroy(job->writer);
+    /* a picture under way is drawn into an image of the writer's */
     cs_picture_close(&job->picture);
+    cs_frames_destroy(job->writer);
     cs_session_close(&job->session);
     cs_text_finish(&job->scene);
     cs_text_finish(&job->method);

@@ -27,6 +27,14 @@ struct cs_job_frame {
     double range[2]; /* of the colours, where drawn by a value */
 };
 
+/* The frame whose picture is being drawn while the run goes on. */
+struct cs_job_picture {
+    uint32_t number; /* 0: none */
+    double time;     /* s */
+    char hash[CS_HASH_DIGITS];
+    double range[2];
+};
+
 /* Zeroed: nothing done. */
 struct cs_job {
     const struct cs_job_settings *settings;
@@ -41,10 +49,12 @@ struct cs_job {
     struct cs_text scene;            /* the resolved scene, indented by two */
     struct cs_text method;           /* "NAME:key=value,..." with every option */
     struct cs_text renderer;         /* description; empty unless pictures are drawn */
-    char scene_hash[CS_HASH_DIGITS]; /* of the resolved scene */
+    char scene_hash[CS_HASH_DIGITS]; /* of the resolved scene and its mesh files */
     char hash[CS_HASH_DIGITS];       /* of the last frame's state */
+    struct cs_job_picture begun;     /* not yet written */
     uint32_t drawn;                  /* pictures written */
     double wall_seconds, encode_seconds;
+    double wait_seconds; /* that the run stood still for its pictures */
 };
 
 /* Opens the session, checks and prepares the folders, runs to the last frame, a blow-up or an

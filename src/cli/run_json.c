@@ -87,7 +87,10 @@ static void add_measures(const struct cs_run *run, struct cs_text *out) {
     add_real(out, ", \"elastic\": ", energy.elastic);
     add_real(out, ", \"gravity\": ", energy.gravity);
     add_real(out, "},\n  \"largest_strain\": ", cs_measure_strain(run->system, run->x));
-    cs_text_add(out, ",\n  \"notes\": [");
+    cs_text_add(out, ",\n  \"memory\": {\"bytes\": %zu, \"method\": %zu", cs_run_bytes(run),
+                run->method_bytes);
+    add_real(out, ", \"a_particle\": ", (double)cs_run_bytes(run) / run->system->view.n);
+    cs_text_add(out, "},\n  \"notes\": [");
     for (uint32_t i = 0; i < run->n_notes; i++) {
         cs_text_add(out, i ? ", " : "");
         cs_text_add_json(out, run->notes[i]);
@@ -107,6 +110,7 @@ static void add_seconds(const struct cs_job *job, struct cs_text *out) {
     if (job->settings->session.timed && job->settings->session.render) {
         add_real(out, ", \"draw\": ", job->picture.seconds);
         add_real(out, ", \"encode\": ", job->encode_seconds);
+        add_real(out, ", \"wait\": ", job->wait_seconds);
     }
     cs_text_add(out, "},\n");
 }

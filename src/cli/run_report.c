@@ -1,5 +1,6 @@
 #include "cli/run_report.h"
 
+#include "base/peak.h"
 #include "cli/print.h"
 
 #include <stdarg.h>
@@ -81,6 +82,8 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     add_row(out, "energy", "%.6g J kinetic, %.6g J elastic, %.6g J gravity", energy.kinetic,
             energy.elastic, energy.gravity);
     add_row(out, "largest strain", "%.4g %%", 100 * cs_measure_strain(run->system, run->x));
+    add_row(out, "memory", "%zu bytes in arrays, %.1f a particle", cs_run_bytes(run),
+            (double)cs_run_bytes(run) / run->system->view.n);
     add_row(out, "wall time", "%.3g s, %.3g s of it in the method", job->wall_seconds,
             run->advance_seconds);
 }
@@ -94,10 +97,14 @@ static void add_stage(const struct cs_job *job, const char *name, double seconds
 
 static void add_stages(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "a frame [ms]");
+    add_stage(job, "simulate", job->session.run.advance_seconds, out);
     for (uint32_t s = 0; s < CS_STAGES; s++)
         add_stage(job, cs_stage_names[s], job->session.run.stage_seconds[s], out);
     add_stage(job, "draw", job->picture.seconds, out);
     add_stage(job, "encode", job->encode_seconds, out);
+    add_stage(job, "wait", job->wait_seconds, out);
+    add_row(out, "peak memory", "%.1f MiB of the whole process",
+            (double)cs_peak_memory() / (1 << 20));
 }
 
 static void add_files(const struct cs_job *job, struct cs_text *out) {

@@ -193,7 +193,7 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
         cs_net_draw_edges(&canvas->net, &canvas->lines, frame->x);
     if (look == CS_LOOK_SPRINGS) {
         cs_net_draw_springs(&canvas->net, &canvas->lines, frame->x);
-        cs_net_draw_pins(&canvas->net, &canvas->lines, frame->x);
+        cs_net_draw_pins(&canvas->net, &canvas->lines, frame->x, frame->inv_mass);
     }
     if (look == CS_LOOK_GOALS && frame->goals)
         cs_net_draw_goals(&canvas->net, &canvas->lines, frame->x, frame->goals);

@@ -94,16 +94,16 @@ void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const
     }
 }
 
-void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x) {
+void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x,
+                      const double *inv_mass) {
     // a light disc with a dark rim
     static const uint32_t colours[2] = {0x1d2733, 0xffd34d};
-    const struct cs_view *view = &net->system->view;
     for (int pass = 0; pass < 2; pass++) {
         struct cs_line_style style = {.alpha = 1, .lift = 2 * net->lift};
         cs_colour_linear(colours[pass], style.colour);
         style.half_width = cs_net_width(net, 0.4, 2.2, 5) - pass * 1.1 * net->unit;
-        for (uint32_t i = 0; i < view->n; i++)
-            if (view->inv_mass[i] == 0)
+        for (uint32_t i = 0; i < net->system->view.n; i++)
+            if (inv_mass[i] == 0)
                 add(net, lines, x, i, i);
         cs_lines_draw(lines, &style);
     }

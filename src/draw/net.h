@@ -22,7 +22,8 @@ uint32_t cs_net_capacity(const struct cs_system *system);
 
 void cs_net_draw_edges(const struct cs_net *net, struct cs_lines *lines, const double *x);
 void cs_net_draw_springs(const struct cs_net *net, struct cs_lines *lines, const double *x);
-void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x);
+void cs_net_draw_pins(const struct cs_net *net, struct cs_lines *lines, const double *x,
+                      const double *inv_mass);
 /* A line from each particle to its goal, and a dot there; goals (3,n). A particle at its goal
  * has the dot alone. */
 void cs_net_draw_goals(const struct cs_net *net, struct cs_lines *lines, const double *x,

@@ -2,6 +2,9 @@
  *
  * The modules render-osmesa.so and render-egl.so hold everything that touches OpenGL, and are
  * loaded only when a frame is asked for (cs_renderer_open).
+ *
+ * A canvas belongs to the thread that made it. Scene and system may be stepped on another while
+ * it paints: of what steps and events change, it reads nothing but the frame.
  */
 #ifndef CS_RENDER_H
 #define CS_RENDER_H
@@ -30,7 +33,8 @@ struct cs_frame {
     const double
         *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */
     double range[2]; /* values at the ends of the colours; lowest first */
-    const double *goals; /* (3,n) m, of look goals; else NULL */
+    const double *goals;    /* (3,n) m, of look goals; else NULL */
+    const double *inv_mass; /* (n) in 1/kg; 0: held, which some looks mark */
 };
 
 #define CS_RENDERER_ABI 2u

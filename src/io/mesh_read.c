@@ -238,8 +238,9 @@ enum cs_status cs_mesh_read(const char *path, const char *name, const double sca
                             struct cs_error *error) {
     char *text;
     size_t length;
-    if (!cs_file_read(path, MESH_BYTES_MAX, &text, &length, error))
-        cs_mesh_read_text(name, text, length, scale, mesh, arena, error);
+    if (!cs_file_read(path, MESH_BYTES_MAX, &text, &length, error) &&
+        !cs_mesh_read_text(name, text, length, scale, mesh, arena, error))
+        cs_hash_bytes(text, length, mesh->file_hash);
     free(text);
     return error->status;
 }

@@ -10,8 +10,8 @@
 #include "model/trimesh.h"
 
 /* Reads and finishes a mesh; coordinates are multiplied by scale. name is for messages, which
- * start with `name:line: `. CS_ERR_FILE where the file cannot be read or the mesh is not sound
- * (cs_trimesh_finish), CS_ERR_MEMORY. */
+ * start with `name:line: `. mesh->file_hash is that of the file. CS_ERR_FILE where the file
+ * cannot be read or the mesh is not sound (cs_trimesh_finish), CS_ERR_MEMORY. */
 enum cs_status cs_mesh_read(const char *path, const char *name, const double scale[3],
                             struct cs_trimesh *mesh, struct cs_arena *arena,
                             struct cs_error *error);

@@ -53,15 +53,11 @@ static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_
     return cs_trimesh_finish(mesh, cs_mesh_shape_names[source->shape], NULL, arena, error);
 }
 
-static enum cs_status read_mesh(struct cs_reader *reader, const struct cs_json *root,
-                                struct cs_scene *scene, uint32_t b) {
-    struct cs_body *body = cs_scene_bodies(scene) + b;
-    struct cs_mesh_source *source = &body->mesh;
+static enum cs_status make_mesh(struct cs_reader *reader, const struct cs_json *root,
+                                struct cs_scene *scene, uint32_t b, struct cs_trimesh *mesh) {
+    const struct cs_body *body = cs_scene_bodies(scene) + b;
+    const struct cs_mesh_source *source = &body->mesh;
     struct cs_error said = {0};
-    struct cs_trimesh *mesh = cs_arena_take(reader->arena, sizeof *mesh, reader->error);
-    if (!mesh)
-        return reader->error->status;
-    source->geometry = mesh;
     if (source->shape == CS_MESH_LIMBS && source->detail < LIMBS_DETAIL_MIN)
         return refuse(reader, root, b, "mesh.detail", CS_ERR_SCENE,
                       "limbs need at least 8, or some are lost");
@@ -107,6 +103,18 @@ static enum cs_status cut_body(struct cs_reader *reader, const struct cs_json *r
         return reader->error->status;
     matching->parts = parts;
     return cs_clusters_make(body, parts, reader->arena, reader->error);
+}
+
+static enum cs_status read_mesh(struct cs_reader *reader, const struct cs_json *root,
+                                struct cs_scene *scene, uint32_t b) {
+    const size_t before = reader->arena->used;
+    struct cs_trimesh *mesh = cs_arena_take(reader->arena, sizeof *mesh, reader->error);
+    if (!mesh)
+        return reader->error->status;
+    cs_scene_bodies(scene)[b].mesh.geometry = mesh;
+    const enum cs_status status = make_mesh(reader, root, scene, b, mesh);
+    mesh->bytes = reader->arena->used - before;
+    return status;
 }
 
 enum cs_status cs_scene_read_meshes(struct cs_reader *reader, const struct cs_json *root,

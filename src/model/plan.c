@@ -6,6 +6,7 @@
 #include "model/prods.h"
 #include "model/shape.h"
 #include "model/springs.h"
+#include "model/system.h"
 #include "model/trimesh.h"
 
 #include <clothsim/integrator.h>
@@ -39,12 +40,23 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uin
     }
 }
 
+static size_t mesh_bytes(const struct cs_scene *scene) {
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    size_t bytes = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        bytes += bodies[b].mesh.present ? bodies[b].mesh.geometry->bytes : 0;
+    return bytes;
+}
+
 static bool any_body(const struct cs_scene *scene, bool (*has)(const struct cs_body *body)) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         if (has(bodies + b))
             return true;
     return false;
+}
+static bool is_mesh(const struct cs_body *body) {
+    return body->mesh.present;
 }
 static bool has_damping(const struct cs_body *body) {
     return body->springs.damping > 0;
@@ -72,9 +84,11 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
                drag = forces->drag > 0 || cs_event_key_changes(scene, "forces.drag");
     const bool area = (wind && forces->wind.strength_unit == CS_WIND_PA) ||
                       (drag && forces->drag_unit == CS_DRAG_AREA);
-    plan->state_bytes = (6 + 3 + 2) * n * real;
+    plan->state_bytes = (6 + 3 + 2) * n * real + scene->bodies.n * sizeof(struct cs_body_range);
 
     const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
+    decide(plan, CS_FEATURE_MESHES, any_body(scene, is_mesh), mesh_bytes(scene),
+           "bodies are meshes", "every body is a grid");
     decide(plan, CS_FEATURE_SPRINGS, s > 0,
            n_runs * sizeof(struct cs_spring_run) + 2 * n_listed * real,
            "the bodies have springs",
@@ -115,7 +129,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "bodies have shape_matching, and the integrator asks for it",
            needs & CS_NEED_CLUSTERS ? "no body has shape_matching"
                                     : "the integrator does not ask for it");
-    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 24 * n) * real,
+    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 22 * n) * real,
            "the integrator asks for it", "the integrator does not ask for it");
     decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
 }

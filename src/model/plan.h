@@ -8,6 +8,7 @@
 
 /* X(name, what is printed) in the order of printing; each is a feature that may be absent */
 #define CS_FEATURE_LIST(X)                                                                     \
+    X(MESHES, "meshes")                                                                        \
     X(SPRINGS, "springs")                                                                      \
     X(DAMPING, "spring damping")                                                               \
     X(GRAVITY, "gravity")                                                                      \
@@ -40,7 +41,7 @@ struct cs_plan_row {
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
     uint32_t n_surface, n_inner; /* springs on the surfaces of meshes, of networks in them */
-    size_t state_bytes;          /* state, masses and start */
+    size_t state_bytes;          /* state, masses, start and ranges of bodies */
     struct cs_plan_row rows[CS_FEATURES];
 };
 

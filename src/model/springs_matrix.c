@@ -8,53 +8,99 @@
 #include <math.h>
 #include <string.h>
 
-/* alpha I + beta u u^T is minus the stiffness of one spring; both damping models beside it */
+/* symmetric blocks of one piece's springs, a row each: xx, xy, xz, yy, yz, zz */
 struct blocks {
-    double alpha, beta; /* of -df/dx */
-    double gamma, eta;  /* of -df/dv: gamma I + eta u u^T */
-    double u[3];
+    double rows[6][PIECE];
 };
 
-static struct blocks blocks_of(const struct cs_spring_run *run, uint32_t n, const double *x,
-                               uint32_t i) {
-    struct blocks blocks = {0};
-    double squared = DBL_MIN;
-    for (uint32_t c = 0; c < 3; c++) {
-        blocks.u[c] = x[c * n + cs_spring_b(run, i)] - x[c * n + cs_spring_a(run, i)];
-        squared += blocks.u[c] * blocks.u[c];
+/* a I + b u u^T */
+CS_INLINE void set_block(struct blocks *blocks, size_t i, double a, double b, double ux,
+                         double uy, double uz) {
+    blocks->rows[0][i] = a + b * ux * ux;
+    blocks->rows[1][i] = b * ux * uy;
+    blocks->rows[2][i] = b * ux * uz;
+    blocks->rows[3][i] = a + b * uy * uy;
+    blocks->rows[4][i] = b * uy * uz;
+    blocks->rows[5][i] = a + b * uz * uz;
+}
+
+/* Adds the blocks of a piece to both ends, sums (6,n). The second ends come first: a particle
+ * in the middle of a grid's row meets the spring on its left before the one on its right, as
+ * springs come one by one. */
+CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks, size_t n,
+                          double *sums) {
+    double *a = sums + piece->run->a, *b = sums + piece->run->b;
+    if (!piece->run->ends) {
+        for (size_t c = 0; c < 6; c++) {
+            add_row(piece->count, blocks->rows[c], b + piece->start + c * n);
+            add_row(piece->count, blocks->rows[c], a + piece->start + c * n);
+        }
+        return;
     }
-    const double inverse = 1 / sqrt(squared), ratio = cs_spring_length(run, i) * inverse;
-    for (uint32_t c = 0; c < 3; c++)
-        blocks.u[c] *= inverse;
-    blocks.alpha = cs_spring_stiffness(run, i) * (1 - ratio);
-    blocks.beta = cs_spring_stiffness(run, i) * ratio;
-    *(run->axial ? &blocks.eta : &blocks.gamma) = run->damping;
-    return blocks;
+    const uint32_t *ends = piece->run->ends + 2 * (size_t)piece->start;
+    for (size_t i = 0; i < piece->count; i++)
+        for (size_t c = 0; c < 6; c++) {
+            a[c * n + ends[2 * i]] += blocks->rows[c][i];
+            b[c * n + ends[2 * i + 1]] += blocks->rows[c][i];
+        }
 }
 
-/* blocks (6,n) of particle i += share (a I + b u u^T) */
-static void add_block(double *blocks, uint32_t n, uint32_t i, double a, double b,
-                      const double u[3]) {
-    blocks[i] += a + b * u[0] * u[0];
-    blocks[n + i] += b * u[0] * u[1];
-    blocks[2 * n + i] += b * u[0] * u[2];
-    blocks[3 * n + i] += a + b * u[1] * u[1];
-    blocks[4 * n + i] += b * u[1] * u[2];
-    blocks[5 * n + i] += a + b * u[2] * u[2];
+/* Own blocks of one piece: of df/dx; of df/dv only with axial dampers, which turn with the
+ * spring. */
+CS_INLINE void piece_diagonal(const struct piece *piece, struct ends e, const bool listed,
+                              const bool axial, struct blocks *stiff, struct blocks *damp) {
+    const struct cs_spring_run *run = piece->run;
+    const double L = run->length, k = run->stiffness, damping = run->damping;
+    const size_t count = piece->count;
+    for (size_t i = 0; i < count; i++) {
+        const double length = listed ? piece->lengths[i] : L;
+        const double stiffness = listed ? piece->stiffnesses[i] : k;
+        const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i], dz = e.bz[i] - e.az[i];
+        const double inverse = 1 / sqrt(dx * dx + dy * dy + dz * dz + DBL_MIN);
+        const double ratio = length * inverse;
+        const double ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
+        set_block(stiff, i, -(stiffness * (1 - ratio)), -(stiffness * ratio), ux, uy, uz);
+        if (axial)
+            set_block(damp, i, 0, -damping, ux, uy, uz);
+    }
 }
 
-void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const double *x,
-                             double *kxx, double *dvv) {
+/* relative dampers are the same in every direction */
+CS_INLINE void add_relative(const struct piece *piece, size_t n, double *dvv) {
+    const double damping = piece->run->damping;
+    for (size_t c = 0; c < 6; c += c ? 2 : 3)
+        for (uint32_t i = piece->start; i < piece->start + piece->count; i++) {
+            dvv[c * n + cs_spring_b(piece->run, i)] -= damping;
+            dvv[c * n + cs_spring_a(piece->run, i)] -= damping;
+        }
+}
+
+CS_INLINE void run_diagonal(const struct cs_spring_run *run, uint32_t n, const double *x,
+                            const bool listed, double *kxx, double *dvv) {
+    struct gathered places;
+    struct blocks stiff, damp;
+    for (uint32_t start = 0; start < run->count; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        const struct ends e = ends_of(&piece, x, n, &places);
+        if (run->axial && run->damping != 0) {
+            piece_diagonal(&piece, e, listed, true, &stiff, &damp);
+            add_blocks(&piece, &damp, n, dvv);
+        } else
+            piece_diagonal(&piece, e, listed, false, &stiff, &damp);
+        add_blocks(&piece, &stiff, n, kxx);
+        if (!run->axial && run->damping != 0)
+            add_relative(&piece, n, dvv);
+    }
+}
+
+CS_CLONES void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n,
+                                       const double *x, double *kxx, double *dvv) {
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        for (uint32_t i = 0; i < run->count; i++) {
-            const struct blocks s = blocks_of(run, n, x, i);
-            const uint32_t a = cs_spring_a(run, i), b = cs_spring_b(run, i);
-            add_block(kxx, n, a, -s.alpha, -s.beta, s.u);
-            add_block(kxx, n, b, -s.alpha, -s.beta, s.u);
-            add_block(dvv, n, a, -s.gamma, -s.eta, s.u);
-            add_block(dvv, n, b, -s.gamma, -s.eta, s.u);
-        }
+        if (run->ends)
+            run_diagonal(run, n, x, true, kxx, dvv);
+        else
+            run_diagonal(run, n, x, false, kxx, dvv);
     }
 }
 
@@ -127,16 +173,18 @@ CS_CLONES void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n,
     }
 }
 
-void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
-                                const double *factors, double *blocks) {
+CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
+                                          const double *factors, double *sums) {
+    struct blocks blocks;
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        const double *s = factors + 4 * (size_t)run->first;
-        const uint32_t count = run->count;
-        for (uint32_t i = 0; i < count; i++) {
-            const double w[3] = {s[count + i], s[2 * count + i], s[3 * count + i]};
-            add_block(blocks, n, cs_spring_a(run, i), s[i], 1, w);
-            add_block(blocks, n, cs_spring_b(run, i), s[i], 1, w);
+        for (uint32_t start = 0; start < run->count; start += PIECE) {
+            const struct piece piece = piece_of(run, start);
+            const double *s = factors + 4 * (size_t)run->first + start;
+            const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
+            for (size_t i = 0; i < piece.count; i++)
+                set_block(&blocks, i, s[i], 1, wx[i], wy[i], wz[i]);
+            add_blocks(&piece, &blocks, n, sums);
         }
     }
 }

@@ -3,6 +3,7 @@
 #define CS_TRIMESH_H
 
 #include "base/arena.h"
+#include "base/hash.h"
 #include "model/scene.h"
 
 struct cs_trimesh {
@@ -20,7 +21,9 @@ struct cs_trimesh {
     double edge;     /* m, mean length of an edge */
     uint32_t n_open; /* edges of one triangle only; 0: the mesh is closed */
 
-    uint32_t *inner; /* (n_inner, 2) springs of a network (network.h) */
+    uint32_t *inner;                /* (n_inner, 2) springs of a network (network.h) */
+    char file_hash[CS_HASH_DIGITS]; /* of the bytes of its file; empty: a shape */
+    size_t bytes; /* of this struct and its arrays, set by the reader of the scene */
 };
 
 /* Takes the arrays that the maker of a mesh fills: places, triangles and, if asked for, uv. */

@@ -104,7 +104,8 @@ static int is_module_name(const struct dirent *entry) {
     return length > 3 && !strcmp(entry->d_name + length - 3, ".so");
 }
 
-/* opens the modules of a folder, in the order of their names; name NULL: all */
+/* Opens the modules of a folder, in the order of their names: all, or with a name those that
+ * may hold it, up to the one that does. */
 static enum cs_status open_folder(struct cs_registry *registry, const char *folder,
                                   const char *name, struct cs_error *error) {
     struct dirent **entries;
@@ -112,7 +113,9 @@ static enum cs_status open_folder(struct cs_registry *registry, const char *fold
     for (int k = 0; k < n; k++) {
         char file[PATH_MAX];
         const int length = snprintf(file, sizeof file, "%s/%s", folder, entries[k]->d_name);
-        if (!error->status && length < (int)sizeof file && (!name || may_hold(file, name)))
+        const bool found = name && find_entry(registry, name);
+        if (!error->status && length < (int)sizeof file && !found &&
+            (!name || may_hold(file, name)))
             open_module(registry, file, error);
         free(entries[k]);
     }

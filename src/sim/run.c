@@ -38,12 +38,14 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_gua
 
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
+    const size_t before = host->arena.used;
     struct cs_guard guard = cs_guard_take();
     host->creating = true;
     cs_crash_watch(run->integrator->name);
     enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
     cs_crash_forget();
     host->creating = false;
+    run->method_bytes = host->arena.used - before;
     if (judge(run, step, guard, error))
         return error->status;
     guard = cs_guard_take();
@@ -115,6 +117,12 @@ bool cs_run_has_goals(const struct cs_integrator *integrator) {
 void cs_run_goals(const struct cs_run *run, double *g) {
     CS_ASSERT(cs_run_has_goals(run->integrator));
     run->integrator->goals(run->host->self, run->x, g);
+}
+
+size_t cs_run_bytes(const struct cs_run *run) {
+    const struct cs_system *system = run->system;
+    return system->arena.used + system->plan.rows[CS_FEATURE_MESHES].bytes +
+           run->host->arena.used;
 }
 
 void cs_run_finish(struct cs_run *run) {

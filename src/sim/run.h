@@ -66,6 +66,7 @@ struct cs_run {
     struct cs_counts counts;
     double stage_seconds[CS_STAGES]; /* all 0 unless timed */
     double advance_seconds;          /* wall time inside the method */
+    size_t method_bytes;             /* of arrays that the method took from the host */
     char notes[CS_NOTES_MAX][160];   /* remarks of the method */
     uint32_t n_notes;
     struct cs_run_host *host; /* owned */
@@ -92,6 +93,9 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);
  * stands. Nothing of the run changes. */
 bool cs_run_has_goals(const struct cs_integrator *integrator);
 void cs_run_goals(const struct cs_run *run, double *g);
+/* Bytes of all arrays of the run: the system's, the meshes', the solver's and the method's.
+ * Exact and the same on every machine; a foreign library's own memory is not in it. */
+size_t cs_run_bytes(const struct cs_run *run);
 
 void cs_run_finish(struct cs_run *run);
 

@@ -139,8 +139,10 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
             for (uint32_t i = 0; i < track.n; i++)
                 distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
             /* no time: what prods saw was forgotten at the end of the run */
-            const struct cs_frame frame = {
-                .x = x, .scalar = distance, .range = {sheet->range[0], sheet->range[1]}};
+            const struct cs_frame frame = {.x = x,
+                                           .scalar = distance,
+                                           .range = {sheet->range[0], sheet->range[1]},
+                                           .inv_mass = course.session.system.inv_mass};
             paint(&course, &frame, gl, path, error);
         }
         cs_track_finish(&track);

@@ -40,20 +40,21 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
     return CS_OK;
 }
 
-static enum cs_status take_values(struct cs_picture *picture, struct cs_error *error) {
+static enum cs_status take_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
-    if (picture->scene->render.look == CS_LOOK_GOALS) {
-        picture->goals = calloc(n, 3 * sizeof(double));
-        if (!picture->goals)
-            return cs_fail(error, CS_ERR_MEMORY, "out of memory for the goals of %zu particles",
-                           n);
+    const bool coloured = cs_picture_is_coloured(picture->scene);
+    const bool drawn_to = picture->scene->render.look == CS_LOOK_GOALS;
+    picture->x = calloc(n, 3 * sizeof(double));
+    picture->inv_mass = calloc(n, sizeof(double));
+    if (coloured) {
+        picture->scalar = calloc(n, sizeof(double));
+        picture->work = calloc(n, 3 * sizeof(double));
     }
-    if (!cs_picture_is_coloured(picture->scene))
-        return CS_OK;
-    picture->scalar = calloc(n, sizeof(double));
-    picture->work = calloc(n, 3 * sizeof(double));
-    if (!picture->scalar || !picture->work)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of %zu particles",
+    if (drawn_to)
+        picture->goals = calloc(n, 3 * sizeof(double));
+    if (!picture->x || !picture->inv_mass || (drawn_to && !picture->goals) ||
+        (coloured && (!picture->scalar || !picture->work)))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pictures of %zu particles",
                        n);
     return CS_OK;
 }
@@ -65,14 +66,22 @@ static void free_textures(struct cs_picture *picture) {
     picture->textures = NULL;
 }
 
+/* done by the hand, as all that touches the canvas */
+static void make_canvas(void *object) {
+    struct cs_picture *picture = object;
+    const struct cs_canvas_settings settings = {picture->scene, picture->system,
+                                                picture->textures, picture->fast};
+    picture->renderer->create(&settings, &picture->canvas, &picture->error);
+}
+
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
-                               enum cs_gl gl, bool fast, struct cs_error *error) {
-    *picture = (struct cs_picture){.scene = system->scene, .system = system};
-    if (!read_textures(picture, error) && !take_values(picture, error) &&
+                               enum cs_gl gl, bool fast, bool beside, struct cs_error *error) {
+    *picture = (struct cs_picture){.scene = system->scene, .system = system, .fast = fast};
+    if (!read_textures(picture, error) && !take_arrays(picture, error) &&
         !cs_renderer_open(cs_renderer_folder(), gl, &picture->renderer, error)) {
-        const struct cs_canvas_settings settings = {system->scene, system, picture->textures,
-                                                    fast};
-        picture->renderer->create(&settings, &picture->canvas, error);
+        picture->hand = beside ? cs_hand_create() : NULL;
+        cs_hand_give(picture->hand, make_canvas, picture);
+        cs_picture_end(picture, error);
     }
     /* the canvas has its own copy */
     free_textures(picture);
@@ -95,27 +104,57 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
         memcpy(picture->range, render->range, sizeof picture->range);
 }
 
-enum cs_status cs_picture_paint(struct cs_picture *picture, const struct cs_run *run,
-                                struct cs_image *image, struct cs_error *error) {
+static void paint(void *object) {
+    struct cs_picture *picture = object;
     const double start = cs_clock_wall();
+    const struct cs_frame frame = {.t = picture->t,
+                                   .x = picture->x,
+                                   .scalar = picture->scalar,
+                                   .range = {picture->range[0], picture->range[1]},
+                                   .inv_mass = picture->inv_mass,
+                                   .goals = picture->goals};
+    picture->renderer->paint(picture->canvas, &frame, picture->image, &picture->error);
+    picture->seconds += cs_clock_wall() - start;
+}
+
+void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
+                      struct cs_image *image) {
+    const size_t n = picture->system->view.n;
+    const double start = cs_clock_wall();
+    memcpy(picture->x, run->x, 3 * n * sizeof *picture->x);
+    memcpy(picture->inv_mass, picture->system->inv_mass, n * sizeof *picture->inv_mass);
     if (picture->scalar)
         measure(picture, run);
     if (picture->goals)
         cs_run_goals(run, picture->goals);
-    const struct cs_frame frame = {
-        run->t, run->x, picture->scalar, {picture->range[0], picture->range[1]}, picture->goals};
-    picture->renderer->paint(picture->canvas, &frame, image, error);
+    picture->t = run->t;
+    picture->image = image;
     picture->seconds += cs_clock_wall() - start;
-    return error->status;
+    cs_hand_give(picture->hand, paint, picture);
+}
+
+enum cs_status cs_picture_end(struct cs_picture *picture, struct cs_error *error) {
+    cs_hand_wait(picture->hand);
+    return picture->error.status
+               ? cs_fail(error, picture->error.status, "%s", picture->error.message)
+               : CS_OK;
 }
 
 const char *cs_picture_renderer(const struct cs_picture *picture) {
     return picture->renderer->description(picture->canvas);
 }
 
+static void destroy_canvas(void *object) {
+    struct cs_picture *picture = object;
+    picture->renderer->destroy(picture->canvas);
+}
+
 void cs_picture_close(struct cs_picture *picture) {
     if (picture->renderer)
-        picture->renderer->destroy(picture->canvas);
+        cs_hand_give(picture->hand, destroy_canvas, picture);
+    cs_hand_destroy(picture->hand);
+    free(picture->x);
+    free(picture->inv_mass);
     free(picture->scalar);
     free(picture->work);
     free(picture->goals);

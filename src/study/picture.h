@@ -1,32 +1,47 @@
-/* picture.h - the pictures of one run: renderer, textures, and the values that colours show. */
+/* picture.h - the pictures of one run: renderer, textures, and the values that colours show.
+ *
+ * A picture is begun from the state of a run and ended when it is wanted. In between it is
+ * drawn beside the caller, who may step the run on. */
 #ifndef CS_PICTURE_H
 #define CS_PICTURE_H
 
+#include "base/hand.h"
 #include "draw/render.h"
 #include "sim/folders.h"
 #include "sim/run.h"
 
-/* Zeroed: closed. */
+/* Zeroed: closed. Must stay where it is while open. */
 struct cs_picture {
     const struct cs_scene *scene;   /* borrowed */
     const struct cs_system *system; /* borrowed */
     const struct cs_renderer *renderer;
     struct cs_canvas *canvas;  /* owned */
     struct cs_image *textures; /* (scene->bodies.n), owned */
+    double *x, *inv_mass;      /* (3,n), (n), owned: the run as it was at begin */
     double *scalar, *work;     /* (n), (3,n), owned; NULL unless the look colours by a value */
     double *goals;             /* (3,n), owned; NULL unless the look shows them */
-    double range[2];           /* of the colours of the last picture */
-    double seconds;            /* spent in drawing */
+    double t;                  /* s, of the picture begun last */
+    double range[2];           /* of its colours */
+    double seconds;            /* spent in drawing, until the picture ended last */
+    bool fast;
+    struct cs_hand *hand;   /* owned: has the canvas; NULL: the caller has it */
+    struct cs_image *image; /* borrowed, of the picture under way */
+    struct cs_error error;  /* of the drawing */
 };
 
-/* Loads the renderer and the textures. Scene and system must outlive the picture. On failure
- * the picture is closed; CS_ERR_MODULE, CS_ERR_FILE (a texture) or CS_ERR_MEMORY. */
+/* Loads the renderer and the textures. Scene and system must outlive the picture. beside: draw
+ * on a thread of its own; else begin draws at once, and the same. On failure the picture is
+ * closed; CS_ERR_MODULE, CS_ERR_FILE (a texture) or CS_ERR_MEMORY. */
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
-                               enum cs_gl gl, bool fast, struct cs_error *error);
+                               enum cs_gl gl, bool fast, bool beside, struct cs_error *error);
 
-/* Draws the state of a run into an image of the scene's size. */
-enum cs_status cs_picture_paint(struct cs_picture *picture, const struct cs_run *run,
-                                struct cs_image *image, struct cs_error *error);
+/* Begins to draw the state of a run into an image of the scene's size, which must not be
+ * touched before the end. The picture before must have ended. */
+void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
+                      struct cs_image *image);
+/* Waits for it; CS_ERR_MODULE or CS_ERR_MEMORY where it failed. CS_OK where none is under way.
+ */
+enum cs_status cs_picture_end(struct cs_picture *picture, struct cs_error *error);
 
 /* true if the colours show a value, so that picture->range has a meaning; its unit. */
 bool cs_picture_is_coloured(const struct cs_scene *scene);

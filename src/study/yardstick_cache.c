@@ -1,6 +1,7 @@
 /* yardstick_cache.c - a reference in a file, for the next comparison of the same scene. */
 #include "base/file.h"
 #include "base/hash.h"
+#include "io/scene_write.h"
 #include "study/yardstick.h"
 
 #include <stdio.h>
@@ -27,7 +28,7 @@ void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_cour
     const size_t values = 6 * (size_t)course->session.system.view.n;
     char start[CS_HASH_DIGITS];
     struct cs_text all = {0};
-    // meshes and pictures are files of their own: the start is as they made it
+    // meshes are files of their own or made here: the start is as they came out
     cs_hash_doubles(course->start, values, start);
     cs_text_add(&all, "%s|", start);
     cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
@@ -39,6 +40,7 @@ void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_cour
     // where the methods are chosen here, a module that is added changes nothing
     for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
         cs_text_add(&all, "%s|", session->plugins[k]);
+    cs_scene_print_files(scene, &all);
     cs_text_add(&all, "%s", scene->text);
     cs_hash_bytes(cs_text_get(&all), all.length, key);
     cs_text_finish(&all);

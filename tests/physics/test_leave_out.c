@@ -3,6 +3,7 @@
 #include "allocations.h"
 #include "fixture.h"
 
+#include "model/trimesh.h"
 #include "sim/host.h"
 
 #include <string.h>
@@ -81,16 +82,60 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
 }
 END_TEST
 
-/* The solver's memory is that of the plan, beside the method's own. */
-START_TEST(solver_takes_what_was_planned) {
-    struct fixture with, without;
-    run(&with, "implicit-linearised", "", "");
-    run(&without, "symplectic-euler", "", "");
-    const size_t planned = with.system->plan.rows[CS_FEATURE_SOLVER].bytes;
-    ck_assert_uint_ge(with.session.run.host->arena.used, planned);
-    ck_assert_uint_lt(without.session.run.host->arena.used, planned);
-    fixture_close(&with);
-    fixture_close(&without);
+/* all that the plan promises of a run, with the list of pins, which only the system knows */
+static size_t promised(const struct fixture *cloth) {
+    const struct cs_system *system = cloth->system;
+    size_t bytes = system->plan.state_bytes + system->n_pinned * sizeof *system->pinned;
+    for (uint32_t f = 0; f < CS_FEATURES; f++)
+        bytes += system->plan.rows[f].bytes;
+    return bytes;
+}
+
+START_TEST(run_takes_what_was_planned_and_the_method_its_own) {
+    for (size_t k = 0; k < METHODS; k++)
+        for (int full = 0; full < 2; full++) {
+            struct fixture cloth;
+            run(&cloth, methods[k], full ? ", \"strain_limit\": 1.001" : "",
+                full ? WIND COLLIDERS : "");
+            const struct cs_run *done = &cloth.session.run;
+            ck_assert_uint_gt(done->method_bytes, 0);
+            ck_assert_uint_eq(cs_run_bytes(done), promised(&cloth) + done->method_bytes);
+            fixture_close(&cloth);
+        }
+}
+END_TEST
+
+START_TEST(mesh_is_planned_with_its_geometry) {
+    struct fixture box;
+    fixture_open(&box, "symplectic-euler",
+                 "{\"bodies\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3}, \"mass\": "
+                 "{\"total\": 1}, \"network\": {\"springs\": 2}}]}");
+    fixture_start(&box);
+    const struct cs_trimesh *mesh = box.system->bodies[0].mesh;
+    const size_t corners = 3 * (size_t)mesh->n_triangles, link = 2 * sizeof(uint32_t);
+    ck_assert_uint_eq(mesh->n, 56);
+    /* places and area; triangles and those around a vertex; edges, as many for the springs
+     * across them, and inner springs */
+    ck_assert_uint_eq(box.system->plan.rows[CS_FEATURE_MESHES].bytes,
+                      sizeof *mesh + mesh->n * (4 * sizeof(double) + sizeof(uint32_t)) +
+                          2 * corners * sizeof(uint32_t) +
+                          link * ((size_t)2 * mesh->n_edges + mesh->n_inner));
+    ck_assert_uint_eq(cs_run_bytes(&box.session.run),
+                      promised(&box) + box.session.run.method_bytes);
+    fixture_close(&box);
+}
+END_TEST
+
+/* counted, not measured */
+START_TEST(large_explicit_run_takes_little_a_particle) {
+    struct fixture sheet;
+    fixture_open(
+        &sheet, "symplectic-euler",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [1000, 1000]}, \"mass\": {\"total\": 1}}]}");
+    fixture_start(&sheet);
+    ck_assert_uint_eq(sheet.system->view.n, 1000000);
+    ck_assert_uint_le(cs_run_bytes(&sheet.session.run), 250 * (size_t)1000000);
+    fixture_close(&sheet);
 }
 END_TEST
 
@@ -153,7 +198,9 @@ int main(void) {
     const TTest *const tests[] = {bare_scene_makes_no_calls,
                                   full_scene_makes_its_calls,
                                   method_gets_what_it_needs_and_no_more,
-                                  solver_takes_what_was_planned,
+                                  run_takes_what_was_planned_and_the_method_its_own,
+                                  mesh_is_planned_with_its_geometry,
+                                  large_explicit_run_takes_little_a_particle,
                                   allocations_are_counted,
                                   frame_takes_nothing_from_the_heap};
     return fixture_run("leave out", tests, sizeof tests / sizeof *tests);

@@ -180,6 +180,81 @@ START_TEST(force_is_the_sum_of_single_springs) {
 }
 END_TEST
 
+/* own blocks of one spring at both ends, from the formula in springs.h: minus
+ * k (1 - L/l) I + k L/l u u^T of df/dx, and minus d u u^T or d I of df/dv */
+static void add_own_blocks(const struct sheet *sheet, const struct cs_spring_run *run,
+                           uint32_t i, double *kxx, double *dvv) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const size_t n = sheet->n, ends[2] = {run->a + i, run->b + i};
+    double u[3], length = 0;
+    for (size_t c = 0; c < 3; c++) {
+        u[c] = sheet->x[c * n + ends[1]] - sheet->x[c * n + ends[0]];
+        length += u[c] * u[c];
+    }
+    length = sqrt(length);
+    for (size_t e = 0; e < 6; e++)
+        for (size_t end = 0; end < 2; end++) {
+            const double along = u[row[e]] * u[column[e]] / (length * length);
+            const double same = row[e] == column[e], slack = 1 - run->length / length;
+            kxx[e * n + ends[end]] -= run->stiffness * (slack * same + (1 - slack) * along);
+            dvv[e * n + ends[end]] -= run->damping * (run->axial ? along : same);
+        }
+}
+
+START_TEST(own_blocks_are_the_sum_of_single_springs) {
+    static const char *const dampings[] = {"0", "0.7, \"damping_model\": \"axial\"",
+                                           "0.7, \"damping_model\": \"relative\""};
+    for (size_t g = 0; g < N_GRIDS; g++)
+        for (size_t m = 0; m < 3; m++) {
+            struct sheet sheet;
+            sheet_open(&sheet, 0, SCENE, grids[g][0], grids[g][1], dampings[m]);
+            sheet_stir(&sheet, 0.1, 0);
+            const struct cs_springs *springs = &sheet.system.springs;
+            double *found = calloc(sheet.n, 24 * sizeof *found);
+            ck_assert_ptr_nonnull(found);
+            double *expected = found + 12 * sheet.n;
+            cs_springs_add_diagonal(springs, (uint32_t)sheet.n, sheet.x, found,
+                                    found + 6 * sheet.n);
+            for (uint32_t r = 0; r < springs->n_runs; r++)
+                for (uint32_t i = 0; i < springs->runs[r].count; i++)
+                    add_own_blocks(&sheet, springs->runs + r, i, expected,
+                                   expected + 6 * sheet.n);
+            for (size_t i = 0; i < 12 * sheet.n; i++)
+                ck_assert_double_eq_tol(found[i], expected[i], 1e-12 * (1 + fabs(expected[i])));
+            free(found);
+            sheet_close(&sheet);
+        }
+}
+END_TEST
+
+/* column i of the factored matrix, at particle i itself */
+START_TEST(own_blocks_of_the_factors_are_those_of_the_product) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (size_t g = 0; g < N_GRIDS; g++) {
+        struct sheet sheet;
+        sheet_open(&sheet, 0, SCENE, grids[g][0], grids[g][1], "0.7");
+        sheet_stir(&sheet, 0.1, 0);
+        const struct cs_springs *springs = &sheet.system.springs;
+        const size_t n = sheet.n;
+        double *blocks = calloc(12 * n + 4 * (size_t)springs->n, sizeof *blocks);
+        ck_assert_ptr_nonnull(blocks);
+        double *unit = blocks + 6 * n, *y = unit + 3 * n, *factors = y + 3 * n;
+        cs_springs_factor(springs, (uint32_t)n, sheet.x, -0.02, -4e-4, false, factors);
+        cs_springs_factor_diagonal(springs, (uint32_t)n, factors, blocks);
+        for (size_t i = 0; i < n; i++)
+            for (size_t e = 0; e < 6; e++) {
+                unit[(size_t)column[e] * n + i] = 1;
+                memset(y, 0, 3 * n * sizeof *y);
+                cs_springs_mul_add(springs, (uint32_t)n, factors, unit, y);
+                ck_assert_double_eq_tol(blocks[e * n + i], y[(size_t)row[e] * n + i], 1e-14);
+                unit[(size_t)column[e] * n + i] = 0;
+            }
+        free(blocks);
+        sheet_close(&sheet);
+    }
+}
+END_TEST
+
 START_TEST(force_is_added_to_what_is_there) {
     struct sheet pair;
     double f[6] = {1, 2, 3, 4, 5, 6};
@@ -242,10 +317,15 @@ START_TEST(energy_is_the_sum_of_single_springs) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {
-        runs_are_the_twelve_neighbours,          second_body_has_its_own_particles,
-        kinds_without_stiffness_have_no_springs, stiffness_in_newtons_is_by_length,
-        force_is_the_sum_of_single_springs,      force_is_added_to_what_is_there,
-        particles_in_one_place_feel_no_spring,   energy_is_the_sum_of_single_springs};
+    const TTest *const tests[] = {runs_are_the_twelve_neighbours,
+                                  second_body_has_its_own_particles,
+                                  kinds_without_stiffness_have_no_springs,
+                                  stiffness_in_newtons_is_by_length,
+                                  force_is_the_sum_of_single_springs,
+                                  force_is_added_to_what_is_there,
+                                  particles_in_one_place_feel_no_spring,
+                                  energy_is_the_sum_of_single_springs,
+                                  own_blocks_are_the_sum_of_single_springs,
+                                  own_blocks_of_the_factors_are_those_of_the_product};
     return unit_run("springs", tests, sizeof tests / sizeof *tests);
 }

@@ -1,0 +1,66 @@
+/* A whole run of the program: simulating, drawing and encoding lie side by side where there are
+ * processors for it, and the slowest of them is the least that the run can take. */
+#include "child.h"
+#include "timing.h"
+
+#include <stdio.h>
+
+enum { FRAMES = 300, FRAMES_QUICK = 12, RUNS = 3, RUNS_QUICK = 1 };
+enum { SIMULATE, DRAW, ENCODE, WALL, PROCESSOR, STAGES };
+static const char *const stage_names[STAGES] = {"simulate", "draw", "encode", "whole run",
+                                                "processor"};
+
+static enum cs_status sample(const struct bench_settings *settings, uint32_t frames,
+                             double seconds[STAGES], struct cs_error *error) {
+    struct bench_run run;
+    struct cs_text folder = {0};
+    char number[16];
+    snprintf(number, sizeof number, "%u", frames);
+    cs_text_add(&folder, "%s/frames", settings->scratch);
+    const char *const arguments[] = {
+        "--frames",           number,  "--overwrite",           "--out",
+        cs_text_get(&folder), "--set", "render.size=[640,480]", NULL};
+    if (!bench_program_run(&run, settings, "scenes/sphere_rest.json", arguments, error)) {
+        seconds[SIMULATE] = bench_run_number(&run, "seconds", "method");
+        seconds[DRAW] = bench_run_number(&run, "seconds", "draw");
+        seconds[ENCODE] = bench_run_number(&run, "seconds", "encode");
+        seconds[WALL] = run.usage.wall;
+        seconds[PROCESSOR] = run.usage.cpu;
+        bench_run_finish(&run);
+    }
+    cs_text_finish(&folder);
+    return error->status;
+}
+
+static enum cs_status run(const struct bench_settings *settings, struct bench_table *table,
+                          struct cs_error *error) {
+    const uint32_t frames = settings->quick ? FRAMES_QUICK : FRAMES;
+    const uint32_t runs = settings->quick ? RUNS_QUICK : RUNS;
+    double samples[STAGES][RUNS], seconds[STAGES] = {0}, slowest = 0;
+    for (uint32_t k = 0; k < runs && !error->status; k++) {
+        bench_tell("%u frames, run %u of %u", frames, k + 1, runs);
+        if (sample(settings, frames, seconds, error))
+            return error->status;
+        for (int s = 0; s < STAGES; s++)
+            samples[s][k] = seconds[s];
+    }
+    for (int s = 0; s < STAGES; s++) {
+        const struct bench_spread time = bench_spread_of(samples[s], runs);
+        slowest = s < WALL && time.median > slowest ? time.median : slowest;
+        bench_table_add(table, "%s,%u,%.3f,%.3f,%.3f,%.2f,%.2f", stage_names[s], frames,
+                        time.median, time.min, time.max, 1e3 * time.median / frames,
+                        time.median / slowest);
+    }
+    return error->status;
+}
+
+static const char *const columns[] = {"stage", "frames",     "median_s",   "min_s",
+                                      "max_s", "ms_a_frame", "to_slowest", NULL};
+const struct bench_section bench_pipeline = {
+    .name = "pipeline",
+    .summary = "s of scenes/sphere_rest.json at 640 x 480, by stage and as a whole",
+    .columns = columns,
+    .n_keys = 2,
+    .measured = "median_s",
+    .run = run,
+};

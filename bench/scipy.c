@@ -1,0 +1,37 @@
+/* SciPy's BDF beside cvode-bdf: the work is that of scipy_bdf.py. */
+#include "child.h"
+
+#include <string.h>
+
+static enum cs_status run(const struct bench_settings *settings, struct bench_table *table,
+                          struct cs_error *error) {
+    /* Debian's own, which has the packages */
+    const char *arguments[] = {"/usr/bin/python3",
+                               BENCH_ROOT "/bench/scipy_bdf.py",
+                               BENCH_PROGRAM,
+                               BENCH_ROOT "/scenes/drum.json",
+                               settings->quick ? "--quick" : NULL,
+                               NULL};
+    struct bench_usage usage;
+    struct cs_text output = {0};
+    bench_tell("the drum, %s", settings->quick ? "0.05 s" : "0.5 s");
+    if (!bench_child_run(arguments, &output, &usage, error))
+        for (char *line = output.bytes, *end; line && *line; line = end) {
+            end = line + strcspn(line, "\n");
+            bench_table_add(table, "%.*s", (int)(end - line), line);
+            end += *end == '\n';
+        }
+    cs_text_finish(&output);
+    return error->status;
+}
+
+static const char *const columns[] = {"solver",  "rtol",   "median_s",    "min_s", "max_s",
+                                      "error_m", "forces", "times_scipy", NULL};
+const struct bench_section bench_scipy = {
+    .name = "scipy",
+    .summary = "s of the processor for BDF on scenes/drum.json, SciPy's and clothsim's",
+    .columns = columns,
+    .n_keys = 2,
+    .measured = "median_s",
+    .run = run,
+};

@@ -1,0 +1,26 @@
+/* hand.h - a thread that does one piece of work at a time, beside the caller.
+ *
+ * For things that must stay on one thread, such as an OpenGL context, or that are to overlap
+ * what the caller does next. What work leaves behind may be read after cs_hand_wait.
+ */
+#ifndef CS_HAND_H
+#define CS_HAND_H
+
+#include "base/status.h"
+
+struct cs_hand;
+
+/* Starts the thread, with all signals blocked: they are the caller's. NULL where none can be
+ * had; that is a hand too: the caller's own, which works at once. */
+struct cs_hand *cs_hand_create(void);
+
+/* Waits for the work before and hands over the next. work and argument must live until it is
+ * done. */
+void cs_hand_give(struct cs_hand *hand, void (*work)(void *argument), void *argument);
+/* Returns when nothing is left to do. */
+void cs_hand_wait(struct cs_hand *hand);
+
+/* Waits, and ends the thread. NULL is fine. */
+void cs_hand_destroy(struct cs_hand *hand);
+
+#endif
