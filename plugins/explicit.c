@@ -88,7 +88,8 @@ static enum cs_step create(const struct cs_host *host, double dt, double limit,
     self->loop = (struct fixed_step){.host = host, .dt = dt, .fresh = true, .step = step};
     if (!(self->a = host->alloc(host->ctx, bytes)))
         return CS_STEP_FAIL;
-    if (n_arrays > 1 && !(self->kept = host->alloc(host->ctx, bytes * (size_t)(n_arrays - 1))))
+    self->n_kept = (size_t)n_arrays - 1;
+    if (n_arrays > 1 && !(self->kept = host->alloc(host->ctx, bytes * self->n_kept)))
         return CS_STEP_FAIL;
     if (dt <= 0)
         choose_dt(&self->loop, limit);

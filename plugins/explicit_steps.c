@@ -18,76 +18,174 @@ static struct explicit_method *method_of(struct fixed_step *loop) {
     return (struct explicit_method *)loop;
 }
 
-static size_t length_of(const struct explicit_method *self) {
-    return 3 * (size_t)self->loop.host->view->n;
+/* one component of the particles of a range: what the loop over a row reads and writes */
+struct row {
+    size_t count;
+    const double *inv_mass;
+    double *x, *v;
+    double *a;       /* the force, until the loop makes it the acceleration */
+    double *kept[4]; /* of the method's own arrays */
+    double h, loss, weight, forth;
+};
+
+/* A loop over all particles, shared among the host's threads: by ranges, and so that the three
+ * components of a range meet its masses in the cache. */
+struct move {
+    void (*row)(const struct row *row);
+    const struct explicit_method *self;
+    double *x, *v, h, weight, forth;
+};
+
+static void move_part(void *arg, size_t begin, size_t end) {
+    const struct move *move = arg;
+    const struct explicit_method *self = move->self;
+    const struct cs_view *view = self->loop.host->view;
+    const size_t n = view->n;
+    for (size_t c = 0; c < 3; c++) {
+        const size_t at = c * n + begin;
+        struct row row = {
+            .count = end - begin,
+            .inv_mass = view->inv_mass + begin,
+            .x = move->x + at,
+            .v = move->v + at,
+            .a = self->a + at,
+            .h = move->h,
+            .loss = self->loss,
+            .weight = move->weight,
+            .forth = move->forth,
+        };
+        for (size_t k = 0; k < self->n_kept; k++)
+            row.kept[k] = self->kept + 3 * n * k + at;
+        move->row(&row);
+    }
 }
 
+static void share(struct move *move) {
+    const struct cs_host *host = move->self->loop.host;
+    const struct cs_vector_kernels *vector = host->vector;
+    if (vector->size > offsetof(struct cs_vector_kernels, share))
+        vector->share(host->view->n, move_part, move);
+    else
+        move_part(move, 0, host->view->n);
+}
+
+/* moves x and v by a loop over rows */
+static void move_all(const struct explicit_method *self, double h, double *x, double *v,
+                     void (*row)(const struct row *row)) {
+    struct move move = {.row = row, .self = self, .x = x, .v = v, .h = h};
+    share(&move);
+}
+
+/* a is then the force, which the next loop divides by the mass */
 static void evaluate(struct explicit_method *self, double t, const double *x, const double *v) {
     const struct cs_host *host = self->loop.host;
-    const size_t n = host->view->n;
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->a);
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < n; i++)
-            self->a[c * n + i] *= host->view->inv_mass[i];
+}
+
+static void explicit_euler_row(const struct row *row) {
+    const double h = row->h, *restrict w = row->inv_mass, *restrict f = row->a;
+    double *restrict x = row->x, *restrict v = row->v;
+    for (size_t i = 0; i < row->count; i++) {
+        x[i] += h * v[i];
+        v[i] += h * (f[i] * w[i]);
+    }
 }
 
 enum cs_step step_explicit_euler(struct fixed_step *loop, double t, double h, double *x,
                                  double *v) {
-    struct explicit_method *self = method_of(loop);
-    evaluate(self, t, x, v);
-    const size_t length = length_of(self);
-    const double *a = self->a;
-    for (size_t i = 0; i < length; i++) {
-        x[i] += h * v[i];
-        v[i] += h * a[i];
-    }
+    evaluate(method_of(loop), t, x, v);
+    move_all(method_of(loop), h, x, v, explicit_euler_row);
     return CS_STEP_OK;
+}
+
+static void symplectic_euler_row(const struct row *row) {
+    const double h = row->h, *restrict w = row->inv_mass, *restrict f = row->a;
+    double *restrict x = row->x, *restrict v = row->v;
+    for (size_t i = 0; i < row->count; i++) {
+        v[i] += h * (f[i] * w[i]);
+        x[i] += h * v[i];
+    }
 }
 
 enum cs_step step_symplectic_euler(struct fixed_step *loop, double t, double h, double *x,
                                    double *v) {
-    struct explicit_method *self = method_of(loop);
-    evaluate(self, t, x, v);
-    const size_t length = length_of(self);
-    const double *a = self->a;
-    for (size_t i = 0; i < length; i++) {
-        v[i] += h * a[i];
-        x[i] += h * v[i];
-    }
+    evaluate(method_of(loop), t, x, v);
+    move_all(method_of(loop), h, x, v, symplectic_euler_row);
     return CS_STEP_OK;
+}
+
+static void averaged_euler_row(const struct row *row) {
+    const double h = row->h, *restrict w = row->inv_mass, *restrict f = row->a;
+    double *restrict x = row->x, *restrict v = row->v;
+    for (size_t i = 0; i < row->count; i++) {
+        const double v_old = v[i];
+        v[i] += h * (f[i] * w[i]);
+        x[i] += h * ((v_old + v[i]) / 2);
+    }
 }
 
 enum cs_step step_averaged_euler(struct fixed_step *loop, double t, double h, double *x,
                                  double *v) {
-    struct explicit_method *self = method_of(loop);
-    evaluate(self, t, x, v);
-    const size_t length = length_of(self);
-    const double *a = self->a;
-    for (size_t i = 0; i < length; i++) {
-        const double v_old = v[i];
-        v[i] += h * a[i];
-        x[i] += h * ((v_old + v[i]) / 2);
-    }
+    evaluate(method_of(loop), t, x, v);
+    move_all(method_of(loop), h, x, v, averaged_euler_row);
     return CS_STEP_OK;
+}
+
+static void accelerate_row(const struct row *row) {
+    const double *restrict w = row->inv_mass;
+    double *restrict a = row->a;
+    for (size_t i = 0; i < row->count; i++)
+        a[i] *= w[i];
+}
+
+/* v goes through v + h a, which is what damping and drag see at the new time */
+static void drift_row(const struct row *row) {
+    const double h = row->h, *restrict a = row->a;
+    double *restrict x = row->x, *restrict v = row->v, *restrict old_a = row->kept[0];
+    for (size_t i = 0; i < row->count; i++) {
+        x[i] += h * (v[i] + h / 2 * a[i]);
+        v[i] += h * a[i];
+        old_a[i] = a[i];
+    }
+}
+
+static void kick_row(const struct row *row) {
+    const double h = row->h, *restrict w = row->inv_mass, *restrict old_a = row->kept[0];
+    double *restrict v = row->v, *restrict a = row->a;
+    for (size_t i = 0; i < row->count; i++) {
+        a[i] *= w[i];
+        v[i] += h / 2 * (a[i] - old_a[i]);
+    }
 }
 
 enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v) {
     struct explicit_method *self = method_of(loop);
-    const size_t length = length_of(self);
-    double *a = self->a, *old_a = self->kept;
-    if (loop->fresh)
+    if (loop->fresh) {
         evaluate(self, t, x, v);
-    // v goes through v + h a, which is what damping and drag see at the new time
-    for (size_t i = 0; i < length; i++) {
-        x[i] += h * (v[i] + h / 2 * a[i]);
-        v[i] += h * a[i];
-        old_a[i] = a[i];
+        move_all(self, h, x, v, accelerate_row);
     }
+    move_all(self, h, x, v, drift_row);
     evaluate(self, t + h, x, v);
-    for (size_t i = 0; i < length; i++)
-        v[i] += h / 2 * (a[i] - old_a[i]);
+    move_all(self, h, x, v, kick_row);
     return CS_STEP_OK;
+}
+
+static void last_half_step_row(const struct row *row) {
+    const double h = row->h, *restrict v = row->v, *restrict a = row->a;
+    double *restrict u = row->kept[0];
+    for (size_t i = 0; i < row->count; i++)
+        u[i] = v[i] - h / 2 * a[i];
+}
+
+static void position_verlet_row(const struct row *row) {
+    const double h = row->h, loss = row->loss, *restrict a = row->a;
+    double *restrict x = row->x, *restrict v = row->v, *restrict u = row->kept[0];
+    for (size_t i = 0; i < row->count; i++) {
+        u[i] = (1 - loss) * u[i] + h * a[i];
+        x[i] += h * u[i];
+        v[i] = u[i] + h / 2 * a[i];
+    }
 }
 
 /* In u = (x - x_old)/h the recurrence is u' = (1 - l) u + h a, x' = x + h u': the same in exact
@@ -96,53 +194,77 @@ enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, d
 enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v) {
     struct explicit_method *self = method_of(loop);
-    const size_t length = length_of(self);
-    double *a = self->a, *u = self->kept;
     const bool start = self->h <= 0;
-    if (start)
+    if (start) {
         evaluate(self, t, x, v);
-    if (loop->fresh || fabs(h - self->h) > 1e-9 * h)
-        for (size_t i = 0; i < length; i++)
-            u[i] = v[i] - h / 2 * a[i];
-    if (!start)
-        evaluate(self, t, x, u);
-    for (size_t i = 0; i < length; i++) {
-        u[i] = (1 - self->loss) * u[i] + h * a[i];
-        x[i] += h * u[i];
-        v[i] = u[i] + h / 2 * a[i];
+        move_all(self, h, x, v, accelerate_row);
     }
+    if (loop->fresh || fabs(h - self->h) > 1e-9 * h)
+        move_all(self, h, x, v, last_half_step_row);
+    if (!start) {
+        evaluate(self, t, x, self->kept);
+        move_all(self, h, x, v, accelerate_row);
+    }
+    move_all(self, h, x, v, position_verlet_row);
     self->h = h;
     return CS_STEP_OK;
+}
+
+/* kept: a stage's x and v, and the sums of both slopes */
+static void rk4_begin_row(const struct row *row) {
+    const double *restrict x = row->x, *restrict v = row->v;
+    double *restrict stage_x = row->kept[0], *restrict stage_v = row->kept[1];
+    double *restrict sum_x = row->kept[2], *restrict sum_v = row->kept[3];
+    for (size_t i = 0; i < row->count; i++) {
+        stage_x[i] = x[i];
+        stage_v[i] = v[i];
+        sum_x[i] = sum_v[i] = 0;
+    }
+}
+
+static void rk4_stage_row(const struct row *row) {
+    const double weight = row->weight, forth = row->forth;
+    const double *restrict x = row->x, *restrict v = row->v;
+    const double *restrict w = row->inv_mass, *restrict f = row->a;
+    double *restrict stage_x = row->kept[0], *restrict stage_v = row->kept[1];
+    double *restrict sum_x = row->kept[2], *restrict sum_v = row->kept[3];
+    for (size_t i = 0; i < row->count; i++) {
+        const double a = f[i] * w[i];
+        sum_x[i] += weight * stage_v[i];
+        sum_v[i] += weight * a;
+        stage_x[i] = x[i] + forth * stage_v[i];
+        stage_v[i] = v[i] + forth * a;
+    }
+}
+
+static void rk4_end_row(const struct row *row) {
+    const double h = row->h;
+    const double *restrict sum_x = row->kept[2], *restrict sum_v = row->kept[3];
+    double *restrict x = row->x, *restrict v = row->v;
+    for (size_t i = 0; i < row->count; i++) {
+        x[i] += h / 6 * sum_x[i];
+        v[i] += h / 6 * sum_v[i];
+    }
 }
 
 enum cs_step step_rk4(struct fixed_step *loop, double t, double h, double *x, double *v) {
     static const double weight[] = {1, 2, 2, 1}, reach[] = {0.5, 0.5, 1, 0};
     struct explicit_method *self = method_of(loop);
-    const size_t length = length_of(self);
-    const double *a = self->a;
-    double *stage_x = self->kept, *stage_v = stage_x + length;
-    double *sum_x = stage_v + length, *sum_v = sum_x + length;
-    for (size_t i = 0; i < length; i++) {
-        stage_x[i] = x[i];
-        stage_v[i] = v[i];
-        sum_x[i] = sum_v[i] = 0;
-    }
+    const double *stage_x = self->kept, *stage_v = stage_x + 3 * (size_t)loop->host->view->n;
+    move_all(self, h, x, v, rk4_begin_row);
     double stage_t = t;
     for (int k = 0; k < 4; k++) {
+        struct move stage = {.row = rk4_stage_row,
+                             .self = self,
+                             .x = x,
+                             .v = v,
+                             .weight = weight[k],
+                             .forth = reach[k] * h};
         evaluate(self, stage_t, stage_x, stage_v);
-        const double forth = reach[k] * h;
-        for (size_t i = 0; i < length; i++) {
-            sum_x[i] += weight[k] * stage_v[i];
-            sum_v[i] += weight[k] * a[i];
-            stage_x[i] = x[i] + forth * stage_v[i];
-            stage_v[i] = v[i] + forth * a[i];
-        }
-        stage_t = t + forth;
+        share(&stage);
+        stage_t = t + stage.forth;
     }
-    for (size_t i = 0; i < length; i++) {
-        x[i] += h / 6 * sum_x[i];
-        v[i] += h / 6 * sum_v[i];
-    }
+    move_all(self, h, x, v, rk4_end_row);
     return CS_STEP_OK;
 }
 

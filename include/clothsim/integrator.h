@@ -18,7 +18,7 @@
  * is not.
  *
  * Marks in brackets say when a call is allowed. Not on offer, on purpose: random numbers,
- * clock, files, threads.
+ * clock, files, threads of one's own: vector->share lends the host's for a loop.
  */
 #ifndef CLOTHSIM_INTEGRATOR_H
 #define CLOTHSIM_INTEGRATOR_H

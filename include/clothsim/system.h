@@ -24,6 +24,11 @@ struct cs_vector_kernels {
     /* sum of (x w)^2: sqrt of its n-th part is the weighted RMS norm */
     double (*weighted_square)(size_t n, const double *x, const double *w);
     double (*max_norm)(size_t n, const double *x);
+    /* Calls part(arg, begin, end) for ranges that together are the items 0..n-1, each once,
+     * several at the same time on threads of the host's; returns when all are done. A part may
+     * write only what belongs to its items, and calls nothing of the host. Not in hosts whose
+     * size ends before it. */
+    void (*share)(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg);
 };
 
 struct cs_view {

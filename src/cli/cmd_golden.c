@@ -1,4 +1,5 @@
 /* cmd_golden.c - clothsim golden: recomputes what runs came to, and says what differs. */
+#include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "study/golden.h"
@@ -13,6 +14,7 @@ enum {
     GOLDEN_ONLY,
     GOLDEN_FOLDER,
     GOLDEN_GL,
+    GOLDEN_THREADS,
     GOLDEN_QUIET,
     GOLDEN_ROWS
 };
@@ -25,6 +27,8 @@ static const struct cs_arg rows[GOLDEN_ROWS] = {
     [GOLDEN_ONLY] = {"only", 0, "TEXT", "rows whose scene or integrator holds TEXT", false},
     [GOLDEN_FOLDER] = {"folder", 0, "DIR", "the golden folder (default: golden)", false},
     [GOLDEN_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
+    [GOLDEN_THREADS] = {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",
+                        false},
     [GOLDEN_QUIET] = {"quiet", 'q', NULL, "print only rows that differ, and the count", false},
 };
 
@@ -52,7 +56,9 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     const char *folder = cs_args_get(args, GOLDEN_FOLDER);
     const bool hashes = cs_args_get(args, GOLDEN_HASHES),
                images = cs_args_get(args, GOLDEN_IMAGES);
-    if (cs_args_choice(args, GOLDEN_GL, cs_gl_names, &gl, error))
+    uint32_t threads = 1;
+    if (cs_args_choice(args, GOLDEN_GL, cs_gl_names, &gl, error) ||
+        cs_args_whole(args, GOLDEN_THREADS, 1, CS_POOL_MOST, &threads, error))
         return error->status;
     struct cs_golden check = {
         .folder = folder ? folder : "golden",
@@ -61,6 +67,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
         .images = images || !hashes,
         .accept = cs_args_get(args, GOLDEN_ACCEPT),
         .gl = (enum cs_gl)gl,
+        .threads = threads,
         .stop = cs_interrupt_catch(),
         .report = print_row,
         .ctx = args,

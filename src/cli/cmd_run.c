@@ -1,5 +1,6 @@
 /* cmd_run.c - clothsim run: a scene to pictures, states, hashes and a report. */
 #include "base/file.h"
+#include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/print.h"
@@ -21,6 +22,7 @@ enum {
     RUN_JSON,
     RUN_WATCH,
     RUN_TIMING,
+    RUN_THREADS,
     RUN_GL,
     RUN_FAST,
     RUN_LEVEL,
@@ -57,7 +59,12 @@ static const struct cs_arg rows[RUN_ROWS] = {
     [RUN_WATCH] = {"watch", 0, "FILE",
                    "write energy, largest strain and largest velocity of each frame as CSV",
                    false},
-    [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a run, and tell its peak memory", false},
+    [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a run, and tell its peak memory",
+                    false},
+    [RUN_THREADS] = {"threads", 0, "N",
+                     "threads that step the scene, 1 to 64 (default: one a processor, up to "
+                     "16; one below 16384 particles)",
+                     false},
     [RUN_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
     [RUN_FAST] = {"fast-render", 0, NULL,
                   "use all of the processor; pixels then depend on the machine", false},
@@ -71,8 +78,10 @@ static enum cs_status read_session(struct cs_args *args, struct cs_session_setti
     session->integrator = cs_args_get(args, RUN_INTEGRATOR);
     session->render = !cs_args_get(args, RUN_NO_RENDER);
     session->timed = cs_args_get(args, RUN_TIMING);
+    session->threads = CS_THREADS_AUTO;
     session->stop = cs_interrupt_catch();
-    if (cs_args_overrides(args, RUN_SET, &session->overrides, &session->n_overrides, error))
+    if (cs_args_whole(args, RUN_THREADS, 1, CS_POOL_MOST, &session->threads, error) ||
+        cs_args_overrides(args, RUN_SET, &session->overrides, &session->n_overrides, error))
         return error->status;
     return cs_args_all(args, RUN_PLUGIN, &session->plugins, &session->n_plugins, error);
 }

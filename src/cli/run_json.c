@@ -1,4 +1,5 @@
 /* run_json.c - run.json: what one needs to do a run again and to see that it is the same. */
+#include "base/pool.h"
 #include "cli/run_report.h"
 
 #include <cjson/cJSON.h>
@@ -21,7 +22,7 @@ static void add_versions(const struct cs_job *job, struct cs_text *out) {
         cs_text_add_json(out, cs_text_get(&job->renderer));
     else
         cs_text_add(out, "null");
-    cs_text_add(out, ",\n");
+    cs_text_add(out, ",\n  \"threads\": %u,\n", cs_pool_threads());
 }
 
 static void add_outcome(const struct cs_job *job, struct cs_text *out) {

@@ -1,6 +1,7 @@
 #include "cli/run_report.h"
 
 #include "base/peak.h"
+#include "base/pool.h"
 #include "cli/print.h"
 
 #include <stdarg.h>
@@ -123,8 +124,10 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     add_watch(job, out);
     add_counts(job, out);
     add_measures(job, out);
-    if (job->settings->session.timed)
+    if (job->settings->session.timed) {
+        add_row(out, "threads", "%u", cs_pool_threads());
         add_stages(job, out);
+    }
     for (uint32_t i = 0; i < run->n_notes; i++)
         cs_print_hanging("note", run->notes[i], VALUE_COLUMN, out);
     add_files(job, out);

@@ -1,6 +1,9 @@
 #include "model/contact.h"
 
+#include "model/vector.h"
+
 #include <math.h>
+#include <stdatomic.h>
 
 /* removes the inward normal velocity and rubs on the tangential one */
 static void absorb(const struct cs_collider *collider, const double n[3], double v[3]) {
@@ -49,29 +52,53 @@ static double distance_of(const struct cs_collider *collider, const double p[3],
     return p[1] - collider->floor.height - collider->thickness;
 }
 
+struct resolving {
+    const struct cs_system *system;
+    double *x, *v;
+    atomic_ullong tests, pushed; /* whole numbers: their sum has no order */
+};
+
+static struct cs_contact_counts resolve_range(const struct resolving *resolving,
+                                              const struct cs_collider *collider, size_t begin,
+                                              size_t end) {
+    const size_t n = resolving->system->view.n;
+    double *x = resolving->x, *v = resolving->v;
+    struct cs_contact_counts counts = {0};
+    for (size_t i = begin; i < end; i++) {
+        if (resolving->system->inv_mass[i] == 0)
+            continue;
+        counts.tests++;
+        const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+        double normal[3];
+        const double distance = distance_of(collider, p, normal);
+        /* a particle that is not finite is left for the blow-up test */
+        if (!(distance < 0))
+            continue;
+        counts.pushed++;
+        double velocity[3] = {v[i], v[n + i], v[2 * n + i]};
+        absorb(collider, normal, velocity);
+        for (size_t c = 0; c < 3; c++) {
+            x[c * n + i] = p[c] - distance * normal[c];
+            v[c * n + i] = velocity[c];
+        }
+    }
+    return counts;
+}
+
+static void resolve_part(void *arg, size_t begin, size_t end) {
+    struct resolving *resolving = arg;
+    const struct cs_scene *scene = resolving->system->scene;
+    for (uint32_t k = 0; k < scene->colliders.n; k++) {
+        const struct cs_contact_counts counts =
+            resolve_range(resolving, cs_scene_colliders(scene) + k, begin, end);
+        resolving->tests += counts.tests;
+        resolving->pushed += counts.pushed;
+    }
+}
+
 struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x,
                                             double *v) {
-    const size_t n = system->view.n;
-    const struct cs_collider *colliders = cs_scene_colliders(system->scene);
-    struct cs_contact_counts counts = {0};
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
-        for (size_t i = 0; i < n; i++) {
-            if (system->inv_mass[i] == 0)
-                continue;
-            counts.tests++;
-            const double p[3] = {x[i], x[n + i], x[2 * n + i]};
-            double normal[3];
-            const double distance = distance_of(colliders + k, p, normal);
-            /* a particle that is not finite is left for the blow-up test */
-            if (!(distance < 0))
-                continue;
-            counts.pushed++;
-            double velocity[3] = {v[i], v[n + i], v[2 * n + i]};
-            absorb(colliders + k, normal, velocity);
-            for (size_t c = 0; c < 3; c++) {
-                x[c * n + i] = p[c] - distance * normal[c];
-                v[c * n + i] = velocity[c];
-            }
-        }
-    return counts;
+    struct resolving resolving = {.system = system, .x = x, .v = v};
+    cs_vector_share(system->view.n, resolve_part, &resolving);
+    return (struct cs_contact_counts){resolving.tests, resolving.pushed};
 }

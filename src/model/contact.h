@@ -13,7 +13,7 @@ struct cs_contact_counts {
  * away `absorption` of the normal velocity, v -= ka (v.n) n (eq. 5.32 as meant; a negative ka
  * turns the normal velocity round and multiplies it by |ka|); then Coulomb friction: the
  * tangential velocity loses at most `friction` times the normal velocity that was changed.
- * Colliders in the scene's order, particles ascending. Returns what was done. */
+ * Each particle meets the colliders in the scene's order. Returns what was done. */
 struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x,
                                             double *v);
 

@@ -1,6 +1,7 @@
 #include "model/normals.h"
 
 #include "model/trimesh.h"
+#include "model/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -55,25 +56,45 @@ static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
     }
 }
 
-void cs_normals_update(const struct cs_system *system, const double *x) {
-    const size_t n = system->view.n;
-    double *nx = system->normals, *ny = nx + n, *nz = ny + n;
+struct update {
+    const struct cs_system *system;
+    const double *x;
+};
+
+static void update_range(const struct update *update, const struct cs_body_range *body,
+                         uint32_t begin, uint32_t end) {
+    const size_t n = update->system->view.n;
+    double *nx = update->system->normals, *ny = nx + n, *nz = ny + n;
+    for (uint32_t i = begin; i < end; i++) {
+        double product[3];
+        if (body->mesh)
+            mesh_product(body, i, n, update->x, product);
+        else
+            grid_product(body, i, n, update->x, product);
+        const double squared =
+            product[0] * product[0] + product[1] * product[1] + product[2] * product[2];
+        const double inverse = 1 / sqrt(squared + DBL_MIN);
+        nx[i] = product[0] * inverse;
+        ny[i] = product[1] * inverse;
+        nz[i] = product[2] * inverse;
+    }
+}
+
+static void update_part(void *arg, size_t begin, size_t end) {
+    const struct update *update = arg;
+    const struct cs_system *system = update->system;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *body = system->bodies + b;
-        for (uint32_t i = body->first; i < body->first + body->count; i++) {
-            double product[3];
-            if (body->mesh)
-                mesh_product(body, i, n, x, product);
-            else
-                grid_product(body, i, n, x, product);
-            const double squared =
-                product[0] * product[0] + product[1] * product[1] + product[2] * product[2];
-            const double inverse = 1 / sqrt(squared + DBL_MIN);
-            nx[i] = product[0] * inverse;
-            ny[i] = product[1] * inverse;
-            nz[i] = product[2] * inverse;
-        }
+        const size_t last = (size_t)body->first + body->count;
+        if (begin < last && body->first < end)
+            update_range(update, body, begin > body->first ? (uint32_t)begin : body->first,
+                         (uint32_t)(end < last ? end : last));
     }
+}
+
+void cs_normals_update(const struct cs_system *system, const double *x) {
+    struct update update = {system, x};
+    cs_vector_share(system->view.n, update_part, &update);
 }
 
 /* product and its change; d(a x b) = da x b + a x db */

@@ -1,10 +1,12 @@
 #include "model/plan.h"
 
+#include "base/pool.h"
 #include "model/clusters.h"
 #include "model/event_key.h"
 #include "model/events.h"
 #include "model/prods.h"
 #include "model/shape.h"
+#include "model/shares.h"
 #include "model/springs.h"
 #include "model/system.h"
 #include "model/trimesh.h"
@@ -132,6 +134,9 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 22 * n) * real,
            "the integrator asks for it", "the integrator does not ask for it");
     decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
+    decide(plan, CS_FEATURE_THREADS, cs_pool_threads() > 1,
+           cs_shares_bytes(scene, cs_pool_threads()), "several share the work",
+           "one does all the work");
 }
 
 enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uint32_t needs,

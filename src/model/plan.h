@@ -23,7 +23,8 @@
     X(SPRING_LIST, "spring list")                                                              \
     X(CLUSTERS, "clusters")                                                                    \
     X(SOLVER, "linear solver")                                                                 \
-    X(RENDER, "renderer")
+    X(RENDER, "renderer")                                                                      \
+    X(THREADS, "threads")
 
 enum cs_feature {
 #define X(name, text) CS_FEATURE_##name,

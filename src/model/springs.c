@@ -3,6 +3,7 @@
  * vectorise. */
 #include "model/springs.h"
 
+#include "base/pool.h"
 #include "model/rows.h"
 
 #include <clothsim/integrator.h>
@@ -20,75 +21,90 @@ static struct asked asked_of(const struct cs_spring_run *run, uint32_t parts) {
         parts & CS_PART_DAMPING ? run->damping : 0};
 }
 
+static bool asks_force(const struct job *job, const struct cs_spring_run *run) {
+    const struct asked asked = asked_of(run, job->parts);
+    return asked.k != 0 || asked.c != 0;
+}
+
 /* force of one piece; listed: length and stiffness are the spring's own, and times k */
-CS_INLINE void piece_force(const struct piece *piece, struct ends x, struct ends v,
-                           struct asked asked, const bool listed, const bool damped,
-                           const bool axial, double *restrict fx, double *restrict fy,
-                           double *restrict fz) {
+CS_INLINE void force_of(const struct piece *piece, struct ends x, struct ends v,
+                        struct asked asked, const bool listed, const bool damped,
+                        const bool axial, double *restrict fx, double *restrict fy,
+                        double *restrict fz) {
     const double c = asked.c, length = piece->run->length;
     const uint32_t count = piece->count;
     for (uint32_t i = 0; i < count; i++) {
         const double L = listed ? piece->lengths[i] : length;
         const double k = listed ? asked.k * piece->stiffnesses[i] : asked.k;
-        const double dx = x.bx[i] - x.ax[i];
-        const double dy = x.by[i] - x.ay[i];
-        const double dz = x.bz[i] - x.az[i];
+        const struct difference d = across(x, i, listed);
         /* DBL_MIN keeps two particles in one place from dividing by zero */
-        const double inverse = 1 / sqrt(dx * dx + dy * dy + dz * dz + DBL_MIN);
+        const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
         double pull = k * (1 - L * inverse);
-        double wx = 0, wy = 0, wz = 0;
+        struct difference w = {0};
         if (damped) {
-            wx = v.bx[i] - v.ax[i];
-            wy = v.by[i] - v.ay[i];
-            wz = v.bz[i] - v.az[i];
+            w = across(v, i, listed);
             if (axial)
-                pull += c * ((wx * dx + wy * dy + wz * dz) * inverse * inverse);
+                pull += c * ((w.x * d.x + w.y * d.y + w.z * d.z) * inverse * inverse);
         }
         if (damped && !axial) {
-            fx[i] = pull * dx + c * wx;
-            fy[i] = pull * dy + c * wy;
-            fz[i] = pull * dz + c * wz;
+            fx[i] = pull * d.x + c * w.x;
+            fy[i] = pull * d.y + c * w.y;
+            fz[i] = pull * d.z + c * w.z;
         } else {
-            fx[i] = pull * dx;
-            fy[i] = pull * dy;
-            fz[i] = pull * dz;
+            fx[i] = pull * d.x;
+            fy[i] = pull * d.y;
+            fz[i] = pull * d.z;
         }
     }
 }
 
 /* three copies of the loop, so that a scene without damping never reads v */
-CS_INLINE void run_force(const struct cs_spring_run *run, uint32_t n, const double *x,
-                         const double *v, struct asked asked, const bool listed, double *f) {
-    double fx[PIECE], fy[PIECE], fz[PIECE];
+CS_INLINE void force_listed_or_not(const struct job *job, const struct piece *piece,
+                                   const bool listed, double *restrict fx, double *restrict fy,
+                                   double *restrict fz) {
     struct gathered places, speeds;
+    const struct asked asked = asked_of(piece->run, job->parts);
     const bool damped = asked.c != 0;
-    for (uint32_t start = 0; start < run->count; start += PIECE) {
-        const struct piece piece = piece_of(run, start);
-        const struct ends xs = ends_of(&piece, x, n, &places);
-        const struct ends vs = damped ? ends_of(&piece, v, n, &speeds) : xs;
-        if (!damped)
-            piece_force(&piece, xs, vs, asked, listed, false, false, fx, fy, fz);
-        else if (run->axial)
-            piece_force(&piece, xs, vs, asked, listed, true, true, fx, fy, fz);
-        else
-            piece_force(&piece, xs, vs, asked, listed, true, false, fx, fy, fz);
-        scatter(&piece, fx, fy, fz, n, f);
-    }
+    const struct ends x = ends_of(piece, job->x, job->n, false, &places);
+    const struct ends v = damped ? ends_of(piece, job->v, job->n, false, &speeds) : x;
+    if (!damped)
+        force_of(piece, x, v, asked, listed, false, false, fx, fy, fz);
+    else if (piece->run->axial)
+        force_of(piece, x, v, asked, listed, true, true, fx, fy, fz);
+    else
+        force_of(piece, x, v, asked, listed, true, false, fx, fy, fz);
+}
+
+CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
+                           double *restrict fx, double *restrict fy, double *restrict fz) {
+    if (piece->run->ends)
+        force_listed_or_not(job, piece, true, fx, fy, fz);
+    else
+        force_listed_or_not(job, piece, false, fx, fy, fz);
 }
 
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const double *x, const double *v, uint32_t parts,
-                                    double *f) {
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        const struct asked asked = asked_of(run, parts);
-        if (asked.k == 0 && asked.c == 0)
-            continue;
-        if (run->ends)
-            run_force(run, n, x, v, asked, true, f);
-        else
-            run_force(run, n, x, v, asked, false, f);
-    }
+                                    const struct cs_block *block, double *f) {
+    const struct job job = {.springs = springs,
+                            .n = n,
+                            .x = x,
+                            .v = v,
+                            .parts = parts,
+                            .to = f,
+                            .asks = asks_force};
+    add_runs(&job, block, force_piece);
+}
+
+CS_CLONES static void wait_force_lot(void *job, uint32_t lot) {
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, force_piece);
+}
+
+void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n, const double *x,
+                           const double *v, uint32_t parts) {
+    struct job job = {
+        .springs = springs, .n = n, .x = x, .v = v, .parts = parts, .asks = asks_force};
+    cs_pool_run(springs->n_lots, wait_force_lot, &job);
 }
 
 double cs_springs_shortest(const struct cs_springs *springs) {
@@ -110,12 +126,12 @@ double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const dou
         double sum = 0;
         for (uint32_t start = 0; start < run->count; start += PIECE) {
             const struct piece piece = piece_of(run, start);
-            const struct ends e = ends_of(&piece, x, n, &places);
+            const struct ends e = ends_of(&piece, x, n, false, &places);
             for (uint32_t i = 0; i < piece.count; i++) {
-                const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i];
-                const double dz = e.bz[i] - e.az[i];
+                const bool listed = run->ends != NULL;
+                const struct difference d = across(e, i, listed);
                 const double stretch =
-                    sqrt(dx * dx + dy * dy + dz * dz) - cs_spring_length(run, start + i);
+                    sqrt(d.x * d.x + d.y * d.y + d.z * d.z) - cs_spring_length(run, start + i);
                 sum += (run->ends ? piece.stiffnesses[i] : 1) * (stretch * stretch);
             }
         }
@@ -140,10 +156,10 @@ double cs_springs_energy_at_twice(const struct cs_springs *springs) {
  *   axial      d (g.u) u + d [(w.du) u + (w.u) du],  du = (e - (u.e) u) / l
  *   relative   d g
  * moved: dx is given; turned: dv is given. */
-CS_INLINE void piece_jvp(const struct piece *piece, struct ends x, struct ends v,
-                         struct ends dx, struct ends dv, struct asked asked, const bool listed,
-                         const bool moved, const bool turned, double *restrict fx,
-                         double *restrict fy, double *restrict fz) {
+CS_INLINE void jvp_of(const struct piece *piece, struct ends x, struct ends v, struct ends dx,
+                      struct ends dv, struct asked asked, const bool listed, const bool moved,
+                      const bool turned, double *restrict fx, double *restrict fy,
+                      double *restrict fz) {
     const double axial = piece->run->axial ? asked.c : 0;
     const double relative = piece->run->axial ? 0 : asked.c;
     const double length = piece->run->length;
@@ -151,32 +167,30 @@ CS_INLINE void piece_jvp(const struct piece *piece, struct ends x, struct ends v
     for (uint32_t i = 0; i < count; i++) {
         const double L = listed ? piece->lengths[i] : length;
         const double k = listed ? asked.k * piece->stiffnesses[i] : asked.k;
-        const double px = x.bx[i] - x.ax[i], py = x.by[i] - x.ay[i], pz = x.bz[i] - x.az[i];
-        const double inverse = 1 / sqrt(px * px + py * py + pz * pz + DBL_MIN);
-        const double ux = px * inverse, uy = py * inverse, uz = pz * inverse;
+        const struct difference p = across(x, i, listed);
+        const double inverse = 1 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z + DBL_MIN);
+        const double ux = p.x * inverse, uy = p.y * inverse, uz = p.z * inverse;
         double rx = 0, ry = 0, rz = 0;
         if (moved) {
-            const double ex = dx.bx[i] - dx.ax[i], ey = dx.by[i] - dx.ay[i];
-            const double ez = dx.bz[i] - dx.az[i];
-            const double ue = ux * ex + uy * ey + uz * ez;
+            const struct difference e = across(dx, i, listed);
+            const double ue = ux * e.x + uy * e.y + uz * e.z;
             const double slack = k * (1 - L * inverse);
             double along = k * L * inverse * ue;
-            const double wx = v.bx[i] - v.ax[i], wy = v.by[i] - v.ay[i], wz = v.bz[i] - v.az[i];
-            const double tx = (ex - ue * ux) * inverse, ty = (ey - ue * uy) * inverse;
-            const double tz = (ez - ue * uz) * inverse;
-            const double closing = axial * (wx * ux + wy * uy + wz * uz);
-            along += axial * (wx * tx + wy * ty + wz * tz);
-            rx = slack * ex + along * ux + closing * tx;
-            ry = slack * ey + along * uy + closing * ty;
-            rz = slack * ez + along * uz + closing * tz;
+            const struct difference w = across(v, i, listed);
+            const double tx = (e.x - ue * ux) * inverse, ty = (e.y - ue * uy) * inverse;
+            const double tz = (e.z - ue * uz) * inverse;
+            const double closing = axial * (w.x * ux + w.y * uy + w.z * uz);
+            along += axial * (w.x * tx + w.y * ty + w.z * tz);
+            rx = slack * e.x + along * ux + closing * tx;
+            ry = slack * e.y + along * uy + closing * ty;
+            rz = slack * e.z + along * uz + closing * tz;
         }
         if (turned) {
-            const double gx = dv.bx[i] - dv.ax[i], gy = dv.by[i] - dv.ay[i];
-            const double gz = dv.bz[i] - dv.az[i];
-            const double along = axial * (gx * ux + gy * uy + gz * uz);
-            rx += relative * gx + along * ux;
-            ry += relative * gy + along * uy;
-            rz += relative * gz + along * uz;
+            const struct difference g = across(dv, i, listed);
+            const double along = axial * (g.x * ux + g.y * uy + g.z * uz);
+            rx += relative * g.x + along * ux;
+            ry += relative * g.y + along * uy;
+            rz += relative * g.z + along * uz;
         }
         fx[i] = rx;
         fy[i] = ry;
@@ -184,39 +198,65 @@ CS_INLINE void piece_jvp(const struct piece *piece, struct ends x, struct ends v
     }
 }
 
-CS_INLINE void run_jvp(const struct cs_spring_run *run, uint32_t n, const double *x,
-                       const double *v, struct asked asked, const bool listed, const double *dx,
-                       const double *dv, double *df) {
-    double fx[PIECE], fy[PIECE], fz[PIECE];
+CS_INLINE void jvp_listed_or_not(const struct job *job, const struct piece *piece,
+                                 const bool listed, double *restrict fx, double *restrict fy,
+                                 double *restrict fz) {
     struct gathered places, speeds, moves, turns;
-    for (uint32_t start = 0; start < run->count; start += PIECE) {
-        const struct piece piece = piece_of(run, start);
-        const struct ends xs = ends_of(&piece, x, n, &places);
-        const struct ends vs = ends_of(&piece, v, n, &speeds);
-        /* a direction that is not given stands for itself, and is not read */
-        const struct ends xd = dx ? ends_of(&piece, dx, n, &moves) : xs;
-        const struct ends vd = dv ? ends_of(&piece, dv, n, &turns) : xs;
-        if (dx && dv)
-            piece_jvp(&piece, xs, vs, xd, vd, asked, listed, true, true, fx, fy, fz);
-        else if (dx)
-            piece_jvp(&piece, xs, vs, xd, vd, asked, listed, true, false, fx, fy, fz);
-        else
-            piece_jvp(&piece, xs, vs, xd, vd, asked, listed, false, true, fx, fy, fz);
-        scatter(&piece, fx, fy, fz, n, df);
-    }
+    const struct asked asked = asked_of(piece->run, job->parts);
+    const double *dx = job->dx, *dv = job->dv;
+    const struct ends xs = ends_of(piece, job->x, job->n, false, &places);
+    const struct ends vs = ends_of(piece, job->v, job->n, false, &speeds);
+    /* a direction that is not given stands for itself, and is not read */
+    const struct ends xd = dx ? ends_of(piece, dx, job->n, false, &moves) : xs;
+    const struct ends vd = dv ? ends_of(piece, dv, job->n, false, &turns) : xs;
+    if (dx && dv)
+        jvp_of(piece, xs, vs, xd, vd, asked, listed, true, true, fx, fy, fz);
+    else if (dx)
+        jvp_of(piece, xs, vs, xd, vd, asked, listed, true, false, fx, fy, fz);
+    else
+        jvp_of(piece, xs, vs, xd, vd, asked, listed, false, true, fx, fy, fz);
+}
+
+CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, double *restrict fx,
+                         double *restrict fy, double *restrict fz) {
+    if (piece->run->ends)
+        jvp_listed_or_not(job, piece, true, fx, fy, fz);
+    else
+        jvp_listed_or_not(job, piece, false, fx, fy, fz);
+}
+
+static bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
+    return asks_force(job, run) && (job->dx || asked_of(run, job->parts).c != 0);
 }
 
 CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
                                   const double *v, uint32_t parts, const double *dx,
-                                  const double *dv, double *df) {
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        const struct asked asked = asked_of(run, parts);
-        if ((asked.k == 0 && asked.c == 0) || (asked.c == 0 && !dx))
-            continue;
-        if (run->ends)
-            run_jvp(run, n, x, v, asked, true, dx, dv, df);
-        else
-            run_jvp(run, n, x, v, asked, false, dx, dv, df);
-    }
+                                  const double *dv, const struct cs_block *block, double *df) {
+    const struct job job = {.springs = springs,
+                            .n = n,
+                            .x = x,
+                            .v = v,
+                            .dx = dx,
+                            .dv = dv,
+                            .parts = parts,
+                            .to = df,
+                            .asks = asks_jvp};
+    add_runs(&job, block, jvp_piece);
+}
+
+CS_CLONES static void wait_jvp_lot(void *job, uint32_t lot) {
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, jvp_piece);
+}
+
+void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
+                         const double *v, uint32_t parts, const double *dx, const double *dv) {
+    struct job job = {.springs = springs,
+                      .n = n,
+                      .x = x,
+                      .v = v,
+                      .dx = dx,
+                      .dv = dv,
+                      .parts = parts,
+                      .asks = asks_jvp};
+    cs_pool_run(springs->n_lots, wait_jvp_lot, &job);
 }

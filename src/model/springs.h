@@ -46,10 +46,47 @@ static inline double cs_spring_stiffness(const struct cs_spring_run *run, uint32
     return run->stiffnesses ? run->stiffnesses[i] : run->stiffness;
 }
 
+/* Particles [begin, end) to which one thread adds forces: whole rows of grids, any part of a
+ * mesh. Runs [first_run, end_run) hold all that have an end there, and some that have none. A
+ * row of springs across the border of two blocks is computed for both. */
+struct cs_block {
+    uint32_t begin, end, first_run, end_run;
+};
+
+/* Springs [begin, end) of a mesh's run whose forces one thread computes. As their ends lie
+ * anywhere, each force waits in its place, and a thread adds to a particle of its block what
+ * waits for it, in the order of the springs. */
+struct cs_lot {
+    uint32_t run, begin, end;
+};
+enum { CS_LOT_MOST = 2048 };
+
+/* Of a mesh's run; all 0 of a grid's. At particle i of the body, 0..n-1, end the springs
+ * around[starts[i]..starts[i + 1]) >> 1 of the run, ascending; the last bit is 1 at their
+ * second ends. */
+struct cs_wait {
+    uint32_t n;
+    const uint32_t *starts, *around; /* (n + 1), (2 count) */
+    double *forces;                  /* (3, count) */
+};
+
 struct cs_springs {
     const struct cs_spring_run *runs;
     uint32_t n_runs, n; /* runs; springs */
+
+    /* how threads share them (shares.h); with one thread NULL, and one block of everything */
+    const struct cs_block *blocks; /* (n_blocks) ascending */
+    uint32_t n_blocks;
+    const struct cs_lot *lots;
+    uint32_t n_lots;
+    const struct cs_wait *waits; /* (n_runs); NULL without meshes too */
 };
+
+static inline struct cs_block cs_springs_block(const struct cs_springs *springs, uint32_t n,
+                                               uint32_t block) {
+    return springs->blocks ? springs->blocks[block]
+                           : (struct cs_block){0, n, 0, springs->n_runs};
+}
 
 /* Runs of one body whose particles start at `first`, appended at runs[0..]: of a cloth's rows,
  * or one a kind of a mesh. lists takes the lengths and stiffnesses of a mesh, 2 doubles a
@@ -63,7 +100,8 @@ uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uin
  * the lengths are there. A list that is right already is left alone. */
 void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
 
-/* Adds the spring and damper forces of the chosen parts to f (3,n).
+/* Adds the spring and damper forces of the chosen parts to f (3,n) at the particles of one of
+ * the blocks, after cs_springs_wait_force with the same arguments.
  *
  * For a spring of rest length L, stiffness k and damping d, with unit direction u from end a to
  * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial
@@ -71,7 +109,11 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
  * eq. 5.10). The smallest normal double is added to the squared length before the root, so that
  * two particles in one place feel no spring force instead of dividing by zero. */
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
-                          const double *v, uint32_t parts, double *f);
+                          const double *v, uint32_t parts, const struct cs_block *block,
+                          double *f);
+/* By all threads, before any block; does nothing where they do not share meshes. */
+void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n, const double *x,
+                           const double *v, uint32_t parts);
 
 /* Smallest rest length in m; 0 without springs. */
 double cs_springs_shortest(const struct cs_springs *springs);
@@ -83,10 +125,13 @@ double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const dou
 /* Elastic energy in J that all springs would hold at twice their rest lengths. */
 double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
-/* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df; dx or dv may be NULL. */
+/* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df at the particles of a block; dx or dv
+ * may be NULL. After cs_springs_wait_jvp, as above. */
 void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
                         const double *v, uint32_t parts, const double *dx, const double *dv,
-                        double *df);
+                        const struct cs_block *block, double *df);
+void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
+                         const double *v, uint32_t parts, const double *dx, const double *dv);
 
 /* Adds every particle's own blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
  * The position derivative of axial damping is left out, as in the solver's matrix. */
@@ -100,6 +145,7 @@ void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const
  * may be negative. The position derivative of axial damping is left out. */
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
                        double ck, bool psd, double *factors);
+/* By all threads. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y);
 /* Own blocks (6,n) of that matrix, added. */

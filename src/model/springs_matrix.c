@@ -2,6 +2,7 @@
  * y = sum of (s I + w w^T)(p_a - p_b) that the linear solver multiplies by. */
 #include "model/springs.h"
 
+#include "base/pool.h"
 #include "model/rows.h"
 
 #include <float.h>
@@ -55,10 +56,10 @@ CS_INLINE void piece_diagonal(const struct piece *piece, struct ends e, const bo
     for (size_t i = 0; i < count; i++) {
         const double length = listed ? piece->lengths[i] : L;
         const double stiffness = listed ? piece->stiffnesses[i] : k;
-        const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i], dz = e.bz[i] - e.az[i];
-        const double inverse = 1 / sqrt(dx * dx + dy * dy + dz * dz + DBL_MIN);
+        const struct difference d = across(e, i, listed);
+        const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
         const double ratio = length * inverse;
-        const double ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
+        const double ux = d.x * inverse, uy = d.y * inverse, uz = d.z * inverse;
         set_block(stiff, i, -(stiffness * (1 - ratio)), -(stiffness * ratio), ux, uy, uz);
         if (axial)
             set_block(damp, i, 0, -damping, ux, uy, uz);
@@ -81,7 +82,7 @@ CS_INLINE void run_diagonal(const struct cs_spring_run *run, uint32_t n, const d
     struct blocks stiff, damp;
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
-        const struct ends e = ends_of(&piece, x, n, &places);
+        const struct ends e = ends_of(&piece, x, n, false, &places);
         if (run->axial && run->damping != 0) {
             piece_diagonal(&piece, e, listed, true, &stiff, &damp);
             add_blocks(&piece, &damp, n, dvv);
@@ -104,9 +105,9 @@ CS_CLONES void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_
     }
 }
 
-/* factors of one piece; base: of its run's */
-CS_INLINE void piece_factor(const struct piece *piece, struct ends e, double cd, double ck,
-                            bool psd, const bool listed, double *base) {
+/* factors of one piece, where they lie in the run's */
+CS_INLINE void factor_of(const struct piece *piece, struct ends e, double cd, double ck,
+                         bool psd, const bool listed, double *base) {
     const struct cs_spring_run *run = piece->run;
     const double gamma = run->axial ? 0 : -cd * run->damping;
     const double eta = run->axial ? -cd * run->damping : 0;
@@ -118,59 +119,113 @@ CS_INLINE void piece_factor(const struct piece *piece, struct ends e, double cd,
     for (size_t i = 0; i < count; i++) {
         const double length = listed ? piece->lengths[i] : L;
         const double stiffness = -ck * (listed ? piece->stiffnesses[i] : k);
-        const double dx = e.bx[i] - e.ax[i], dy = e.by[i] - e.ay[i], dz = e.bz[i] - e.az[i];
-        const double inverse = 1 / sqrt(dx * dx + dy * dy + dz * dz + DBL_MIN);
+        const struct difference d = across(e, i, listed);
+        const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
         const double ratio = length * inverse;
         /* a compressed spring's axial stiffness is k: beta alone would exceed it */
         const bool clamped = psd && ratio > 1;
         s[i] = gamma + (clamped ? 0 : stiffness * (1 - ratio));
         const double w = sqrt(stiffness * (clamped ? 1 : ratio) + eta) * inverse;
-        wx[i] = w * dx;
-        wy[i] = w * dy;
-        wz[i] = w * dz;
+        wx[i] = w * d.x;
+        wy[i] = w * d.y;
+        wz[i] = w * d.z;
     }
 }
 
-CS_CLONES void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x,
-                                 double cd, double ck, bool psd, double *factors) {
+struct factoring {
+    const struct cs_springs *springs;
+    size_t n;
+    const double *x;
+    double cd, ck;
+    bool psd;
+    double *factors;
+};
+
+/* springs [begin, end) of a run, from a whole number of pieces on */
+CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spring_run *run,
+                              uint32_t begin, uint32_t end) {
     struct gathered places;
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        double *base = factors + 4 * (size_t)run->first;
-        for (uint32_t start = 0; start < run->count; start += PIECE) {
-            const struct piece piece = piece_of(run, start);
-            const struct ends e = ends_of(&piece, x, n, &places);
-            if (run->ends)
-                piece_factor(&piece, e, cd, ck, psd, true, base);
-            else
-                piece_factor(&piece, e, cd, ck, psd, false, base);
-        }
+    double *base = made->factors + 4 * (size_t)run->first;
+    for (uint32_t start = begin; start < end; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        const struct ends e = ends_of(&piece, made->x, made->n, false, &places);
+        if (run->ends)
+            factor_of(&piece, e, made->cd, made->ck, made->psd, true, base);
+        else
+            factor_of(&piece, e, made->cd, made->ck, made->psd, false, base);
     }
 }
 
-CS_CLONES void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n,
-                                  const double *factors, const double *p, double *y) {
-    double fx[PIECE], fy[PIECE], fz[PIECE];
+enum { RUNS = 32 }; /* runs of grids that one thread factors at a time */
+
+CS_CLONES static void factor_runs(void *arg, uint32_t block) {
+    const struct factoring *made = arg;
+    const struct cs_springs *springs = made->springs;
+    for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
+        if (!springs->waits || !springs->runs[r].ends)
+            factor_springs(made, springs->runs + r, 0, springs->runs[r].count);
+}
+
+CS_CLONES static void factor_lot(void *arg, uint32_t number) {
+    const struct factoring *made = arg;
+    const struct cs_lot *lot = made->springs->lots + number;
+    factor_springs(made, made->springs->runs + lot->run, lot->begin, lot->end);
+}
+
+void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
+                       double ck, bool psd, double *factors) {
+    struct factoring made = {springs, n, x, cd, ck, psd, factors};
+    cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, factor_runs, &made);
+    cs_pool_run(springs->n_lots, factor_lot, &made);
+}
+
+CS_INLINE void mul_listed_or_not(const struct job *job, const struct piece *piece,
+                                 const bool listed, double *restrict fx, double *restrict fy,
+                                 double *restrict fz) {
     struct gathered places;
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        for (uint32_t start = 0; start < run->count; start += PIECE) {
-            const struct piece piece = piece_of(run, start);
-            const double *s = factors + 4 * (size_t)run->first + start;
-            const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
-            const struct ends e = ends_of(&piece, p, n, &places);
-            for (size_t i = 0; i < piece.count; i++) {
-                const double dx = e.ax[i] - e.bx[i], dy = e.ay[i] - e.by[i];
-                const double dz = e.az[i] - e.bz[i];
-                /* w.(p_a - p_b), left to right: the sum order is part of the state hash */
-                const double along = wx[i] * dx + wy[i] * dy + wz[i] * dz;
-                fx[i] = s[i] * dx + along * wx[i];
-                fy[i] = s[i] * dy + along * wy[i];
-                fz[i] = s[i] * dz + along * wz[i];
-            }
-            scatter(&piece, fx, fy, fz, n, y);
-        }
+    const struct cs_spring_run *run = piece->run;
+    const double *s = job->factors + 4 * (size_t)run->first + piece->start;
+    const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
+    const struct ends e = ends_of(piece, job->x, job->n, true, &places);
+    for (size_t i = 0; i < piece->count; i++) {
+        const struct difference d = across(e, i, listed);
+        /* w.(p_a - p_b), left to right: the sum order is part of the state hash */
+        const double along = wx[i] * d.x + wy[i] * d.y + wz[i] * d.z;
+        fx[i] = s[i] * d.x + along * wx[i];
+        fy[i] = s[i] * d.y + along * wy[i];
+        fz[i] = s[i] * d.z + along * wz[i];
     }
+}
+
+CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, double *restrict fx,
+                         double *restrict fy, double *restrict fz) {
+    if (piece->run->ends)
+        mul_listed_or_not(job, piece, true, fx, fy, fz);
+    else
+        mul_listed_or_not(job, piece, false, fx, fy, fz);
+}
+
+static bool asks_always(const struct job *job, const struct cs_spring_run *run) {
+    (void)job, (void)run;
+    return true;
+}
+
+CS_CLONES static void wait_mul_lot(void *job, uint32_t lot) {
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, mul_piece);
+}
+
+CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const struct cs_block block = cs_springs_block(job->springs, (uint32_t)job->n, number);
+    add_runs(job, &block, mul_piece);
+}
+
+void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
+                        const double *p, double *y) {
+    struct job job = {
+        .springs = springs, .n = n, .x = p, .factors = factors, .to = y, .asks = asks_always};
+    cs_pool_run(springs->n_lots, wait_mul_lot, &job);
+    cs_pool_run(springs->n_blocks, mul_add_block, &job);
 }
 
 CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,

@@ -4,6 +4,7 @@
 #include "model/clusters.h"
 #include "model/events.h"
 #include "model/shape.h"
+#include "model/shares.h"
 #include "model/terms.h"
 
 #include <math.h>
@@ -195,6 +196,8 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     take_arrays(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_SPRINGS))
         build_springs(system, error);
+    if (!error->status)
+        cs_shares_build(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_SPRING_LIST))
         build_spring_list(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_CLUSTERS))

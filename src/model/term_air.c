@@ -11,21 +11,23 @@ static double share_of(const struct cs_system *system, bool by_area, uint32_t i)
 }
 
 static void drag_force(const struct cs_system *system, double t, const double *x,
-                       const double *v, uint32_t parts, double *f) {
+                       const double *v, uint32_t parts, const struct cs_block *block,
+                       double *f) {
     (void)t, (void)x, (void)parts;
     const uint32_t n = system->view.n;
     const struct cs_forces *forces = &system->scene->forces;
     for (uint32_t c = 0; c < 3; c++, f += n, v += n)
-        for (uint32_t i = 0; i < n; i++)
+        for (uint32_t i = block->begin; i < block->end; i++)
             f[i] -=
                 forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i) * v[i];
 }
 
 static void drag_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                     uint32_t parts, const double *dx, const double *dv, double *df) {
+                     uint32_t parts, const double *dx, const double *dv,
+                     const struct cs_block *block, double *df) {
     (void)dx, (void)v;
     if (dv)
-        drag_force(system, t, x, dv, parts, df);
+        drag_force(system, t, x, dv, parts, block, df);
 }
 
 static void drag_diagonal(const struct cs_system *system, const double *x, double *kxx,
@@ -50,13 +52,14 @@ const struct cs_term cs_term_drag = {
 };
 
 static void wind_force(const struct cs_system *system, double t, const double *x,
-                       const double *v, uint32_t parts, double *f) {
+                       const double *v, uint32_t parts, const struct cs_block *block,
+                       double *f) {
     (void)t, (void)x, (void)v, (void)parts;
     const uint32_t n = system->view.n;
     const struct cs_wind *wind = &system->scene->forces.wind;
     const double *w = wind->direction;
     const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
-    for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t i = block->begin; i < block->end; i++) {
         const double push = wind->strength *
                             share_of(system, wind->strength_unit == CS_WIND_PA, i) *
                             fabs(w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i]);
@@ -68,7 +71,8 @@ static void wind_force(const struct cs_system *system, double t, const double *x
 
 /* d|w.n| = sign(w.n) w.dn */
 static void wind_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                     uint32_t parts, const double *dx, const double *dv, double *df) {
+                     uint32_t parts, const double *dx, const double *dv,
+                     const struct cs_block *block, double *df) {
     (void)t, (void)v, (void)parts, (void)dv;
     if (!dx)
         return;
@@ -78,7 +82,9 @@ static void wind_jvp(const struct cs_system *system, double t, const double *x, 
     const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *body = system->bodies + b;
-        for (uint32_t i = body->first; i < body->first + body->count; i++) {
+        const uint32_t end = body->first + body->count;
+        for (uint32_t i = block->begin > body->first ? block->begin : body->first;
+             i < end && i < block->end; i++) {
             double dn[3];
             cs_normal_derivative(system, body, i, x, dx, dn);
             const double facing = w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i];

@@ -2,13 +2,14 @@
 #include "model/terms.h"
 
 static void add_force(const struct cs_system *system, double t, const double *x,
-                      const double *v, uint32_t parts, double *f) {
+                      const double *v, uint32_t parts, const struct cs_block *block,
+                      double *f) {
     (void)t, (void)x, (void)v, (void)parts;
-    const uint32_t n = system->view.n;
-    for (uint32_t c = 0; c < 3; c++) {
+    const size_t n = system->view.n;
+    for (size_t c = 0; c < 3; c++) {
         const double g = system->scene->forces.gravity[c];
-        for (uint32_t i = 0; i < n && g != 0; i++)
-            f[(size_t)c * n + i] += system->mass[i] * g;
+        for (size_t i = block->begin; i < block->end && g != 0; i++)
+            f[c * n + i] += system->mass[i] * g;
     }
 }
 

@@ -5,12 +5,13 @@
 #include "model/terms.h"
 
 static void add_force(const struct cs_system *system, double t, const double *x,
-                      const double *v, uint32_t parts, double *f) {
+                      const double *v, uint32_t parts, const struct cs_block *block,
+                      double *f) {
     (void)t, (void)x, (void)v, (void)parts;
     const size_t n = system->view.n;
     const double *push = system->events->push;
     for (size_t c = 0; push && c < 3; c++)
-        for (size_t i = 0; i < n; i++)
+        for (size_t i = block->begin; i < block->end; i++)
             f[c * n + i] += system->mass[i] * push[c * n + i];
 }
 

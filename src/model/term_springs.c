@@ -2,9 +2,10 @@
 #include "model/terms.h"
 
 static void add_force(const struct cs_system *system, double t, const double *x,
-                      const double *v, uint32_t parts, double *f) {
+                      const double *v, uint32_t parts, const struct cs_block *block,
+                      double *f) {
     (void)t;
-    cs_springs_add_force(&system->springs, system->view.n, x, v, parts, f);
+    cs_springs_add_force(&system->springs, system->view.n, x, v, parts, block, f);
 }
 
 static double energy(const struct cs_system *system, const double *x) {
@@ -12,9 +13,10 @@ static double energy(const struct cs_system *system, const double *x) {
 }
 
 static void add_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                    uint32_t parts, const double *dx, const double *dv, double *df) {
+                    uint32_t parts, const double *dx, const double *dv,
+                    const struct cs_block *block, double *df) {
     (void)t;
-    cs_springs_add_jvp(&system->springs, system->view.n, x, v, parts, dx, dv, df);
+    cs_springs_add_jvp(&system->springs, system->view.n, x, v, parts, dx, dv, block, df);
 }
 
 static void add_diagonal(const struct cs_system *system, const double *x, double *kxx,

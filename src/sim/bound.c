@@ -3,6 +3,7 @@
 #include "model/clusters.h"
 #include "model/events.h"
 #include "model/measure.h"
+#include "model/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -77,14 +78,22 @@ static inline lanes load(const double *from) {
     return out;
 }
 
-/* Kinetic energy, and 0 or not a number by the places. In lanes: it runs after every step. */
-static void watch(size_t n, const double *mass, const double *x, const double *v,
-                  double *energy, double *places) {
+struct watched {
+    size_t n;
+    const double *mass, *x, *v;
+};
+
+/* Kinetic energy of a range, not a number where a place or a speed is none. In lanes: it runs
+ * after every step. */
+static double watch_part(const void *arg, size_t begin, size_t end) {
     enum { LANES = sizeof(lanes) / sizeof(double) };
+    const struct watched *watched = arg;
+    const size_t n = watched->n;
+    const double *mass = watched->mass, *x = watched->x, *v = watched->v;
     /* two sums of each, so that one addition need not wait for the one before */
     lanes e[2] = {{0}}, p[2] = {{0}};
-    size_t i = 0;
-    for (; i + 2 * LANES <= n; i += 2 * LANES)
+    size_t i = begin;
+    for (; i + 2 * LANES <= end; i += 2 * LANES)
         for (size_t k = 0; k < 2; k++) {
             const size_t at = i + k * LANES;
             const lanes a = load(v + at), b = load(v + n + at), c = load(v + 2 * n + at);
@@ -92,25 +101,23 @@ static void watch(size_t n, const double *mass, const double *x, const double *v
             e[k] += load(mass + at) * (a * a + b * b + c * c);
             p[k] += sum - sum;
         }
-    *energy = e[0][0] + e[0][1] + e[1][0] + e[1][1];
-    *places = p[0][0] + p[0][1] + p[1][0] + p[1][1];
-    for (; i < n; i++) {
+    double energy = e[0][0] + e[0][1] + e[1][0] + e[1][1];
+    double places = p[0][0] + p[0][1] + p[1][0] + p[1][1];
+    for (; i < end; i++) {
         const double sum = x[i] + x[n + i] + x[2 * n + i];
-        *energy += mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
-        *places += sum - sum;
+        energy += mass[i] * (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        places += sum - sum;
     }
-    *energy *= 0.5;
+    return 0.5 * energy + places;
 }
 
 /* Kinetic energy decides: a number that is not finite anywhere makes it so. */
 bool cs_bound_is_passed(const struct cs_bound *bound, struct cs_run *run, double t,
                         const double *x, const double *v) {
     const size_t n = run->system->view.n;
-    const double *mass = run->system->mass;
-    double energy = 0, places = 0;
-    watch(n, mass, x, v, &energy, &places);
-    const double most = energy_at(bound, t);
-    if (places == 0 && energy <= most)
+    const struct watched watched = {n, run->system->mass, x, v};
+    const double energy = cs_vector_sum(n, watch_part, &watched), most = energy_at(bound, t);
+    if (energy <= most)
         return false;
 
     uint32_t worst = 0;

@@ -194,10 +194,19 @@ static void resolve_contact(struct cs_run_host *host, double *x, double *v, bool
     stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
+struct loss {
+    double *v, kept;
+};
+
+static void lose_part(void *arg, size_t begin, size_t end) {
+    const struct loss *loss = arg;
+    for (size_t i = begin; i < end; i++)
+        loss->v[i] *= loss->kept;
+}
+
 static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
-    const double kept = 1 - host->run->system->scene->forces.velocity_loss;
-    for (size_t i = 0; i < 3 * (size_t)host->run->system->view.n; i++)
-        v[i] *= kept;
+    struct loss loss = {v, 1 - host->run->system->scene->forces.velocity_loss};
+    cs_vector_share(3 * (size_t)host->run->system->view.n, lose_part, &loss);
     *changed = true;
 }
 

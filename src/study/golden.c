@@ -116,6 +116,7 @@ enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_go
         .n_overrides = split_overrides(text, overrides, 16),
         .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
         .render = render,
+        .threads = golden->threads,
         .stop = golden->stop,
     };
     if (cs_session_open(session, &settings, error))

@@ -36,6 +36,7 @@ struct cs_golden {
     bool hashes, images; /* what to do */
     bool accept;         /* write what was found instead of failing */
     enum cs_gl gl;
+    uint32_t threads; /* as in struct cs_session_settings */
     const volatile sig_atomic_t *stop;
     /* called after each row; may be NULL */
     void (*report)(void *ctx, const struct cs_golden_row *row);

@@ -1,6 +1,8 @@
 #include "study/session.h"
 
 #include "base/options.h"
+#include "base/pool.h"
+#include "model/shape.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,6 +108,20 @@ static enum cs_status check_method(const struct cs_session *session, bool render
     return CS_OK;
 }
 
+/* before the plan, which says what they take */
+static enum cs_status start_threads(struct cs_session *session, uint32_t threads,
+                                    struct cs_error *error) {
+    size_t n = 0;
+    if (!threads)
+        return CS_OK;
+    for (uint32_t b = 0; b < session->scene.bodies.n; b++)
+        n += (size_t)cs_shape_count(cs_scene_bodies(&session->scene) + b);
+    if (threads == CS_THREADS_AUTO)
+        threads = n < CS_THREADS_AUTO_LEAST ? 1 : cs_pool_processors(CS_THREADS_AUTO_MOST);
+    session->pooled = !cs_pool_start(threads, error);
+    return error->status;
+}
+
 static enum cs_status open_plan(struct cs_session *session,
                                 const struct cs_session_settings *settings,
                                 struct cs_error *error) {
@@ -117,7 +133,8 @@ static enum cs_status open_plan(struct cs_session *session,
         if (cs_registry_add_file(&session->registry, settings->plugins[k], error))
             return error->status;
     if (choose_integrator(session, settings->integrator, error) ||
-        check_method(session, settings->render, error))
+        check_method(session, settings->render, error) ||
+        start_threads(session, settings->threads, error))
         return error->status;
     cs_plan_make(&session->plan, &session->scene, session->integrator->needs, settings->render);
     return CS_OK;
@@ -148,5 +165,7 @@ void cs_session_close(struct cs_session *session) {
     cs_registry_finish(&session->registry);
     cs_scene_finish(&session->scene);
     free(session->options);
+    if (session->pooled)
+        cs_pool_stop();
     *session = (struct cs_session){0};
 }

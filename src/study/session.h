@@ -17,8 +17,15 @@ struct cs_session_settings {
     const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
     bool render, timed;
+    /* 0: those of the pool, left as they are; else the session starts them and ends them, with
+     * CS_THREADS_AUTO as many as suit the scene */
+    uint32_t threads;
     const volatile sig_atomic_t *stop; /* may be NULL */
 };
+
+/* One thread for a scene that is done before others have woken up; else one a processor, up to
+ * that many. */
+enum { CS_THREADS_AUTO = UINT16_MAX, CS_THREADS_AUTO_MOST = 16, CS_THREADS_AUTO_LEAST = 16384 };
 
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_session {
@@ -30,6 +37,7 @@ struct cs_session {
     struct cs_plan plan;
     struct cs_system system;
     struct cs_run run;
+    bool pooled; /* started threads */
 };
 
 /* The whole way. On failure everything is closed and *error says where and why. */

@@ -19,7 +19,8 @@
 /* since the start of the program; volatile, as no compiler expects the library to change it */
 static volatile uint64_t allocations;
 
-#if defined(__SANITIZE_ADDRESS__) || ALLOCATIONS_HAS(address_sanitizer)
+#if defined(__SANITIZE_ADDRESS__) || ALLOCATIONS_HAS(address_sanitizer) ||                     \
+    defined(__SANITIZE_THREAD__) || ALLOCATIONS_HAS(thread_sanitizer)
 
 #include <sanitizer/allocator_interface.h>
 

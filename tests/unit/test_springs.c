@@ -161,13 +161,14 @@ START_TEST(force_is_the_sum_of_single_springs) {
             sheet_open(&sheet, 0, SCENE, grids[g][0], grids[g][1], dampings[m]);
             sheet_stir(&sheet, 0.3, 2);
             const struct cs_springs *springs = &sheet.system.springs;
+            const struct cs_block all = cs_springs_block(springs, (uint32_t)sheet.n, 0);
             double *found = calloc(sheet.n, 6 * sizeof *found);
             ck_assert_ptr_nonnull(found);
             double *expected = found + 3 * sheet.n;
             for (size_t p = 0; p < sizeof parts / sizeof *parts; p++) {
                 memset(found, 0, 6 * sheet.n * sizeof *found);
                 cs_springs_add_force(springs, (uint32_t)sheet.n, sheet.x, sheet.v, parts[p],
-                                     found);
+                                     &all, found);
                 for (uint32_t r = 0; r < springs->n_runs; r++)
                     for (uint32_t i = 0; i < springs->runs[r].count; i++)
                         add_spring(&sheet, springs->runs + r, i, parts[p], expected);
@@ -259,8 +260,9 @@ START_TEST(force_is_added_to_what_is_there) {
     struct sheet pair;
     double f[6] = {1, 2, 3, 4, 5, 6};
     sheet_open(&pair, 0, SCENE, 2, 1, "0");
+    const struct cs_block all = cs_springs_block(&pair.system.springs, 2, 0);
     sheet_put(&pair, 1, pair.x[0], pair.x[2] + 3.5, pair.x[4], 0, 0, 0);
-    cs_springs_add_force(&pair.system.springs, 2, pair.x, pair.v, CS_PART_ALL, f);
+    cs_springs_add_force(&pair.system.springs, 2, pair.x, pair.v, CS_PART_ALL, &all, f);
     SHEET_ASSERT_AT(&pair, f, 0, 1, 3 + 200 * 0.5, 5, 1e-12);
     SHEET_ASSERT_AT(&pair, f, 1, 2, 4 - 200 * 0.5, 6, 1e-12);
     sheet_close(&pair);
@@ -272,11 +274,12 @@ START_TEST(particles_in_one_place_feel_no_spring) {
     struct sheet pair;
     double f[6] = {0}, df[6] = {0};
     sheet_open(&pair, 0, SCENE, 2, 1, "0.7");
+    const struct cs_block all = cs_springs_block(&pair.system.springs, 2, 0);
     sheet_put(&pair, 0, 1, 2, 3, 1, 0, 0);
     sheet_put(&pair, 1, 1, 2, 3, -1, 0, 0);
-    cs_springs_add_force(&pair.system.springs, 2, pair.x, pair.v, CS_PART_ALL, f);
+    cs_springs_add_force(&pair.system.springs, 2, pair.x, pair.v, CS_PART_ALL, &all, f);
     cs_springs_add_jvp(&pair.system.springs, 2, pair.x, pair.v, CS_PART_DAMPING, NULL, pair.v,
-                       df);
+                       &all, df);
     for (size_t i = 0; i < 6; i++) {
         ck_assert_double_eq(f[i], 0);
         ck_assert_double_finite(df[i]);

@@ -1,4 +1,5 @@
 /* Vector kernels: exact values, every tail length, and the one order of sums. */
+#include "base/pool.h"
 #include "model/vector.h"
 #include "unit.h"
 
@@ -100,9 +101,48 @@ START_TEST(numbers_that_are_not_finite_show) {
 }
 END_TEST
 
+/* longer than the block sums that wait at a time, and not a whole number of blocks */
+enum { LONG = 513 * BLOCK + 77 };
+
+static void count_items(void *arg, size_t begin, size_t end) {
+    uint8_t *times = arg;
+    for (size_t i = begin; i < end; i++)
+        times[i]++;
+}
+
+START_TEST(threads_change_no_bit) {
+    static const uint32_t threads[] = {1, 2, 3, 7};
+    double *x = malloc(4 * LONG * sizeof *x);
+    ck_assert_ptr_nonnull(x);
+    double *y = x + LONG, *terms = y + LONG, *z = terms + LONG;
+    for (size_t i = 0; i < LONG; i++) {
+        x[i] = sin((double)i) * (i % 7 ? 1 : 1e5);
+        y[i] = cos(1.3 * (double)i);
+        terms[i] = x[i] * y[i];
+    }
+    const double dot = sum_in_order(terms, LONG);
+    for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
+        struct cs_error error = {0};
+        ck_assert(!cs_pool_start(threads[t], &error));
+        ck_assert_double_eq(kernels->dot(LONG, x, y), dot);
+        kernels->linear_sum(LONG, 3, x, -2, y, z);
+        size_t wrong = 0;
+        for (size_t i = 0; i < LONG; i++)
+            wrong += z[i] != 3 * x[i] - 2 * y[i];
+        uint8_t *times = (uint8_t *)memset(z, 0, LONG);
+        kernels->share(LONG, count_items, times);
+        for (size_t i = 0; i < LONG; i++)
+            wrong += times[i] != 1;
+        ck_assert_uint_eq(wrong, 0);
+    }
+    cs_pool_stop();
+    free(x);
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {sums_of_whole_numbers_are_exact, sums_have_one_order,
                                   linear_sum_may_write_on_its_input,
-                                  numbers_that_are_not_finite_show};
+                                  numbers_that_are_not_finite_show, threads_change_no_bit};
     return unit_run("vector", tests, sizeof tests / sizeof *tests);
 }

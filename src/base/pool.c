@@ -1,0 +1,213 @@
+#include "base/pool.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Looks at a word before going to sleep over it: some microseconds, less than a wake-up takes.
+ * Longer would hold up whoever needs the core. */
+enum { LOOKS = 200 };
+
+/* Blocks meant for one thread, neighbours, so that its cache has them the next time too. Each
+ * on a cache line of its own. */
+struct share {
+    _Alignas(64) atomic_uint next;
+    uint32_t end;
+};
+
+struct pool {
+    struct share shares[CS_POOL_MOST];
+    uint32_t n; /* threads, the caller among them */
+    pthread_t threads[CS_POOL_MOST];
+    atomic_uint numbered; /* threads that know which share is theirs */
+
+    atomic_bool busy; /* a loop is under way: another one is its caller's alone */
+    void (*task)(void *arg, uint32_t block);
+    void *arg;
+
+    pthread_mutex_t lock; /* for what follows; the atomic words are written with it held */
+    pthread_cond_t wake, left;
+    atomic_uint loops;  /* so far: a change tells that there is one to join */
+    atomic_uint inside; /* threads that have joined the loop, without the caller */
+    uint32_t asleep;
+    bool open; /* the loop may be joined */
+    bool closing;
+};
+
+static struct pool *pool; /* NULL: one thread */
+
+static void relax(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+}
+
+/* waits a moment for *word to be something else, or to become 0 */
+static void look(atomic_uint *word, uint32_t old) {
+    for (int k = 0; k < LOOKS && atomic_load_explicit(word, memory_order_relaxed) == old; k++)
+        relax();
+}
+
+/* the own share first, then what the others have not come to */
+static void do_blocks(struct pool *p, uint32_t self) {
+    for (uint32_t k = 0; k < p->n; k++) {
+        struct share *share = p->shares + (self + k) % p->n;
+        for (;;) {
+            const uint32_t block =
+                atomic_fetch_add_explicit(&share->next, 1, memory_order_relaxed);
+            if (block >= share->end)
+                break;
+            p->task(p->arg, block);
+        }
+    }
+}
+
+static void *serve(void *argument) {
+    struct pool *p = argument;
+    const uint32_t self = 1 + atomic_fetch_add(&p->numbered, 1);
+    uint32_t seen = 0;
+    pthread_mutex_lock(&p->lock);
+    for (;;) {
+        while (!p->closing && (!p->open || p->loops == seen)) {
+            p->asleep++;
+            pthread_cond_wait(&p->wake, &p->lock);
+            p->asleep--;
+        }
+        if (p->closing)
+            break;
+        seen = p->loops;
+        p->inside++;
+        pthread_mutex_unlock(&p->lock);
+        do_blocks(p, self);
+        pthread_mutex_lock(&p->lock);
+        if (--p->inside == 0)
+            pthread_cond_signal(&p->left);
+        pthread_mutex_unlock(&p->lock);
+        look(&p->loops, seen);
+        pthread_mutex_lock(&p->lock);
+    }
+    pthread_mutex_unlock(&p->lock);
+    return NULL;
+}
+
+static void share_out(struct pool *p, uint32_t blocks) {
+    for (uint32_t k = 0; k < p->n; k++) {
+        p->shares[k].next = (uint32_t)((uint64_t)blocks * k / p->n);
+        p->shares[k].end = (uint32_t)((uint64_t)blocks * (k + 1) / p->n);
+    }
+}
+
+static void open_loop(struct pool *p) {
+    pthread_mutex_lock(&p->lock);
+    p->open = true;
+    p->loops++;
+    if (p->asleep)
+        pthread_cond_broadcast(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+}
+
+/* all blocks are taken: waits for those who have one, and for no one else */
+static void close_loop(struct pool *p) {
+    for (uint32_t inside; (inside = p->inside) > 0;) {
+        look(&p->inside, inside);
+        if (p->inside == inside)
+            break;
+    }
+    pthread_mutex_lock(&p->lock);
+    p->open = false;
+    while (p->inside)
+        pthread_cond_wait(&p->left, &p->lock);
+    pthread_mutex_unlock(&p->lock);
+}
+
+void cs_pool_run(uint32_t blocks, void (*task)(void *arg, uint32_t block), void *arg) {
+    struct pool *p = pool;
+    if (!p || blocks < 2 || atomic_exchange(&p->busy, true)) {
+        for (uint32_t block = 0; block < blocks; block++)
+            task(arg, block);
+        return;
+    }
+    p->task = task;
+    p->arg = arg;
+    share_out(p, blocks);
+    open_loop(p);
+    do_blocks(p, 0);
+    close_loop(p);
+    p->busy = false;
+}
+
+uint32_t cs_pool_processors(uint32_t most) {
+    cpu_set_t allowed;
+    const int n = sched_getaffinity(0, sizeof allowed, &allowed) ? 1 : CPU_COUNT(&allowed);
+    return (uint32_t)n < most ? (uint32_t)n : most;
+}
+
+uint32_t cs_pool_threads(void) {
+    return pool ? pool->n : 1;
+}
+
+/* A child has none of the threads, and perhaps a lock that one of them held. */
+static void forget(void) {
+    pool = NULL;
+}
+
+/* signals are the caller's: the threads start with all of them blocked */
+static int start_thread(struct pool *p) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int failed = pthread_create(p->threads + p->n, NULL, serve, p);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return failed;
+}
+
+static enum cs_status start(uint32_t threads, struct cs_error *error) {
+    static bool forgotten_by_children;
+    pool = aligned_alloc(_Alignof(struct pool), sizeof *pool);
+    if (!pool || (!forgotten_by_children && pthread_atfork(NULL, NULL, forget))) {
+        free(pool);
+        pool = NULL;
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for threads");
+    }
+    forgotten_by_children = true;
+    memset(pool, 0, sizeof *pool);
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->wake, NULL);
+    pthread_cond_init(&pool->left, NULL);
+    for (pool->n = 1; pool->n < threads; pool->n++) {
+        const int failed = start_thread(pool);
+        if (!failed)
+            continue;
+        cs_fail(error, CS_ERR_MEMORY, "cannot start thread %u of %u: %s", pool->n + 1, threads,
+                strerror(failed));
+        cs_pool_stop();
+        break;
+    }
+    return error->status;
+}
+
+enum cs_status cs_pool_start(uint32_t threads, struct cs_error *error) {
+    CS_ASSERT(threads >= 1 && threads <= CS_POOL_MOST);
+    cs_pool_stop();
+    return threads == 1 ? CS_OK : start(threads, error);
+}
+
+void cs_pool_stop(void) {
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->closing = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (uint32_t k = 1; k < pool->n; k++)
+        pthread_join(pool->threads[k], NULL);
+    pthread_cond_destroy(&pool->left);
+    pthread_cond_destroy(&pool->wake);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool);
+    pool = NULL;
+}

@@ -1,0 +1,197 @@
+/* The state does not depend on the number of threads, to the last bit: of scenes whose blocks
+ * cut rows, bodies and meshes, and of each kernel by itself. */
+#include "allocations.h"
+#include "fixture.h"
+
+#include "base/pool.h"
+#include "model/linear.h"
+#include "model/normals.h"
+#include "model/terms.h"
+
+#include <string.h>
+
+/* a broad grid (rows of more than one piece of springs), a narrow one, a single row, a network
+ * in a sphere that meets the floor, rows of pins; every force that there is */
+#define BODIES                                                                                 \
+    "{\"cloth\": {\"grid\": [300, 20], \"size\": [3, 0.2], \"bump\": 0.01}, \"mass\":"         \
+    " {\"total\": 1}, \"springs\": {\"damping\": 0.02}, \"pins\": [\"top\"]},"                 \
+    " {\"cloth\": {\"grid\": [7, 90], \"size\": [0.1, 1.2], \"bump\": 0.01}, \"mass\":"        \
+    " {\"areal_density\": 0.3}, \"springs\": {\"damping\": 0.01, \"damping_model\":"           \
+    " \"relative\"}, \"pins\": [\"left\", 5], \"strain_limit\": 1.2},"                         \
+    " {\"cloth\": {\"grid\": [40, 1]}, \"mass\": {\"total\": 0.1}},"                           \
+    " {\"mesh\": {\"shape\": \"sphere\", \"detail\": 9, \"place\": {\"translate\":"            \
+    " [0, -0.5, 0]}, \"velocity\": [0, -1, 0]}, \"network\": {\"springs\": 3}, \"mass\":"      \
+    " {\"total\": 0.5}, \"springs\": {\"stretch\": 40, \"bend\": 3, \"damping\": 0.02},"       \
+    " \"pins\": [3, 500]}"
+#define SCENE                                                                                  \
+    "{\"bodies\": [" BODIES "], \"colliders\": [{\"floor\": {\"height\": -1}}, {\"sphere\":"   \
+    " {\"centre\": [0.3, -0.2, 0.1], \"radius\": 0.15}}], \"forces\": {\"drag\": 0.1,"         \
+    " \"drag_unit\": \"Pa s/m\", \"velocity_loss\": 0.001, \"wind\": {\"direction\":"          \
+    " [0.3, 0, 1], \"strength\": 2}}, \"time\": {\"fps\": 200}, \"events\": [{\"from\":"       \
+    " 0.001, \"to\": 0.007, \"impact\": {\"direction\": [1, 0, 1], \"impulse\": 0.1}}]}"
+/* without what moves the state after a step: for a method with a history */
+#define CALM "{\"bodies\": [" BODIES "], \"time\": {\"fps\": 200}}"
+
+static const uint32_t counts[] = {2, 3, 4, 7};
+enum { COUNTS = sizeof counts / sizeof *counts, FRAMES = 2 };
+
+static void threads(uint32_t n) {
+    struct cs_error error = {0};
+    cs_pool_start(n, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+}
+
+/* a copy of the state after some frames with n threads; to be freed */
+static double *run(const char *method, const char *scene, uint32_t n, size_t *length) {
+    struct fixture all;
+    threads(n);
+    fixture_open(&all, method, "%s", scene);
+    fixture_start(&all);
+    fixture_frames(&all, FRAMES);
+    *length = 6 * all.n;
+    double *state = malloc(*length * sizeof *state);
+    ck_assert_ptr_nonnull(state);
+    memcpy(state, all.x, *length * sizeof *state);
+    ck_assert_uint_gt(all.system->springs.n_blocks, n == 1 ? 0 : 4);
+    ck_assert_uint_eq(all.system->springs.n_lots == 0, n == 1);
+    fixture_close(&all);
+    cs_pool_stop();
+    return state;
+}
+
+static const struct {
+    const char *method, *scene;
+} runs[] = {
+    {"symplectic-euler:dt=0.0005", SCENE},
+    {"explicit-euler:dt=0.0001", SCENE},
+    {"averaged-euler:dt=0.0002", SCENE},
+    {"velocity-verlet:dt=0.0005", SCENE},
+    {"position-verlet:dt=0.0005", SCENE},
+    {"rk4:dt=0.001", SCENE},
+    {"implicit-linearised", SCENE},
+    {"implicit-linearised", CALM},
+    {"backward-euler", CALM},
+    {"cvode-bdf:rtol=0.001", CALM},
+};
+
+START_TEST(states_are_the_same_to_the_bit) {
+    size_t length;
+    double *one = run(runs[_i].method, runs[_i].scene, 1, &length);
+    for (size_t k = 0; k < COUNTS; k++) {
+        double *several = run(runs[_i].method, runs[_i].scene, counts[k], &length);
+        ck_assert_msg(!memcmp(one, several, length * sizeof *one), "%s with %u threads",
+                      runs[_i].method, counts[k]);
+        free(several);
+    }
+    free(one);
+}
+END_TEST
+
+/* what the kernels give one by one, end to end */
+enum { KERNELS = 12 };
+static double *kernels(uint32_t n, size_t *length) {
+    static const uint32_t parts[] = {CS_PART_ALL,     CS_PART_STRETCH, CS_PART_BEND,
+                                     CS_PART_DAMPING, CS_PART_WIND,    CS_PART_DRAG};
+    struct fixture all;
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    struct cs_linear linear;
+    threads(n);
+    fixture_open(&all, "implicit-linearised", SCENE);
+    fixture_stir(&all, 0.01, 1);
+    *length = KERNELS * 3 * all.n;
+    double *found = calloc(*length, sizeof *found), *to = found;
+    ck_assert_ptr_nonnull(found);
+    cs_normals_update(all.system, all.x);
+    for (size_t p = 0; p < sizeof parts / sizeof *parts; p++, to += 3 * all.n)
+        cs_terms_force(all.system, 0, all.x, all.v, parts[p], to);
+    cs_terms_jvp(all.system, 0, all.x, all.v, CS_PART_ALL, all.v, all.x, to);
+    cs_terms_jvp(all.system, 0, all.x, all.v, CS_PART_ALL, all.v, NULL, to += 3 * all.n);
+    cs_terms_jvp(all.system, 0, all.x, all.v, CS_PART_DAMPING, NULL, all.x, to += 3 * all.n);
+    memcpy(to += 3 * all.n, all.system->normals, 3 * all.n * sizeof *to);
+    ck_assert(!cs_linear_init(&linear, all.system, &arena, &error));
+    for (int psd = 0; psd < 2; psd++) {
+        cs_linear_setup(&linear, all.x, 1, -0.01, -0.0001, psd);
+        cs_linear_mul(&linear, all.v, to += 3 * all.n);
+    }
+    ck_assert_ptr_eq(to + 3 * all.n, found + *length);
+    cs_arena_finish(&arena);
+    fixture_close(&all);
+    cs_pool_stop();
+    return found;
+}
+
+START_TEST(kernels_are_the_same_to_the_bit) {
+    size_t length;
+    double *one = kernels(1, &length);
+    for (size_t k = 0; k < COUNTS; k++) {
+        double *several = kernels(counts[k], &length);
+        for (size_t i = 0; i < length; i++)
+            ck_assert_msg(!memcmp(one + i, several + i, sizeof *one),
+                          "%u threads, kernel %zu, value %zu: %.17g, not %.17g", counts[k],
+                          i / (length / KERNELS), i % (length / KERNELS), several[i], one[i]);
+        free(several);
+    }
+    for (size_t k = 0; k < KERNELS; k++) {
+        double sum = 0;
+        for (size_t i = 0; i < length / KERNELS; i++)
+            sum += one[k * (length / KERNELS) + i] * one[k * (length / KERNELS) + i];
+        ck_assert_double_gt(sum, 0); /* each has something to say */
+    }
+    free(one);
+}
+END_TEST
+
+/* a system may be shared among other threads than it was built for */
+START_TEST(threads_may_change_under_a_system) {
+    size_t length;
+    struct fixture all;
+    double *one = run("symplectic-euler:dt=0.0005", SCENE, 1, &length);
+    threads(4);
+    fixture_open(&all, "symplectic-euler:dt=0.0005", "%s", SCENE);
+    fixture_start(&all);
+    fixture_frames(&all, 1);
+    cs_pool_stop();
+    threads(2);
+    fixture_frames(&all, 1);
+    ck_assert(!memcmp(one, all.x, length * sizeof *one));
+    fixture_close(&all);
+    cs_pool_stop();
+    free(one);
+}
+END_TEST
+
+START_TEST(steps_take_nothing) {
+    struct fixture all;
+    struct cs_error error = {0};
+    allocations_begin();
+    threads(3);
+    fixture_open(&all, "implicit-linearised", "%s", SCENE);
+    fixture_start(&all);
+    fixture_frames(&all, 1);
+    const uint64_t before = allocations;
+    for (int frame = 0; frame < 2; frame++)
+        cs_run_frame(&all.session.run, &error);
+    const uint64_t taken = allocations - before;
+    ck_assert_uint_eq(taken, 0);
+    ck_assert_uint_eq(all.session.run.frame, 3);
+    fixture_close(&all);
+    cs_pool_stop();
+}
+END_TEST
+
+int main(void) {
+    TCase *tcase = tcase_create("threads");
+    tcase_set_timeout(tcase, 120);
+    tcase_add_loop_test(tcase, states_are_the_same_to_the_bit, 0, sizeof runs / sizeof *runs);
+    tcase_add_test(tcase, kernels_are_the_same_to_the_bit);
+    tcase_add_test(tcase, threads_may_change_under_a_system);
+    tcase_add_test(tcase, steps_take_nothing);
+    Suite *suite = suite_create("threads");
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}
