@@ -4,6 +4,7 @@
 
 #include <cjson/cJSON.h>
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -63,10 +64,13 @@ enum cs_status bench_program_run(struct bench_run *run, const struct bench_setti
                                  const char *scene, const char *const *arguments,
                                  struct cs_error *error) {
     struct cs_text path = {0}, output = {0};
+    char threads[16];
+    snprintf(threads, sizeof threads, "%u", settings->threads);
     cs_text_add(&path, "%s/%s", strchr(scene, '/') ? BENCH_ROOT : settings->scratch, scene);
-    const char *all[ARGUMENTS_MAX] = {BENCH_PROGRAM, "run",      cs_text_get(&path), "--json",
-                                      "-",           "--timing", "--quiet"};
-    uint32_t n = 7;
+    const char *all[ARGUMENTS_MAX] = {BENCH_PROGRAM, "run",       cs_text_get(&path),
+                                      "--json",      "-",         "--timing",
+                                      "--quiet",     "--threads", threads};
+    uint32_t n = 9;
     for (; *arguments; arguments++) {
         CS_ASSERT(n + 1 < ARGUMENTS_MAX);
         all[n++] = *arguments;

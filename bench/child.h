@@ -22,8 +22,8 @@ struct bench_run {
     struct cJSON *report; /* owned */
 };
 
-/* clothsim run SCENE ARGUMENTS with --timing; a SCENE without a slash lies in the scratch
- * folder. Not to be finished on failure. */
+/* clothsim run SCENE ARGUMENTS with --timing and the settings' threads; a SCENE without a slash
+ * lies in the scratch folder. Not to be finished on failure. */
 enum cs_status bench_program_run(struct bench_run *run, const struct bench_settings *settings,
                                  const char *scene, const char *const *arguments,
                                  struct cs_error *error);

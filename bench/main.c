@@ -2,6 +2,7 @@
 #include "bench.h"
 
 #include "base/clock.h"
+#include "base/pool.h"
 #include "study/machine.h"
 
 #include <getopt.h>
@@ -40,6 +41,7 @@ static void print_help(void) {
     for (int s = 0; s < SECTIONS; s++)
         printf("  %-12s%s\n", sections[s]->name, sections[s]->summary);
     printf("\n  --csv FOLDER  write each table as FOLDER/SECTION.csv too\n"
+           "  --threads N   that the model may use (default: 1)\n"
            "  --quick       small sizes and few samples: all of it within seconds\n"
            "  --help        this text\n");
 }
@@ -53,11 +55,21 @@ static enum cs_status choose(struct asked *asked, const char *name, struct cs_er
     return cs_fail(error, CS_ERR_USAGE, "no section \"%s\" (see: bench --help)", name);
 }
 
-/* The number of threads belongs here as soon as the model can use more than one: an option that
- * sets settings.threads, and starts them once in main. */
+static enum cs_status read_threads(struct asked *asked, const char *text,
+                                   struct cs_error *error) {
+    double threads;
+    if (!cs_parse_real(text, &threads) || !(threads >= 1 && threads <= CS_POOL_MOST) ||
+        threads != (uint32_t)threads)
+        return cs_fail(error, CS_ERR_USAGE, "--threads: found \"%s\", expected 1 to %d", text,
+                       CS_POOL_MOST);
+    asked->settings.threads = (uint32_t)threads;
+    return CS_OK;
+}
+
 static enum cs_status read_arguments(struct asked *asked, int argc, char **argv,
                                      struct cs_error *error) {
     static const struct option options[] = {{"csv", required_argument, NULL, 'c'},
+                                            {"threads", required_argument, NULL, 't'},
                                             {"quick", no_argument, NULL, 'q'},
                                             {"help", no_argument, NULL, 'h'},
                                             {0}};
@@ -69,6 +81,8 @@ static enum cs_status read_arguments(struct asked *asked, int argc, char **argv,
         }
         if (found == '?')
             return cs_fail(error, CS_ERR_USAGE, "see: bench --help");
+        if (found == 't' && read_threads(asked, optarg, error))
+            return error->status;
         asked->folder = found == 'c' ? optarg : asked->folder;
         asked->settings.quick |= found == 'q';
     }
@@ -131,7 +145,8 @@ static void interrupted(int signal) {
 int main(int argc, char **argv) {
     struct asked asked;
     struct cs_error failure = {0};
-    if (!read_arguments(&asked, argc, argv, &failure) && !mkdtemp(scratch))
+    if (!read_arguments(&asked, argc, argv, &failure) &&
+        !cs_pool_start(asked.settings.threads, &failure) && !mkdtemp(scratch))
         cs_fail(&failure, CS_ERR_FILE, "cannot make a folder in /tmp");
     if (failure.status) {
         fprintf(stderr, "bench: %s\n", failure.message);
@@ -150,5 +165,6 @@ int main(int argc, char **argv) {
         }
     }
     remove_scratch();
+    cs_pool_stop();
     return cs_status_exit_code(failure.status);
 }

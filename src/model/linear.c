@@ -16,7 +16,8 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
     double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
     for (int k = 0; k < 4; k++)
         *vectors[k] = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
-    return error->status;
+    return error->status ? error->status
+                         : cs_multigrid_init(&linear->multigrid, system, arena, error);
 }
 
 /* inverts the symmetric 3x3 block of particle i in place; false if it is not positive definite
@@ -38,28 +39,53 @@ static bool invert(double *blocks, size_t n, size_t i) {
     return true;
 }
 
-bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
-                     bool psd) {
+static void set_mass(struct cs_linear *linear) {
     const struct cs_system *system = linear->system;
     const struct cs_forces *forces = &system->scene->forces;
-    const size_t n = system->view.n;
-    linear->cm = cm, linear->cd = cd, linear->ck = ck;
-    cs_springs_factor(&system->springs, (uint32_t)n, x, cd, ck, psd, linear->factors);
-
-    memset(linear->inverse, 0, 6 * n * sizeof(double));
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < system->view.n; i++) {
         const double drag =
             forces->drag *
             (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
-        linear->mass[i] = cm * system->mass[i] - cd * drag;
+        linear->mass[i] = linear->cm * system->mass[i] - linear->cd * drag;
+    }
+}
+
+/* false: a diagonal block is not positive definite */
+static bool invert_blocks(struct cs_linear *linear) {
+    const size_t n = linear->system->view.n;
+    memset(linear->inverse, 0, 6 * n * sizeof(double));
+    for (size_t i = 0; i < n; i++)
         linear->inverse[i] = linear->inverse[3 * n + i] = linear->inverse[5 * n + i] =
             linear->mass[i];
-    }
-    cs_springs_factor_diagonal(&system->springs, (uint32_t)n, linear->factors, linear->inverse);
+    cs_springs_factor_diagonal(&linear->system->springs, (uint32_t)n, linear->factors,
+                               linear->inverse);
     bool definite = true;
     for (size_t i = 0; i < n; i++)
         definite &= invert(linear->inverse, n, i);
     return definite;
+}
+
+static double mean_mass(const struct cs_system *system) {
+    double sum = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        sum += system->mass[i];
+    return sum / system->view.n;
+}
+
+bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
+                     bool psd) {
+    const struct cs_system *system = linear->system;
+    const struct cs_view *view = &system->view;
+    const double stiffness = -ck * view->omega * view->omega - 2 * cd * view->delta;
+    linear->cm = cm, linear->cd = cd, linear->ck = ck;
+    linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * cm;
+    cs_springs_factor(&system->springs, view->n, x, cd, ck, psd, linear->factors);
+    set_mass(linear);
+    if (linear->stiff)
+        cs_multigrid_setup(&linear->multigrid, linear->factors, linear->mass,
+                           mean_mass(system) * (cm + stiffness));
+    /* an exact matrix shows in its blocks whether it is definite, mostly */
+    return (linear->stiff && psd) || invert_blocks(linear);
 }
 
 static void clear_pinned(const struct cs_system *system, double *p) {
@@ -78,7 +104,7 @@ void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
 }
 
 /* z = inverse blocks times r */
-static void precondition(const struct cs_linear *linear, const double *r, double *z) {
+static void apply_blocks(const struct cs_linear *linear, const double *r, double *z) {
     const size_t n = linear->system->view.n;
     const double *b = linear->inverse;
     for (size_t i = 0; i < n; i++) {
@@ -87,6 +113,19 @@ static void precondition(const struct cs_linear *linear, const double *r, double
         z[n + i] = b[n + i] * x + b[3 * n + i] * y + b[4 * n + i] * w;
         z[2 * n + i] = b[2 * n + i] * x + b[4 * n + i] * y + b[5 * n + i] * w;
     }
+}
+
+static void precondition(struct cs_linear *linear, const double *r, double norm, double *z) {
+    if (linear->stiff)
+        cs_multigrid_apply(&linear->multigrid, r, norm, z);
+    else
+        apply_blocks(linear, r, z);
+}
+
+/* Single precision may be too little for a matrix: masses that differ by more than it has. */
+static void give_up_multigrid(struct cs_linear *linear) {
+    linear->stiff = false;
+    invert_blocks(linear);
 }
 
 enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
@@ -104,18 +143,25 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
     cs_vector_kernels.linear_sum(n3, 1, r, -1, q, r);
     double norm = sqrt(cs_vector_dot(n3, r, r)), rz = 0;
 
+    bool fresh = true; // the direction does not lean on the last one
     *iterations = 0;
     while (norm > goal) {
         if (*iterations == limit) {
             *residual = norm / goal * rtol;
             return CS_LINEAR_LIMIT;
         }
-        precondition(linear, r, z);
+        precondition(linear, r, norm, z);
         const double next = cs_vector_dot(n3, r, z);
-        if (*iterations == 0)
+        if (linear->stiff && (*iterations == CS_LINEAR_PATIENCE || !(next > 0))) {
+            give_up_multigrid(linear);
+            fresh = true;
+            continue;
+        }
+        if (fresh)
             memcpy(p, z, n3 * sizeof *p);
         else
             cs_vector_kernels.linear_sum(n3, 1, z, next / rz, p, p);
+        fresh = false;
         rz = next;
         cs_linear_mul(linear, p, q);
         const double curvature = cs_vector_dot(n3, p, q);

@@ -1,10 +1,20 @@
 /* linear.h - the one linear solver: A u = b with A = cm M + cd df/dv + ck df/dx of springs,
- * dampers and drag, by conjugate gradients without assembling A, preconditioned by the 3x3
- * blocks of its diagonal. */
+ * dampers and drag, by conjugate gradients without assembling A.
+ *
+ * The preconditioner is multigrid (multigrid.h) where both hold, and else the inverses of the
+ * 3x3 blocks of A's diagonal:
+ *   - a body of the scene has more than 24 x 24 particles;
+ *   - the matrix is stiff: -ck omega^2 - 2 cd delta > 16 cm, the largest ratio of stiffness to
+ *     mass by the bounds of the view. Up to there blocks need some 10 iterations.
+ * Both depend on the scene and on the step, never on time taken. After 500 iterations that did
+ * not do, blocks take over until the next setup. */
 #ifndef CS_LINEAR_H
 #define CS_LINEAR_H
 
+#include "model/multigrid.h"
 #include "model/system.h"
+
+enum { CS_LINEAR_STIFF = 16, CS_LINEAR_PATIENCE = 500 };
 
 struct cs_linear {
     const struct cs_system *system; /* borrowed */
@@ -13,6 +23,8 @@ struct cs_linear {
     double *mass;          /* (n) diagonal part: cm m - cd drag */
     double *inverse;       /* (6,n) inverses of the diagonal blocks */
     double *r, *z, *p, *q; /* (3,n) each */
+    struct cs_multigrid multigrid;
+    bool stiff; /* multigrid is in use */
 };
 
 /* Takes the arrays from arena. CS_ERR_MEMORY. */

@@ -4,6 +4,7 @@
 #include "model/clusters.h"
 #include "model/event_key.h"
 #include "model/events.h"
+#include "model/multigrid.h"
 #include "model/prods.h"
 #include "model/shape.h"
 #include "model/shares.h"
@@ -131,8 +132,11 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "bodies have shape_matching, and the integrator asks for it",
            needs & CS_NEED_CLUSTERS ? "no body has shape_matching"
                                     : "the integrator does not ask for it");
-    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 22 * n) * real,
-           "the integrator asks for it", "the integrator does not ask for it");
+    const size_t levels = cs_multigrid_bytes(scene);
+    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 22 * n) * real + levels,
+           levels ? "the integrator asks for it; multigrid for stiff steps"
+                  : "the integrator asks for it",
+           "the integrator does not ask for it");
     decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
     decide(plan, CS_FEATURE_THREADS, cs_pool_threads() > 1,
            cs_shares_bytes(scene, cs_pool_threads()), "several share the work",

@@ -9,6 +9,7 @@
 #include "model/springs.h"
 
 enum { PIECE = 256 }; /* springs whose forces wait in a buffer on the stack */
+enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
 _Static_assert(CS_LOT_MOST % PIECE == 0, "a lot is of whole pieces");
 
 /* What a kernel works on; what it has no use for stays NULL. */
@@ -18,8 +19,6 @@ struct job {
     const double *x, *v, *dx, *dv, *factors;
     double *to; /* what is added to */
     uint32_t parts;
-    /* true where the run has something to add */
-    bool (*asks)(const struct job *job, const struct cs_spring_run *run);
 };
 
 /* one piece of a run: both ends' rows of an array of 3-vectors, or, of a mesh, the rows of the
@@ -39,6 +38,9 @@ struct piece {
     uint32_t start, count;
     const double *lengths, *stiffnesses;
 };
+
+/* true where the run has something to add */
+typedef bool run_test(const struct job *job, const struct cs_spring_run *run);
 
 /* forces of one piece, in rows */
 typedef void piece_kernel(const struct job *job, const struct piece *piece, double *restrict fx,
@@ -173,12 +175,12 @@ CS_INLINE void add_run(const struct job *job, const struct cs_block *block,
 }
 
 /* Adds what kernel makes of the runs to the particles of a block, in the order of the runs. */
-CS_INLINE void add_runs(const struct job *job, const struct cs_block *block,
+CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
                         piece_kernel *kernel) {
     const struct cs_springs *springs = job->springs;
     for (uint32_t r = block->first_run; r < block->end_run; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        if (!job->asks(job, run))
+        if (!asks(job, run))
             continue;
         if (run->ends && springs->waits)
             gather(springs->waits + r, run, block, job->n, job->to);
@@ -188,10 +190,11 @@ CS_INLINE void add_runs(const struct job *job, const struct cs_block *block,
 }
 
 /* Leaves what kernel makes of the springs of one lot to wait. */
-CS_INLINE void wait_lot(const struct job *job, const struct cs_lot *lot, piece_kernel *kernel) {
+CS_INLINE void wait_lot(const struct job *job, const struct cs_lot *lot, run_test *asks,
+                        piece_kernel *kernel) {
     const struct cs_spring_run *run = job->springs->runs + lot->run;
     double *forces = job->springs->waits[lot->run].forces;
-    if (!job->asks(job, run))
+    if (!asks(job, run))
         return;
     for (uint32_t start = lot->begin; start < lot->end; start += PIECE) {
         const struct piece piece = piece_of(run, start);

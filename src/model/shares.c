@@ -45,10 +45,10 @@ size_t cs_shares_bytes(const struct cs_scene *scene, uint32_t threads) {
     if (threads == 1)
         return 0;
     const struct sizes sizes = sizes_of(scene, threads);
-    const size_t blocks = sizes.blocks * sizeof(struct cs_block);
+    const size_t grids = sizes.blocks * sizeof(struct cs_block) + sizes.runs * sizeof(double);
     if (!sizes.listed_runs)
-        return blocks;
-    return blocks + sizes.runs * sizeof(struct cs_wait) +
+        return grids;
+    return grids + sizes.runs * sizeof(struct cs_wait) +
            most_lots(&sizes) * sizeof(struct cs_lot) + sizes.starts * sizeof(uint32_t) +
            sizes.listed_springs * (2 * sizeof(uint32_t) + 3 * sizeof(double));
 }
@@ -156,6 +156,8 @@ enum cs_status cs_shares_build(struct cs_system *system, struct cs_error *error)
         return CS_OK;
     const struct sizes sizes = sizes_of(system->scene, threads);
     build_blocks(system, &sizes, threads, error);
+    system->springs.energies =
+        cs_arena_take_n(&system->arena, sizes.runs, sizeof(double), error);
     if (!error->status && sizes.listed_runs)
         build_lots(system, &sizes, error);
     return error->status;

@@ -15,13 +15,13 @@ struct asked {
     double k, c;
 };
 
-static struct asked asked_of(const struct cs_spring_run *run, uint32_t parts) {
+CS_INLINE struct asked asked_of(const struct cs_spring_run *run, uint32_t parts) {
     return (struct asked){
         parts & (CS_PART_STRETCH << run->kind) ? run->ends ? 1 : run->stiffness : 0,
         parts & CS_PART_DAMPING ? run->damping : 0};
 }
 
-static bool asks_force(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool asks_force(const struct job *job, const struct cs_spring_run *run) {
     const struct asked asked = asked_of(run, job->parts);
     return asked.k != 0 || asked.c != 0;
 }
@@ -86,24 +86,18 @@ CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const double *x, const double *v, uint32_t parts,
                                     const struct cs_block *block, double *f) {
-    const struct job job = {.springs = springs,
-                            .n = n,
-                            .x = x,
-                            .v = v,
-                            .parts = parts,
-                            .to = f,
-                            .asks = asks_force};
-    add_runs(&job, block, force_piece);
+    const struct job job = {
+        .springs = springs, .n = n, .x = x, .v = v, .parts = parts, .to = f};
+    add_runs(&job, block, asks_force, force_piece);
 }
 
 CS_CLONES static void wait_force_lot(void *job, uint32_t lot) {
-    wait_lot(job, ((const struct job *)job)->springs->lots + lot, force_piece);
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_force, force_piece);
 }
 
 void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n, const double *x,
                            const double *v, uint32_t parts) {
-    struct job job = {
-        .springs = springs, .n = n, .x = x, .v = v, .parts = parts, .asks = asks_force};
+    struct job job = {.springs = springs, .n = n, .x = x, .v = v, .parts = parts};
     cs_pool_run(springs->n_lots, wait_force_lot, &job);
 }
 
@@ -115,28 +109,45 @@ double cs_springs_shortest(const struct cs_springs *springs) {
     return shortest;
 }
 
+static double run_energy(const struct cs_spring_run *run, size_t n, const double *x) {
+    struct gathered places;
+    const bool listed = run->ends != NULL;
+    double sum = 0;
+    for (uint32_t start = 0; start < run->count; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        const struct ends e = ends_of(&piece, x, n, false, &places);
+        for (uint32_t i = 0; i < piece.count; i++) {
+            const struct difference d = across(e, i, listed);
+            const double stretch =
+                sqrt(d.x * d.x + d.y * d.y + d.z * d.z) - cs_spring_length(run, start + i);
+            sum += (listed ? piece.stiffnesses[i] : 1) * (stretch * stretch);
+        }
+    }
+    return 0.5 * (listed ? 1 : run->stiffness) * sum;
+}
+
+static bool has_energy(const struct cs_spring_run *run, uint32_t parts) {
+    return parts & (CS_PART_STRETCH << run->kind);
+}
+
+static void energy_of_runs(void *arg, uint32_t block) {
+    const struct job *job = arg;
+    const struct cs_springs *springs = job->springs;
+    for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
+        if (has_energy(springs->runs + r, job->parts))
+            springs->energies[r] = run_energy(springs->runs + r, job->n, job->x);
+}
+
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts) {
-    struct gathered places;
+    struct job job = {.springs = springs, .n = n, .x = x, .parts = parts};
     double energy = 0;
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        if (!(parts & (CS_PART_STRETCH << run->kind)))
-            continue;
-        double sum = 0;
-        for (uint32_t start = 0; start < run->count; start += PIECE) {
-            const struct piece piece = piece_of(run, start);
-            const struct ends e = ends_of(&piece, x, n, false, &places);
-            for (uint32_t i = 0; i < piece.count; i++) {
-                const bool listed = run->ends != NULL;
-                const struct difference d = across(e, i, listed);
-                const double stretch =
-                    sqrt(d.x * d.x + d.y * d.y + d.z * d.z) - cs_spring_length(run, start + i);
-                sum += (run->ends ? piece.stiffnesses[i] : 1) * (stretch * stretch);
-            }
-        }
-        energy += 0.5 * (run->ends ? 1 : run->stiffness) * sum;
-    }
+    if (springs->energies)
+        cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, energy_of_runs, &job);
+    for (uint32_t r = 0; r < springs->n_runs; r++)
+        if (has_energy(springs->runs + r, parts))
+            energy +=
+                springs->energies ? springs->energies[r] : run_energy(springs->runs + r, n, x);
     return energy;
 }
 
@@ -225,7 +236,7 @@ CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, doubl
         jvp_listed_or_not(job, piece, false, fx, fy, fz);
 }
 
-static bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
     return asks_force(job, run) && (job->dx || asked_of(run, job->parts).c != 0);
 }
 
@@ -239,24 +250,17 @@ CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, 
                             .dx = dx,
                             .dv = dv,
                             .parts = parts,
-                            .to = df,
-                            .asks = asks_jvp};
-    add_runs(&job, block, jvp_piece);
+                            .to = df};
+    add_runs(&job, block, asks_jvp, jvp_piece);
 }
 
 CS_CLONES static void wait_jvp_lot(void *job, uint32_t lot) {
-    wait_lot(job, ((const struct job *)job)->springs->lots + lot, jvp_piece);
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_jvp, jvp_piece);
 }
 
 void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
                          const double *v, uint32_t parts, const double *dx, const double *dv) {
-    struct job job = {.springs = springs,
-                      .n = n,
-                      .x = x,
-                      .v = v,
-                      .dx = dx,
-                      .dv = dv,
-                      .parts = parts,
-                      .asks = asks_jvp};
+    struct job job = {
+        .springs = springs, .n = n, .x = x, .v = v, .dx = dx, .dv = dv, .parts = parts};
     cs_pool_run(springs->n_lots, wait_jvp_lot, &job);
 }

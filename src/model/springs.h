@@ -80,6 +80,7 @@ struct cs_springs {
     const struct cs_lot *lots;
     uint32_t n_lots;
     const struct cs_wait *waits; /* (n_runs); NULL without meshes too */
+    double *energies;            /* (n_runs) work of cs_springs_energy */
 };
 
 static inline struct cs_block cs_springs_block(const struct cs_springs *springs, uint32_t n,

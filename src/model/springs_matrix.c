@@ -156,8 +156,6 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
     }
 }
 
-enum { RUNS = 32 }; /* runs of grids that one thread factors at a time */
-
 CS_CLONES static void factor_runs(void *arg, uint32_t block) {
     const struct factoring *made = arg;
     const struct cs_springs *springs = made->springs;
@@ -205,25 +203,24 @@ CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, doubl
         mul_listed_or_not(job, piece, false, fx, fy, fz);
 }
 
-static bool asks_always(const struct job *job, const struct cs_spring_run *run) {
+CS_INLINE bool asks_always(const struct job *job, const struct cs_spring_run *run) {
     (void)job, (void)run;
     return true;
 }
 
 CS_CLONES static void wait_mul_lot(void *job, uint32_t lot) {
-    wait_lot(job, ((const struct job *)job)->springs->lots + lot, mul_piece);
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_always, mul_piece);
 }
 
 CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_block block = cs_springs_block(job->springs, (uint32_t)job->n, number);
-    add_runs(job, &block, mul_piece);
+    add_runs(job, &block, asks_always, mul_piece);
 }
 
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y) {
-    struct job job = {
-        .springs = springs, .n = n, .x = p, .factors = factors, .to = y, .asks = asks_always};
+    struct job job = {.springs = springs, .n = n, .x = p, .factors = factors, .to = y};
     cs_pool_run(springs->n_lots, wait_mul_lot, &job);
     cs_pool_run(springs->n_blocks, mul_add_block, &job);
 }

@@ -14,11 +14,12 @@
 #include "study/session.h"
 
 enum cs_soft_series {
-    CS_SOFT_SMALL,   /* over springs: the smaller body */
-    CS_SOFT_LARGE,   /* over springs: the larger body */
-    CS_SOFT_SURFACE, /* over vertices: springs on the surface only, the fewest there can be */
-    CS_SOFT_NETWORK, /* over vertices: inner springs as the scene has them */
-    CS_SOFT_MATCHED, /* over vertices: shape matching instead of springs */
+    CS_SOFT_SMALL,    /* over springs: the smaller body */
+    CS_SOFT_LARGE,    /* over springs: the larger body */
+    CS_SOFT_SURFACE,  /* over vertices: springs on the surface only, the fewest there can be */
+    CS_SOFT_NETWORK,  /* over vertices: inner springs as the scene has them */
+    CS_SOFT_IMPLICIT, /* the same network, by one implicit step a frame */
+    CS_SOFT_MATCHED,  /* over vertices: shape matching instead of springs */
     CS_SOFT_SERIES
 };
 extern const char *const cs_soft_names[];

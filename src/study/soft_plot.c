@@ -33,6 +33,7 @@ void cs_soft_print_plot(const struct cs_soft *soft, struct cs_text *out) {
         {CS_SOFT_NETWORK, 8, "#6a51a3", "network, one step a picture", 5},
         {CS_SOFT_SURFACE, 9, "#e08214", "surface springs, stable frames", 6},
         {CS_SOFT_NETWORK, 9, "#6a51a3", "network, stable frames", 4},
+        {CS_SOFT_IMPLICIT, 9, "#1b1b1b", "network, one implicit step a frame", 13},
     };
     cs_text_add(
         out,

@@ -8,6 +8,7 @@ static const char *const titles[CS_SOFT_SERIES] = {
     [CS_SOFT_LARGE] = "Spring network, larger body, more and more inner springs",
     [CS_SOFT_SURFACE] = "Springs on the surface only, more and more vertices",
     [CS_SOFT_NETWORK] = "Spring network of the scene, more and more vertices",
+    [CS_SOFT_IMPLICIT] = "The same by implicit-linearised, one step a frame",
     [CS_SOFT_MATCHED] = "Shape matching, more and more vertices",
 };
 
@@ -54,26 +55,38 @@ static void add_growth(const struct cs_soft *soft, struct cs_text *out) {
     }
 }
 
-/* what matching costs beside springs on the largest body that all three have */
-static void add_ratio(const struct cs_soft *soft, struct cs_text *out) {
+/* the largest body that all series over vertices have */
+static const struct cs_soft_row *largest(const struct cs_soft *soft) {
     for (uint32_t k = soft->n; k-- > 0;) {
-        const struct cs_soft_row *matched = soft->rows + k;
-        const struct cs_soft_row *surface = find(soft, CS_SOFT_SURFACE, matched->vertices);
-        const struct cs_soft_row *network = find(soft, CS_SOFT_NETWORK, matched->vertices);
-        if (matched->series != CS_SOFT_MATCHED || !(matched->step_seconds > 0) || !surface ||
-            !network)
-            continue;
-        cs_text_add(
-            out,
-            "%u vertices: one step of shape matching takes %.2f times one with springs "
-            "on the surface\nonly, and %.2f times one with the network. A stable frame "
-            "takes %.0f steps of the network, %.0f\nof shape matching: %.0f times the "
-            "cost.\n",
-            matched->vertices, matched->step_seconds / surface->step_seconds,
-            matched->step_seconds / network->step_seconds, network->steps, matched->steps,
-            network->step_seconds * network->steps / (matched->step_seconds * matched->steps));
-        return;
+        const struct cs_soft_row *row = soft->rows + k;
+        bool all = row->series == CS_SOFT_MATCHED;
+        for (int s = CS_SOFT_SURFACE; s <= CS_SOFT_MATCHED; s++)
+            all &= find(soft, (enum cs_soft_series)s, row->vertices) != NULL;
+        if (all)
+            return row;
     }
+    return NULL;
+}
+
+/* what matching costs beside springs */
+static void add_ratios(const struct cs_soft *soft, struct cs_text *out) {
+    const struct cs_soft_row *matched = largest(soft);
+    if (!matched)
+        return;
+    const struct cs_soft_row *surface = find(soft, CS_SOFT_SURFACE, matched->vertices);
+    const struct cs_soft_row *network = find(soft, CS_SOFT_NETWORK, matched->vertices);
+    const struct cs_soft_row *implicit = find(soft, CS_SOFT_IMPLICIT, matched->vertices);
+    const double frame = matched->step_seconds * matched->steps;
+    cs_text_add(out,
+                "%u vertices: one step of shape matching takes %.2f times one with springs on "
+                "the surface\nonly, and %.2f times one with the network.\n",
+                matched->vertices, matched->step_seconds / surface->step_seconds,
+                matched->step_seconds / network->step_seconds);
+    cs_text_add(out,
+                "A frame of the network takes %.0f explicit steps, %.0f times a frame of shape "
+                "matching, or\none implicit step, %.0f times that.\n",
+                network->steps, network->step_seconds * network->steps / frame,
+                implicit->step_seconds * implicit->steps / frame);
 }
 
 void cs_soft_print(const struct cs_soft *soft, struct cs_text *out) {
@@ -84,7 +97,7 @@ void cs_soft_print(const struct cs_soft *soft, struct cs_text *out) {
     }
     cs_text_add(out, "\n");
     add_growth(soft, out);
-    add_ratio(soft, out);
+    add_ratios(soft, out);
 }
 
 void cs_soft_print_csv(const struct cs_soft *soft, struct cs_text *out) {

@@ -1,0 +1,443 @@
+/* The multigrid preconditioner: its levels are the matrices they are said to be, one cycle is
+ * symmetric and positive, and the solver with it is right and needs few iterations. */
+#include "base/pool.h"
+#include "crumple.h"
+
+#define SPHERE  "{\"mesh\": {\"shape\": \"sphere\", \"detail\": %d}, \"mass\": {\"total\": 1}%s"
+#define LIMBS   "{\"mesh\": {\"shape\": \"limbs\", \"detail\": 24}, \"mass\": {\"total\": 1}%s"
+#define SPRINGS ", \"springs\": {\"stretch\": %.17g, \"bend\": %.17g, \"damping\": 1e-3}}"
+
+enum { KINDS = 4 };
+
+/* a pinned grid that halves unevenly, a strip, a closed mesh, and all kinds in one system with
+ * a small body and a dense network */
+static void open_kind(struct crumple *crumple, int kind, double k) {
+    struct sheet *sheet = &crumple->sheet;
+    if (kind == 0)
+        sheet_open(sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+                   CRUMPLE_GRID_VALUES(37, k, CRUMPLE_PINS));
+    else if (kind == 1)
+        sheet_open(sheet, CS_NEED_SOLVE,
+                   "{\"bodies\": [{\"cloth\": {\"grid\": [2, 301]}, \"mass\": {\"total\": 1},"
+                   " \"springs\": {\"stretch\": %.17g}, \"pins\": [5, 6, 7, 8]}]}",
+                   k);
+    else if (kind == 2)
+        sheet_open(sheet, CS_NEED_SOLVE, "{\"bodies\": [" SPHERE SPRINGS "]}", 12, "", k,
+                   k / 10);
+    else
+        sheet_open(sheet, CS_NEED_SOLVE,
+                   "{\"bodies\": [" SPHERE SPRINGS ", " CRUMPLE_GRID ", " CRUMPLE_GRID
+                   ", " LIMBS SPRINGS "], \"forces\": {\"drag\": 0.01}}",
+                   12, "", k, k, CRUMPLE_GRID_VALUES(5, k, ""),
+                   CRUMPLE_GRID_VALUES(30, k, ", \"pins\": [\"bottom\", 31, 450]"),
+                   ", \"network\": {\"springs\": 6}", k, k);
+    crumple_start(crumple, 0.02);
+}
+
+static void fill_level(const struct cs_level *level, float *p, uint32_t seed) {
+    memset(p, 0, 3 * sizeof *p * level->n);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = level->begin; i < level->end; i++) {
+            const float value = (float)crumple_random(&seed);
+            p[c * level->n + i] = cs_level_is_alive(level, i) ? value : 0;
+        }
+}
+
+/* r = A d, as a level has only r -= A d */
+static void multiply(struct cs_level *level) {
+    memset(level->r, 0, 3 * sizeof *level->r * level->n);
+    cs_level_take_product(level);
+    for (size_t i = 0; i < 3 * (size_t)level->n; i++)
+        level->r[i] = -level->r[i];
+}
+
+static double dot_alive(const struct cs_level *level, const float *a, const float *b) {
+    double sum = 0;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = level->begin; i < level->end; i++)
+            if (cs_level_is_alive(level, i))
+                sum += (double)a[c * level->n + i] * (double)b[c * level->n + i];
+    return sum;
+}
+
+/* where a particle is on the first level */
+static size_t cell_of(const struct cs_hierarchy *hierarchy, size_t i) {
+    const size_t local = i - hierarchy->first;
+    return hierarchy->levels->begin + local / hierarchy->columns * hierarchy->levels->pitch +
+           local % hierarchy->columns;
+}
+
+/* but for the scale, in single precision */
+START_TEST(first_level_is_the_matrix) {
+    for (int kind = 0; kind < KINDS; kind++) {
+        struct crumple crumple;
+        open_kind(&crumple, kind, 1e3);
+        const size_t n = crumple.sheet.n;
+        double *p = calloc(6 * n, sizeof *p), *y = p + 3 * n;
+        ck_assert(crumple_setup(&crumple, true));
+        struct cs_multigrid *multigrid = &crumple.linear.multigrid;
+        ck_assert_uint_eq(multigrid->n, kind == 3 ? 4 : 1);
+        for (uint32_t k = 0; k < multigrid->n; k++) {
+            struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
+            struct cs_level *level = hierarchy->levels;
+            fill_level(level, level->d, 7);
+            memset(p, 0, 6 * n * sizeof *p);
+            for (size_t c = 0; c < 3; c++)
+                for (size_t i = hierarchy->first; i < hierarchy->first + hierarchy->count; i++)
+                    p[c * n + i] = (double)level->d[c * level->n + cell_of(hierarchy, i)];
+            cs_linear_mul(&crumple.linear, p, y);
+            const double largest = cs_vector_kernels.max_norm(3 * n, y) / multigrid->scale;
+            multiply(level);
+            for (size_t c = 0; c < 3; c++)
+                for (size_t i = hierarchy->first; i < hierarchy->first + hierarchy->count; i++)
+                    if (crumple.sheet.system.inv_mass[i] > 0)
+                        ck_assert_double_eq_tol(
+                            (double)level->r[c * level->n + cell_of(hierarchy, i)],
+                            y[c * n + i] / multigrid->scale, 2e-6 * largest);
+        }
+        free(p);
+        crumple_shut(&crumple);
+    }
+}
+END_TEST
+
+/* A translation costs the mass, on every level the same: halved springs change that not. */
+START_TEST(translations_cost_the_same_on_every_level) {
+    for (int kind = 1; kind < 3; kind++) {
+        struct crumple crumple;
+        open_kind(&crumple, kind, 1e4);
+        // the strip without its pins, which tie it
+        for (uint32_t k = 0; k < crumple.sheet.system.n_pinned; k++)
+            crumple.sheet.system.inv_mass[crumple.sheet.system.pinned[k]] = 1;
+        crumple_setup(&crumple, true);
+        struct cs_hierarchy *hierarchy = crumple.linear.multigrid.hierarchies;
+        double expected = 0;
+        ck_assert_uint_ge(hierarchy->n_levels, 5);
+        for (uint32_t l = 0; l < hierarchy->n_levels; l++) {
+            struct cs_level *level = hierarchy->levels + l;
+            for (size_t c = 0; c < 3; c++)
+                for (size_t i = level->begin; i < level->end; i++)
+                    level->d[c * level->n + i] = cs_level_is_alive(level, i) && c == 1;
+            float *ones = calloc(3 * (size_t)level->n, sizeof *ones);
+            memcpy(ones, level->d, 3 * sizeof *ones * level->n);
+            multiply(level);
+            const double cost = dot_alive(level, ones, level->r);
+            free(ones);
+            if (l == 0)
+                expected = cost;
+            ck_assert_double_eq_tol(cost, expected, 1e-5 * expected);
+        }
+        ck_assert_uint_eq(hierarchy->levels[hierarchy->n_levels - 1].n_steps, 0);
+        crumple_shut(&crumple);
+    }
+}
+END_TEST
+
+/* The theorem of level.h, by power iteration: (A p).(D^-1 A p) / p.(A p) is below the largest
+ * eigenvalue of D^-1 A and comes near to it. */
+START_TEST(smoother_bound_holds_on_every_level) {
+    for (int kind = 0; kind < KINDS; kind++)
+        for (double k = 100; k < 1e9; k *= 1e3) {
+            struct crumple crumple;
+            open_kind(&crumple, kind, k);
+            crumple_setup(&crumple, true);
+            for (uint32_t b = 0; b < crumple.linear.multigrid.n; b++) {
+                struct cs_hierarchy *hierarchy = crumple.linear.multigrid.hierarchies + b;
+                double largest = 0;
+                for (uint32_t l = 0; l < hierarchy->n_levels; l++) {
+                    struct cs_level *level = hierarchy->levels + l;
+                    const size_t bytes = 3 * sizeof(float) * level->n;
+                    float *p = malloc(bytes);
+                    fill_level(level, level->d, 3);
+                    for (int step = 0; step < 60; step++) {
+                        const float size = (float)sqrt(dot_alive(level, level->d, level->d));
+                        for (size_t i = 0; i < 3 * (size_t)level->n; i++)
+                            p[i] = level->d[i] /= size;
+                        multiply(level);
+                        cs_level_solve_diagonal(level); // over d as well
+                        const double eigenvalue = dot_alive(level, level->r, level->x) /
+                                                  dot_alive(level, p, level->r);
+                        largest = fmax(largest, eigenvalue);
+                        ck_assert_msg(eigenvalue <= 2 + 1e-4, "kind %d, k %g, level %u: %g",
+                                      kind, k, l, eigenvalue);
+                    }
+                    free(p);
+                }
+                ck_assert_double_gt(largest, 1.3);
+            }
+            crumple_shut(&crumple);
+        }
+}
+END_TEST
+
+/* x.My = y.Mx to the rounding of single precision, x.Mx > 0, and nothing where pinned */
+START_TEST(cycle_is_symmetric_and_positive) {
+    for (int kind = 0; kind < KINDS; kind++) {
+        struct crumple crumple;
+        open_kind(&crumple, kind, 1e4);
+        const size_t n3 = 3 * crumple.sheet.n;
+        double *x = calloc(4 * n3, sizeof *x), *y = x + n3, *mx = y + n3, *my = mx + n3;
+        uint32_t seed = 5;
+        crumple_setup(&crumple, true);
+        for (size_t i = 0; i < n3; i++)
+            if (crumple.sheet.system.inv_mass[i % crumple.sheet.n] > 0) {
+                x[i] = crumple_random(&seed);
+                y[i] = 1 + 0.1 * crumple_random(&seed);
+            }
+        cs_multigrid_apply(&crumple.linear.multigrid, x, 1, mx);
+        cs_multigrid_apply(&crumple.linear.multigrid, y, 1e-3, my);
+        const double xx = cs_vector_kernels.dot(n3, x, mx);
+        const double yy = cs_vector_kernels.dot(n3, y, my);
+        ck_assert_double_gt(xx, 0);
+        ck_assert_double_gt(yy, 0);
+        ck_assert_double_eq_tol(cs_vector_kernels.dot(n3, x, my),
+                                cs_vector_kernels.dot(n3, y, mx), 3e-6 * sqrt(xx * yy));
+        for (size_t i = 0; i < n3; i++)
+            if (crumple.sheet.system.inv_mass[i % crumple.sheet.n] == 0)
+                ck_assert(mx[i] == 0 && my[i] == 0);
+        free(x);
+        crumple_shut(&crumple);
+    }
+}
+END_TEST
+
+static double true_residual(struct crumple *crumple) {
+    const size_t n3 = 3 * crumple->sheet.n;
+    double *y = calloc(n3, sizeof *y);
+    cs_linear_mul(&crumple->linear, crumple->u, y);
+    cs_vector_kernels.linear_sum(n3, 1, crumple->b, -1, y, y);
+    const double left = cs_vector_kernels.dot(n3, y, y);
+    free(y);
+    return sqrt(left / cs_vector_kernels.dot(n3, crumple->b, crumple->b));
+}
+
+/* what the recurrence calls the residual is one, whatever single precision does inside */
+START_TEST(residual_is_the_true_one) {
+    for (int kind = 0; kind < KINDS; kind++)
+        for (double k = 1; k < 1e7; k *= 1e3) {
+            struct crumple crumple;
+            open_kind(&crumple, kind, k);
+            crumple_setup(&crumple, true);
+            for (double rtol = 1e-2; rtol > 1e-9; rtol /= 100) {
+                ck_assert_int_eq(crumple_solve(&crumple, rtol), CS_LINEAR_DONE);
+                ck_assert_double_le(crumple.residual, rtol);
+                ck_assert_double_le(true_residual(&crumple), rtol * (1 + 1e-3));
+            }
+            crumple_shut(&crumple);
+        }
+}
+END_TEST
+
+/* Counts of iterations do not depend on the machine. At 64 x 64 the blocks of the diagonal
+ * alone need 100 and more. */
+START_TEST(few_iterations_at_any_stiffness_and_size) {
+    static const struct {
+        int r;
+        double rtol;
+        uint64_t most;
+    } rows[] = {{32, 1e-3, 16}, {64, 1e-3, 16}, {128, 1e-3, 18}, {64, 1e-6, 24}};
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++)
+        for (int pinned = 0; pinned < 2; pinned++)
+            for (double k = 1e2; k < 1e9; k *= 100) {
+                struct crumple crumple;
+                const int r = rows[row].r;
+                sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+                           CRUMPLE_GRID_VALUES(r, k, pinned ? CRUMPLE_PINS : ""));
+                crumple_start(&crumple, 1.0 / r);
+                crumple_setup(&crumple, true);
+                ck_assert_int_eq(crumple_solve(&crumple, rows[row].rtol), CS_LINEAR_DONE);
+                ck_assert_msg(crumple.iterations <= rows[row].most,
+                              "r %d, k %g, pinned %d: %llu iterations to %g, expected %llu", r,
+                              k, pinned, (unsigned long long)crumple.iterations, rows[row].rtol,
+                              (unsigned long long)rows[row].most);
+                crumple_shut(&crumple);
+            }
+}
+END_TEST
+
+START_TEST(few_iterations_on_meshes) {
+    for (int detail = 12; detail <= 24; detail *= 2)
+        for (double k = 1e2; k < 1e9; k *= 100) {
+            struct crumple crumple;
+            sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" SPHERE SPRINGS "]}",
+                       detail, "", k, k);
+            crumple_start(&crumple, 0.5 / detail);
+            crumple_setup(&crumple, true);
+            ck_assert_int_eq(crumple_solve(&crumple, 1e-3), CS_LINEAR_DONE);
+            ck_assert_msg(crumple.iterations <= 16, "detail %d, k %g: %llu iterations", detail,
+                          k, (unsigned long long)crumple.iterations);
+            crumple_shut(&crumple);
+        }
+}
+END_TEST
+
+/* A flat sheet has its mass across and nothing else, which single precision cannot see beside
+ * the stiffness along, wherever it lies. */
+START_TEST(flat_sheets_are_solved) {
+    for (double stretched = 0.9; stretched < 1.15; stretched += 0.1)
+        for (double k = 1e4; k < 1e9; k *= 100) {
+            struct crumple crumple;
+            sheet_open(&crumple.sheet, CS_NEED_SOLVE,
+                       "{\"bodies\": [{\"cloth\": {\"grid\": [64, 64], \"place\": {\"rotate\": "
+                       "[0.3, 0.2, 0.1, 0.9]}}, \"mass\": {\"total\": 0.2}, \"springs\": "
+                       "{\"stretch\": %.17g, \"shear\": %.17g, \"bend\": %.17g}}]}",
+                       k, k / 3, k / 10);
+            double *x = crumple.sheet.x;
+            double *flat = malloc(3 * crumple.sheet.n * sizeof *flat);
+            memcpy(flat, x, 3 * crumple.sheet.n * sizeof *flat);
+            crumple_start(&crumple, 0);
+            for (size_t i = 0; i < 3 * crumple.sheet.n; i++)
+                x[i] = stretched * flat[i];
+            crumple_setup(&crumple, true);
+            ck_assert_int_eq(crumple_solve(&crumple, 1e-3), CS_LINEAR_DONE);
+            ck_assert_uint_lt(crumple.iterations, CS_LINEAR_PATIENCE);
+            free(flat);
+            crumple_shut(&crumple);
+        }
+}
+END_TEST
+
+/* masses from 1e-9 kg on in one system, with stiffness to fit and not */
+START_TEST(range_of_single_precision_is_no_limit) {
+    for (double heavy = 1e-9; heavy < 1e7; heavy *= 1e4)
+        for (double k = 1e2; k < 1e9; k *= 1e3) {
+            struct crumple crumple;
+            sheet_open(
+                &crumple.sheet, CS_NEED_SOLVE,
+                "{\"bodies\": [{\"cloth\": {\"grid\": [30, 30]}, \"mass\": {\"particle\":"
+                " 1e-9}, \"springs\": {\"stretch\": %.17g}, \"pins\": [3]},"
+                " {\"cloth\": {\"grid\": [30, 30]}, \"mass\": {\"particle\": %.17g},"
+                " \"springs\": {\"stretch\": 100, \"shear\": 3}}]}",
+                k, heavy);
+            crumple_start(&crumple, 0.02);
+            crumple_setup(&crumple, true);
+            ck_assert_int_eq(crumple_solve(&crumple, 1e-6), CS_LINEAR_DONE);
+            ck_assert_double_le(true_residual(&crumple), 1.01e-6);
+            crumple_shut(&crumple);
+        }
+}
+END_TEST
+
+/* A spread of masses inside one body that no preconditioner in single precision can do: the
+ * solver gives up on it and is right all the same. */
+START_TEST(blocks_take_over_where_precision_ends) {
+    struct crumple crumple;
+    sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+               CRUMPLE_GRID_VALUES(30, 1e3, ""));
+    crumple_start(&crumple, 0.02);
+    crumple_setup(&crumple, true);
+    // as if there were no levels but wrong ones
+    struct cs_level *level = crumple.linear.multigrid.hierarchies->levels;
+    for (size_t i = 0; i < 6 * (size_t)level->n; i++)
+        level->inverse[i] = -level->inverse[i];
+    ck_assert_int_eq(crumple_solve(&crumple, 1e-6), CS_LINEAR_DONE);
+    ck_assert(!crumple.linear.stiff);
+    ck_assert_double_le(true_residual(&crumple), 1.01e-6);
+    crumple_shut(&crumple);
+}
+END_TEST
+
+/* Without clamping: a stretched sheet is definite and solved; a pressed one is found out. */
+START_TEST(exact_matrix_is_solved_or_found_indefinite) {
+    for (int pressed = 0; pressed < 2; pressed++) {
+        struct crumple crumple;
+        sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+                   CRUMPLE_GRID_VALUES(40, 1e4, ""));
+        crumple_start(&crumple, 0.001);
+        for (size_t i = 0; i < 3 * crumple.sheet.n; i++)
+            crumple.sheet.x[i] *= pressed ? 0.95 : 1.3;
+        const bool setup = crumple_setup(&crumple, false);
+        const enum cs_linear_end end = crumple_solve(&crumple, 1e-6);
+        if (pressed) {
+            ck_assert(!setup || end == CS_LINEAR_INDEFINITE);
+        } else {
+            ck_assert(setup && end == CS_LINEAR_DONE && crumple.linear.stiff);
+            ck_assert_double_le(true_residual(&crumple), 1.01e-6);
+        }
+        crumple_shut(&crumple);
+    }
+}
+END_TEST
+
+/* the rule of linear.h */
+START_TEST(levels_are_used_where_they_pay) {
+    static const struct {
+        int r;
+        double k;
+        bool stiff;
+    } rows[] = {{24, 1e6, false}, {25, 1e6, true}, {64, 0.1, false}, {64, 1, true}};
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
+        struct crumple crumple;
+        sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+                   CRUMPLE_GRID_VALUES(rows[row].r, rows[row].k, ""));
+        crumple_start(&crumple, 0.01);
+        crumple_setup(&crumple, true);
+        ck_assert_int_eq(crumple.linear.stiff, rows[row].stiff);
+        crumple_shut(&crumple);
+    }
+}
+END_TEST
+
+/* a grid's levels are planned to the byte, a mesh's about */
+START_TEST(plan_knows_the_memory) {
+    for (int kind = 0; kind < 3; kind += 2) {
+        struct crumple crumple;
+        struct cs_arena arena = {0};
+        struct cs_multigrid multigrid;
+        struct cs_error error = {0};
+        open_kind(&crumple, kind, 1e3);
+        cs_multigrid_init(&multigrid, &crumple.sheet.system, &arena, &error);
+        UNIT_ASSERT_OK(&error);
+        const double said = (double)cs_multigrid_bytes(&crumple.sheet.scene);
+        ck_assert_double_le(fabs(said - (double)arena.used), kind ? 0.4 * said : 0);
+        cs_arena_finish(&arena);
+        crumple_shut(&crumple);
+    }
+}
+END_TEST
+
+START_TEST(threads_change_no_bit) {
+    for (int kind = 0; kind < KINDS; kind++) {
+        struct cs_error error = {0};
+        double *alone = NULL;
+        for (uint32_t threads = 1; threads <= 3; threads++) {
+            struct crumple crumple;
+            if (kind == 0)
+                sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+                           CRUMPLE_GRID_VALUES(150, 1e4, CRUMPLE_PINS));
+            if (kind == 0)
+                crumple_start(&crumple, 0.01);
+            else
+                open_kind(&crumple, kind, 1e4);
+            const size_t bytes = 3 * sizeof(double) * crumple.sheet.n;
+            ck_assert_int_eq(cs_pool_start(threads, &error), CS_OK);
+            crumple_setup(&crumple, true);
+            ck_assert_int_eq(crumple_solve(&crumple, 1e-6), CS_LINEAR_DONE);
+            cs_pool_stop();
+            if (!alone)
+                alone = memcpy(malloc(bytes), crumple.u, bytes);
+            ck_assert_int_eq(memcmp(alone, crumple.u, bytes), 0);
+            crumple_shut(&crumple);
+        }
+        free(alone);
+    }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {first_level_is_the_matrix,
+                                  translations_cost_the_same_on_every_level,
+                                  smoother_bound_holds_on_every_level,
+                                  cycle_is_symmetric_and_positive,
+                                  residual_is_the_true_one,
+                                  few_iterations_at_any_stiffness_and_size,
+                                  few_iterations_on_meshes,
+                                  flat_sheets_are_solved,
+                                  range_of_single_precision_is_no_limit,
+                                  blocks_take_over_where_precision_ends,
+                                  exact_matrix_is_solved_or_found_indefinite,
+                                  levels_are_used_where_they_pay,
+                                  plan_knows_the_memory,
+                                  threads_change_no_bit};
+    return unit_run("multigrid", tests, sizeof tests / sizeof *tests);
+}
