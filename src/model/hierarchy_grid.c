@@ -49,21 +49,36 @@ static uint32_t run_step(struct cs_hierarchy *hierarchy, const struct cs_spring_
                        cell_of(hierarchy, run->b) - cell_of(hierarchy, run->a));
 }
 
-static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
+/* factors on their way into the first level; a block of the loop is some runs */
+struct loading {
+    struct cs_hierarchy *hierarchy;
+    const double *factors;
+    double root;
+};
+
+enum { RUNS = 64 };
+
+static void load_runs(void *arg, uint32_t block) {
+    const struct loading *loading = arg;
+    struct cs_hierarchy *hierarchy = loading->hierarchy;
     struct cs_level *level = hierarchy->levels;
-    const double root = 1 / sqrt(scale);
-    for (uint32_t r = 0; r < hierarchy->n_runs; r++) {
+    for (uint32_t r = RUNS * block; r < hierarchy->n_runs && r < RUNS * (block + 1); r++) {
         const struct cs_spring_run *run = hierarchy->runs + r;
-        const double *from = factors + 4 * (size_t)run->first;
+        const double *from = loading->factors + 4 * (size_t)run->first;
         float *to = level->springs + 4 * (size_t)run_step(hierarchy, run) * level->n +
                     cell_of(hierarchy, run->a);
         for (size_t i = 0; i < run->count; i++) {
             float spring[4];
-            cs_hierarchy_spring(from + i, run->count, root, spring);
+            cs_hierarchy_spring(from + i, run->count, loading->root, spring);
             for (size_t c = 0; c < 4; c++)
                 to[c * level->n + i] = spring[c];
         }
     }
+}
+
+static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
+    struct loading loading = {hierarchy, factors, 1 / sqrt(scale)};
+    cs_pool_run((hierarchy->n_runs + RUNS - 1) / RUNS, load_runs, &loading);
 }
 
 /* between two levels; a block of the loops is some rows of the coarse one */

@@ -39,10 +39,11 @@ static bool invert(double *blocks, size_t n, size_t i) {
     return true;
 }
 
-static void set_mass(struct cs_linear *linear) {
+static void set_mass(void *arg, size_t begin, size_t end) {
+    struct cs_linear *linear = arg;
     const struct cs_system *system = linear->system;
     const struct cs_forces *forces = &system->scene->forces;
-    for (size_t i = 0; i < system->view.n; i++) {
+    for (size_t i = begin; i < end; i++) {
         const double drag =
             forces->drag *
             (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
@@ -50,19 +51,24 @@ static void set_mass(struct cs_linear *linear) {
     }
 }
 
+/* how many blocks are not positive definite */
+static double invert_part(const void *arg, size_t begin, size_t end) {
+    const struct cs_linear *linear = arg;
+    double indefinite = 0;
+    for (size_t i = begin; i < end; i++)
+        indefinite += !invert(linear->inverse, linear->system->view.n, i);
+    return indefinite;
+}
+
 /* false: a diagonal block is not positive definite */
 static bool invert_blocks(struct cs_linear *linear) {
     const size_t n = linear->system->view.n;
     memset(linear->inverse, 0, 6 * n * sizeof(double));
-    for (size_t i = 0; i < n; i++)
-        linear->inverse[i] = linear->inverse[3 * n + i] = linear->inverse[5 * n + i] =
-            linear->mass[i];
+    for (size_t c = 0; c < 6; c += c ? 2 : 3)
+        memcpy(linear->inverse + c * n, linear->mass, n * sizeof(double));
     cs_springs_factor_diagonal(&linear->system->springs, (uint32_t)n, linear->factors,
                                linear->inverse);
-    bool definite = true;
-    for (size_t i = 0; i < n; i++)
-        definite &= invert(linear->inverse, n, i);
-    return definite;
+    return cs_vector_sum(n, invert_part, linear) == 0;
 }
 
 static double mean_mass(const struct cs_system *system) {
@@ -80,7 +86,7 @@ bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, doubl
     linear->cm = cm, linear->cd = cd, linear->ck = ck;
     linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * cm;
     cs_springs_factor(&system->springs, view->n, x, cd, ck, psd, linear->factors);
-    set_mass(linear);
+    cs_vector_share(view->n, set_mass, linear);
     if (linear->stiff)
         cs_multigrid_setup(&linear->multigrid, linear->factors, linear->mass,
                            mean_mass(system) * (cm + stiffness));
@@ -94,20 +100,37 @@ static void clear_pinned(const struct cs_system *system, double *p) {
             p[c * system->view.n + system->pinned[k]] = 0;
 }
 
+/* the solver between two arrays of 3-vectors */
+struct product {
+    const struct cs_linear *linear;
+    const double *from;
+    double *to;
+};
+
+static void mul_mass(void *arg, size_t begin, size_t end) {
+    const struct product *product = arg;
+    const double *mass = product->linear->mass;
+    const size_t n = product->linear->system->view.n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = begin; i < end; i++)
+            product->to[c * n + i] = mass[i] * product->from[c * n + i];
+}
+
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
     const size_t n = linear->system->view.n;
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < n; i++)
-            y[c * n + i] = linear->mass[i] * p[c * n + i];
+    struct product product = {linear, p, y};
+    cs_vector_share(n, mul_mass, &product);
     cs_springs_mul_add(&linear->system->springs, (uint32_t)n, linear->factors, p, y);
     clear_pinned(linear->system, y);
 }
 
-/* z = inverse blocks times r */
-static void apply_blocks(const struct cs_linear *linear, const double *r, double *z) {
-    const size_t n = linear->system->view.n;
-    const double *b = linear->inverse;
-    for (size_t i = 0; i < n; i++) {
+/* inverse blocks times what it comes from */
+static void mul_inverse(void *arg, size_t begin, size_t end) {
+    const struct product *product = arg;
+    const size_t n = product->linear->system->view.n;
+    const double *b = product->linear->inverse, *r = product->from;
+    double *restrict z = product->to;
+    for (size_t i = begin; i < end; i++) {
         const double x = r[i], y = r[n + i], w = r[2 * n + i];
         z[i] = b[i] * x + b[n + i] * y + b[2 * n + i] * w;
         z[n + i] = b[n + i] * x + b[3 * n + i] * y + b[4 * n + i] * w;
@@ -116,10 +139,11 @@ static void apply_blocks(const struct cs_linear *linear, const double *r, double
 }
 
 static void precondition(struct cs_linear *linear, const double *r, double norm, double *z) {
+    struct product product = {linear, r, z};
     if (linear->stiff)
         cs_multigrid_apply(&linear->multigrid, r, norm, z);
     else
-        apply_blocks(linear, r, z);
+        cs_vector_share(linear->system->view.n, mul_inverse, &product);
 }
 
 /* Single precision may be too little for a matrix: masses that differ by more than it has. */
