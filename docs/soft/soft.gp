@@ -24,5 +24,6 @@ plot \
   'soft.csv' using (strcol(1) eq 'surface' ? $2 : NaN):8 every ::1 with linespoints lw 2 dt 1 pt 7 ps 1.1 lc rgb '#e08214' title 'surface springs, one step a picture', \
   'soft.csv' using (strcol(1) eq 'network' ? $2 : NaN):8 every ::1 with linespoints lw 2 dt 1 pt 5 ps 1.1 lc rgb '#6a51a3' title 'network, one step a picture', \
   'soft.csv' using (strcol(1) eq 'surface' ? $2 : NaN):9 every ::1 with linespoints lw 2 dt 2 pt 6 ps 1.1 lc rgb '#e08214' title 'surface springs, stable frames', \
-  'soft.csv' using (strcol(1) eq 'network' ? $2 : NaN):9 every ::1 with linespoints lw 2 dt 2 pt 4 ps 1.1 lc rgb '#6a51a3' title 'network, stable frames'
+  'soft.csv' using (strcol(1) eq 'network' ? $2 : NaN):9 every ::1 with linespoints lw 2 dt 2 pt 4 ps 1.1 lc rgb '#6a51a3' title 'network, stable frames', \
+  'soft.csv' using (strcol(1) eq 'implicit' ? $2 : NaN):9 every ::1 with linespoints lw 2 dt 2 pt 13 ps 1.1 lc rgb '#1b1b1b' title 'network, one implicit step a frame'
 unset multiplot
