@@ -2,8 +2,12 @@
 
 #include "base/pool.h"
 #include "model/lanes.h"
+#include "model/wave.h"
 
-enum { CELLS = 4096 }; /* of one block of a loop: a whole number of lanes */
+enum {
+    CELLS = 1024, /* of one block of a loop at least: a whole number of lanes */
+    LOOPS = 4     /* of a smoother and what follows it at most */
+};
 
 size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers) {
     const size_t own = level->form == CS_LEVEL_FACTORED ? 1 : 6;
@@ -22,24 +26,56 @@ enum cs_status cs_level_take(struct cs_level *level, size_t n_numbers, struct cs
     return error->status;
 }
 
-/* a loop over the cells of a level */
+/* A loop over the cells of a level: d is the last move, e the next one. */
 struct loop {
     struct cs_level *level;
-    bool moves;
+    void (*task)(const struct loop *loop, size_t begin, size_t end);
+    const float *d;
+    float *e; /* NULL: r alone changes */
     float a, b;
 };
 
-static void run(struct loop loop, void (*task)(void *loop, uint32_t block)) {
-    const uint32_t count = loop.level->end - loop.level->begin;
-    cs_pool_run((count + CELLS - 1) / CELLS, task, &loop);
+/* loops one after another, each of which looks at the cells around its own */
+struct loops {
+    struct loop loops[LOOPS];
+    uint32_t n, at;
+    size_t cells; /* of a block */
+};
+
+static void run_block(void *arg, uint32_t number, uint32_t block) {
+    const struct loops *loops = arg;
+    const struct loop *loop = loops->loops + number;
+    const size_t begin = loop->level->begin + block * loops->cells, end = begin + loops->cells;
+    loop->task(loop, begin, end < loop->level->end ? end : loop->level->end);
 }
 
-static size_t begin_of(const struct loop *loop, uint32_t block) {
-    return loop->level->begin + (size_t)block * CELLS;
+static void run_block_of_one(void *arg, uint32_t block) {
+    run_block(arg, ((const struct loops *)arg)->at, block);
 }
-static size_t end_of(const struct loop *loop, uint32_t block) {
-    const size_t end = begin_of(loop, block) + CELLS;
-    return end < loop->level->end ? end : loop->level->end;
+
+/* so many that no spring of a grid reaches beyond the next block */
+static size_t cells_of_block(const struct cs_level *level) {
+    size_t cells = CELLS;
+    for (uint32_t s = 0; s < level->n_steps; s++)
+        cells = level->steps[s] > cells ? level->steps[s] : cells;
+    return (cells + CS_LANES - 1) / CS_LANES * CS_LANES;
+}
+
+/* a mesh has neighbours anywhere: one loop after the other */
+static void run(struct loops *loops) {
+    const struct cs_level *level = loops->loops->level;
+    loops->cells = cells_of_block(level);
+    const uint32_t blocks =
+        (uint32_t)((level->end - level->begin + loops->cells - 1) / loops->cells);
+    if (level->form != CS_LEVEL_LISTS)
+        cs_wave_run(&(struct cs_wave){loops->n, blocks, run_block, loops});
+    else
+        for (loops->at = 0; loops->at < loops->n; loops->at++)
+            cs_pool_run(blocks, run_block_of_one, loops);
+}
+
+static void run_one(struct loop loop) {
+    run(&(struct loops){.loops = {loop}, .n = 1});
 }
 
 /* (s I + w w^T) p */
@@ -97,54 +133,46 @@ CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_lev
 }
 
 /* r -= A d, and where that is not all: e = a d + b D^-1 r, x += e */
-CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form,
-                          uint32_t block) {
+CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form, size_t begin,
+                          size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;
-    for (size_t i = begin_of(loop, block); i < end_of(loop, block); i += CS_LANES) {
-        const struct vectors d = get3(level->d + i, n);
+    for (size_t i = begin; i < end; i += CS_LANES) {
+        const struct vectors d = get3(loop->d + i, n);
         const struct vectors r =
-            minus(get3(level->r + i, n), product(level, form, i, level->d, d));
+            minus(get3(level->r + i, n), product(level, form, i, loop->d, d));
         put3(level->r + i, n, r);
-        if (!loop->moves)
+        if (!loop->e)
             continue;
         const struct vectors z = times(get6(level->inverse + i, n), r);
         const struct vectors e = plus(scaled(loop->a, d), scaled(loop->b, z));
-        put3(level->e + i, n, e);
+        put3(loop->e + i, n, e);
         put3(level->x + i, n, plus(get3(level->x + i, n), e));
     }
 }
 
 /* a copy of the loop for every form */
-CS_CLONES static void sweep(void *loop, uint32_t block) {
-    const enum cs_level_form form = ((struct loop *)loop)->level->form;
+CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
+    const enum cs_level_form form = loop->level->form;
     if (form == CS_LEVEL_FACTORED)
-        sweep_form(loop, CS_LEVEL_FACTORED, block);
+        sweep_form(loop, CS_LEVEL_FACTORED, begin, end);
     else if (form == CS_LEVEL_BLOCKS)
-        sweep_form(loop, CS_LEVEL_BLOCKS, block);
+        sweep_form(loop, CS_LEVEL_BLOCKS, begin, end);
     else
-        sweep_form(loop, CS_LEVEL_LISTS, block);
+        sweep_form(loop, CS_LEVEL_LISTS, begin, end);
 }
 
 void cs_level_take_product(struct cs_level *level) {
-    run((struct loop){.level = level}, sweep);
+    run_one((struct loop){.level = level, .task = sweep, .d = level->d});
 }
 
-static void move(struct cs_level *level, float a, float b) {
-    run((struct loop){level, true, a, b}, sweep);
-    float *d = level->d;
-    level->d = level->e;
-    level->e = d;
-}
-
-/* x = d = b D^-1 r */
-CS_CLONES static void start(void *arg, uint32_t block) {
-    const struct loop *loop = arg;
+/* x = e = b D^-1 r */
+CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;
-    for (size_t i = begin_of(loop, block); i < end_of(loop, block); i += CS_LANES) {
+    for (size_t i = begin; i < end; i += CS_LANES) {
         const struct vectors z = times(get6(level->inverse + i, n), get3(level->r + i, n));
-        put3(level->d + i, n, scaled(loop->b, z));
+        put3(loop->e + i, n, scaled(loop->b, z));
         put3(level->x + i, n, scaled(loop->b, z));
     }
 }
@@ -158,20 +186,24 @@ static const struct {
 } gains[2] = {{25 / 73.0F, 84 / 73.0F}, {350 / 1694.0F, 1752 / 1694.0F}};
 
 void cs_level_smooth_down(struct cs_level *level) {
-    run((struct loop){.level = level, .b = first_gain}, start);
-    for (int k = 0; k < 2; k++)
-        move(level, gains[k].a, gains[k].b);
-    cs_level_take_product(level);
+    float *d = level->d, *e = level->e;
+    run(&(struct loops){.loops = {{level, start, NULL, d, 0, first_gain},
+                                  {level, sweep, d, e, gains[0].a, gains[0].b},
+                                  {level, sweep, e, d, gains[1].a, gains[1].b},
+                                  {level, sweep, d, NULL, 0, 0}},
+                        .n = 4});
 }
 
 void cs_level_smooth_up(struct cs_level *level) {
-    move(level, 0, first_gain);
-    for (int k = 0; k < 2; k++)
-        move(level, gains[k].a, gains[k].b);
+    float *d = level->d, *e = level->e;
+    run(&(struct loops){.loops = {{level, sweep, d, e, 0, first_gain},
+                                  {level, sweep, e, d, gains[0].a, gains[0].b},
+                                  {level, sweep, d, e, gains[1].a, gains[1].b}},
+                        .n = 3});
 }
 
 void cs_level_solve_diagonal(struct cs_level *level) {
-    run((struct loop){.level = level, .b = 1}, start);
+    run_one((struct loop){.level = level, .task = start, .e = level->d, .b = 1});
 }
 
 CS_INLINE struct blocks expanded(const float *spring, size_t n) {
@@ -221,11 +253,10 @@ CS_INLINE void invert_blocks(float *m, size_t n, const float *own) {
     }
 }
 
-CS_CLONES static void invert(void *arg, uint32_t block) {
-    const struct loop *loop = arg;
+CS_CLONES static void invert(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;
-    for (size_t i = begin_of(loop, block); i < end_of(loop, block); i += CS_LANES) {
+    for (size_t i = begin; i < end; i += CS_LANES) {
         struct blocks sum = sum_springs(level, i);
         if (level->form == CS_LEVEL_FACTORED) {
             const lanes mass = get(level->own + i);
@@ -241,5 +272,5 @@ CS_CLONES static void invert(void *arg, uint32_t block) {
 }
 
 void cs_level_invert(struct cs_level *level) {
-    run((struct loop){.level = level, .b = 1.0F / (1 << 20)}, invert);
+    run_one((struct loop){.level = level, .task = invert, .b = 1.0F / (1 << 20)});
 }
