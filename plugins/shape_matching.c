@@ -1,15 +1,19 @@
 /* shape_matching.c - bodies that are drawn back to their shape instead of held by springs.
  *
  * A step of length h, with particles of mass m, their places q at time 0 and all forces f,
- * those of other bodies' springs too: v += h f/m,  x += h v (symplectic Euler) A_pq = sum w (x
- * - x_cm) (q - q_cm)^T,  A = A_pq A_qq^-1, over each cluster R: the rotation nearest to A_pq
- * (shape_rotation.h) g = (beta A/cbrt(det A) + (1 - beta) R) (q - q_cm) + x_cm d = alpha (g -
- * x),  x += d,  v += d/h (Mueller et al. 2005, eq. 3 to 12, in the order of the soft-body
- * thesis, sec. 2: the goals are those of the places after the free step.) That order is an
- * implicit Euler step of springs between particles and their goals, 1/(1 + (k/m) h^2) = 1 -
- * alpha; so that alpha of a step alpha_step becomes alpha_h = alpha h^2 / ((1 - alpha)
- * alpha_step^2 + alpha h^2) in one of h, with the same stiffness k = m alpha/((1 - alpha)
- * alpha_step^2).
+ * those of other bodies' springs too:
+ *
+ *     v += h f/m,  x += h v                                   (symplectic Euler)
+ *     A_pq = sum w (x - x_cm) (q - q_cm)^T,  A = A_pq A_qq^-1  (over each cluster)
+ *     R: the rotation nearest to A_pq                         (shape_rotation.h)
+ *     g = (beta A/cbrt(det A) + (1 - beta) R) (q - q_cm) + x_cm
+ *     d = alpha (g - x),  x += d,  v += d/h
+ *
+ * (Mueller et al. 2005, eq. 3 to 12, in the order of the soft-body thesis, sec. 2: the goals
+ * are those of the places after the free step.) That order is an implicit Euler step of springs
+ * between particles and their goals, 1/(1 + (k/m) h^2) = 1 - alpha; so that alpha of a step
+ * alpha_step becomes alpha_h = alpha h^2 / ((1 - alpha) alpha_step^2 + alpha h^2) in one of h,
+ * with the same stiffness k = m alpha/((1 - alpha) alpha_step^2).
  *
  * A particle in several clusters has w = m/their number in each and takes the mean of its
  * d. Then d has no momentum and, about x, no angular momentum: A_pq R^T is symmetric. A pinned
@@ -36,8 +40,8 @@ struct shape_options {
 
 static const struct cs_option rows[] = {
     CS_OPTION(struct shape_options, dt, "s", 0, 0, 10,
-              "longest step; 0: 0.9 of the stability limit of the springs, estimated at rest, "
-              "or one step a frame where there are none"),
+              "longest step; 0: 0.9 of the stability limit of springs and drag, estimated at "
+              "rest, or one step a frame where there are none"),
     CS_OPTION_CHOICE(
         struct shape_options, rotation, rotations, POLAR,
         "polar: the rotation nearest to A_pq; the others leave out the square root of the "
@@ -240,7 +244,7 @@ static void choose_dt(struct fixed_step *loop, double dt) {
     loop->chosen = dt <= 0;
     loop->dt = dt > 0 ? dt : 0.9 * limit;
     if (loop->chosen && loop->dt < HUGE_VAL)
-        loop->host->note(loop->host->ctx, "dt automatic: at most %.6g s, for the springs",
+        loop->host->note(loop->host->ctx, "dt automatic: at most %.6g s, for springs and drag",
                          loop->dt);
 }
 

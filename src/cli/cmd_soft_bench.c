@@ -59,20 +59,21 @@ static enum cs_status write_one(const char *folder, const char *name,
 static enum cs_status write_files(const char *folder, const struct cs_soft *soft,
                                   struct cs_error *error) {
     bool drawn;
-    if (cs_folder_make(folder, error) ||
-        write_one(folder, "soft.csv", cs_soft_print_csv, soft, error) ||
+    if (write_one(folder, "soft.csv", cs_soft_print_csv, soft, error) ||
         write_one(folder, "soft.txt", cs_soft_print, soft, error) ||
         write_one(folder, "soft.gp", cs_soft_print_plot, soft, error))
         return error->status;
     return cs_gnuplot_run(folder, "soft.gp", &drawn, error);
 }
 
-/* looked at first: the files are written when minutes have gone by */
-static enum cs_status check_folder(const struct cs_args *args, const char *folder,
-                                   struct cs_error *error) {
+/* all that can be refused is looked at before minutes go by, the folder last */
+static enum cs_status prepare(const struct cs_args *args, const struct cs_soft *soft,
+                              const char *folder, struct cs_error *error) {
     char path[4096];
     snprintf(path, sizeof path, "%s/soft.csv", folder);
-    return cs_args_get(args, SOFT_OVERWRITE) ? CS_OK : cs_output_check_file(path, error);
+    if (!cs_args_get(args, SOFT_OVERWRITE) && cs_output_check_file(path, error))
+        return error->status;
+    return cs_soft_check(soft, error) ? error->status : cs_folder_make(folder, error);
 }
 
 static enum cs_status measure(struct cs_args *args, struct cs_soft *soft,
@@ -97,7 +98,7 @@ static enum cs_status soft_bench(struct cs_args *args, struct cs_error *error) {
         cs_args_overrides(args, SOFT_SET, &soft.session.overrides, &soft.session.n_overrides,
                           error) ||
         cs_args_all(args, SOFT_PLUGIN, &soft.session.plugins, &soft.session.n_plugins, error) ||
-        check_folder(args, folder, error))
+        prepare(args, &soft, folder, error))
         return error->status;
     measure(args, &soft, error);
     if (error->status && error->status != CS_ERR_INTERRUPT)

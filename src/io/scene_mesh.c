@@ -50,7 +50,11 @@ static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < mesh->n; i++)
             mesh->places[c * mesh->n + i] *= source->scale[c];
-    return cs_trimesh_finish(mesh, cs_mesh_shape_names[source->shape], NULL, arena, error);
+    /* there is no file: what makes a triangle of a shape vanish is its scale */
+    if (cs_trimesh_finish(mesh, cs_mesh_shape_names[source->shape], NULL, arena, error) ==
+        CS_ERR_FILE)
+        error->status = CS_ERR_SCENE;
+    return error->status;
 }
 
 static enum cs_status make_mesh(struct cs_reader *reader, const struct cs_json *root,
@@ -63,8 +67,11 @@ static enum cs_status make_mesh(struct cs_reader *reader, const struct cs_json *
                       "limbs need at least 8, or some are lost");
     if (*source->file ? read_file(scene, source, mesh, reader->arena, &said)
                       : make_shape(source, mesh, reader->arena, &said))
-        return refuse(reader, root, b, *source->file ? "mesh.file" : "mesh.shape", said.status,
-                      said.message);
+        return refuse(reader, root, b,
+                      *source->file                 ? "mesh.file"
+                      : said.status == CS_ERR_SCENE ? "mesh.scale"
+                                                    : "mesh.shape",
+                      said.status, said.message);
     if (!body->network.present)
         return CS_OK;
     if (mesh->n_open) {

@@ -2,7 +2,6 @@
 
 #include "base/options.h"
 #include "model/event_key.h"
-
 #include "model/shape.h"
 #include "model/sight.h"
 
@@ -70,19 +69,13 @@ static enum cs_status check_times(const struct look *at, const struct cs_event *
 
 static enum cs_status check_particles(const struct look *at, const char *part,
                                       const struct cs_aim *aim, uint32_t body) {
-    const struct cs_body *of = cs_scene_bodies(at->scene) + body;
-    const int64_t count = cs_shape_count(of);
     const struct cs_pin *pins = aim->particles.items;
+    char place[64], fault[160];
     for (uint32_t p = 0; p < aim->particles.n; p++) {
-        char place[64];
         snprintf(place, sizeof place, "%s.particles[%u]", part, p);
-        if (pins[p].index >= count)
-            return refuse(at, place, "particle %lld of body %u does not exist (0..%lld)",
-                          (long long)pins[p].index, body, (long long)count - 1);
-        for (int c = 0; c < 3 && pins[p].box.present; c++)
-            if (pins[p].box.min[c] > pins[p].box.max[c])
-                return refuse(at, place, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
-                              pins[p].box.min[c], c, pins[p].box.max[c]);
+        if (cs_shape_pin_fault(cs_scene_bodies(at->scene) + body, pins + p, fault,
+                               sizeof fault))
+            return refuse(at, place, "body %u: %s", body, fault);
     }
     return CS_OK;
 }

@@ -22,6 +22,7 @@ static const struct {
     {"bodies.cloth", "it says how the body starts"},
     {"bodies.mesh", "it says how the body starts"},
     {"bodies.network", "springs are made at the start"},
+    {"bodies.shape_matching", "a run keeps its shapes and how they are held"},
     {"bodies.mass", "a run keeps its masses"},
     {"bodies.pins", "particles are held and let go by the events pin and release"},
     {"bodies.material", "it is of the pictures, not of the motion"},
@@ -132,14 +133,22 @@ static enum cs_status check_changeable(const struct walk *walk) {
                    walk->path);
 }
 
-/* whether the number belongs to a body made of a mesh */
-static bool is_of_mesh(const struct walk *walk, const struct cs_scene *scene) {
-    const struct cs_body *bodies = cs_scene_bodies(scene);
-    for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (walk->object >= (const char *)(bodies + b) &&
-            walk->object < (const char *)(bodies + b + 1))
-            return bodies[b].mesh.present;
-    return false;
+/* the body that a key of bodies belongs to */
+static const struct cs_body *body_of(const struct walk *walk, const struct cs_scene *scene) {
+    const char *first = scene->bodies.items;
+    return cs_scene_bodies(scene) + (size_t)(walk->object - first) / sizeof(struct cs_body);
+}
+
+static enum cs_status check_springs(const struct walk *walk, const struct cs_body *body,
+                                    double value) {
+    const bool shear = !strcmp(walk->plain, "bodies.springs.shear");
+    const bool damping = !strcmp(walk->plain, "bodies.springs.damping");
+    const char *why = cs_scene_springs_left_out(body) ? "shape_matching leaves the springs out"
+                      : shear && body->mesh.present   ? "a mesh has none"
+                      : !damping && value <= 0 ? "it is 0, so that there are no such springs"
+                                               : NULL;
+    return why ? cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path, why)
+               : CS_OK;
 }
 
 /* what the scene left out cannot come in the middle of a run */
@@ -151,16 +160,9 @@ static enum cs_status check_there(const struct walk *walk, const struct cs_scene
     if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces.wind.present)
         return cs_fail(walk->error, CS_ERR_SCENE,
                        "%.120s cannot change: the scene has no forces.wind", walk->path);
-    const bool stiffness = !strncmp(walk->plain, "bodies.springs.", 15) &&
-                           strcmp(walk->plain, "bodies.springs.damping") != 0;
-    if (!strcmp(walk->plain, "bodies.springs.shear") && is_of_mesh(walk, scene))
-        return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: a mesh has none",
-                       walk->path);
-    if (stiffness && value <= 0)
-        return cs_fail(walk->error, CS_ERR_SCENE,
-                       "%.120s cannot change: it is 0, so that there are no such springs",
-                       walk->path);
-    return CS_OK;
+    return strncmp(walk->plain, "bodies.springs.", 15)
+               ? CS_OK
+               : check_springs(walk, body_of(walk, scene), value);
 }
 
 enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,

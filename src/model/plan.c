@@ -149,8 +149,8 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uin
     if (matched < scene->bodies.n && !(needs & CS_NEED_CLUSTERS))
         return cs_fail(error, CS_ERR_SCENE,
                        "bodies[%u].shape_matching: no force law, so integrator \"%s\" cannot "
-                       "follow it, and no error can be measured; use --integrator "
-                       "shape-matching",
+                       "follow it, and no error can be measured; use clothsim run "
+                       "--integrator shape-matching",
                        matched, name);
     if (matched == scene->bodies.n && needs & CS_NEED_CLUSTERS)
         return cs_fail(error, CS_ERR_SCENE,

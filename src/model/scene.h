@@ -346,6 +346,11 @@ static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scen
     return scene->colliders.items;
 }
 
+/* The body is drawn to its shape instead of held by springs. */
+static inline bool cs_scene_springs_left_out(const struct cs_body *body) {
+    return body->shape_matching.present && !body->shape_matching.springs;
+}
+
 /* Number of the first body that is drawn to its shape; bodies.n: there is none. */
 static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
     uint32_t b = 0;

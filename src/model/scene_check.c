@@ -80,23 +80,12 @@ static enum cs_status check_place(const struct place *at, const char *body, cons
 
 static enum cs_status check_pins(const struct place *at, const char *body,
                                  const struct cs_body *of) {
-    char path[128];
-    const int64_t count = cs_shape_count(of);
+    char path[128], fault[160];
     const struct cs_pin *pins = of->pins.items;
     for (uint32_t p = 0; p < of->pins.n; p++) {
         snprintf(path, sizeof path, "%s.pins[%u]", body, p);
-        if (pins[p].index >= count)
-            return refuse(at, path, "particle %lld does not exist (0..%lld)",
-                          (long long)pins[p].index, (long long)count - 1);
-        if (of->mesh.present && pins[p].at >= 0)
-            return refuse(at, path,
-                          "found \"%s\", expected an index or a box: a mesh has no "
-                          "named corners or edges",
-                          cs_pin_names[pins[p].at]);
-        for (int c = 0; c < 3 && pins[p].box.present; c++)
-            if (pins[p].box.min[c] > pins[p].box.max[c])
-                return refuse(at, path, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
-                              pins[p].box.min[c], c, pins[p].box.max[c]);
+        if (cs_shape_pin_fault(of, pins + p, fault, sizeof fault))
+            return refuse(at, path, "%s", fault);
     }
     return CS_OK;
 }
@@ -106,11 +95,10 @@ static enum cs_status check_mass(const struct place *at, const char *body,
     char path[128];
     const struct cs_spring_law *law = &of->springs;
     const int64_t *grid = of->cloth.grid;
-    const bool left_out = of->shape_matching.present && !of->shape_matching.springs;
     const bool stretch = law->stretch > 0 && (of->mesh.present || grid[0] > 1 || grid[1] > 1);
     const bool shear = law->shear > 0 && grid[0] > 1 && grid[1] > 1;
     snprintf(path, sizeof path, "%s.mass.degree", body);
-    if (!isnan(of->mass.degree) && (left_out || (!stretch && !shear)))
+    if (!isnan(of->mass.degree) && (cs_scene_springs_left_out(of) || (!stretch && !shear)))
         return refuse(at, path, "a particle without springs would have no mass");
     return CS_OK;
 }
@@ -145,8 +133,7 @@ static enum cs_status check_matching(const struct place *at, const char *body,
                                      const struct cs_body *of) {
     char path[128];
     const bool network = of->network.present;
-    if (!of->shape_matching.present || of->shape_matching.springs ||
-        (!network && isnan(of->strain_limit)))
+    if (!cs_scene_springs_left_out(of) || (!network && isnan(of->strain_limit)))
         return CS_OK;
     snprintf(path, sizeof path, "%s.%s", body, network ? "network" : "strain_limit");
     return refuse(

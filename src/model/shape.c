@@ -4,6 +4,7 @@
 #include "model/trimesh.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 int64_t cs_shape_count(const struct cs_body *body) {
@@ -145,4 +146,21 @@ void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const 
                 pins[p].index == (int64_t)at ||
                 (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
                 pinned[at] = true;
+}
+
+bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,
+                        size_t size) {
+    const long long count = (long long)cs_shape_count(body), index = (long long)pin->index;
+    if (index >= count)
+        return snprintf(text, size, "particle %lld does not exist (0..%lld)", index, count - 1);
+    if (body->mesh.present && pin->at >= 0)
+        return snprintf(text, size,
+                        "found \"%s\", expected an index or a box: a mesh has no named corners "
+                        "or edges",
+                        cs_pin_names[pin->at]);
+    for (int c = 0; c < 3 && pin->box.present; c++)
+        if (pin->box.min[c] > pin->box.max[c])
+            return snprintf(text, size, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
+                            pin->box.min[c], c, pin->box.max[c]);
+    return false;
 }

@@ -16,8 +16,14 @@ void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, doub
  * of each triangle. */
 double cs_shape_area(const struct cs_body *body, uint32_t i);
 
-/* Marks the body's pinned particles: pinned[0..count) = true. x as from cs_shape_place. */
+/* Marks the body's pinned particles: pinned[0..count) = true. x as from cs_shape_place. No pin
+ * is at fault. */
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
                   bool *pinned);
+
+/* true if the body, its mesh made, can have no such pin: an index beyond its particles, a named
+ * edge of a mesh, a box inside out. text (size bytes) then says so. */
+bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,
+                        size_t size);
 
 #endif

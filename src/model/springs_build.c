@@ -136,7 +136,7 @@ static uint32_t mesh_runs(const struct cs_body *body, uint32_t body_index, uint3
 
 uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
-    if (body->shape_matching.present && !body->shape_matching.springs)
+    if (cs_scene_springs_left_out(body))
         return 0;
     return body->mesh.present ? mesh_runs(body, body_index, first, runs, lists, n_springs)
                               : grid_runs(body, body_index, first, runs, n_springs);

@@ -160,8 +160,7 @@ static enum cs_status add_row(struct cs_soft *soft, enum cs_soft_series series, 
     return CS_OK;
 }
 
-/* every row is measured on a body, so the first one must be there */
-static enum cs_status check_scene(const struct cs_soft *soft, struct cs_error *error) {
+enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error) {
     struct cs_scene scene;
     if (cs_scene_read(&scene, soft->session.scene, soft->session.overrides,
                       soft->session.n_overrides, error))
@@ -177,7 +176,6 @@ static enum cs_status check_scene(const struct cs_soft *soft, struct cs_error *e
 
 enum cs_status cs_soft_run(struct cs_soft *soft, struct cs_error *error) {
     soft->n = 0;
-    check_scene(soft, error);
     for (uint32_t k = 0; k < DENSITIES && !error->status; k++)
         add_row(soft, CS_SOFT_SMALL, SMALL, densities[k], error);
     for (uint32_t k = 0; k < DENSITIES && !error->status; k++)

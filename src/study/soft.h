@@ -50,8 +50,11 @@ struct cs_soft {
     uint32_t n;
 };
 
-/* Measures all rows, one after the other. CS_ERR_SCENE where the scene has no such body,
- * CS_ERR_MODULE without a renderer; CS_ERR_INTERRUPT leaves the rows that were done. */
+/* Whether the scene has such a body: CS_ERR_SCENE, or what reading it came to. */
+enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error);
+
+/* Measures all rows of a checked scene, one after the other. CS_ERR_MODULE without a renderer;
+ * CS_ERR_INTERRUPT leaves the rows that were done. */
 enum cs_status cs_soft_run(struct cs_soft *soft, struct cs_error *error);
 
 /* Exponent p of time = c x^p through a series, by least squares of the logarithms; x is the
