@@ -77,9 +77,7 @@ static void choose_dt(struct fixed_step *loop, double limit) {
 
 /* limit: the method's largest stable step; n_arrays: of (3,n) that it keeps. */
 static enum cs_step create(const struct cs_host *host, double dt, double limit,
-                           enum cs_step (*step)(struct fixed_step *, double, double, double *,
-                                                double *),
-                           int n_arrays, void **out) {
+                           fixed_step_taker *step, int n_arrays, void **out) {
     const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
     struct explicit_method *self = host->alloc(host->ctx, sizeof *self);
     if (!self)

@@ -4,10 +4,11 @@
  * `iterations` times over, from the place y = x + h v + h^2 f/m that the outer forces alone
  * lead to:
  *   local    p = L n with n the direction of the spring
- *   global   (M + h D + h^2 L) u = sum over springs of h^2 k (p - (y_b - y_a)) + dampers, x = y
- * + u (Liu et al. 2013, for u instead of x, so that free flight leaves no rounding). Neither
- * half can raise the incremental potential, and where both leave x as it is, x is the implicit
- * Euler step. Then v = (x' - x)/h.
+ *   global   (M + h D + h^2 L) u = sum over springs of h^2 k (p - (y_b - y_a)) + dampers,
+ *            x = y + u
+ * (Liu et al. 2013, for u instead of x, so that free flight leaves no rounding). Neither half
+ * can raise the incremental potential, and where both leave x as it is, x is the implicit Euler
+ * step. Then v = (x' - x)/h.
  *
  * Dampers and drag are implicit too. Relative dampers and drag are in the matrix. An axial
  * damper is there as if it were relative, and its part across the spring is given back from the
@@ -141,10 +142,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = (struct fixed_step){.host = host,
-                                     .dt = asked->dt > 0 ? asked->dt : HUGE_VAL,
-                                     .chosen = asked->dt <= 0,
-                                     .step = step};
+    self->loop = fixed_step_of(host, asked->dt, step);
     self->iterations = asked->iterations;
     if (!(self->f = host->alloc(host->ctx, bytes)) ||
         !(self->old = host->alloc(host->ctx, bytes)) ||

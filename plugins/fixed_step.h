@@ -9,15 +9,27 @@
 #include <clothsim/integrator.h>
 #include <math.h>
 
+struct fixed_step;
+
+/* from (x, v) at t to t + h, without the commit */
+typedef enum cs_step fixed_step_taker(struct fixed_step *self, double t, double h, double *x,
+                                      double *v);
+
 struct fixed_step {
     const struct cs_host *host;
     double dt;   /* longest step in s; HUGE_VAL: one step an advance */
     bool fresh;  /* the state was moved from outside: what the method remembers is void */
     bool told;   /* that dt was shortened */
     bool chosen; /* dt was chosen here, not asked for */
-    /* from (x, v) at t to t + h, without the commit */
-    enum cs_step (*step)(struct fixed_step *self, double t, double h, double *x, double *v);
+    fixed_step_taker *step;
 };
+
+/* dt as options have it: 0 is one step an advance. */
+static inline struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
+                                              fixed_step_taker *step) {
+    return (struct fixed_step){
+        .host = host, .dt = dt > 0 ? dt : HUGE_VAL, .chosen = dt <= 0, .step = step};
+}
 
 /* More steps than that in one advance are a wrong dt. */
 #define FIXED_STEP_MAX 1e9

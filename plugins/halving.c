@@ -6,8 +6,8 @@ struct halving *halving_create(const struct cs_host *host, size_t bytes, double 
     struct halving *self = host->alloc(host->ctx, bytes);
     if (!self)
         return NULL;
-    self->loop = (struct fixed_step){
-        .host = host, .dt = dt > 0 ? dt : HUGE_VAL, .chosen = dt <= 0, .fresh = true};
+    self->loop = fixed_step_of(host, dt, NULL);
+    self->loop.fresh = true;
     self->step = step;
     return self;
 }

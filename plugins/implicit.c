@@ -1,13 +1,16 @@
 /* implicit.c - implicit Euler methods that solve one linear system a step.
  *
  * With K = df/dx, D = df/dv of springs, dampers and drag at (x, v), and step h:
- *   implicit-linearised  (M - h D - h^2 K) dv = h (f + h K v)                (whole system)
- *   implicit-block       (m I - h D_ii - h^2 K_ii) dv_i = h (f_i + h K_ii v_i)   (each
- * particle) then                 v' = v + dv, x' = x + h v' The first is Baraff and Witkin 1998
- * (cloth thesis, eq. 5.20); it is one Newton step of implicit Euler. The second is the cloth
- * thesis's shortcut (sec. 5.3, end): K_ii v_i treats a particle that moves with its neighbours
- * as if they stood still, which is a drag of size h K_ii. It is stable because it is nearly
- * frozen, and approaches the equation of motion only as h K h / m goes to 0.
+ *
+ *   implicit-linearised  (M - h D - h^2 K) dv = h (f + h K v)                the whole system
+ *
+ *   implicit-block       (m I - h D_ii - h^2 K_ii) dv_i = h (f_i + h K_ii v_i)  each particle
+ *
+ * and then v' = v + dv, x' = x + h v'. The first is Baraff and Witkin 1998 (cloth thesis, eq.
+ * 5.20); it is one Newton step of implicit Euler. The second is the cloth thesis's shortcut
+ * (sec. 5.3, end): K_ii v_i treats a particle that moves with its neighbours as if they stood
+ * still, which is a drag of size h K_ii. It is stable because it is nearly frozen, and
+ * approaches the equation of motion only as h K h / m goes to 0.
  */
 #include "fixed_step.h"
 
@@ -63,13 +66,6 @@ struct block {
 
 static void *take(const struct cs_host *host, size_t doubles_a_particle) {
     return host->alloc(host->ctx, doubles_a_particle * sizeof(double) * host->view->n);
-}
-
-static struct fixed_step loop_of(const struct cs_host *host, double dt,
-                                 enum cs_step (*step)(struct fixed_step *, double, double,
-                                                      double *, double *)) {
-    return (struct fixed_step){
-        .host = host, .dt = dt > 0 ? dt : HUGE_VAL, .chosen = dt <= 0, .step = step};
 }
 
 /* Starts the solver's iteration. Free fall, dv = h g, is the one motion that every residual
@@ -238,7 +234,7 @@ static enum cs_step create_linearised(const struct cs_host *host, const void *op
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = loop_of(host, asked->dt, step_linearised);
+    self->loop = fixed_step_of(host, asked->dt, step_linearised);
     self->rtol = asked->rtol;
     self->flags = asked->hessian == 0 ? CS_SOLVE_PSD : 0;
     if (!(self->f = take(host, 3)) || !(self->b = take(host, 3)) ||
@@ -254,7 +250,7 @@ static enum cs_step create_block(const struct cs_host *host, const void *options
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = loop_of(host, asked->dt, step_block);
+    self->loop = fixed_step_of(host, asked->dt, step_block);
     if (!(self->f = take(host, 3)) || !(self->kxx = take(host, 6)) ||
         !(self->dvv = take(host, 6)))
         return CS_STEP_FAIL;

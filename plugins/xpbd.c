@@ -5,9 +5,9 @@
  * compliance a = 1/(k h^2), the springs in turn, `iterations` times over, from x = y and l = 0:
  *   dl = (-C - a l - g n.(d - d_old)) / ((1 + g) (w_a + w_b) + a),   g = c/(k h)
  *   l += dl, x_b += w_b dl n, x_a -= w_a dl n,   w the inverse masses
- * (Macklin et al. 2016, eq. 18 and 26; d = x_b - x_a, c the axial damping). Then v = (x' -
- * x)/h. Relative damping is a constraint d = d_old of compliance 1/(c h) beside the spring.
- * Outer forces, drag too, are those at the start of the step.
+ * (Macklin et al. 2016, eq. 18 and 26; d = x_b - x_a, c the axial damping). Then
+ * v = (x' - x)/h. Relative damping is a constraint d = d_old of compliance 1/(c h) beside the
+ * spring. Outer forces, drag too, are those at the start of the step.
  *
  * As the iterations grow the result settles, but not on implicit Euler: the directions that the
  * multipliers l belong to are those at which they were found. The difference vanishes with h.
@@ -186,10 +186,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = (struct fixed_step){.host = host,
-                                     .dt = asked->dt > 0 ? asked->dt : HUGE_VAL,
-                                     .chosen = asked->dt <= 0,
-                                     .step = step};
+    self->loop = fixed_step_of(host, asked->dt, step);
     self->iterations = asked->iterations;
     self->substeps = asked->substeps;
     self->forgets = asked->mode == PBD;

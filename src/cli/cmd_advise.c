@@ -1,11 +1,11 @@
 /* cmd_advise.c - clothsim advise: safe steps, what binds them, and what a frame costs. */
+#include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "study/advise.h"
-
-#include <unistd.h>
+#include "study/workers.h"
 
 enum {
     ADVISE_INTEGRATORS,
@@ -41,7 +41,6 @@ static void show_progress(void *ctx, uint32_t done, uint32_t total) {
 }
 
 static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     struct cs_progress progress;
     struct cs_text out = {0};
     struct cs_advise study = {
@@ -49,16 +48,14 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         .seconds = 0.5,
         .budget = 20,
         .check = cs_args_get(args, ADVISE_CHECK),
-        .workers = processors < 1    ? 1
-                   : processors > 16 ? 16
-                                     : (uint32_t)processors,
+        .workers = cs_pool_processors(CS_WORKERS_MOST),
         .progress = show_progress,
         .ctx = &progress,
     };
     study.session.stop = study.stop = cs_interrupt_catch();
     if (cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
         cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||
-        cs_args_whole(args, ADVISE_JOBS, 1, 16, &study.workers, error) ||
+        cs_args_whole(args, ADVISE_JOBS, 1, CS_WORKERS_MOST, &study.workers, error) ||
         cs_args_all(args, ADVISE_INTEGRATORS, &study.methods, &study.n_methods, error) ||
         cs_args_overrides(args, ADVISE_SET, &study.session.overrides,
                           &study.session.n_overrides, error) ||

@@ -110,15 +110,6 @@ static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
         cs_progress_show(&screen->progress, screen->compare.done, screen->compare.sweep.n);
 }
 
-static enum cs_status read_real(const struct cs_args *args, uint32_t row, double *value,
-                                struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    if (text && (!cs_parse_real(text, value) || !(*value > 0)))
-        return cs_fail(error, CS_ERR_USAGE, "--%s: expected a number above 0, found \"%.60s\"",
-                       rows[row].name, text);
-    return CS_OK;
-}
-
 static enum cs_status read_reference(struct cs_args *args, struct cs_compare_settings *settings,
                                      struct cs_error *error) {
     const char *const *methods;
@@ -141,7 +132,7 @@ static enum cs_status read_frames(const struct cs_args *args,
     struct cs_session session;
     struct cs_session_settings asked = settings->course.session;
     asked.integrator = "velocity-verlet";
-    if (read_real(args, COMPARE_TIME, &seconds, error) ||
+    if (cs_args_real(args, COMPARE_TIME, &seconds, error) ||
         cs_session_open_plan(&session, &asked, error))
         return error->status;
     const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
@@ -168,8 +159,8 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     session->scene = args->operands[0];
     session->stop = cs_interrupt_catch();
     if (cs_args_whole(args, COMPARE_RUNS, 1, 100, &settings->runs, error) ||
-        read_real(args, COMPARE_BUDGET, &settings->budget, error) ||
-        read_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||
+        cs_args_real(args, COMPARE_BUDGET, &settings->budget, error) ||
+        cs_args_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||
         read_reference(args, settings, error) ||
         cs_args_overrides(args, COMPARE_SET, &session->overrides, &session->n_overrides,
                           error) ||

@@ -80,6 +80,8 @@ static enum cs_status open_scene(struct cs_args *args, struct cs_error *error) {
         .scene = args->operands[0],
         .integrator = cs_args_get(args, SCENE_INTEGRATOR),
         .render = !cs_args_get(args, SCENE_NO_RENDER),
+        /* a run has as many, and what they share the work by is in its plan */
+        .threads = cs_args_get(args, SCENE_PLAN) ? CS_THREADS_AUTO : 0,
     };
     if (cs_args_overrides(args, SCENE_SET, &settings.overrides, &settings.n_overrides, error) ||
         cs_args_all(args, SCENE_PLUGIN, &settings.plugins, &settings.n_plugins, error))

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/options.h"
+#include "base/pool.h"
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/run_output.h"
@@ -11,7 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 bool cs_job_wants_json(const struct cs_job_settings *settings) {
     return settings->session.render || settings->json;
@@ -72,15 +72,13 @@ static enum cs_status check_outputs(const struct cs_job_settings *settings,
 
 /* more than one, so that drawing and encoding can overlap the run */
 static bool has_processors(void) {
-    return sysconf(_SC_NPROCESSORS_ONLN) > 1;
+    return cs_pool_processors(2) > 1;
 }
 
 static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    /* what prods see is drawn from the events, which move on with the run */
-    const bool beside = has_processors() && !job->session.scene.render.prods;
     if (cs_picture_open(&job->picture, &job->session.system, (enum cs_gl)settings->gl,
-                        settings->fast, beside, error))
+                        settings->fast, has_processors(), error))
         return error->status;
     cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));
     if (job->renderer.failed)

@@ -1,9 +1,10 @@
 #include "cli/stability_args.h"
 
+#include "base/pool.h"
 #include "cli/interrupt.h"
+#include "study/workers.h"
 
 #include <string.h>
-#include <unistd.h>
 
 const struct cs_arg cs_stability_rows[STABILITY_ROWS] = {
     [STABILITY_INTEGRATORS] = {"integrators", 'i', "LIST",
@@ -90,20 +91,18 @@ static enum cs_status read_axis(const struct cs_args *args,
     return CS_OK;
 }
 
-static uint32_t processors(void) {
-    const long n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : n > 16 ? 16 : (uint32_t)n;
-}
-
 enum cs_status cs_stability_read(struct cs_args *args, struct cs_stability_settings *settings,
                                  struct cs_error *error) {
-    *settings = (struct cs_stability_settings){
-        .columns = 9, .rows = 15, .seconds = 0.5, .budget = 5, .workers = processors()};
+    *settings = (struct cs_stability_settings){.columns = 9,
+                                               .rows = 15,
+                                               .seconds = 0.5,
+                                               .budget = 5,
+                                               .workers = cs_pool_processors(CS_WORKERS_MOST)};
     settings->session.stop = cs_interrupt_catch();
     settings->session.scene = args->n_operands ? args->operands[0] : NULL;
     if (cs_args_whole(args, STABILITY_COLUMNS, 1, CS_MAP_MOST, &settings->columns, error) ||
         cs_args_whole(args, STABILITY_STEPS, 1, CS_MAP_MOST, &settings->rows, error) ||
-        cs_args_whole(args, STABILITY_JOBS, 1, 16, &settings->workers, error) ||
+        cs_args_whole(args, STABILITY_JOBS, 1, CS_WORKERS_MOST, &settings->workers, error) ||
         cs_args_real(args, STABILITY_TIME, &settings->seconds, error) ||
         cs_args_real(args, STABILITY_BUDGET, &settings->budget, error) ||
         read_axis(args, settings, error) ||

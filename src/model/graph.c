@@ -2,13 +2,14 @@
 
 #include <stdbool.h>
 
-/* edges by node: those of node i are list[starts[i]] to list[starts[i + 1]] */
+/* edges, or ends of edges, by node: those of node i are list[starts[i]] to
+ * list[starts[i + 1] - 1] */
 struct stars {
     uint32_t *starts, *list;
 };
 
-/* counts into starts, sums them up and fills: the order of edges is kept. key gives the node,
- * or one of two nodes, at an edge's end */
+/* Sorts by node, in the order of before. nodes (n_ends): those of edges, or of the ends of
+ * edges; CS_GRAPH_NONE is left out. starts goes one behind until all are in. */
 static enum cs_status sort_edges(uint32_t n, uint32_t n_ends, const uint32_t *nodes,
                                  struct stars *stars, struct cs_arena *work,
                                  struct cs_error *error) {
@@ -68,7 +69,8 @@ static uint32_t join(const struct cs_graph *graph, const struct stars *stars, do
 }
 
 /* Edges between the same two new nodes become one, in the order of the lower node and of the
- * first of them. lows (n_edges): the lower new node of an edge, CS_GRAPH_NONE inside one. */
+ * first of them. by_low: edges by their lower new node, without those inside one. known
+ * (coarse->n) is work. */
 static void merge(const struct cs_graph *fine, struct cs_graph *coarse, const uint32_t *parents,
                   const struct stars *by_low, uint32_t *known, uint32_t *targets) {
     for (uint32_t i = 0; i < coarse->n; i++)

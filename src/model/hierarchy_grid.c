@@ -1,7 +1,7 @@
 #include "model/hierarchy.h"
 
 #include "base/pool.h"
-#include "model/clones.h"
+#include "model/lanes.h"
 
 #include <string.h>
 
@@ -12,7 +12,7 @@ enum { PADDING = 2 };
 enum { ROW_CELLS = 1024 }; /* coarse cells of one block of a loop, about */
 
 static uint32_t round_up(uint32_t n) {
-    return (n + 15) / 16 * 16;
+    return (n + CS_LANES - 1) / CS_LANES * CS_LANES;
 }
 
 /* dead cells enough at both ends for the longest step, which is two rows */

@@ -2,10 +2,9 @@
 
 #include "base/pool.h"
 #include "model/graph.h"
+#include "model/lanes.h"
 
 #include <string.h>
-
-enum { LANES = 16 };
 
 /* joins the numbers of two coarsenings: where[i] = then[where[i]] */
 static void follow(uint32_t n, uint32_t *where, const uint32_t *then) {
@@ -40,10 +39,10 @@ static void count_slots(const struct cs_graph *graph, struct cs_level *level,
     memset(degrees, 0, level->n * sizeof *degrees);
     for (uint32_t e = 0; e < 2 * graph->n_edges; e++)
         degrees[graph->ends[e]]++;
-    for (uint32_t b = 0; b < level->n / LANES; b++) {
+    for (uint32_t b = 0; b < level->n / CS_LANES; b++) {
         uint32_t most = 0;
-        for (uint32_t l = 0; l < LANES; l++)
-            most = degrees[b * LANES + l] > most ? degrees[b * LANES + l] : most;
+        for (uint32_t l = 0; l < CS_LANES; l++)
+            most = degrees[b * CS_LANES + l] > most ? degrees[b * CS_LANES + l] : most;
         level->starts[b + 1] = level->starts[b] + most;
     }
 }
@@ -52,16 +51,17 @@ static void count_slots(const struct cs_graph *graph, struct cs_level *level,
 static void fill_slots(const struct cs_graph *graph, struct cs_level *level, uint32_t *filled) {
     for (uint32_t i = 0; i < level->n; i++) {
         filled[i] = 0;
-        for (uint32_t k = level->starts[i / LANES]; k < level->starts[i / LANES + 1]; k++) {
-            level->neighbours[k * LANES + i % LANES] = i;
-            level->numbers[k * LANES + i % LANES] = CS_GRAPH_NONE;
+        for (uint32_t k = level->starts[i / CS_LANES]; k < level->starts[i / CS_LANES + 1];
+             k++) {
+            level->neighbours[k * CS_LANES + i % CS_LANES] = i;
+            level->numbers[k * CS_LANES + i % CS_LANES] = CS_GRAPH_NONE;
         }
     }
     for (uint32_t end = 0; end < 2 * graph->n_edges; end++) {
         const uint32_t i = graph->ends[end];
-        const size_t slot = level->starts[i / LANES] + filled[i]++;
-        level->neighbours[slot * LANES + i % LANES] = graph->ends[end ^ 1];
-        level->numbers[slot * LANES + i % LANES] = end / 2;
+        const size_t slot = level->starts[i / CS_LANES] + filled[i]++;
+        level->neighbours[slot * CS_LANES + i % CS_LANES] = graph->ends[end ^ 1];
+        level->numbers[slot * CS_LANES + i % CS_LANES] = end / 2;
     }
 }
 
@@ -70,40 +70,41 @@ static enum cs_status level_of(const struct cs_graph *graph, uint32_t pitch,
                                struct cs_arena *work, struct cs_error *error) {
     *level =
         (struct cs_level){.form = CS_LEVEL_LISTS, .pitch = pitch, .n_springs = graph->n_edges};
-    level->n = level->end = (graph->n + LANES - 1) / LANES * LANES;
+    level->n = level->end = (graph->n + CS_LANES - 1) / CS_LANES * CS_LANES;
     uint32_t *count = cs_arena_take_n(work, level->n, sizeof *count, error);
-    level->starts = cs_arena_take_n(arena, level->n / LANES + 1, sizeof(uint32_t), error);
+    level->starts = cs_arena_take_n(arena, level->n / CS_LANES + 1, sizeof(uint32_t), error);
     level->ends = cs_arena_take_n(arena, 2 * (size_t)graph->n_edges, sizeof(uint32_t), error);
     level->blocks = cs_arena_take_n(arena, 6 * (size_t)graph->n_edges, sizeof(float), error);
     if (error->status)
         return error->status;
     memcpy(level->ends, graph->ends, 2 * sizeof(uint32_t) * graph->n_edges);
     count_slots(graph, level, count);
-    const size_t n_slots = level->starts[level->n / LANES];
-    level->neighbours = cs_arena_take_n(arena, n_slots * LANES, sizeof(uint32_t), error);
-    level->numbers = cs_arena_take_n(arena, n_slots * LANES, sizeof(uint32_t), error);
+    const size_t n_slots = level->starts[level->n / CS_LANES];
+    level->neighbours = cs_arena_take_n(arena, n_slots * CS_LANES, sizeof(uint32_t), error);
+    level->numbers = cs_arena_take_n(arena, n_slots * CS_LANES, sizeof(uint32_t), error);
     if (error->status)
         return error->status;
     fill_slots(graph, level, count);
-    return cs_level_take(level, n_slots * 6 * LANES, arena, error);
+    return cs_level_take(level, n_slots * 6 * CS_LANES, arena, error);
 }
 
 enum { SLOTS = 256 }; /* of one block of a loop */
 
 static void spread_slots(void *arg, uint32_t block) {
     const struct cs_level *level = arg;
-    const size_t n_slots = level->starts[level->n / LANES];
+    const size_t n_slots = level->starts[level->n / CS_LANES];
     for (size_t k = (size_t)block * SLOTS; k < ((size_t)block + 1) * SLOTS && k < n_slots; k++)
-        for (size_t l = 0; l < LANES; l++) {
-            const uint32_t spring = level->numbers[k * LANES + l];
+        for (size_t l = 0; l < CS_LANES; l++) {
+            const uint32_t spring = level->numbers[k * CS_LANES + l];
             for (size_t c = 0; c < 6 && spring != CS_GRAPH_NONE; c++)
-                level->springs[(6 * k + c) * LANES + l] = level->blocks[6 * (size_t)spring + c];
+                level->springs[(6 * k + c) * CS_LANES + l] =
+                    level->blocks[6 * (size_t)spring + c];
         }
 }
 
 /* the blocks to both ends of every spring */
 static void spread_blocks(struct cs_level *level) {
-    cs_pool_run((level->starts[level->n / LANES] + SLOTS - 1) / SLOTS, spread_slots, level);
+    cs_pool_run((level->starts[level->n / CS_LANES] + SLOTS - 1) / SLOTS, spread_slots, level);
 }
 
 static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {

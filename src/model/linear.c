@@ -163,15 +163,20 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
     cs_linear_mul(linear, u, q);
     memcpy(r, b, n3 * sizeof *r);
     clear_pinned(linear->system, r);
-    const double goal = rtol * sqrt(cs_vector_dot(n3, r, r));
+    const double size = sqrt(cs_vector_dot(n3, r, r)), goal = rtol * size;
+    *iterations = 0;
+    *residual = 0;
+    if (size == 0) {
+        memset(u, 0, n3 * sizeof *u);
+        return CS_LINEAR_DONE;
+    }
     cs_vector_kernels.linear_sum(n3, 1, r, -1, q, r);
     double norm = sqrt(cs_vector_dot(n3, r, r)), rz = 0;
 
     bool fresh = true; // the direction does not lean on the last one
-    *iterations = 0;
     while (norm > goal) {
         if (*iterations == limit) {
-            *residual = norm / goal * rtol;
+            *residual = norm / size;
             return CS_LINEAR_LIMIT;
         }
         precondition(linear, r, norm, z);
@@ -197,6 +202,6 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
         norm = sqrt(cs_vector_dot(n3, r, r));
         ++*iterations;
     }
-    *residual = goal > 0 ? norm / goal * rtol : 0;
+    *residual = norm / size;
     return CS_LINEAR_DONE;
 }

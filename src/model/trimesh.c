@@ -249,17 +249,3 @@ enum cs_status cs_trimesh_finish(struct cs_trimesh *mesh, const char *name,
     free(work.hinges);
     return error->status;
 }
-
-void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, const double *x, size_t n,
-                       uint32_t first, double normal[3]) {
-    const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
-    double a[3], b[3];
-    for (size_t c = 0; c < 3; c++) {
-        const double *row = x + c * n + first;
-        a[c] = row[corner[1]] - row[corner[0]];
-        b[c] = row[corner[2]] - row[corner[0]];
-    }
-    normal[0] = a[1] * b[2] - a[2] * b[1];
-    normal[1] = a[2] * b[0] - a[0] * b[2];
-    normal[2] = a[0] * b[1] - a[1] * b[0];
-}

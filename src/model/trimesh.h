@@ -46,9 +46,19 @@ enum cs_status cs_trimesh_make_limbs(struct cs_trimesh *mesh, uint32_t detail,
                                      struct cs_arena *arena, struct cs_error *error);
 
 /* Normal of triangle t of a mesh at places x (of n particles, the mesh's from `first` on), as
- * long as twice the triangle's area. */
-void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, const double *x, size_t n,
-                       uint32_t first, double normal[3]);
+ * long as twice the triangle's area. One number after the other: loops over the axes become
+ * vectors that are put together and taken apart again, at several times the cost. */
+static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, const double *x,
+                                     size_t n, uint32_t first, double normal[3]) {
+    const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
+    const double *p = x + first + corner[0], *q = x + first + corner[1],
+                 *r = x + first + corner[2];
+    const double ax = q[0] - p[0], ay = q[n] - p[n], az = q[2 * n] - p[2 * n];
+    const double bx = r[0] - p[0], by = r[n] - p[n], bz = r[2 * n] - p[2 * n];
+    normal[0] = ay * bz - az * by;
+    normal[1] = az * bx - ax * bz;
+    normal[2] = ax * by - ay * bx;
+}
 
 /* The first triangle of vertex i in around. */
 static inline uint32_t cs_trimesh_around_begin(const struct cs_trimesh *mesh, uint32_t i) {

@@ -94,7 +94,8 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);
 bool cs_run_has_goals(const struct cs_integrator *integrator);
 void cs_run_goals(const struct cs_run *run, double *g);
 /* Bytes of all arrays of the run: the system's, the meshes', the solver's and the method's.
- * Exact and the same on every machine; a foreign library's own memory is not in it. */
+ * Exact, and the same on every machine with as many threads; a foreign library's own memory is
+ * not in it. */
 size_t cs_run_bytes(const struct cs_run *run);
 
 void cs_run_finish(struct cs_run *run);

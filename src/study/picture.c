@@ -79,7 +79,9 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
     *picture = (struct cs_picture){.scene = system->scene, .system = system, .fast = fast};
     if (!read_textures(picture, error) && !take_arrays(picture, error) &&
         !cs_renderer_open(cs_renderer_folder(), gl, &picture->renderer, error)) {
-        picture->hand = beside ? cs_hand_create() : NULL;
+        /* what prods see is drawn from the events, which move on with the run */
+        const bool apart = beside && !picture->scene->render.prods;
+        picture->hand = apart ? cs_hand_create() : NULL;
         cs_hand_give(picture->hand, make_canvas, picture);
         cs_picture_end(picture, error);
     }

@@ -30,7 +30,8 @@ struct cs_picture {
 };
 
 /* Loads the renderer and the textures. Scene and system must outlive the picture. beside: draw
- * on a thread of its own; else begin draws at once, and the same. On failure the picture is
+ * on a thread of its own, unless the scene draws what prods see; else begin draws at once, and
+ * the same. On failure the picture is
  * closed; CS_ERR_MODULE, CS_ERR_FILE (a texture) or CS_ERR_MEMORY. */
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
                                enum cs_gl gl, bool fast, bool beside, struct cs_error *error);
@@ -39,8 +40,8 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
  * touched before the end. The picture before must have ended. */
 void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
                       struct cs_image *image);
-/* Waits for it; CS_ERR_MODULE or CS_ERR_MEMORY where it failed. CS_OK where none is under way.
- */
+/* Waits for it; CS_ERR_MODULE or CS_ERR_MEMORY where it failed, and from then on: the first
+ * failure is told again. CS_OK where none is under way and none failed. */
 enum cs_status cs_picture_end(struct cs_picture *picture, struct cs_error *error);
 
 /* true if the colours show a value, so that picture->range has a meaning; its unit. */

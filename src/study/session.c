@@ -116,10 +116,14 @@ static enum cs_status start_threads(struct cs_session *session, uint32_t threads
         return CS_OK;
     for (uint32_t b = 0; b < session->scene.bodies.n; b++)
         n += (size_t)cs_shape_count(cs_scene_bodies(&session->scene) + b);
-    if (threads == CS_THREADS_AUTO)
+    const bool chosen = threads == CS_THREADS_AUTO;
+    struct cs_error refused = {0};
+    if (chosen)
         threads = n < CS_THREADS_AUTO_LEAST ? 1 : cs_pool_processors(CS_THREADS_AUTO_MOST);
-    session->pooled = !cs_pool_start(threads, error);
-    return error->status;
+    session->pooled = !cs_pool_start(threads, &refused);
+    /* one thread gives the same bits: a failure only where more were asked for */
+    return session->pooled || chosen ? CS_OK
+                                     : cs_fail(error, refused.status, "%s", refused.message);
 }
 
 static enum cs_status open_plan(struct cs_session *session,

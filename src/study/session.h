@@ -18,7 +18,7 @@ struct cs_session_settings {
     uint32_t n_plugins;
     bool render, timed;
     /* 0: those of the pool, left as they are; else the session starts them and ends them, with
-     * CS_THREADS_AUTO as many as suit the scene */
+     * CS_THREADS_AUTO as many as suit the scene, or one where there are no more to be had */
     uint32_t threads;
     const volatile sig_atomic_t *stop; /* may be NULL */
 };

@@ -12,12 +12,10 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_WORKERS = 16 };
-
 /* In memory that all workers see. */
 struct shared {
     atomic_uint next;
-    struct cs_error errors[MOST_WORKERS]; /* one a worker */
+    struct cs_error errors[CS_WORKERS_MOST]; /* one a worker */
 };
 
 void *cs_workers_take(size_t bytes, struct cs_error *error) {
@@ -125,13 +123,13 @@ static void wait_for(struct cs_workers *workers, struct shared *shared, pid_t *c
 
 enum cs_status cs_workers_run(struct cs_workers *workers, struct cs_error *error) {
     struct shared *shared = cs_workers_take(sizeof *shared, error);
-    pid_t children[MOST_WORKERS];
+    pid_t children[CS_WORKERS_MOST];
     uint32_t n = 0;
     if (!shared)
         return error->status;
     /* what waits in the buffers is not to be written twice */
     fflush(NULL);
-    while (n < workers->n_workers && n < workers->n_tasks && n < MOST_WORKERS) {
+    while (n < workers->n_workers && n < workers->n_tasks && n < CS_WORKERS_MOST) {
         children[n] = start(workers, shared, n);
         if (children[n] < 0) {
             if (!n)

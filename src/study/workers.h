@@ -12,6 +12,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Workers at a time, at most; one a processor is a sensible number. */
+enum { CS_WORKERS_MOST = 16 };
+
 /* Results live in memory that all workers see; zeroed. CS_ERR_MEMORY. */
 void *cs_workers_take(size_t bytes, struct cs_error *error);
 void cs_workers_give_back(void *memory, size_t bytes);

@@ -1,10 +1,9 @@
 /* Loops in a wave leave what they leave one after the other, and do each block once. */
 #include "base/pool.h"
 #include "model/wave.h"
+#include "unit.h"
 
-#include <check.h>
 #include <stdatomic.h>
-#include <stdlib.h>
 
 enum { BLOCKS = 90, LOOPS = 5 };
 
@@ -56,13 +55,6 @@ START_TEST(wave_is_one_loop_after_the_other) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("wave");
-    TCase *tests = tcase_create("wave");
-    tcase_add_test(tests, wave_is_one_loop_after_the_other);
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    const TTest *const tests[] = {wave_is_one_loop_after_the_other};
+    return unit_run("wave", tests, sizeof tests / sizeof *tests);
 }
