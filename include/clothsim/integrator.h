@@ -11,11 +11,11 @@
  * are at x + h v after a step h: commit puts them there to the last bit, which is no change to
  * speak of.
  *
- * A scene's events lie between two calls of advance. There x, v, view->inv_mass and the
- * springs' constants may change, in place; restart follows. view->omega and view->delta hold
- * for all of the run. Within an advance forces may depend on t (ramps are linear in it), and
- * the list of springs is that of the t which the last call named; a matrix that a method keeps
- * is not.
+ * A scene's events lie between two calls of advance. There x, v, view->mass, view->inv_mass
+ * and the springs' constants may change, in place; restart follows. view->omega and view->delta
+ * hold for all of the run. Within an advance forces may depend on t (ramps are linear in it),
+ * and the list of springs is that of the t which the last call named; a matrix that a method
+ * keeps is not.
  *
  * Marks in brackets say when a call is allowed. Not on offer, on purpose: random numbers,
  * clock, files, threads of one's own: vector->share lends the host's for a loop.

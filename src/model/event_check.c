@@ -164,7 +164,8 @@ static enum cs_status check_prod(const struct look *at, bool once, struct cs_pro
     return check_lengths(at, once, prod);
 }
 
-static enum cs_status check_ramp(const struct look *at, const struct cs_ramp *ramp) {
+static enum cs_status check_ramp(const struct look *at, const struct cs_event *event) {
+    const struct cs_ramp *ramp = &event->ramp;
     struct cs_event_key key;
     struct cs_error said = {0};
     if (cs_event_key_find(at->scene, ramp->key, &key, &said))
@@ -174,6 +175,9 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_ramp *ra
     /* its message starts with the ": " behind no place */
     if (cs_option_check_range(key.row, ramp->value, -1, "", CS_ERR_SCENE, &said))
         return refuse(at, ".ramp.value", "%s", said.message + 2);
+    /* methods take a mass for constant within an advance */
+    if (cs_event_weighs(event) && isnan(event->at))
+        return refuse(at, "", "found from and to, expected at: masses change at once");
     return CS_OK;
 }
 
@@ -229,7 +233,7 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
     if (event->prod.present)
         return check_prod(at, !isnan(event->at), &event->prod);
     if (event->ramp.present)
-        return check_ramp(at, &event->ramp);
+        return check_ramp(at, event);
     if (event->grab.present)
         return check_grab(at, event);
     return event->pin.present ? check_aim(at, ".pin", &event->pin.aim)

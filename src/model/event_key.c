@@ -11,7 +11,9 @@ static const char *const changeable[] = {"forces.gravity",         "forces.drag"
                                          "forces.velocity_loss",   "forces.wind.strength",
                                          "bodies.springs.stretch", "bodies.springs.shear",
                                          "bodies.springs.bend",    "bodies.springs.damping",
-                                         "bodies.strain_limit",    "colliders.friction",
+                                         "bodies.strain_limit",    "bodies.mass.particle",
+                                         "bodies.mass.total",      "bodies.mass.areal_density",
+                                         "bodies.mass.degree",     "colliders.friction",
                                          "colliders.absorption",   NULL};
 
 /* why the others are not; the first that fits counts */
@@ -23,7 +25,6 @@ static const struct {
     {"bodies.mesh", "it says how the body starts"},
     {"bodies.network", "springs are made at the start"},
     {"bodies.shape_matching", "a run keeps its shapes and how they are held"},
-    {"bodies.mass", "a run keeps its masses"},
     {"bodies.pins", "particles are held and let go by the events pin and release"},
     {"bodies.material", "it is of the pictures, not of the motion"},
     {"camera", "it is of the pictures, not of the motion"},
@@ -186,4 +187,8 @@ bool cs_event_key_changes(const struct cs_scene *scene, const char *key) {
             strstr(events[e].ramp.key, key))
             return true;
     return false;
+}
+
+bool cs_event_weighs(const struct cs_event *event) {
+    return event->ramp.present && strstr(event->ramp.key, "].mass.");
 }

@@ -96,17 +96,27 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     return cs_prods_any(system->scene) ? cs_prods_build(system, error) : CS_OK;
 }
 
+/* what hangs on values that ramps change */
+static void refresh(struct cs_system *system) {
+    cs_event_refresh_springs(system);
+    if (any(&system->events->scene, cs_event_weighs))
+        cs_system_weigh(system);
+}
+
 void cs_events_set_bounds(struct cs_system *system, double *work) {
     struct cs_events *events = system->events;
     const uint32_t n_events = events->scene.events.n;
     for (uint32_t e = 0; e < n_events; e++) {
+        const struct cs_event *event = cs_scene_events(&events->scene) + e;
         struct cs_event_state *state = events->states + e;
         if (!state->value)
             continue;
         state->first = *state->value;
-        *state->value = fmax(*state->value, cs_scene_events(&events->scene)[e].ramp.value);
+        /* the stiffest springs and the lightest particles */
+        *state->value = cs_event_weighs(event) ? fmin(*state->value, event->ramp.value)
+                                               : fmax(*state->value, event->ramp.value);
     }
-    cs_event_refresh_springs(system);
+    refresh(system);
     if (any(&events->scene, lets_go))
         for (uint32_t p = 0; p < system->n_pinned; p++)
             system->inv_mass[system->pinned[p]] = 1 / system->mass[system->pinned[p]];
@@ -117,7 +127,7 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
     for (uint32_t e = n_events; e-- > 0;)
         if (events->states[e].value)
             *events->states[e].value = events->states[e].first;
-    cs_event_refresh_springs(system);
+    refresh(system);
 }
 
 double cs_events_next(const struct cs_events *events) {
@@ -164,7 +174,7 @@ static void turn(struct cs_system *system, double t) {
         events->grabs |= holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
     }
     list_pinned(system);
-    cs_event_refresh_springs(system);
+    refresh(system);
     cs_events_place(system, t, system->state, system->state + 3 * (size_t)system->view.n);
 }
 

@@ -83,9 +83,10 @@ static void count_degrees(const struct cs_system *system, double *degree) {
     }
 }
 
-/* mass (n) of every particle; a particle of mass 0 was refused by cs_scene_check */
-static void fill_mass(struct cs_system *system) {
+/* a particle of mass 0 was refused by cs_scene_check */
+void cs_system_weigh(struct cs_system *system) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
+    memset(system->mass, 0, system->view.n * sizeof *system->mass);
     count_degrees(system, system->mass);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_mass *mass = &bodies[b].mass;
@@ -102,6 +103,9 @@ static void fill_mass(struct cs_system *system) {
                 *m = mass->areal_density * cs_shape_area(bodies + b, i);
         }
     }
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->inv_mass[i] > 0)
+            system->inv_mass[i] = 1 / system->mass[i];
 }
 
 static void fill_area(struct cs_system *system) {
@@ -205,7 +209,7 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     if (error->status)
         return;
     bool *pinned = work;
-    fill_mass(system);
+    cs_system_weigh(system);
     if (system->area)
         fill_area(system);
     fill_state(system, pinned);

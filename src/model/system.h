@@ -45,6 +45,10 @@ enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *
                                const struct cs_plan *plan, struct cs_error *error);
 void cs_system_finish(struct cs_system *system);
 
+/* Sets mass (n) of all particles by the scene's values, and inv_mass (n) of those that are not
+ * held. */
+void cs_system_weigh(struct cs_system *system);
+
 /* Adds "particle 312 (body 0, column 24, row 4)", or "(body 0, vertex 312)" of a mesh. */
 void cs_system_print_particle(const struct cs_system *system, uint32_t particle,
                               struct cs_text *out);

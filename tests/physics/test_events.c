@@ -150,6 +150,45 @@ START_TEST(springs_are_rebuilt) {
 }
 END_TEST
 
+/* A weight on a spring, 2 pi a second: at 0.25 s it passes the middle with 0.1 m * 2 pi and
+ * becomes four times as heavy, so that it swings half as fast and twice as far: at 0.75 s it is
+ * at rest 0.2 m behind the middle. */
+START_TEST(masses_change_at_once) {
+    static const char *const exact[] = {"velocity-verlet:dt=1e-4", "rk4:dt=1e-3",
+                                        "implicit-midpoint:dt=1e-3", "cvode-bdf:rtol=1e-8"};
+    for (size_t k = 0; k < sizeof exact / sizeof *exact; k++) {
+        struct fixture weight;
+        fixture_open(&weight, exact[k],
+                     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1], \"stretch\": [1.1, 1]},"
+                     " \"mass\": {\"particle\": 1}, \"springs\": {\"stretch\":"
+                     " 39.478417604357434}, \"pins\": [0]}], \"forces\": {\"gravity\":"
+                     " [0, 0, 0]}, \"events\": [{\"at\": 0.25, \"ramp\": {\"key\":"
+                     " \"bodies[0].mass.particle\", \"value\": 4}}]}");
+        fixture_start(&weight);
+        fixture_frames(&weight, 45);
+        const double length = weight.x[1] - weight.x[0];
+        ck_assert_msg(fabs(length - 0.8) < 1e-4, "%s: %.9g m", exact[k], length);
+        ck_assert_msg(fabs(weight.v[1]) < 1e-3, "%s: %.9g m/s", exact[k], weight.v[1]);
+        ck_assert_double_eq(weight.system->mass[1], 4);
+        fixture_close(&weight);
+    }
+}
+END_TEST
+
+/* The automatic step is right for the lightest that comes. */
+START_TEST(lightest_mass_binds_the_step) {
+    struct fixture cloth, light;
+    fixture_open(&cloth, "velocity-verlet", CLOTH, "");
+    fixture_open(&light, "velocity-verlet", CLOTH,
+                 "{\"at\": 1, \"ramp\": {\"key\": \"bodies[0].mass.particle\","
+                 " \"value\": 0.0001}}");
+    ck_assert_double_eq_tol(light.system->view.omega, 10 * cloth.system->view.omega, 1e-9);
+    ck_assert_double_eq(light.system->mass[0], 0.01);
+    fixture_close(&light);
+    fixture_close(&cloth);
+}
+END_TEST
+
 /* a body of edges, hinges and a network; %s: stretch, bend, unit, and the events */
 #define JELLY                                                                                  \
     "{\"bodies\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": 3, \"spin\": [1, 2, 3]},"    \
@@ -380,6 +419,8 @@ int main(void) {
     const TTest *const tests[] = {runs_are_joined_at_events,
                                   impact_gives_its_impulse,
                                   ramp_is_linear_in_time,
+                                  masses_change_at_once,
+                                  lightest_mass_binds_the_step,
                                   springs_are_rebuilt,
                                   springs_of_a_mesh_follow_ramps,
                                   grab_is_exact,
