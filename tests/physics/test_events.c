@@ -1,5 +1,5 @@
 /* Events: at their time to the bit, with what they promise, and nothing without them. */
-#include "fixture.h"
+#include "eventful.h"
 
 #include "model/events.h"
 #include "sim/host.h"
@@ -15,24 +15,6 @@ static const char *const methods[] = {
     "implicit-linearised",    "implicit-block:dt=0.004",
     "cvode-bdf:rtol=1e-3",    "implicit-linearised:dt=0.002,hessian=exact"};
 enum { METHODS = sizeof methods / sizeof *methods };
-
-/* a hanging cloth; %s: its events */
-#define CLOTH                                                                                  \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 5]}, \"mass\": {\"particle\": 0.01},"            \
-    " \"springs\": {\"stretch\": 40, \"damping\": 0.01}, \"pins\": [\"top\"]}],"               \
-    " \"forces\": {\"drag\": 0.002}, \"events\": [%s]}"
-
-/* free particles; %s: gravity, and the events */
-#define DUST                                                                                   \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4]}, \"mass\": {\"areal_density\": 0.3},"        \
-    " \"springs\": {\"stretch\": %s, \"shear\": 0, \"bend\": 0}}],"                            \
-    " \"forces\": {\"gravity\": [0, 0, 0]}, \"events\": [%s]}"
-
-static void ck_bits(const double *a, const double *b, size_t n, const char *what) {
-    for (size_t i = 0; i < n; i++)
-        ck_assert_msg(!memcmp(a + i, b + i, sizeof *a), "%s: value %zu is %.17g and %.17g",
-                      what, i, a[i], b[i]);
-}
 
 /* What the frame loop does about events, by hand on a run without any. */
 static void advance_by_hand(struct fixture *cloth, double from, double to) {
@@ -99,138 +81,6 @@ START_TEST(impact_gives_its_impulse) {
             ck_assert_double_eq_tol(p[2], -0.4, 1e-12);
             fixture_close(&dust);
         }
-}
-END_TEST
-
-/* Gravity from 0 to 6 m/s2 between 0.1 and 0.6 s: v = 6 t^2 and x = 2 t^3 from there. */
-START_TEST(ramp_is_linear_in_time) {
-    struct fixture dust;
-    fixture_open(&dust, "velocity-verlet:dt=0.0005", DUST, "0",
-                 "{\"from\": 0.1, \"to\": 0.6,"
-                 " \"ramp\": {\"key\": \"forces.gravity[1]\", \"value\": 6}}");
-    fixture_start(&dust);
-    const double start = dust.x[dust.n];
-    fixture_frames(&dust, 24); /* 0.4 s */
-    ck_assert_double_eq_tol(dust.v[dust.n], 6 * 0.3 * 0.3, 1e-13);
-    ck_assert_double_eq_tol(dust.x[dust.n] - start, 2 * 0.3 * 0.3 * 0.3, 1e-6);
-    ck_assert(fabs(dust.system->scene->forces.gravity[1] - 3.6) < 1e-14);
-    fixture_frames(&dust, 24); /* 0.8 s: 0.2 s at 6 m/s2 */
-    ck_assert_double_eq_tol(dust.v[dust.n], 1.5 + 1.2, 1e-13);
-    ck_assert(dust.system->scene->forces.gravity[1] == 6);
-    ck_assert(dust.session.scene.forces.gravity[1] == 0);
-    fixture_close(&dust);
-}
-END_TEST
-
-/* A stiffness that changes at the start is that of a scene which has it, to the bit; and the
- * automatic step is right for the stiffest that a ramp will come to. */
-START_TEST(springs_are_rebuilt) {
-    struct fixture soft, stiff;
-    fixture_open(&soft, "velocity-verlet", CLOTH,
-                 "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.stretch\","
-                 " \"value\": 4000}}");
-    fixture_open(&stiff, "velocity-verlet", CLOTH, "");
-    ck_assert(soft.system->view.omega > 5 * stiff.system->view.omega);
-    fixture_close(&stiff);
-    struct cs_error error = {0};
-    fixture_open(&stiff, "velocity-verlet", CLOTH, "");
-    struct cs_body *body = cs_scene_bodies(&stiff.session.scene);
-    body->springs.stretch = 4000;
-    cs_system_finish(stiff.system);
-    cs_system_build(stiff.system, &stiff.session.scene, &stiff.session.plan, &error);
-    ck_assert_int_eq(error.status, CS_OK);
-    ck_assert(soft.system->view.omega == stiff.system->view.omega);
-    fixture_start(&soft);
-    fixture_start(&stiff);
-    fixture_frames(&soft, 10);
-    fixture_frames(&stiff, 10);
-    ck_bits(soft.x, stiff.system->state, 6 * soft.n, "stiffer");
-    fixture_close(&soft);
-    fixture_close(&stiff);
-}
-END_TEST
-
-/* A weight on a spring, 2 pi a second: at 0.25 s it passes the middle with 0.1 m * 2 pi and
- * becomes four times as heavy, so that it swings half as fast and twice as far: at 0.75 s it is
- * at rest 0.2 m behind the middle. */
-START_TEST(masses_change_at_once) {
-    static const char *const exact[] = {"velocity-verlet:dt=1e-4", "rk4:dt=1e-3",
-                                        "implicit-midpoint:dt=1e-3", "cvode-bdf:rtol=1e-8"};
-    for (size_t k = 0; k < sizeof exact / sizeof *exact; k++) {
-        struct fixture weight;
-        fixture_open(&weight, exact[k],
-                     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1], \"stretch\": [1.1, 1]},"
-                     " \"mass\": {\"particle\": 1}, \"springs\": {\"stretch\":"
-                     " 39.478417604357434}, \"pins\": [0]}], \"forces\": {\"gravity\":"
-                     " [0, 0, 0]}, \"events\": [{\"at\": 0.25, \"ramp\": {\"key\":"
-                     " \"bodies[0].mass.particle\", \"value\": 4}}]}");
-        fixture_start(&weight);
-        fixture_frames(&weight, 45);
-        const double length = weight.x[1] - weight.x[0];
-        ck_assert_msg(fabs(length - 0.8) < 1e-4, "%s: %.9g m", exact[k], length);
-        ck_assert_msg(fabs(weight.v[1]) < 1e-3, "%s: %.9g m/s", exact[k], weight.v[1]);
-        ck_assert_double_eq(weight.system->mass[1], 4);
-        fixture_close(&weight);
-    }
-}
-END_TEST
-
-/* The automatic step is right for the lightest that comes. */
-START_TEST(lightest_mass_binds_the_step) {
-    struct fixture cloth, light;
-    fixture_open(&cloth, "velocity-verlet", CLOTH, "");
-    fixture_open(&light, "velocity-verlet", CLOTH,
-                 "{\"at\": 1, \"ramp\": {\"key\": \"bodies[0].mass.particle\","
-                 " \"value\": 0.0001}}");
-    ck_assert_double_eq_tol(light.system->view.omega, 10 * cloth.system->view.omega, 1e-9);
-    ck_assert_double_eq(light.system->mass[0], 0.01);
-    fixture_close(&light);
-    fixture_close(&cloth);
-}
-END_TEST
-
-/* a body of edges, hinges and a network; %s: stretch, bend, unit, and the events */
-#define JELLY                                                                                  \
-    "{\"bodies\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": 3, \"spin\": [1, 2, 3]},"    \
-    " \"network\": {\"springs\": 4, \"surface\": 3}, \"mass\": {\"total\": 1}, \"springs\":"   \
-    " {\"stretch\": %s, \"bend\": %s, \"stiffness_unit\": \"%s\"}}], \"events\": [%s]}"
-
-/* The same for a mesh, in both units; and half way of a ramp the energy is the mean of both
- * ends'. */
-START_TEST(springs_of_a_mesh_follow_ramps) {
-    static const char *const units[] = {"N/m", "N"};
-    static const char at_once[] =
-        "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.stretch\", \"value\": 90}},"
-        "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.bend\", \"value\": 7}}";
-    for (size_t k = 0; k < 2; k++) {
-        struct fixture soft, stiff;
-        fixture_open(&soft, "implicit-linearised:dt=0.005", JELLY, "20", "1", units[k],
-                     at_once);
-        fixture_open(&stiff, "implicit-linearised:dt=0.005", JELLY, "90", "7", units[k], "");
-        ck_assert(soft.system->view.omega == stiff.system->view.omega);
-        fixture_start(&soft);
-        fixture_start(&stiff);
-        fixture_frames(&soft, 5);
-        fixture_frames(&stiff, 5);
-        ck_bits(soft.x, stiff.x, 6 * soft.n, units[k]);
-        fixture_close(&soft);
-        fixture_close(&stiff);
-
-        fixture_open(&soft, "velocity-verlet", JELLY, "20", "1", units[k],
-                     "{\"from\": 0, \"to\": 0.1, \"ramp\": {\"key\":"
-                     " \"bodies[0].springs.stretch\", \"value\": 0}}");
-        fixture_stir(&soft, 0.05, 0);
-        double energy[3];
-        cs_events_apply(soft.system, 0);
-        for (int share = 0; share < 3; share++) {
-            cs_events_move_values(soft.system, 0.05 * share);
-            energy[share] = cs_springs_energy(&soft.system->springs, (uint32_t)soft.n, soft.x,
-                                              CS_PART_SPRINGS);
-        }
-        ck_assert_double_eq_tol(energy[1], (energy[0] + energy[2]) / 2, 1e-12 * energy[0]);
-        ck_assert(energy[2] < 0.5 * energy[0] && energy[2] > 0);
-        fixture_close(&soft);
-    }
 }
 END_TEST
 
@@ -418,11 +268,6 @@ END_TEST
 int main(void) {
     const TTest *const tests[] = {runs_are_joined_at_events,
                                   impact_gives_its_impulse,
-                                  ramp_is_linear_in_time,
-                                  masses_change_at_once,
-                                  lightest_mass_binds_the_step,
-                                  springs_are_rebuilt,
-                                  springs_of_a_mesh_follow_ramps,
                                   grab_is_exact,
                                   release_keeps_the_velocity,
                                   pins_come_and_go,

@@ -76,4 +76,35 @@ static inline enum cs_linear_end crumple_solve(struct crumple *crumple, double r
                            &crumple->residual);
 }
 
+#define SPHERE  "{\"mesh\": {\"shape\": \"sphere\", \"detail\": %d}, \"mass\": {\"total\": 1}%s"
+#define LIMBS   "{\"mesh\": {\"shape\": \"limbs\", \"detail\": 24}, \"mass\": {\"total\": 1}%s"
+#define SPRINGS ", \"springs\": {\"stretch\": %.17g, \"bend\": %.17g, \"damping\": 1e-3}}"
+
+enum { KINDS = 4 };
+
+/* a pinned grid that halves unevenly, a strip, a closed mesh, and all kinds in one system with
+ * a small body and a dense network */
+static inline void open_kind(struct crumple *crumple, int kind, double k) {
+    struct sheet *sheet = &crumple->sheet;
+    if (kind == 0)
+        sheet_open(sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
+                   CRUMPLE_GRID_VALUES(37, k, CRUMPLE_PINS));
+    else if (kind == 1)
+        sheet_open(sheet, CS_NEED_SOLVE,
+                   "{\"bodies\": [{\"cloth\": {\"grid\": [2, 301]}, \"mass\": {\"total\": 1},"
+                   " \"springs\": {\"stretch\": %.17g}, \"pins\": [5, 6, 7, 8]}]}",
+                   k);
+    else if (kind == 2)
+        sheet_open(sheet, CS_NEED_SOLVE, "{\"bodies\": [" SPHERE SPRINGS "]}", 12, "", k,
+                   k / 10);
+    else
+        sheet_open(sheet, CS_NEED_SOLVE,
+                   "{\"bodies\": [" SPHERE SPRINGS ", " CRUMPLE_GRID ", " CRUMPLE_GRID
+                   ", " LIMBS SPRINGS "], \"forces\": {\"drag\": 0.01}}",
+                   12, "", k, k, CRUMPLE_GRID_VALUES(5, k, ""),
+                   CRUMPLE_GRID_VALUES(30, k, ", \"pins\": [\"bottom\", 31, 450]"),
+                   ", \"network\": {\"springs\": 6}", k, k);
+    crumple_start(crumple, 0.02);
+}
+
 #endif
