@@ -6,13 +6,13 @@
 #include "limits.h"
 #include "sheet.h"
 
-#include "model/contact.h"
-#include "model/limit.h"
-#include "model/linear.h"
-#include "model/measure.h"
-#include "model/normals.h"
-#include "model/terms.h"
-#include "model/vector.h"
+#include "base/vector.h"
+#include "model/commit/contact.h"
+#include "model/commit/limit.h"
+#include "model/force/measure.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+#include "model/solver/linear.h"
 
 #include <stdio.h>
 #include <stdlib.h>

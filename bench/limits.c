@@ -1,7 +1,7 @@
 /* The limits: divider and memory. */
 #include "limits.h"
 
-#include "model/clones.h"
+#include "base/clones.h"
 
 #include <math.h>
 #include <stdio.h>

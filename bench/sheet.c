@@ -1,7 +1,9 @@
 #include "sheet.h"
 
 #include "base/file.h"
-#include "model/springs.h"
+#include "model/plan.h"
+#include "model/spring/springs.h"
+#include "model/system_build.h"
 
 #include <math.h>
 #include <stdio.h>

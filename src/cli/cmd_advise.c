@@ -4,7 +4,7 @@
 #include "cli/interrupt.h"
 #include "cli/print.h"
 #include "cli/progress.h"
-#include "study/advise.h"
+#include "study/stability/advise.h"
 #include "study/workers.h"
 
 enum {

@@ -3,8 +3,8 @@
 #include "cli/interrupt.h"
 #include "cli/print.h"
 #include "cli/progress.h"
-#include "study/compare_report.h"
-#include "study/compare_sheet.h"
+#include "study/compare/compare_report.h"
+#include "study/compare/compare_sheet.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "cli/commands.h"
 #include "cli/print.h"
 #include "sim/registry.h"
-#include "study/conform.h"
+#include "study/conform/conform.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "study/golden.h"
+#include "study/golden/golden.h"
 
 #include <stdio.h>
 #include <string.h>

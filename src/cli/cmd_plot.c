@@ -1,8 +1,8 @@
 /* cmd_plot.c - clothsim plot: the cells of a comparison with other axes. */
 #include "cli/commands.h"
 #include "cli/print.h"
-#include "study/compare_csv.h"
-#include "study/compare_plot.h"
+#include "study/compare/compare_csv.h"
+#include "study/compare/compare_plot.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/print.h"
 #include "io/scene_write.h"
+#include "model/plan.h"
 #include "study/session.h"
 
 #include <string.h>

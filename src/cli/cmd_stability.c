@@ -2,7 +2,7 @@
  */
 #include "cli/commands.h"
 #include "cli/stability_map.h"
-#include "study/extreme.h"
+#include "study/stability/extreme.h"
 
 #include <stdio.h>
 #include <string.h>

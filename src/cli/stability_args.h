@@ -3,7 +3,7 @@
 #define CS_STABILITY_ARGS_H
 
 #include "cli/args.h"
-#include "study/stability.h"
+#include "study/stability/stability.h"
 
 enum {
     STABILITY_INTEGRATORS,

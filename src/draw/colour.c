@@ -1,6 +1,6 @@
 #include "draw/colour.h"
 
-#include "model/scene.h"
+#include "scene/scene.h"
 
 static const uint32_t force_stops[6] = {0x1a9850, 0x8cc63f, 0xf7e33b,
                                         0xfdae3c, 0xf26a2e, 0xc4161c};

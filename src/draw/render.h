@@ -11,7 +11,7 @@
 
 #include "base/image.h"
 #include "base/status.h"
-#include "model/system.h"
+#include "model/system/system.h"
 
 #include <stdbool.h>
 

@@ -7,7 +7,7 @@
 #ifndef CS_MESH_READ_H
 #define CS_MESH_READ_H
 
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
 
 /* Reads and finishes a mesh; coordinates are multiplied by scale. name is for messages, which
  * start with `name:line: `. mesh->file_hash is that of the file. CS_ERR_FILE where the file

@@ -2,9 +2,9 @@
 
 #include "io/json_path.h"
 #include "io/mesh_read.h"
-#include "model/clusters.h"
-#include "model/network.h"
-#include "model/shape.h"
+#include "mesh/network.h"
+#include "model/system/clusters.h"
+#include "scene/shape.h"
 
 #include <stdio.h>
 

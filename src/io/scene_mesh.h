@@ -4,7 +4,7 @@
 #define CS_SCENE_MESH_H
 
 #include "io/table_read.h"
-#include "model/scene.h"
+#include "scene/scene.h"
 
 /* Fills the geometry of every mesh, and the parts of every matched body, of a scene whose
  * tables were read; root is for places in messages. CS_ERR_SCENE, CS_ERR_FILE (a mesh file) or

@@ -2,7 +2,7 @@
 #ifndef CS_SCENE_READ_H
 #define CS_SCENE_READ_H
 
-#include "model/scene.h"
+#include "scene/scene.h"
 
 /* One --set: a JSON path and a JSON value (or a bare word, taken as a string). */
 struct cs_override {

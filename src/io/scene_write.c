@@ -1,7 +1,7 @@
 #include "io/scene_write.h"
 
 #include "base/options.h"
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
 
 #include <string.h>
 

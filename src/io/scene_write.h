@@ -3,7 +3,7 @@
 #define CS_SCENE_WRITE_H
 
 #include "base/text.h"
-#include "model/scene.h"
+#include "scene/scene.h"
 
 /* Adds the scene as JSON with every value present (absent optional ones left out), indented by
  * `indent` spaces after the first line. The integrator is printed with the given resolved

@@ -1,16 +1,16 @@
 #include "model/plan.h"
 
 #include "base/pool.h"
-#include "model/clusters.h"
-#include "model/event_key.h"
-#include "model/events.h"
-#include "model/multigrid.h"
-#include "model/prods.h"
-#include "model/shape.h"
+#include "mesh/trimesh.h"
+#include "model/event/events.h"
+#include "model/event/prods.h"
 #include "model/shares.h"
-#include "model/springs.h"
-#include "model/system.h"
-#include "model/trimesh.h"
+#include "model/solver/multigrid.h"
+#include "model/spring/springs.h"
+#include "model/system/clusters.h"
+#include "model/system/system.h"
+#include "scene/event_key.h"
+#include "scene/shape.h"
 
 #include <clothsim/integrator.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "model/shares.h"
 
 #include "base/pool.h"
-#include "model/shape.h"
+#include "scene/shape.h"
 
 /* Blocks a thread, so that one that is held up finds its work done by others; fewer where
  * blocks would have less than LEAST particles, since springs across borders are done twice. */

@@ -5,7 +5,7 @@
 #ifndef CS_SHARES_H
 #define CS_SHARES_H
 
-#include "model/system.h"
+#include "model/system/system.h"
 
 /* Bytes that sharing a checked scene among that many threads takes; 0 for one. */
 size_t cs_shares_bytes(const struct cs_scene *scene, uint32_t threads);

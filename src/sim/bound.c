@@ -1,9 +1,9 @@
 #include "sim/bound.h"
 
-#include "model/clusters.h"
-#include "model/events.h"
-#include "model/measure.h"
-#include "model/vector.h"
+#include "base/vector.h"
+#include "model/event/events.h"
+#include "model/force/measure.h"
+#include "model/system/clusters.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,7 +17,7 @@ static double energy_at(const struct cs_bound *bound, double t) {
 static double sum_push(const struct cs_system *system) {
     const struct cs_forces *forces = &system->scene->forces;
     const size_t n = system->view.n;
-    const double *g = forces->gravity, *a = system->events ? system->events->push : NULL;
+    const double *g = forces->gravity, *a = system->push;
     double sum = 0;
     for (size_t i = 0; i < n; i++) {
         double push = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);

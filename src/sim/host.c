@@ -1,12 +1,12 @@
 #include "sim/host.h"
 
 #include "base/clock.h"
-#include "model/contact.h"
-#include "model/limit.h"
-#include "model/measure.h"
-#include "model/normals.h"
-#include "model/terms.h"
-#include "model/vector.h"
+#include "base/vector.h"
+#include "model/commit/contact.h"
+#include "model/commit/limit.h"
+#include "model/force/measure.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -2,8 +2,8 @@
 #ifndef CS_HOST_H
 #define CS_HOST_H
 
-#include "model/events.h"
-#include "model/linear.h"
+#include "model/event/events.h"
+#include "model/solver/linear.h"
 #include "sim/bound.h"
 #include "sim/budget.h"
 #include "sim/guard.h"

@@ -2,8 +2,8 @@
 #ifndef CS_RUN_H
 #define CS_RUN_H
 
-#include "model/measure.h"
-#include "model/system.h"
+#include "model/force/measure.h"
+#include "model/system/system.h"
 
 #include <clothsim/integrator.h>
 #include <signal.h>

@@ -1,6 +1,8 @@
 #include "study/course.h"
 
 #include "base/clock.h"
+#include "model/plan.h"
+#include "model/system_build.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "study/deviation.h"
 
-#include "model/measure.h"
+#include "model/force/measure.h"
 
 #include <math.h>
 

@@ -2,7 +2,9 @@
 
 #include "base/options.h"
 #include "base/pool.h"
-#include "model/shape.h"
+#include "model/plan.h"
+#include "model/system_build.h"
+#include "scene/shape.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 #include "study/trial.h"
+#include "model/system_build.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "study/watch.h"
 
-#include "model/events.h"
-#include "model/prods.h"
+#include "model/event/events.h"
+#include "model/event/prods.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -73,8 +73,8 @@ static double push_of(const struct cs_system *system, size_t i) {
     if (system->normals)
         push += wind->strength * system->inv_mass[i] *
                 (wind->strength_unit == CS_WIND_PA ? system->area[i] : 1);
-    if (events && events->push) {
-        const double *a = events->push + i;
+    if (system->push) {
+        const double *a = system->push + i;
         push += length_of((double[3]){a[0], a[n], a[2 * n]});
     }
     if (events && events->prods)

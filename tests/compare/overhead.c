@@ -1,7 +1,7 @@
 /* overhead.c - how much of a measured run is the harness: calls through the host's table, the
  * watch for a blow-up, and the clocks, against the force itself. Prints shares in percent. */
 #include "base/clock.h"
-#include "model/terms.h"
+#include "model/force/terms.h"
 #include "sim/host.h"
 #include "study/course.h"
 

@@ -2,7 +2,7 @@
 #ifndef COMPARE_SCENE_H
 #define COMPARE_SCENE_H
 
-#include "study/compare.h"
+#include "study/compare/compare.h"
 
 #include <check.h>
 #include <stdio.h>

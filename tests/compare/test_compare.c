@@ -1,8 +1,8 @@
 /* A whole comparison: rows, orders, the file, the verdict. */
 #include "place.h"
-#include "study/compare_csv.h"
-#include "study/compare_plot.h"
-#include "study/ranking.h"
+#include "study/compare/compare_csv.h"
+#include "study/compare/compare_plot.h"
+#include "study/compare/ranking.h"
 
 #include <math.h>
 #include <string.h>

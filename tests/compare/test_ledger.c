@@ -1,6 +1,6 @@
 /* The folder of a comparison: what an interrupt leaves, and what another run adds. */
 #include "place.h"
-#include "study/compare_csv.h"
+#include "study/compare/compare_csv.h"
 
 static const char *const METHODS =
     "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"

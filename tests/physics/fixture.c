@@ -1,6 +1,7 @@
 #include "fixture.h"
 
-#include "model/measure.h"
+#include "model/force/measure.h"
+#include "model/system_build.h"
 
 #include <math.h>
 #include <stdarg.h>

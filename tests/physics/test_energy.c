@@ -1,8 +1,8 @@
 /* Energy: what the dampers, drag and wind do is what the cloth loses or gains. */
 #include "fixture.h"
 
-#include "model/normals.h"
-#include "model/terms.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
 
 #include <math.h>
 

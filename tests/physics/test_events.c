@@ -1,7 +1,7 @@
 /* Events: at their time to the bit, with what they promise, and nothing without them. */
 #include "eventful.h"
 
-#include "model/events.h"
+#include "model/event/events.h"
 #include "sim/host.h"
 
 #include <math.h>

@@ -6,10 +6,10 @@
  */
 #include "fixture.h"
 
-#include "model/linear.h"
-#include "model/measure.h"
-#include "model/normals.h"
-#include "model/terms.h"
+#include "model/force/measure.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+#include "model/solver/linear.h"
 
 #include <math.h>
 #include <string.h>

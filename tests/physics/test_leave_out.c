@@ -3,7 +3,7 @@
 #include "allocations.h"
 #include "fixture.h"
 
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
 #include "sim/host.h"
 
 #include <string.h>

@@ -2,12 +2,12 @@
  * the springs one by one and against differences; pins, masses, wind and strain limit. */
 #include "fixture.h"
 
-#include "model/limit.h"
-#include "model/linear.h"
-#include "model/measure.h"
-#include "model/normals.h"
-#include "model/terms.h"
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
+#include "model/commit/limit.h"
+#include "model/force/measure.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+#include "model/solver/linear.h"
 
 #include <math.h>
 #include <string.h>

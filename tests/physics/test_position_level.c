@@ -7,7 +7,7 @@
 #include "allocations.h"
 #include "fixture.h"
 
-#include "model/terms.h"
+#include "model/force/terms.h"
 
 #include <math.h>
 #include <stdio.h>

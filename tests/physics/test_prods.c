@@ -1,8 +1,8 @@
 /* Forces from a viewpoint: their momentum, their times, whom they reach. */
 #include "fixture.h"
 
-#include "model/events.h"
-#include "model/prods.h"
+#include "model/event/events.h"
+#include "model/event/prods.h"
 #include "sim/host.h"
 
 #include <math.h>
@@ -138,8 +138,8 @@ START_TEST(runs_are_joined_at_looks) {
         }
         fixture_frames(&dust, 9);
         fixture_frames(&parts, 6);
-        ck_assert(parts.system->events->push[2 * n + 5] == -1);
-        parts.system->events->push[2 * n + 5] = 0;
+        ck_assert(parts.system->push[2 * n + 5] == -1);
+        parts.system->push[2 * n + 5] = 0;
         const struct cs_run *run = &parts.session.run;
         run->integrator->restart(run->host->self, 0.1, parts.x, parts.v);
         fixture_frames(&parts, 3);
@@ -301,7 +301,7 @@ START_TEST(bytes_are_planned) {
     ck_assert_uint_eq(more, rows[CS_FEATURE_EVENTS].bytes + rows[CS_FEATURE_PRODS].bytes);
     ck_assert(!without.session.plan.rows[CS_FEATURE_PRODS].built);
     ck_assert_uint_eq(without.session.plan.rows[CS_FEATURE_PRODS].bytes, 0);
-    ck_assert_ptr_null(blow.system->events->push);
+    ck_assert_ptr_null(blow.system->push);
     fixture_close(&with);
     fixture_close(&blow);
     fixture_close(&without);

@@ -1,7 +1,8 @@
 /* Ramps: values that change over an interval, or at once. */
 #include "eventful.h"
 
-#include "model/events.h"
+#include "model/event/events.h"
+#include "model/system_build.h"
 
 #include <math.h>
 

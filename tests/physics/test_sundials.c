@@ -5,7 +5,7 @@
 #include "fixture.h"
 
 #include "base/options.h"
-#include "model/vector.h"
+#include "base/vector.h"
 #include "sim/host.h"
 
 #include <math.h>

@@ -4,9 +4,9 @@
 #include "fixture.h"
 
 #include "base/pool.h"
-#include "model/linear.h"
-#include "model/normals.h"
-#include "model/terms.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+#include "model/solver/linear.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The bisected border of stability against linear theory, on shipped scenes. */
-#include "study/stability.h"
+#include "study/stability/stability.h"
 
 #include "../physics/fixture.h"
 

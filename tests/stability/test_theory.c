@@ -1,6 +1,6 @@
 /* Linear theory from the code that runs: step limits of single oscillators, the fastest motion
  * of a chain, and the verdicts of runs that are known. */
-#include "study/theory.h"
+#include "study/stability/theory.h"
 #include "study/watch.h"
 
 #include "../physics/fixture.h"

@@ -3,8 +3,8 @@
 #ifndef CRUMPLE_H
 #define CRUMPLE_H
 
-#include "model/linear.h"
-#include "model/vector.h"
+#include "base/vector.h"
+#include "model/solver/linear.h"
 #include "sheet.h"
 
 #define CRUMPLE_H_STEP (1 / 60.0)

@@ -3,9 +3,9 @@
 #ifndef CS_TEST_RAYS_H
 #define CS_TEST_RAYS_H
 
-#include "model/sight.h"
+#include "model/event/sight.h"
 
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
 #include "sheet.h"
 
 /* two cloths, a closed mesh, and obstacles of every kind; %s: keys of the last sphere */

@@ -3,7 +3,8 @@
 #define SHEET_H
 
 #include "io/scene_read.h"
-#include "model/system.h"
+#include "model/plan.h"
+#include "model/system_build.h"
 #include "unit.h"
 
 #include <math.h>

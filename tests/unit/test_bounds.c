@@ -1,5 +1,5 @@
 /* The bounds of frequency and damping: exact for a pair, never below the truth for a sheet. */
-#include "model/terms.h"
+#include "model/force/terms.h"
 #include "sheet.h"
 
 /* two free particles: w^2 = 2 k / m, and half the rate of relative damping is d / m */

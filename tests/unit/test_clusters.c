@@ -1,7 +1,7 @@
 /* Parts of matched bodies: every particle in one at least, boxes, no dependence on placement.
  */
-#include "model/clusters.h"
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
+#include "model/system/clusters.h"
 #include "sheet.h"
 
 static void read_body(struct cs_scene *scene, const char *shape, const char *matching) {

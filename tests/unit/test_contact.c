@@ -1,5 +1,5 @@
 /* Projection contact of one particle against closed forms. */
-#include "model/contact.h"
+#include "model/commit/contact.h"
 #include "sheet.h"
 
 #define SCENE                                                                                  \

@@ -1,5 +1,5 @@
 /* Strain limiting of pairs and chains against closed forms. */
-#include "model/limit.h"
+#include "model/commit/limit.h"
 #include "sheet.h"
 
 #define CHAIN                                                                                  \

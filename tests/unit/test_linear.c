@@ -1,5 +1,5 @@
 /* The linear solver on 4 x 4 particles against a dense Cholesky factor. */
-#include "model/linear.h"
+#include "model/solver/linear.h"
 #include "sheet.h"
 
 #define SCENE                                                                                  \

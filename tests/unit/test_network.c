@@ -1,5 +1,5 @@
 /* Inner springs follow their placement, are the same for the same seed, and are none twice. */
-#include "model/network.h"
+#include "mesh/network.h"
 #include "unit.h"
 
 #include <math.h>

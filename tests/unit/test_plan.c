@@ -1,4 +1,5 @@
 /* What a scene and a method ask for, feature by feature. */
+#include "model/plan.h"
 #include "sheet.h"
 
 #define CLOTH(more)                                                                            \

@@ -1,5 +1,5 @@
 /* Grids made into particles: places, areas and pins. */
-#include "model/shape.h"
+#include "scene/shape.h"
 #include "sheet.h"
 
 #define BODY                                                                                   \

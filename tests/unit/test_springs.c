@@ -1,6 +1,6 @@
 /* Spring runs against the definition of the 12 neighbours, and their kernels against a loop
  * over single springs. */
-#include "model/springs.h"
+#include "model/spring/springs.h"
 #include "sheet.h"
 
 #define GRID                                                                                   \

@@ -1,6 +1,6 @@
 /* The outer forces against closed forms, and the parts of the sum. */
-#include "model/normals.h"
-#include "model/terms.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
 #include "sheet.h"
 
 /* hanging in the xy plane: its normals are +z */

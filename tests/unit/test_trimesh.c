@@ -1,6 +1,6 @@
 /* Generated shapes are closed, of the right kind, look outwards, and have the sizes that are
  * promised; what is made of their edges agrees with a search by brute force. */
-#include "model/trimesh.h"
+#include "mesh/trimesh.h"
 #include "unit.h"
 
 #include <math.h>

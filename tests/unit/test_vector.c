@@ -1,6 +1,6 @@
 /* Vector kernels: exact values, every tail length, and the one order of sums. */
 #include "base/pool.h"
-#include "model/vector.h"
+#include "base/vector.h"
 #include "unit.h"
 
 #include <math.h>

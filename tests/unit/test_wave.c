@@ -1,6 +1,6 @@
 /* Loops in a wave leave what they leave one after the other, and do each block once. */
 #include "base/pool.h"
-#include "model/wave.h"
+#include "model/solver/wave.h"
 #include "unit.h"
 
 #include <stdatomic.h>

@@ -1,0 +1,141 @@
+#include "base/vector.h"
+
+#include "base/pool.h"
+
+#include <math.h>
+
+enum {
+    BLOCK = 4096,
+    LANES = 8,
+    WAITING = 512 /* block sums on the stack; a longer array is summed in several goes */
+};
+
+static size_t end_of(size_t begin, size_t n) {
+    return n - begin < BLOCK ? n : begin + BLOCK;
+}
+
+struct shared {
+    void (*part)(void *arg, size_t begin, size_t end);
+    void *arg;
+    size_t n;
+};
+
+static void do_part(void *arg, uint32_t block) {
+    const struct shared *shared = arg;
+    const size_t begin = (size_t)block * BLOCK;
+    shared->part(shared->arg, begin, end_of(begin, shared->n));
+}
+
+void cs_vector_share(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg) {
+    struct shared shared = {part, arg, n};
+    cs_pool_run((uint32_t)((n + BLOCK - 1) / BLOCK), do_part, &shared);
+}
+
+struct summed {
+    double (*part)(const void *arg, size_t begin, size_t end);
+    const void *arg;
+    size_t first, n;
+    double sums[WAITING];
+};
+
+static void sum_part(void *arg, uint32_t block) {
+    struct summed *summed = arg;
+    const size_t begin = summed->first + (size_t)block * BLOCK;
+    summed->sums[block] = summed->part(summed->arg, begin, end_of(begin, summed->n));
+}
+
+double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, size_t end),
+                     const void *arg) {
+    double sum = 0;
+    if (n <= BLOCK)
+        return n ? sum + part(arg, 0, n) : sum;
+    struct summed summed;
+    summed.part = part;
+    summed.arg = arg;
+    summed.n = n;
+    for (summed.first = 0; summed.first < n; summed.first += (size_t)WAITING * BLOCK) {
+        const size_t left = (n - summed.first + BLOCK - 1) / BLOCK;
+        const uint32_t blocks = left < WAITING ? (uint32_t)left : WAITING;
+        cs_pool_run(blocks, sum_part, &summed);
+        for (uint32_t b = 0; b < blocks; b++)
+            sum += summed.sums[b];
+    }
+    return sum;
+}
+
+static double lanes_sum(const double s[LANES]) {
+    return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
+
+/* what a kernel works on; b and z of a linear sum alone */
+struct arrays {
+    const double *x, *y;
+    double a, b, *z;
+};
+
+static double dot_part(const void *arg, size_t begin, size_t end) {
+    const struct arrays *arrays = arg;
+    const double *x = arrays->x, *y = arrays->y;
+    double lanes[LANES] = {0};
+    size_t i = begin;
+    for (; i + LANES <= end; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            lanes[l] += x[i + l] * y[i + l];
+    for (size_t l = 0; i < end; i++, l++)
+        lanes[l] += x[i] * y[i];
+    return lanes_sum(lanes);
+}
+
+double cs_vector_dot(size_t n, const double *x, const double *y) {
+    const struct arrays arrays = {.x = x, .y = y};
+    return cs_vector_sum(n, dot_part, &arrays);
+}
+
+static double weighted_part(const void *arg, size_t begin, size_t end) {
+    const struct arrays *arrays = arg;
+    const double *x = arrays->x, *w = arrays->y;
+    double lanes[LANES] = {0};
+    size_t i = begin;
+    for (; i + LANES <= end; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            lanes[l] += x[i + l] * w[i + l] * (x[i + l] * w[i + l]);
+    for (size_t l = 0; i < end; i++, l++)
+        lanes[l] += x[i] * w[i] * (x[i] * w[i]);
+    return lanes_sum(lanes);
+}
+
+static double weighted_square(size_t n, const double *x, const double *w) {
+    const struct arrays arrays = {.x = x, .y = w};
+    return cs_vector_sum(n, weighted_part, &arrays);
+}
+
+static void linear_part(void *arg, size_t begin, size_t end) {
+    const struct arrays *arrays = arg;
+    const double a = arrays->a, b = arrays->b, *x = arrays->x, *y = arrays->y;
+    double *z = arrays->z;
+    for (size_t i = begin; i < end; i++)
+        z[i] = a * x[i] + b * y[i];
+}
+
+static void linear_sum(size_t n, double a, const double *x, double b, const double *y,
+                       double *z) {
+    struct arrays arrays = {x, y, a, b, z};
+    cs_vector_share(n, linear_part, &arrays);
+}
+
+static double max_norm(size_t n, const double *x) {
+    double largest = 0;
+    for (size_t i = 0; i < n; i++)
+        if (!(fabs(x[i]) <= largest) && largest == largest)
+            largest = fabs(x[i]); /* a NaN is taken, and stays */
+    return largest;
+}
+
+const struct cs_vector_kernels cs_vector_kernels = {
+    .size = sizeof(struct cs_vector_kernels),
+    .linear_sum = linear_sum,
+    .dot = cs_vector_dot,
+    .weighted_square = weighted_square,
+    .max_norm = max_norm,
+    .share = cs_vector_share,
+};

@@ -1,0 +1,238 @@
+/* canvas.c - a scene made ready to draw, and the table that the module exports. */
+#include "draw/gl/backdrop.h"
+#include "draw/gl/bar.h"
+#include "draw/gl/collider.h"
+#include "draw/gl/context.h"
+#include "draw/gl/driver.h"
+#include "draw/gl/extent.h"
+#include "draw/gl/gl.h"
+#include "draw/gl/mesh.h"
+#include "draw/gl/net.h"
+#include "draw/gl/prods.h"
+#include "draw/gl/shadow.h"
+#include "draw/gl/target.h"
+#include "draw/gl/texture.h"
+#include "draw/matrix.h"
+#include "draw/render.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+struct cs_cloth_picture {
+    struct cs_mesh mesh;
+    struct cs_surface surface;
+    struct cs_surface_style style;
+};
+
+struct cs_canvas {
+    const struct cs_scene *scene; /* borrowed, as the system */
+    const struct cs_system *system;
+    struct cs_context *context; /* owns all that GL holds */
+    struct cs_arena arena;      /* owns all other memory */
+    struct cs_target target;
+    struct cs_view_state view;
+    struct cs_backdrop backdrop;
+    struct cs_surface_program program;
+    struct cs_shadow shadow;
+    struct cs_obstacles obstacles;
+    struct cs_cloth_picture *cloths; /* (scene->bodies.n) */
+    struct cs_lines lines;
+    struct cs_net net;
+    struct cs_bar bar;
+    char description[256];
+};
+
+static bool colours_by_value(int32_t look) {
+    return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN;
+}
+
+static void set_style(struct cs_surface_style *style, const struct cs_material *material,
+                      const struct cs_image *texture, int32_t look) {
+    const bool has_back = !isnan(material->back_colour[0]);
+    memcpy(style->front, material->colour, sizeof style->front);
+    memcpy(style->back, has_back ? material->back_colour : material->colour,
+           sizeof style->back);
+    style->ambient = material->ambient;
+    style->diffuse = material->diffuse;
+    style->specular = material->specular;
+    style->shininess = material->shininess;
+    style->scale = 1;
+    if (colours_by_value(look)) {
+        style->mode = CS_SURFACE_VALUE;
+    } else if (look != CS_LOOK_LIT) {
+        style->mode = CS_SURFACE_FAINT;
+    } else if (texture->width) {
+        style->mode = CS_SURFACE_TEXTURED;
+        style->texture = cs_texture_make(texture);
+    }
+}
+
+static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
+                                 const struct cs_image *texture, struct cs_error *error) {
+    struct cs_cloth_picture *cloth = canvas->cloths + b;
+    const struct cs_material *material = &cs_scene_bodies(canvas->scene)[b].material;
+    const bool flat = material->shading == CS_SHADING_FLAT;
+    if (cs_mesh_init(&cloth->mesh, canvas->system->bodies + b, flat, texture->width > 0,
+                     &canvas->arena, error) != CS_OK)
+        return error->status;
+    cs_surface_init(&cloth->surface, cloth->mesh.split ? NULL : cloth->mesh.indices,
+                    cloth->mesh.n_indices);
+    set_style(&cloth->style, material, texture, canvas->scene->render.look);
+    if (cloth->style.mode != CS_SURFACE_TEXTURED)
+        return CS_OK;
+    float *uv = cs_arena_take_n(&canvas->arena, cloth->mesh.n_vertices, 2 * sizeof *uv, error);
+    if (!uv)
+        return error->status;
+    cs_mesh_uv(&cloth->mesh, material->texture_repeat, uv);
+    cs_surface_set_uv(&cloth->surface, uv, cloth->mesh.n_vertices);
+    return CS_OK;
+}
+
+static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_image *textures,
+                                  struct cs_error *error) {
+    static const struct cs_image none = {0, 0, NULL};
+    const uint32_t n = canvas->scene->bodies.n;
+    canvas->cloths = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->cloths, error);
+    for (uint32_t b = 0; b < n && error->status == CS_OK; b++)
+        init_cloth(canvas, b, textures ? textures + b : &none, error);
+    return error->status;
+}
+
+static enum cs_status init_lines(struct cs_canvas *canvas, struct cs_error *error) {
+    const double cell = cs_extent_cell(canvas->system);
+    uint32_t capacity = cs_net_capacity(canvas->system);
+    canvas->net =
+        (struct cs_net){.system = canvas->system,
+                        .unit = fmax((double)canvas->scene->render.size[1] / 480, 0.5),
+                        .cell = cell * canvas->view.pixels_per_m,
+                        .lift = 0.12 * cell};
+    capacity = capacity > CS_BAR_LINES ? capacity : CS_BAR_LINES;
+    if (cs_lines_init(&canvas->lines, capacity, &canvas->arena, error) != CS_OK)
+        return error->status;
+    return cs_bar_init(&canvas->bar, &canvas->scene->render, error);
+}
+
+static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_settings *settings,
+                           struct cs_error *error) {
+    const struct cs_render *render = &canvas->scene->render;
+    const char *caps = cs_driver_pin(settings->fast);
+    if (cs_context_create(&canvas->context, error) != CS_OK || cs_gl_load(error) != CS_OK)
+        return error->status;
+    snprintf(canvas->description, sizeof canvas->description, "%s | %s | %s",
+             (const char *)gl.GetString(GL_RENDERER), (const char *)gl.GetString(GL_VERSION),
+             caps);
+
+    const struct cs_ball extent = cs_extent_solid(canvas->system, canvas->system->view.start);
+    cs_view_init(&canvas->view, canvas->scene, &extent);
+    if (cs_target_init(&canvas->target, (int)render->size[0], (int)render->size[1],
+                       (int)render->samples, &canvas->arena, error) != CS_OK ||
+        cs_backdrop_init(&canvas->backdrop, canvas->scene, &extent, error) != CS_OK ||
+        cs_surface_program_init(&canvas->program, error) != CS_OK ||
+        cs_shadow_init(&canvas->shadow, error) != CS_OK ||
+        cs_obstacles_init(&canvas->obstacles, canvas->system, &canvas->arena, error) != CS_OK ||
+        init_cloths(canvas, settings->textures, error) != CS_OK ||
+        init_lines(canvas, error) != CS_OK)
+        return error->status;
+    gl.DepthFunc(GL_LEQUAL);
+    gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    return cs_gl_check("preparing the scene", error);
+}
+
+static void destroy(struct cs_canvas *canvas) {
+    if (!canvas)
+        return;
+    cs_context_destroy(canvas->context);
+    cs_arena_finish(&canvas->arena);
+    free(canvas);
+}
+
+static enum cs_status create(const struct cs_canvas_settings *settings,
+                             struct cs_canvas **canvas, struct cs_error *error) {
+    *canvas = calloc(1, sizeof **canvas);
+    if (!*canvas)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a canvas");
+    (*canvas)->scene = settings->scene;
+    (*canvas)->system = settings->system;
+    if (init(*canvas, settings, error) == CS_OK)
+        return CS_OK;
+    destroy(*canvas);
+    *canvas = NULL;
+    return error->status;
+}
+
+static void draw_shadow(struct cs_canvas *canvas, const double *x) {
+    const struct cs_ball solid = cs_extent_solid(canvas->system, x);
+    const bool has_shadow = cs_shadow_aim(&solid, &canvas->view.block);
+    cs_view_upload(&canvas->view);
+    if (!has_shadow)
+        return;
+    cs_shadow_begin(&canvas->shadow);
+    cs_obstacles_draw_shadow(&canvas->obstacles, canvas->shadow.model);
+    gl.Uniform4f(canvas->shadow.model, 0, 0, 0, 1);
+    for (uint32_t b = 0; b < canvas->scene->bodies.n; b++)
+        cs_surface_draw(&canvas->cloths[b].surface);
+}
+
+static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
+    const int32_t look = canvas->scene->render.look;
+    cs_shadow_bind(&canvas->shadow);
+    cs_target_begin(&canvas->target);
+    cs_backdrop_draw_sky(&canvas->backdrop);
+    cs_obstacles_draw(&canvas->obstacles, &canvas->program);
+    if (canvas->scene->render.ground)
+        cs_backdrop_draw_ground(&canvas->backdrop);
+    for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
+        // the springs of a network lie behind the surface
+        if (look == CS_LOOK_SPRINGS && cs_scene_bodies(canvas->scene)[b].network.present)
+            continue;
+        cs_surface_program_use(&canvas->program, &canvas->cloths[b].style);
+        cs_surface_draw(&canvas->cloths[b].surface);
+    }
+    cs_net_draw_threads(&canvas->net, &canvas->lines, frame->x);
+    if (look == CS_LOOK_WIREFRAME)
+        cs_net_draw_edges(&canvas->net, &canvas->lines, frame->x);
+    if (look == CS_LOOK_SPRINGS) {
+        cs_net_draw_springs(&canvas->net, &canvas->lines, frame->x);
+        cs_net_draw_pins(&canvas->net, &canvas->lines, frame->x, frame->inv_mass);
+    }
+    if (look == CS_LOOK_GOALS && frame->goals)
+        cs_net_draw_goals(&canvas->net, &canvas->lines, frame->x, frame->goals);
+    if (canvas->scene->render.prods)
+        cs_prods_draw(&canvas->net, &canvas->lines, frame);
+    if (colours_by_value(look)) {
+        gl.Disable(GL_DEPTH_TEST);
+        cs_bar_draw(&canvas->bar, &canvas->lines, frame->range);
+        gl.Enable(GL_DEPTH_TEST);
+    }
+}
+
+static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,
+                            struct cs_image *image, struct cs_error *error) {
+    if (cs_context_use(canvas->context, error) != CS_OK)
+        return error->status;
+    for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
+        struct cs_cloth_picture *cloth = canvas->cloths + b;
+        cs_mesh_update(&cloth->mesh, canvas->system->view.n, frame->x, frame->scalar,
+                       frame->range);
+        cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
+    }
+    draw_shadow(canvas, frame->x);
+    draw_scene(canvas, frame);
+    cs_target_read(&canvas->target, image);
+    return cs_gl_check("drawing a frame", error);
+}
+
+static const char *description(const struct cs_canvas *canvas) {
+    return canvas->description;
+}
+
+#define EXPORT __attribute__((visibility("default")))
+extern EXPORT const struct cs_renderer clothsim_renderer;
+EXPORT const struct cs_renderer clothsim_renderer = {
+    .abi = CS_RENDERER_ABI,
+    .name = cs_context_name,
+    .create = create,
+    .paint = paint,
+    .description = description,
+    .destroy = destroy,
+};

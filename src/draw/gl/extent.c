@@ -1,0 +1,49 @@
+#include "draw/gl/extent.h"
+
+#include "draw/gl/mesh.h"
+#include "draw/matrix.h"
+#include "mesh/trimesh.h"
+
+static void grow(double low[3], double high[3], const double place[3], double reach) {
+    for (int i = 0; i < 3; i++) {
+        low[i] = fmin(low[i], place[i] - reach);
+        high[i] = fmax(high[i], place[i] + reach);
+    }
+}
+
+struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x) {
+    const struct cs_scene *scene = system->scene;
+    double low[3], high[3], diagonal[3], place[3];
+    struct cs_ball ball = {{0}, 0};
+    cs_mesh_place(system->view.n, x, 0, low);
+    memcpy(high, low, sizeof high);
+    for (uint32_t i = 0; i < system->view.n; i++) {
+        cs_mesh_place(system->view.n, x, i, place);
+        grow(low, high, place, 0);
+    }
+    for (uint32_t i = 0; i < scene->colliders.n; i++) {
+        const struct cs_collider *collider = cs_scene_colliders(scene) + i;
+        if (collider->visible && collider->sphere.present)
+            grow(low, high, collider->sphere.centre, collider->sphere.radius);
+    }
+    for (int i = 0; i < 3; i++)
+        ball.centre[i] = (low[i] + high[i]) / 2;
+    cs_subtract(high, low, diagonal);
+    ball.radius = fmax(cs_length(diagonal) / 2, 1e-3);
+    return ball;
+}
+
+double cs_extent_cell(const struct cs_system *system) {
+    double cell = 0;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_cloth *cloth = &cs_scene_bodies(system->scene)[b].cloth;
+        if (system->bodies[b].mesh) {
+            cell = fmax(cell, system->bodies[b].mesh->edge);
+            continue;
+        }
+        for (int i = 0; i < 2; i++)
+            if (cloth->grid[i] > 1)
+                cell = fmax(cell, cloth->size[i] / (double)(cloth->grid[i] - 1));
+    }
+    return cell;
+}

@@ -1,0 +1,14 @@
+/* extent.h - how large things are: the scene at its start, and a cell of its cloths. */
+#ifndef CS_DRAW_EXTENT_H
+#define CS_DRAW_EXTENT_H
+
+#include "draw/gl/view.h"
+#include "model/system/system.h"
+
+/* A ball around the particles at x (3,n) and the visible spheres. */
+struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x);
+
+/* The largest distance of neighbours in the bodies at rest, in m; 0 for lone particles. */
+double cs_extent_cell(const struct cs_system *system);
+
+#endif

@@ -1,0 +1,64 @@
+#include "draw/gl/glyph.h"
+
+#include <string.h>
+
+/* Strokes as pairs of digits, x 0..4 to the right and y 0..6 up, '|' between strokes. */
+struct glyph {
+    char letter;
+    unsigned char width;
+    const char *strokes;
+};
+
+static const struct glyph glyphs[] = {
+    {'0', 4, "103041453616050110"},
+    {'1', 3, "042620|1030"},
+    {'2', 4, "05163645440040"},
+    {'3', 4, "0516364544332313|334241301001"},
+    {'4', 4, "30360242"},
+    {'5', 4, "460604344341301001"},
+    {'6', 4, "453616050110304142331302"},
+    {'7', 4, "064610"},
+    {'8', 4, "13040516364544331302011030414233"},
+    {'9', 4, "011030414536160504133344"},
+    {'.', 0, "0000"},
+    {'-', 3, "0333"},
+    {'+', 4, "0343|2125"},
+    {'e', 4, "02424334140301103041"},
+    {'N', 4, "00064046"},
+    {'%', 4, "0046|0506161505|3031414030"},
+    {' ', 1, ""},
+};
+
+static const double gap = 1.7; // between letters, in units of the strokes
+
+static const struct glyph *find(char letter) {
+    for (size_t i = 0; i < sizeof glyphs / sizeof *glyphs; i++)
+        if (glyphs[i].letter == letter)
+            return glyphs + i;
+    return find(' ');
+}
+
+static void add(struct cs_lines *lines, const char *s, double x, double y, double unit) {
+    // a pair of points a line; a stroke ends before '|'
+    for (; s[0] && s[1]; s += 2) {
+        if (s[2] == '|') {
+            s++;
+            continue;
+        }
+        if (!s[2])
+            return;
+        const double from[3] = {x + unit * (s[0] - '0'), y - unit * (s[1] - '0'), 0};
+        const double to[3] = {x + unit * (s[2] - '0'), y - unit * (s[3] - '0'), 0};
+        cs_lines_add(lines, from, to);
+    }
+}
+
+void cs_glyph_add(struct cs_lines *lines, const char *text, double x, double y, double height) {
+    const double unit = height / 6;
+    for (size_t i = strlen(text); i-- > 0;) {
+        const struct glyph *glyph = find(text[i]);
+        x -= unit * glyph->width;
+        add(lines, glyph->strokes, x, y, unit);
+        x -= unit * gap;
+    }
+}

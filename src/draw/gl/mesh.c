@@ -1,0 +1,127 @@
+#include "draw/gl/mesh.h"
+
+#include "draw/matrix.h"
+#include "model/system/faces.h"
+
+// drawing a particle farther away than this only upsets the rasteriser
+static const double bound = 1e5;
+
+void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        const double c = x[(size_t)axis * n + i];
+        // a comparison with NAN is false, which leaves 0
+        place[axis] = c > bound ? bound : c < -bound ? -bound : c == c ? c : 0;
+    }
+}
+
+enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_body_range *range, bool flat,
+                            bool textured, struct cs_arena *arena, struct cs_error *error) {
+    mesh->range = *range;
+    mesh->flat = flat;
+    mesh->split = flat || (textured && range->mesh && range->mesh->uv);
+    mesh->n_indices = 3 * cs_faces_count(range);
+    mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
+    mesh->vertices = cs_arena_take_n(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
+    mesh->indices = cs_arena_take_n(arena, mesh->n_indices, sizeof *mesh->indices, error);
+    mesh->normals = cs_arena_take_n(arena, range->count, 3 * sizeof *mesh->normals, error);
+    for (uint32_t t = 0; error->status == CS_OK && 3 * t < mesh->n_indices; t++)
+        cs_face_corners(range, t, mesh->indices + 3 * (size_t)t);
+    return error->status;
+}
+
+static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double *x,
+                            const uint32_t *corner, double normal[3]) {
+    double p[3][3], along[3], across[3];
+    for (int i = 0; i < 3; i++)
+        cs_mesh_place(n, x, mesh->range.first + corner[i], p[i]);
+    cs_subtract(p[1], p[0], along);
+    cs_subtract(p[2], p[0], across);
+    cs_cross(along, across, normal);
+}
+
+static void set_vertex(struct cs_vertex *vertex, const double place[3], const double normal[3],
+                       double value) {
+    double unit[3] = {normal[0], normal[1], normal[2]};
+    cs_normalise(unit);
+    // a collapsed triangle has no normal: any will do, but not zero
+    if (cs_dot(unit, unit) == 0)
+        unit[2] = 1;
+    for (int i = 0; i < 3; i++) {
+        vertex->place[i] = (float)place[i];
+        vertex->normal[i] = (float)unit[i];
+    }
+    vertex->value = (float)value;
+}
+
+static double scaled(const double *values, uint32_t i, const double range[2]) {
+    if (!values || !(range[1] > range[0]))
+        return 0;
+    const double t = (values[i] - range[0]) / (range[1] - range[0]);
+    return t > 1 ? 1 : t > 0 ? t : 0;
+}
+
+static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
+    memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->range.count);
+    for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
+        double normal[3];
+        triangle_normal(mesh, n, x, mesh->indices + k, normal);
+        for (uint32_t corner = 0; corner < 3; corner++)
+            for (uint32_t i = 0; i < 3; i++)
+                mesh->normals[3 * mesh->indices[k + corner] + i] += normal[i];
+    }
+}
+
+void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const double *x, const double *values,
+                    const double range[2]) {
+    double normal[3];
+    if (!mesh->flat)
+        sum_normals(mesh, n, x);
+    for (uint32_t k = 0; k < mesh->n_vertices; k++) {
+        const uint32_t i = mesh->split ? mesh->indices[k] : k, particle = mesh->range.first + i;
+        double place[3];
+        cs_mesh_place(n, x, particle, place);
+        if (mesh->flat && k % 3 == 0)
+            triangle_normal(mesh, n, x, mesh->indices + k, normal);
+        set_vertex(mesh->vertices + k, place,
+                   mesh->flat ? normal : mesh->normals + 3 * (size_t)i,
+                   scaled(values, particle, range));
+    }
+}
+
+static void grid_uv(const struct cs_mesh *mesh, uint32_t i, double uv[2]) {
+    const uint32_t columns = mesh->range.columns, rows = mesh->range.rows;
+    uv[0] = columns > 1 ? (double)(i % columns) / (columns - 1) : 0;
+    uv[1] = rows > 1 ? (double)(i / columns) / (rows - 1) : 0;
+}
+
+// across and down the box of the mesh, seen from +z
+static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low[2],
+                     const double high[2], double uv[2]) {
+    for (int c = 0; c < 2; c++) {
+        const double width = high[c] - low[c], at = mesh->places[(size_t)c * mesh->n + i];
+        uv[c] = width > 0 ? (c ? high[c] - at : at - low[c]) / width : 0;
+    }
+}
+
+void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
+    const struct cs_trimesh *from = mesh->range.mesh;
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (size_t c = 0; from && c < 2; c++)
+        for (uint32_t i = 0; i < from->n; i++) {
+            low[c] = fmin(low[c], from->places[c * from->n + i]);
+            high[c] = fmax(high[c], from->places[c * from->n + i]);
+        }
+    for (uint32_t k = 0; k < mesh->n_vertices; k++) {
+        const uint32_t i = mesh->split ? mesh->indices[k] : k;
+        double at[2];
+        if (!from)
+            grid_uv(mesh, i, at);
+        else if (from->uv)
+            at[0] = (double)from->uv[2 * (size_t)k],
+            at[1] = (double)from->uv[2 * (size_t)k + 1];
+        else
+            front_uv(from, i, low, high, at);
+        uv[2 * (size_t)k] = (float)(at[0] * repeat[0]);
+        uv[2 * (size_t)k + 1] = (float)(at[1] * repeat[1]);
+    }
+}

@@ -1,0 +1,43 @@
+/* mesh.h - a body's particles as vertices and triangles. No OpenGL here. */
+#ifndef CS_DRAW_MESH_H
+#define CS_DRAW_MESH_H
+
+#include "base/arena.h"
+#include "model/system/system.h"
+
+#include <stdbool.h>
+
+struct cs_vertex {
+    float place[3], normal[3], value;
+};
+
+/* A grid has two triangles a cell, counter-clockwise seen from +z for a hanging cloth; a mesh
+ * has its own. A vertex a particle, shared by its triangles; split: three vertices a triangle
+ * of their own, for one normal a triangle (flat) or texture coordinates of corners. */
+struct cs_mesh {
+    struct cs_body_range range;
+    bool flat, split;
+    uint32_t n_vertices, n_indices;
+    struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
+    uint32_t *indices;          /* (n_indices) particles of the body, three a triangle */
+    double *normals;            /* (count, 3) work */
+};
+
+/* textured: texture coordinates will be asked for */
+enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_body_range *range, bool flat,
+                            bool textured, struct cs_arena *arena, struct cs_error *error);
+
+/* Fills the vertices from x (3,n); values (n) or NULL become 0..1 between the ends of range.
+ * A smooth normal is the sum of the normals of its triangles, each as long as the triangle is
+ * large. Positions that are not finite, or far off after a blow-up, are drawn at a bound. */
+void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const double *x, const double *values,
+                    const double range[2]);
+
+/* Texture coordinates (n_vertices, 2): of a grid from 0 at the top left to `repeat`; of a mesh
+ * its own times `repeat`, or where it has none, as if the picture lay on its front (+z). */
+void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv);
+
+/* Position i of x (3,n) as it is drawn. */
+void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]);
+
+#endif

@@ -1,0 +1,70 @@
+#include "draw/gl/prods.h"
+
+#include "draw/colour.h"
+#include "draw/gl/gl.h"
+#include "draw/gl/mesh.h"
+#include "draw/matrix.h"
+#include "model/event/event_times.h"
+#include "model/event/prods.h"
+
+// what is of a time is seen on the picture that follows it
+static bool acted(const struct cs_system *system, const struct cs_prod_state *state, double t) {
+    const struct cs_event_state *of = system->events->states + state->event;
+    const double blow = of->begin + 1 / system->scene->time.fps + CS_EVENT_SAME;
+    return of->begin < t && t <= (of->end > of->begin ? of->end : blow);
+}
+
+static void add_seen(const struct cs_net *net, struct cs_lines *lines,
+                     const struct cs_prod_state *state, const double *x) {
+    double place[3];
+    for (uint32_t i = 0; i < net->system->view.n; i++)
+        if (state->seen[i]) {
+            cs_mesh_place(net->system->view.n, x, i, place);
+            cs_lines_add(lines, place, place);
+        }
+}
+
+// corners of the rectangle in the plane through the target
+static void find_corners(const struct cs_system *system, const struct cs_prod_state *state,
+                         double corners[4][3]) {
+    const struct cs_sight *sight = &state->sight;
+    const struct cs_prod *prod = &cs_scene_events(system->scene)[state->event].prod;
+    const double right[4] = {sight->low[0], sight->high[0], sight->high[0], sight->low[0]};
+    const double up[4] = {sight->low[1], sight->low[1], sight->high[1], sight->high[1]};
+    double view[3];
+    cs_subtract(prod->viewpoint.target, sight->eye, view);
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            corners[k][c] = sight->eye[c] +
+                            cs_length(view) * (right[k] * sight->axes[0][c] +
+                                               up[k] * sight->axes[1][c] + sight->axes[2][c]);
+}
+
+static void draw(const struct cs_net *net, struct cs_lines *lines,
+                 const struct cs_prod_state *state, const double *x) {
+    struct cs_line_style style = {.alpha = 1, .lift = 2 * net->lift};
+    double corners[4][3];
+    cs_colour_linear(0xff5a00, style.colour);
+    style.half_width = cs_net_width(net, 0.16, 0.9, 3);
+    add_seen(net, lines, state, x);
+    cs_lines_draw(lines, &style);
+
+    style.half_width = 0.6 * net->unit;
+    find_corners(net->system, state, corners);
+    for (int k = 0; k < 4; k++)
+        cs_lines_add(lines, state->sight.eye, corners[k]);
+    cs_lines_draw(lines, &style);
+    for (int k = 0; k < 4; k++)
+        cs_lines_add(lines, corners[k], corners[(k + 1) % 4]);
+    gl.Disable(GL_DEPTH_TEST);
+    cs_lines_draw(lines, &style);
+    gl.Enable(GL_DEPTH_TEST);
+}
+
+void cs_prods_draw(const struct cs_net *net, struct cs_lines *lines,
+                   const struct cs_frame *frame) {
+    const struct cs_events *events = net->system->events;
+    for (uint32_t k = 0; events && events->prods && k < events->prods->n; k++)
+        if (acted(net->system, events->prods->states + k, frame->t))
+            draw(net, lines, events->prods->states + k, frame->x);
+}

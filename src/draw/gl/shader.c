@@ -1,0 +1,125 @@
+#include "draw/gl/shader.h"
+
+#include "draw/gl/gl.h"
+#include "draw/gl/view.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#define GLSL(...) #__VA_ARGS__ "\n"
+/* clang-format off */
+
+static const char head[] = "#version 330 core\n";
+
+// the fields are those of struct cs_view_block
+static const char common[] = GLSL(
+    layout(std140) uniform View {
+        mat4 world_to_clip;
+        mat4 world_to_light;
+        vec4 eye;
+        vec4 light;
+        vec4 light_ambient;
+        vec4 light_diffuse;
+        vec4 light_specular;
+        vec4 size;
+        vec4 shade;
+        vec4 sky;
+        vec4 stops[6];
+    };
+    vec3 encode(vec3 c) {
+        vec3 curve = 1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055;
+        return mix(curve, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
+    }
+    vec3 decode(vec3 c) {
+        vec3 curve = pow((c + 0.055) / 1.055, vec3(2.4));
+        return mix(curve, c / 12.92, vec3(lessThan(c, vec3(0.04045))));
+    }
+    vec3 map_colour(float value) {
+        float at = clamp(value, 0.0, 1.0) * 5.0;
+        int low = min(int(at), 4);
+        return mix(stops[low].rgb, stops[low + 1].rgb, at - float(low));
+    }
+);
+
+// share of the light that comes through, for fragment shaders; facing: n . direction of the light,
+// shade: size of a shadow texel in
+// the light's picture, then in m, then 1 where there is a shadow
+static const char shadow[] = GLSL(
+    uniform sampler2DShadow depth;
+    float lit_share(vec3 p, vec3 n, float facing) {
+        // off the surface by as much as a slope rises under the texels that are read
+        float off = 0.4 + 2.6 * sqrt(max(1.0 - facing * facing, 0.0));
+        vec4 at = world_to_light * vec4(p + off * shade.y * n, 1.0);
+        vec3 q = at.xyz / at.w * 0.5 + 0.5;
+        bool outside = any(lessThan(q, vec3(0.0))) || any(greaterThan(q.xy, vec2(1.0)));
+        if (shade.z < 0.5 || at.w <= 0.0 || outside)
+            return 1.0;
+        // what lies farther away than all that casts shadow still catches it
+        q.z = min(q.z, 1.0);
+        float sum = 0.0;
+        for (int i = -1; i <= 1; i++)
+            for (int j = -1; j <= 1; j++)
+                sum += texture(depth, vec3(q.xy + 1.4 * shade.x * vec2(i, j), q.z));
+        return sum / 9.0;
+    }
+);
+/* clang-format on */
+
+// a driver's log in one line, so that it fits into a message
+static void flatten(char *log) {
+    for (char *c = log; *c; c++)
+        if (*c == '\n' || *c == '\r' || *c == '\t')
+            *c = ' ';
+    for (size_t n = strlen(log); n && log[n - 1] == ' '; n--)
+        log[n - 1] = '\0';
+}
+
+static enum cs_status compile(GLuint program, GLenum stage, const char *name, const char *text,
+                              struct cs_error *error) {
+    const bool is_vertex = stage == GL_VERTEX_SHADER;
+    const char *parts[] = {head, common, is_vertex ? "" : shadow, text};
+    char log[600] = "";
+    GLint done = 0;
+    const GLuint shader = gl.CreateShader(stage);
+    gl.ShaderSource(shader, 4, parts, NULL);
+    gl.CompileShader(shader);
+    gl.GetShaderiv(shader, GL_COMPILE_STATUS, &done);
+    if (done) {
+        gl.AttachShader(program, shader);
+    } else {
+        gl.GetShaderInfoLog(shader, sizeof log, NULL, log);
+        flatten(log);
+        cs_fail(error, CS_ERR_MODULE, "%s shader of %s does not compile: %s",
+                is_vertex ? "vertex" : "fragment", name, log);
+    }
+    gl.DeleteShader(shader);
+    return error->status;
+}
+
+static void bind_inputs(GLuint program) {
+    const GLuint block = gl.GetUniformBlockIndex(program, "View");
+    if (block != GL_INVALID_INDEX)
+        gl.UniformBlockBinding(program, block, CS_VIEW_BINDING);
+    gl.UseProgram(program);
+    gl.Uniform1i(gl.GetUniformLocation(program, "picture"), 0);
+    gl.Uniform1i(gl.GetUniformLocation(program, "depth"), 1);
+}
+
+enum cs_status cs_shader_make(const struct cs_shader_text *text, unsigned *program,
+                              struct cs_error *error) {
+    char log[600] = "";
+    GLint done = 0;
+    *program = gl.CreateProgram();
+    if (compile(*program, GL_VERTEX_SHADER, text->name, text->vertex, error) != CS_OK ||
+        compile(*program, GL_FRAGMENT_SHADER, text->name, text->fragment, error) != CS_OK)
+        return error->status;
+    gl.LinkProgram(*program);
+    gl.GetProgramiv(*program, GL_LINK_STATUS, &done);
+    if (!done) {
+        gl.GetProgramInfoLog(*program, sizeof log, NULL, log);
+        flatten(log);
+        return cs_fail(error, CS_ERR_MODULE, "shaders of %s do not link: %s", text->name, log);
+    }
+    bind_inputs(*program);
+    return CS_OK;
+}

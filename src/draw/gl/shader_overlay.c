@@ -1,0 +1,152 @@
+/* shader_overlay.c - GLSL of everything but surfaces: sky, ground grid, lines, colour bar. */
+#include "draw/gl/shader.h"
+
+#define GLSL(...) #__VA_ARGS__ "\n"
+/* clang-format off */
+
+// one triangle that covers the picture
+static const char sky_vertex[] = GLSL(
+    out float height;
+    void main() {
+        vec2 p = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+        height = p.y;
+        gl_Position = vec4(p, 0.0, 1.0);
+    }
+);
+static const char sky_fragment[] = GLSL(
+    in float height;
+    out vec4 colour;
+    void main() {
+        vec3 c = sky.rgb * (0.94 + 0.12 * height) + 0.02 * (1.0 + height);
+        colour = vec4(encode(clamp(c, 0.0, 1.0)), 1.0);
+    }
+);
+
+// span: centre x, height, centre z, half side; a line every `pitch` m, every tenth one stronger
+static const char ground_vertex[] = GLSL(
+    uniform vec4 span;
+    out vec3 place;
+    void main() {
+        vec2 corner = vec2(gl_VertexID % 2, gl_VertexID / 2) * 2.0 - 1.0;
+        place = vec3(span.x + span.w * corner.x, span.y, span.z + span.w * corner.y);
+        gl_Position = world_to_clip * vec4(place, 1.0);
+    }
+);
+static const char ground_fragment[] = GLSL(
+    in vec3 place;
+    uniform vec4 span;
+    uniform float pitch;
+    uniform vec3 ink;
+    uniform float shadow_ink;
+    out vec4 colour;
+    float lines(float step, float half_width) {
+        vec2 at = place.xz / step;
+        vec2 pixel = max(fwidth(at), 1e-6);
+        vec2 off = abs(at - floor(at + 0.5)) / pixel;
+        vec2 cover = clamp(half_width + 0.5 - off, 0.0, 1.0);
+        // where lines come close they melt into a tint instead of a moire pattern
+        cover *= clamp(0.5 / pixel - 0.6, 0.0, 1.0);
+        return max(cover.x, cover.y);
+    }
+    void main() {
+        float far = length(place.xz - span.xz) / span.w;
+        float fade = clamp(1.0 - far, 0.0, 1.0);
+        fade = fade * fade;
+        float cover = max(0.5 * lines(pitch, 0.45), lines(10.0 * pitch, 0.7));
+        // what lies in shadow is inked too, so that things stand on the ground
+        float dark = shadow_ink * (1.0 - lit_share(place, vec3(0.0, 1.0, 0.0), 1.0));
+        colour = vec4(encode(ink), fade * (dark + (1.0 - dark) * 0.55 * cover));
+    }
+);
+
+/* Each instance is a line with round ends, drawn as a rectangle about it. `lift` brings its
+ * depth nearer to the eye, so that it shows on its surface. flat_: ends are pixels from top
+ * left */
+static const char line_vertex[] = GLSL(
+    layout(location = 0) in vec3 in_a;
+    layout(location = 1) in vec3 in_b;
+    uniform float half_width;
+    uniform float lift;
+    uniform int flat_;
+    flat out vec4 ends;
+    vec4 project(vec3 p) {
+        if (flat_ == 1)
+            return vec4(2.0 * p.x / size.x - 1.0, 1.0 - 2.0 * p.y / size.y, 0.0, 1.0);
+        return world_to_clip * vec4(p, 1.0);
+    }
+    float lifted(vec3 p, vec4 clip) {
+        vec4 near = project(p + lift * normalize(eye.xyz - p));
+        return near.w > 0.0 ? near.z / near.w * clip.w : clip.z;
+    }
+    void main() {
+        vec4 a = project(in_a);
+        vec4 b = project(in_b);
+        float near = size.z;
+        vec3 pa = in_a;
+        vec3 pb = in_b;
+        ends = vec4(0.0);
+        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+        if (a.w < near && b.w < near)
+            return;
+        if (a.w < near)
+            pa = mix(in_a, in_b, (near - a.w) / (b.w - a.w));
+        if (b.w < near)
+            pb = mix(in_b, in_a, (near - b.w) / (a.w - b.w));
+        a = project(pa);
+        b = project(pb);
+        ends = vec4((a.xy / a.w * 0.5 + 0.5) * size.xy, (b.xy / b.w * 0.5 + 0.5) * size.xy);
+        vec2 along = ends.zw - ends.xy;
+        float n = length(along);
+        along = n > 1e-6 ? along / n : vec2(1.0, 0.0);
+        bool first = gl_VertexID < 2;
+        float side = gl_VertexID % 2 == 0 ? 1.0 : -1.0;
+        float reach = half_width + 1.0;
+        vec2 pixel = first ? ends.xy - reach * along : ends.zw + reach * along;
+        pixel += side * reach * vec2(-along.y, along.x);
+        vec4 end = first ? a : b;
+        if (flat_ == 0)
+            end.z = lifted(first ? pa : pb, end);
+        gl_Position = vec4((pixel / size.xy * 2.0 - 1.0) * end.w, end.z, end.w);
+    }
+);
+static const char line_fragment[] = GLSL(
+    flat in vec4 ends;
+    uniform float half_width;
+    uniform vec4 paint;
+    out vec4 colour;
+    void main() {
+        vec2 along = ends.zw - ends.xy;
+        vec2 from = gl_FragCoord.xy - ends.xy;
+        float at = clamp(dot(from, along) / max(dot(along, along), 1e-6), 0.0, 1.0);
+        // below half a pixel a line gets paler instead of thinner
+        float wide = max(half_width, 0.5);
+        float cover = clamp(wide + 0.5 - length(from - at * along), 0.0, 1.0);
+        colour = vec4(encode(paint.rgb), paint.a * cover * half_width / wide);
+    }
+);
+
+// box: left, top, width, height in pixels from top left
+static const char bar_vertex[] = GLSL(
+    uniform vec4 box;
+    out float value;
+    void main() {
+        vec2 corner = vec2(gl_VertexID % 2, gl_VertexID / 2);
+        vec2 pixel = box.xy + box.zw * corner;
+        value = 1.0 - corner.y;
+        vec2 at = 2.0 * pixel / size.xy - 1.0;
+        gl_Position = vec4(at.x, -at.y, 0.0, 1.0);
+    }
+);
+static const char bar_fragment[] = GLSL(
+    in float value;
+    out vec4 colour;
+    void main() {
+        colour = vec4(encode(map_colour(value)), 1.0);
+    }
+);
+/* clang-format on */
+
+const struct cs_shader_text cs_shader_sky = {"sky", sky_vertex, sky_fragment};
+const struct cs_shader_text cs_shader_ground = {"ground", ground_vertex, ground_fragment};
+const struct cs_shader_text cs_shader_line = {"line", line_vertex, line_fragment};
+const struct cs_shader_text cs_shader_bar = {"bar", bar_vertex, bar_fragment};

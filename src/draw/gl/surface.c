@@ -1,0 +1,91 @@
+#include "draw/gl/surface.h"
+
+#include "draw/gl/gl.h"
+#include "draw/gl/mesh.h"
+#include "draw/gl/shader.h"
+
+static void attribute(GLuint index, GLint size, size_t stride, size_t offset) {
+    gl.EnableVertexAttribArray(index);
+    gl.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, (GLsizei)stride,
+                           (const void *)(uintptr_t)offset);
+}
+
+void cs_surface_init(struct cs_surface *surface, const uint32_t *indices, uint32_t n_indices) {
+    const size_t stride = sizeof(struct cs_vertex);
+    gl.GenVertexArrays(1, &surface->object);
+    gl.BindVertexArray(surface->object);
+    gl.GenBuffers(1, &surface->vertices);
+    gl.BindBuffer(GL_ARRAY_BUFFER, surface->vertices);
+    attribute(0, 3, stride, offsetof(struct cs_vertex, place));
+    attribute(1, 3, stride, offsetof(struct cs_vertex, normal));
+    attribute(3, 1, stride, offsetof(struct cs_vertex, value));
+    surface->indexed = indices != NULL;
+    surface->n_drawn = n_indices;
+    if (indices) {
+        GLuint buffer;
+        gl.GenBuffers(1, &buffer);
+        gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer);
+        gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(n_indices * sizeof *indices),
+                      indices, GL_STATIC_DRAW);
+    }
+}
+
+void cs_surface_upload(struct cs_surface *surface, const struct cs_vertex *vertices,
+                       uint32_t n) {
+    gl.BindBuffer(GL_ARRAY_BUFFER, surface->vertices);
+    gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(n * sizeof *vertices), vertices,
+                  GL_STREAM_DRAW);
+    if (!surface->indexed)
+        surface->n_drawn = n;
+}
+
+void cs_surface_set_uv(struct cs_surface *surface, const float *uv, uint32_t n) {
+    GLuint buffer;
+    gl.BindVertexArray(surface->object);
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(2 * n * sizeof *uv), uv, GL_STATIC_DRAW);
+    attribute(2, 2, 2 * sizeof *uv, 0);
+}
+
+void cs_surface_draw(const struct cs_surface *surface) {
+    gl.BindVertexArray(surface->object);
+    if (surface->indexed)
+        gl.DrawElements(GL_TRIANGLES, (GLsizei)surface->n_drawn, GL_UNSIGNED_INT, NULL);
+    else
+        gl.DrawArrays(GL_TRIANGLES, 0, (GLsizei)surface->n_drawn);
+}
+
+enum cs_status cs_surface_program_init(struct cs_surface_program *program,
+                                       struct cs_error *error) {
+    if (cs_shader_make(&cs_shader_surface, &program->name, error) != CS_OK)
+        return error->status;
+    program->mode = gl.GetUniformLocation(program->name, "mode");
+    program->front = gl.GetUniformLocation(program->name, "front");
+    program->back = gl.GetUniformLocation(program->name, "back");
+    program->coefficients = gl.GetUniformLocation(program->name, "coefficients");
+    program->model = gl.GetUniformLocation(program->name, "model");
+    program->fade = gl.GetUniformLocation(program->name, "fade");
+    program->sink = gl.GetUniformLocation(program->name, "sink");
+    return CS_OK;
+}
+
+void cs_surface_program_use(const struct cs_surface_program *program,
+                            const struct cs_surface_style *style) {
+    gl.UseProgram(program->name);
+    gl.Uniform1i(program->mode, (GLint)style->mode);
+    gl.Uniform3f(program->front, (float)style->front[0], (float)style->front[1],
+                 (float)style->front[2]);
+    gl.Uniform3f(program->back, (float)style->back[0], (float)style->back[1],
+                 (float)style->back[2]);
+    gl.Uniform4f(program->coefficients, (float)style->ambient, (float)style->diffuse,
+                 (float)style->specular, (float)style->shininess);
+    gl.Uniform4f(program->model, (float)style->centre[0], (float)style->centre[1],
+                 (float)style->centre[2], (float)style->scale);
+    gl.Uniform1f(program->fade, (float)style->fade);
+    gl.Uniform1f(program->sink, (float)style->sink);
+    if (style->mode == CS_SURFACE_TEXTURED) {
+        gl.ActiveTexture(GL_TEXTURE0);
+        gl.BindTexture(GL_TEXTURE_2D, style->texture);
+    }
+}

@@ -1,0 +1,71 @@
+#include "draw/gl/view.h"
+
+#include "draw/colour.h"
+#include "draw/gl/gl.h"
+#include "draw/matrix.h"
+
+static void copy3(const double from[3], double last, float to[4]) {
+    for (int i = 0; i < 3; i++)
+        to[i] = (float)from[i];
+    to[3] = (float)last;
+}
+
+static void set_camera(struct cs_view_state *view, const struct cs_scene *scene,
+                       const struct cs_ball *extent) {
+    const struct cs_camera *camera = &scene->camera;
+    const double width = (double)scene->render.size[0], height = (double)scene->render.size[1];
+    double to_target[3], to_centre[3];
+    cs_subtract(camera->target, camera->eye, to_target);
+    cs_subtract(extent->centre, camera->eye, to_centre);
+    const double distance = cs_length(to_target);
+
+    // bodies may fall or be blown away: four times as far as anything is now
+    const double far = 4 * fmax(distance, cs_length(to_centre) + extent->radius);
+    const double near = fmin(far / 1000, distance / 20);
+    const double slope = tan(camera->fov * (3.14159265358979323846 / 360));
+
+    double look[16], lens[16], both[16];
+    cs_matrix_look(camera->eye, camera->target, camera->up, look);
+    cs_matrix_perspective(slope, width / height, near, far, lens);
+    cs_matrix_multiply(lens, look, both);
+    cs_matrix_to_float(both, view->block.world_to_clip);
+    copy3(camera->eye, 1, view->block.eye);
+    view->block.size[0] = (float)width;
+    view->block.size[1] = (float)height;
+    view->block.size[2] = (float)near;
+    view->pixels_per_m = height / (2 * slope * distance);
+}
+
+static void set_light(struct cs_view_block *block, const struct cs_light *light) {
+    double place[3] = {0.35, 0.8, 0.5};
+    double is_point = 0;
+    if (!isnan(light->point[0])) {
+        memcpy(place, light->point, sizeof place);
+        is_point = 1;
+    } else if (!isnan(light->direction[0])) {
+        for (int i = 0; i < 3; i++)
+            place[i] = -light->direction[i];
+    }
+    if (is_point == 0)
+        cs_normalise(place);
+    copy3(place, is_point, block->light);
+    copy3(light->ambient, 1, block->ambient);
+    copy3(light->diffuse, 1, block->diffuse);
+    copy3(light->specular, 1, block->specular);
+}
+
+void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
+                  const struct cs_ball *extent) {
+    memset(view, 0, sizeof *view);
+    set_camera(view, scene, extent);
+    set_light(&view->block, &scene->light);
+    copy3(scene->render.background, 1, view->block.sky);
+    cs_colour_stops(scene->render.look, view->block.stops);
+    gl.GenBuffers(1, &view->buffer);
+}
+
+void cs_view_upload(const struct cs_view_state *view) {
+    gl.BindBuffer(GL_UNIFORM_BUFFER, view->buffer);
+    gl.BufferData(GL_UNIFORM_BUFFER, sizeof view->block, &view->block, GL_DYNAMIC_DRAW);
+    gl.BindBufferBase(GL_UNIFORM_BUFFER, CS_VIEW_BINDING, view->buffer);
+}

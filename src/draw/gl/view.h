@@ -1,0 +1,40 @@
+/* view.h - what every shader knows: camera, light, background, colour map. */
+#ifndef CS_DRAW_VIEW_H
+#define CS_DRAW_VIEW_H
+
+#include "scene/scene.h"
+
+enum { CS_VIEW_BINDING = 0, CS_VIEW_STOPS = 6 };
+
+/* The uniform block View of the shaders in std140 layout: mat4 and vec4 only. */
+struct cs_view_block {
+    float world_to_clip[16];
+    float world_to_light[16];
+    float eye[4];
+    float light[4]; /* w 1: position of a lamp; w 0: direction to the sun */
+    float ambient[4], diffuse[4], specular[4];
+    float size[4];  /* width, height in pixels; near plane in m */
+    float shade[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a shadow */
+    float sky[4];
+    float stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
+};
+
+struct cs_view_state {
+    struct cs_view_block block;
+    unsigned buffer;
+    double pixels_per_m; /* at the camera's target */
+};
+
+/* A ball around what is drawn. */
+struct cs_ball {
+    double centre[3], radius;
+};
+
+/* Fills the block from the scene; everything in `extent` lies between near and far plane. */
+void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
+                  const struct cs_ball *extent);
+
+/* Hands the block to the shaders. */
+void cs_view_upload(const struct cs_view_state *view);
+
+#endif

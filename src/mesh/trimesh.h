@@ -1,0 +1,80 @@
+/* trimesh.h - a triangle mesh as a body: its vertices become particles, its edges springs. */
+#ifndef CS_TRIMESH_H
+#define CS_TRIMESH_H
+
+#include "base/arena.h"
+#include "base/hash.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* generated meshes, each of about the size of a cube of side 1 about the origin */
+enum cs_mesh_shape {
+    CS_MESH_BOX,
+    CS_MESH_SPHERE,
+    CS_MESH_TORUS,
+    CS_MESH_LIMBS, /* a rounded body with head, ears, arms and legs */
+    CS_MESH_SHAPES
+};
+enum { CS_MESH_DETAIL_MAX = 256 };
+
+struct cs_trimesh {
+    uint32_t n, n_triangles, n_edges, n_hinges, n_inner;
+    double *places;      /* (3,n) m, before the placement */
+    uint32_t *triangles; /* (n_triangles, 3), counter-clockwise from outside */
+    float *uv;           /* (n_triangles, 3, 2) texture coordinates of corners; NULL: none */
+
+    /* made by cs_trimesh_finish */
+    uint32_t *edges;  /* (n_edges, 2), first < second, ascending */
+    uint32_t *hinges; /* (n_hinges, 2) vertices across an edge, not joined by one */
+    uint32_t *around,
+        *around_end; /* triangles at vertex i: around[around_end[i - 1]..end[i]) */
+    double *area;    /* (n) m2, a third of every triangle at the vertex */
+    double edge;     /* m, mean length of an edge */
+    uint32_t n_open; /* edges of one triangle only; 0: the mesh is closed */
+
+    uint32_t *inner;                /* (n_inner, 2) springs of a network (network.h) */
+    char file_hash[CS_HASH_DIGITS]; /* of the bytes of its file; empty: a shape */
+    size_t bytes; /* of this struct and its arrays, set by the reader of the scene */
+};
+
+/* Takes the arrays that the maker of a mesh fills: places, triangles and, if asked for, uv. */
+enum cs_status cs_trimesh_init(struct cs_trimesh *mesh, uint32_t n, uint32_t n_triangles,
+                               bool uv, struct cs_arena *arena, struct cs_error *error);
+
+/* Checks the mesh and makes the rest of it. Refused with CS_ERR_FILE: a corner that does not
+ * exist, a triangle without area, a vertex in no triangle, an edge of three triangles or more,
+ * neighbours of opposite orientation. lines (n_triangles), or NULL: where triangles stand in
+ * the file, for messages; name stands before them. */
+enum cs_status cs_trimesh_finish(struct cs_trimesh *mesh, const char *name,
+                                 const uint32_t *lines, struct cs_arena *arena,
+                                 struct cs_error *error);
+
+/* Makes a shape; the caller finishes it. */
+enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape,
+                               uint32_t detail, struct cs_arena *arena, struct cs_error *error);
+/* One of them: the limbed body, as the surface of a field of blobs. */
+enum cs_status cs_trimesh_make_limbs(struct cs_trimesh *mesh, uint32_t detail,
+                                     struct cs_arena *arena, struct cs_error *error);
+
+/* Normal of triangle t of a mesh at places x (of n particles, the mesh's from `first` on), as
+ * long as twice the triangle's area. One number after the other: loops over the axes become
+ * vectors that are put together and taken apart again, at several times the cost. */
+static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, const double *x,
+                                     size_t n, uint32_t first, double normal[3]) {
+    const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
+    const double *p = x + first + corner[0], *q = x + first + corner[1],
+                 *r = x + first + corner[2];
+    const double ax = q[0] - p[0], ay = q[n] - p[n], az = q[2 * n] - p[2 * n];
+    const double bx = r[0] - p[0], by = r[n] - p[n], bz = r[2 * n] - p[2 * n];
+    normal[0] = ay * bz - az * by;
+    normal[1] = az * bx - ax * bz;
+    normal[2] = ax * by - ay * bx;
+}
+
+/* The first triangle of vertex i in around. */
+static inline uint32_t cs_trimesh_around_begin(const struct cs_trimesh *mesh, uint32_t i) {
+    return i ? mesh->around_end[i - 1] : 0;
+}
+
+#endif

@@ -1,0 +1,187 @@
+/* Generated meshes: box, sphere and torus. Only + - * / and sqrt, so that the vertices have the
+ * same bits on every machine. */
+#include "base/sine.h"
+#include "mesh/trimesh.h"
+
+#include <math.h>
+#include <string.h>
+
+static void set_place(struct cs_trimesh *mesh, uint32_t i, double x, double y, double z) {
+    const size_t n = mesh->n;
+    mesh->places[i] = x;
+    mesh->places[n + i] = y;
+    mesh->places[2 * n + i] = z;
+}
+
+static uint32_t *add_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c) {
+    *out++ = a, *out++ = b, *out++ = c;
+    return out;
+}
+
+/* a quad counter-clockwise; `other` takes the other diagonal */
+static uint32_t *add_quad(uint32_t *out, const uint32_t q[4], bool other) {
+    const int k = other;
+    out = add_triangle(out, q[k], q[1 + k], q[2 + k]);
+    return add_triangle(out, q[k], q[2 + k], q[(3 + k) % 4]);
+}
+
+/* Number of lattice point p of the box's surface: a full layer at each end of z, rings between.
+ */
+static uint32_t box_index(const uint32_t p[3], uint32_t d) {
+    const uint32_t full = (d + 1) * (d + 1), i = p[0], j = p[1], k = p[2];
+    if (k == 0 || k == d)
+        return (k ? full + (d - 1) * 4 * d : 0) + j * (d + 1) + i;
+    const uint32_t ring = j == 0 && i < d   ? i
+                          : i == d && j < d ? d + j
+                          : j == d && i > 0 ? 2 * d + (d - i)
+                                            : 3 * d + (d - j);
+    return full + (k - 1) * 4 * d + ring;
+}
+
+static enum cs_status make_box(struct cs_trimesh *mesh, uint32_t d, struct cs_arena *arena,
+                               struct cs_error *error) {
+    if (cs_trimesh_init(mesh, 6 * d * d + 2, 12 * d * d, false, arena, error))
+        return error->status;
+    uint32_t *out = mesh->triangles;
+    for (uint32_t face = 0; face < 6; face++)
+        for (uint32_t i = 0; i < d; i++)
+            for (uint32_t j = 0; j < d; j++) {
+                /* the corners go round the axis of the face, or back on its low side */
+                static const uint32_t round[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+                const uint32_t axis = face / 2, high = face % 2;
+                uint32_t quad[4];
+                for (uint32_t c = 0; c < 4; c++) {
+                    const uint32_t *step = round[high ? c : 3 - c];
+                    uint32_t p[3];
+                    p[axis] = high * d;
+                    p[(axis + 1) % 3] = i + step[0];
+                    p[(axis + 2) % 3] = j + step[1];
+                    quad[c] = box_index(p, d);
+                    set_place(mesh, quad[c], (double)p[0] / d - 0.5, (double)p[1] / d - 0.5,
+                              (double)p[2] / d - 0.5);
+                }
+                out = add_quad(out, quad, (i + j) % 2);
+            }
+    return CS_OK;
+}
+
+/* a face of the icosahedron, its corners, and the numbers of its sides 0-1, 1-2, 2-0 */
+struct face {
+    uint32_t corner[3], side[3];
+};
+
+static void number_sides(struct face faces[20]) {
+    uint32_t ends[30][2], n = 0;
+    for (int f = 0; f < 20; f++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t a = faces[f].corner[k], b = faces[f].corner[(k + 1) % 3];
+            uint32_t s = 0;
+            while (s < n && !((ends[s][0] == a && ends[s][1] == b) ||
+                              (ends[s][0] == b && ends[s][1] == a)))
+                s++;
+            if (s == n) {
+                ends[n][0] = a;
+                ends[n++][1] = b;
+            }
+            faces[f].side[k] = s;
+        }
+}
+
+/* number of the point with weights w (sum d) in a face: corners first, then sides, then faces
+ */
+static uint32_t sphere_index(const struct face *face, uint32_t f, const uint32_t w[3],
+                             uint32_t d) {
+    for (int k = 0; k < 3; k++)
+        if (w[k] == d)
+            return face->corner[k];
+    for (int k = 0; k < 3; k++)
+        if (w[(k + 2) % 3] == 0) {
+            const bool rises = face->corner[k] < face->corner[(k + 1) % 3];
+            return 12 + face->side[k] * (d - 1) + (rises ? w[(k + 1) % 3] : w[k]) - 1;
+        }
+    /* row w0 = 1 holds w1 = 1..d-2, and each later row one less */
+    const uint32_t row = w[0] - 1, before = row * (d - 2) - row * (row - 1) / 2;
+    return 12 + 30 * (d - 1) + f * ((d - 1) * (d - 2) / 2) + before + w[1] - 1;
+}
+
+static enum cs_status make_sphere(struct cs_trimesh *mesh, uint32_t d, struct cs_arena *arena,
+                                  struct cs_error *error) {
+    const double g = (1 + sqrt(5)) / 2; /* the icosahedron's corners: (0, +-1, +-g), turned */
+    const double corners[12][3] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                                   {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                                   {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+    struct face faces[20] = {
+        {{0, 11, 5}, {0}},  {{0, 5, 1}, {0}},  {{0, 1, 7}, {0}},  {{0, 7, 10}, {0}},
+        {{0, 10, 11}, {0}}, {{1, 5, 9}, {0}},  {{5, 11, 4}, {0}}, {{11, 10, 2}, {0}},
+        {{10, 7, 6}, {0}},  {{7, 1, 8}, {0}},  {{3, 9, 4}, {0}},  {{3, 4, 2}, {0}},
+        {{3, 2, 6}, {0}},   {{3, 6, 8}, {0}},  {{3, 8, 9}, {0}},  {{4, 9, 5}, {0}},
+        {{2, 4, 11}, {0}},  {{6, 2, 10}, {0}}, {{8, 6, 7}, {0}},  {{9, 8, 1}, {0}}};
+    if (cs_trimesh_init(mesh, 10 * d * d + 2, 20 * d * d, false, arena, error))
+        return error->status;
+    number_sides(faces);
+    uint32_t *out = mesh->triangles;
+    for (uint32_t f = 0; f < 20; f++)
+        for (uint32_t i = 0; i <= d; i++)
+            for (uint32_t j = 0; i + j <= d; j++) {
+                const uint32_t w[3] = {d - i - j, i, j};
+                const uint32_t at = sphere_index(faces + f, f, w, d);
+                double p[3] = {0}, squared = 0;
+                for (int c = 0; c < 3; c++) {
+                    for (int k = 0; k < 3; k++)
+                        p[c] += w[k] * corners[faces[f].corner[k]][c];
+                    squared += p[c] * p[c];
+                }
+                const double to_radius = 0.5 / sqrt(squared);
+                set_place(mesh, at, p[0] * to_radius, p[1] * to_radius, p[2] * to_radius);
+                if (w[0] == 0)
+                    continue;
+                const uint32_t right[3] = {w[0] - 1, i + 1, j}, up[3] = {w[0] - 1, i, j + 1};
+                const uint32_t b = sphere_index(faces + f, f, right, d);
+                const uint32_t c = sphere_index(faces + f, f, up, d);
+                out = add_triangle(out, at, b, c);
+                if (w[0] == 1)
+                    continue;
+                const uint32_t both[3] = {w[0] - 2, i + 1, j + 1};
+                out = add_triangle(out, b, sphere_index(faces + f, f, both, d), c);
+            }
+    return CS_OK;
+}
+
+/* cosine and sine of k m-ths of a turn */
+static void turn(uint32_t k, uint32_t m, double out[2]) {
+    const uint32_t quarter = 4 * k / m;
+    const double r = (double)(4 * k % m) / m;
+    const double c = cs_quarter_sine(1 - r), s = cs_quarter_sine(r);
+    const double turned[4][2] = {{c, s}, {-s, c}, {-c, -s}, {s, -c}};
+    memcpy(out, turned[quarter % 4], sizeof turned[0]);
+}
+
+/* ring of radius 0.35 about the z axis, tube of radius 0.15 */
+static enum cs_status make_torus(struct cs_trimesh *mesh, uint32_t d, struct cs_arena *arena,
+                                 struct cs_error *error) {
+    const uint32_t m = 7 * d / 3;
+    if (cs_trimesh_init(mesh, m * d, 2 * m * d, false, arena, error))
+        return error->status;
+    uint32_t *out = mesh->triangles;
+    for (uint32_t i = 0; i < m; i++)
+        for (uint32_t j = 0; j < d; j++) {
+            double along[2], around[2];
+            turn(i, m, along);
+            turn(j, d, around);
+            const double radius = 0.35 + 0.15 * around[0];
+            set_place(mesh, i * d + j, radius * along[0], radius * along[1], 0.15 * around[1]);
+            const uint32_t next = (i + 1) % m * d, above = (j + 1) % d;
+            const uint32_t quad[4] = {i * d + j, next + j, next + above, i * d + above};
+            out = add_quad(out, quad, (i + j) % 2);
+        }
+    return CS_OK;
+}
+
+enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape,
+                               uint32_t detail, struct cs_arena *arena,
+                               struct cs_error *error) {
+    static enum cs_status (*const makers[CS_MESH_SHAPES])(
+        struct cs_trimesh *, uint32_t, struct cs_arena *,
+        struct cs_error *) = {make_box, make_sphere, make_torus, cs_trimesh_make_limbs};
+    return makers[shape](mesh, detail, arena, error);
+}

@@ -1,0 +1,89 @@
+#include "model/event/event_times.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static double begin_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+
+static double end_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->to : event->at;
+}
+
+static uint32_t chords_of(const struct cs_grab *grab) {
+    return grab->motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1;
+}
+
+size_t cs_event_times_count(const struct cs_scene *scene) {
+    const struct cs_event *events = cs_scene_events(scene);
+    size_t n = 0;
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        n += 2 + (events[e].grab.present
+                      ? (size_t)events[e].grab.path.n * chords_of(&events[e].grab)
+                      : 0);
+    return n;
+}
+
+static double chord_end(const struct cs_event *event, uint32_t leg, uint32_t chord) {
+    const struct cs_path_point *path = event->grab.path.items;
+    const uint32_t chords = chords_of(&event->grab);
+    const double begin = leg ? path[leg - 1].at : begin_of(event), end = path[leg].at;
+    return chord + 1 == chords ? end : begin + (end - begin) * ((chord + 1) / (double)chords);
+}
+
+double cs_event_time_snap(const struct cs_scene *scene, double t) {
+    const double frame = floor(t * scene->time.fps + 0.5) / scene->time.fps;
+    return fabs(frame - t) <= CS_EVENT_SAME ? frame : t;
+}
+
+static int compare(const void *left, const void *right) {
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/* what t became in the list */
+static double entry_of(const struct cs_events *events, double t) {
+    uint32_t low = 0, high = events->n_times;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        *(events->times[middle] <= t ? &low : &high) = middle;
+    }
+    /* the one below, unless the one above is nearer */
+    const double *times = events->times;
+    return low + 1 < events->n_times && times[low + 1] - t < t - times[low] ? times[low + 1]
+                                                                            : times[low];
+}
+
+static uint32_t collect(const struct cs_scene *scene, double *times) {
+    const struct cs_event *list = cs_scene_events(scene);
+    uint32_t n = 0;
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        times[n++] = cs_event_time_snap(scene, begin_of(list + e));
+        times[n++] = cs_event_time_snap(scene, end_of(list + e));
+        for (uint32_t leg = 0; list[e].grab.present && leg < list[e].grab.path.n; leg++)
+            for (uint32_t c = 0; c < chords_of(&list[e].grab); c++)
+                times[n++] = cs_event_time_snap(scene, chord_end(list + e, leg, c));
+    }
+    return n;
+}
+
+void cs_event_times_fill(struct cs_events *events) {
+    const struct cs_event *list = cs_scene_events(&events->scene);
+    const uint32_t n = collect(&events->scene, events->times);
+    double *times = events->times;
+    qsort(times, n, sizeof *times, compare);
+    events->n_times = 1;
+    for (uint32_t k = 1; k < n; k++)
+        if (times[k] - times[events->n_times - 1] > CS_EVENT_SAME)
+            times[events->n_times++] = times[k];
+    for (uint32_t e = 0; e < events->scene.events.n; e++) {
+        events->states[e].begin = entry_of(events, begin_of(list + e));
+        events->states[e].end = entry_of(events, end_of(list + e));
+    }
+}
+
+double cs_event_chord_end(const struct cs_events *events, uint32_t event, uint32_t leg,
+                          uint32_t chord) {
+    return entry_of(events, chord_end(cs_scene_events(&events->scene) + event, leg, chord));
+}

@@ -1,0 +1,232 @@
+#include "model/event/events.h"
+
+#include "model/event/event_act.h"
+#include "model/event/event_times.h"
+#include "model/event/prods.h"
+#include "model/force/bounds.h"
+#include "scene/event_key.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool pushes(const struct cs_event *event) {
+    return (event->impact.present || event->prod.present) && isnan(event->at);
+}
+static bool grabs(const struct cs_event *event) {
+    return event->grab.present;
+}
+static bool lets_go(const struct cs_event *event) {
+    return event->release.present ||
+           ((event->pin.present || event->grab.present) && isnan(event->at));
+}
+
+static bool any(const struct cs_scene *scene, bool (*is)(const struct cs_event *event)) {
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (is(cs_scene_events(scene) + e))
+            return true;
+    return false;
+}
+
+size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n) {
+    const size_t vectors = (any(scene, pushes) ? 3 : 0) + (any(scene, grabs) ? 3 : 0);
+    return sizeof(struct cs_events) + cs_event_times_count(scene) * sizeof(double) +
+           scene->events.n * sizeof(struct cs_event_state) +
+           scene->bodies.n * sizeof(struct cs_body) +
+           scene->colliders.n * sizeof(struct cs_collider) +
+           n * (2 * sizeof(uint32_t) + sizeof(bool) + vectors * sizeof(double));
+}
+
+/* the list's items again, as the caller's own */
+static void copy_list(struct cs_system *system, struct cs_list *list, size_t size,
+                      struct cs_error *error) {
+    void *items = cs_arena_take_n(&system->arena, list->n, size, error);
+    if (items && list->n > 0)
+        memcpy(items, list->items, list->n * size);
+    list->items = items;
+}
+
+static void take_arrays(struct cs_system *system, struct cs_events *events,
+                        struct cs_error *error) {
+    const size_t n = system->view.n;
+    struct cs_arena *arena = &system->arena;
+    struct cs_scene *scene = &events->scene;
+    *scene = *system->scene;
+    copy_list(system, &scene->bodies, sizeof(struct cs_body), error);
+    copy_list(system, &scene->colliders, sizeof(struct cs_collider), error);
+    events->times = cs_arena_take_n(arena, cs_event_times_count(scene), sizeof(double), error);
+    events->states =
+        cs_arena_take_n(arena, scene->events.n, sizeof(struct cs_event_state), error);
+    events->holders = cs_arena_take_n(arena, n, sizeof(uint32_t), error);
+    events->marks = cs_arena_take_n(arena, n, sizeof(bool), error);
+    if (any(scene, pushes))
+        system->push = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+    if (any(scene, grabs))
+        events->offsets = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+}
+
+/* any particle may become a pinned one */
+static void widen_pinned(struct cs_system *system, struct cs_error *error) {
+    uint32_t *pinned = cs_arena_take_n(&system->arena, system->view.n, sizeof *pinned, error);
+    if (!pinned)
+        return;
+    memcpy(pinned, system->pinned, system->n_pinned * sizeof *pinned);
+    system->pinned = pinned;
+}
+
+enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error) {
+    struct cs_events *events = cs_arena_take(&system->arena, sizeof *events, error);
+    if (!events)
+        return error->status;
+    take_arrays(system, events, error);
+    widen_pinned(system, error);
+    const struct cs_event *list = cs_scene_events(&events->scene);
+    for (uint32_t e = 0; e < events->scene.events.n && !error->status; e++) {
+        struct cs_event_key key;
+        if (list[e].ramp.present &&
+            !cs_event_key_find(&events->scene, list[e].ramp.key, &key, error))
+            events->states[e].value = key.value;
+    }
+    if (error->status)
+        return error->status;
+    cs_event_times_fill(events);
+    events->end = events->times[0];
+    events->look = HUGE_VAL;
+    system->events = events;
+    system->scene = &events->scene;
+    return cs_prods_any(system->scene) ? cs_prods_build(system, error) : CS_OK;
+}
+
+/* what hangs on values that ramps change */
+static void refresh(struct cs_system *system) {
+    cs_event_refresh_springs(system);
+    if (any(&system->events->scene, cs_event_weighs))
+        cs_system_weigh(system);
+}
+
+void cs_events_set_bounds(struct cs_system *system, double *work) {
+    struct cs_events *events = system->events;
+    const uint32_t n_events = events->scene.events.n;
+    for (uint32_t e = 0; e < n_events; e++) {
+        const struct cs_event *event = cs_scene_events(&events->scene) + e;
+        struct cs_event_state *state = events->states + e;
+        if (!state->value)
+            continue;
+        state->first = *state->value;
+        /* the stiffest springs and the lightest particles */
+        *state->value = cs_event_weighs(event) ? fmin(*state->value, event->ramp.value)
+                                               : fmax(*state->value, event->ramp.value);
+    }
+    refresh(system);
+    if (any(&events->scene, lets_go))
+        for (uint32_t p = 0; p < system->n_pinned; p++)
+            system->inv_mass[system->pinned[p]] = 1 / system->mass[system->pinned[p]];
+    cs_bounds_set(system, work);
+
+    for (uint32_t p = 0; p < system->n_pinned; p++)
+        system->inv_mass[system->pinned[p]] = 0;
+    for (uint32_t e = n_events; e-- > 0;)
+        if (events->states[e].value)
+            *events->states[e].value = events->states[e].first;
+    refresh(system);
+}
+
+double cs_events_next(const struct cs_events *events) {
+    /* a look so near to the end is made there */
+    return events->look + CS_EVENT_SAME < events->end ? events->look : events->end;
+}
+
+uint32_t cs_events_cuts(const struct cs_events *events, double t) {
+    return events->n_times + cs_prods_cuts(&events->scene, t);
+}
+
+static void list_pinned(struct cs_system *system) {
+    system->n_pinned = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->inv_mass[i] == 0)
+            system->pinned[system->n_pinned++] = i;
+}
+
+/* the segment ends */
+static void turn(struct cs_system *system, double t) {
+    struct cs_events *events = system->events;
+    const uint32_t n = events->scene.events.n;
+    cs_events_move_values(system, t);
+    events->next++;
+    events->begin = events->now = t;
+    events->end = events->next < events->n_times ? events->times[events->next] : HUGE_VAL;
+    for (uint32_t e = 0; e < n; e++)
+        if (events->states[e].active && events->states[e].end <= t)
+            cs_event_finish(system, e);
+    for (uint32_t e = 0; e < n; e++)
+        if (events->states[e].begin == t)
+            cs_event_start(system, e);
+
+    events->ramps = events->grabs = false;
+    for (uint32_t e = 0; e < n; e++) {
+        const struct cs_event *event = cs_scene_events(&events->scene) + e;
+        events->ramps |=
+            events->states[e].active && (event->ramp.present || event->wind.present);
+        if (event->grab.present)
+            cs_event_turn(events, e, t);
+    }
+    for (uint32_t i = 0; i < system->view.n; i++) {
+        const uint32_t holder = events->holders[i];
+        events->grabs |= holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
+    }
+    list_pinned(system);
+    refresh(system);
+    cs_events_place(system, t, system->state, system->state + 3 * (size_t)system->view.n);
+}
+
+bool cs_events_apply(struct cs_system *system, double t) {
+    struct cs_events *events = system->events;
+    const bool turns = events->end <= t;
+    if (turns)
+        turn(system, t);
+    const bool others = events->prods && cs_prods_look(system, t);
+    if (turns || others)
+        cs_event_sum_pushes(system);
+    if (events->prods)
+        events->look = cs_prods_next(events->prods);
+    return turns || others;
+}
+
+void cs_events_move_values(struct cs_system *system, double t) {
+    struct cs_events *events = system->events;
+    const double now = fmin(fmax(t, events->begin), events->end);
+    if (!events->ramps || now == events->now)
+        return;
+    events->now = now;
+    for (uint32_t e = 0; e < events->scene.events.n; e++)
+        if (events->states[e].active)
+            cs_event_set_value(system, e, now);
+    cs_event_refresh_springs(system);
+}
+
+void cs_events_place(const struct cs_system *system, double t, double *x, double *v) {
+    const struct cs_events *events = system->events;
+    const size_t n = system->view.n;
+    for (uint32_t p = 0; events->grabs && p < system->n_pinned; p++) {
+        const size_t i = system->pinned[p];
+        const uint32_t holder = events->holders[i];
+        if (!holder || !cs_scene_events(&events->scene)[holder - 1].grab.present)
+            continue;
+        const struct cs_event_state *state = events->states + holder - 1;
+        for (size_t c = 0; c < 3; c++) {
+            const double point = t >= state->until
+                                     ? state->to[c]
+                                     : state->from[c] + state->rate[c] * (t - state->since);
+            x[c * n + i] = events->offsets[c * n + i] + point;
+            v[c * n + i] = state->rate[c];
+        }
+    }
+}
+
+double cs_events_speed(const struct cs_events *events) {
+    double squared = 0;
+    for (uint32_t e = 0; e < events->scene.events.n; e++) {
+        const double *rate = events->states[e].rate;
+        squared = fmax(squared, rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
+    }
+    return sqrt(squared);
+}

@@ -1,0 +1,73 @@
+#include "model/force/measure.h"
+
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+
+#include <math.h>
+
+struct cs_energy cs_measure_energy(const struct cs_system *system, const double *x,
+                                   const double *v) {
+    const size_t n = system->view.n;
+    struct cs_energy energy = {0};
+    for (size_t i = 0; i < n; i++)
+        energy.kinetic += 0.5 * system->mass[i] *
+                          (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->energy)
+            *(system->terms[k] == &cs_term_gravity ? &energy.gravity : &energy.elastic) +=
+                system->terms[k]->energy(system, x);
+    return energy;
+}
+
+static double strain_of(const struct cs_spring_run *run, size_t n, const double *x,
+                        uint32_t i) {
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double d = x[c * n + cs_spring_b(run, i)] - x[c * n + cs_spring_a(run, i)];
+        squared += d * d;
+    }
+    return sqrt(squared) / cs_spring_length(run, i) - 1;
+}
+
+double cs_measure_strain(const struct cs_system *system, const double *x) {
+    double largest = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++)
+        for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
+            largest =
+                fmax(largest, fabs(strain_of(system->springs.runs + r, system->view.n, x, i)));
+    return largest;
+}
+
+void cs_measure_particle_strain(const struct cs_system *system, const double *x, double *out) {
+    for (uint32_t i = 0; i < system->view.n; i++)
+        out[i] = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const double strain = strain_of(run, system->view.n, x, i);
+            const uint32_t ends[2] = {cs_spring_a(run, i), cs_spring_b(run, i)};
+            for (int e = 0; e < 2; e++)
+                if (fabs(strain) > fabs(out[ends[e]]))
+                    out[ends[e]] = strain;
+        }
+    }
+}
+
+void cs_measure_particle_force(const struct cs_system *system, double t, const double *x,
+                               const double *v, double *out, double *work) {
+    const size_t n = system->view.n;
+    if (cs_terms_need_normals(system, CS_PART_ALL))
+        cs_normals_update(system, x);
+    cs_terms_force(system, t, x, v, CS_PART_ALL, work);
+    for (size_t i = 0; i < n; i++)
+        out[i] = sqrt(work[i] * work[i] + work[n + i] * work[n + i] +
+                      work[2 * n + i] * work[2 * n + i]);
+}
+
+void cs_measure_range(const double *values, uint32_t n, double range[2]) {
+    range[0] = range[1] = n > 0 ? values[0] : 0;
+    for (uint32_t i = 0; i < n; i++) {
+        range[0] = fmin(range[0], values[i]);
+        range[1] = fmax(range[1], values[i]);
+    }
+}

@@ -1,0 +1,26 @@
+/* measure.h - what a state is like: energy, strain, force, hash. */
+#ifndef CS_MEASURE_H
+#define CS_MEASURE_H
+
+#include "model/system/system.h"
+
+struct cs_energy {
+    double kinetic, elastic, gravity; /* J; gravity's potential is 0 at the origin */
+};
+struct cs_energy cs_measure_energy(const struct cs_system *system, const double *x,
+                                   const double *v);
+
+/* Largest |length / rest length - 1| over all springs; 0 without springs. */
+double cs_measure_strain(const struct cs_system *system, const double *x);
+
+/* The same per particle: the largest strain (signed) of the springs at it; out (n). */
+void cs_measure_particle_strain(const struct cs_system *system, const double *x, double *out);
+
+/* Magnitude of the whole force on each particle, 0 on pinned ones; out (n), work (3,n). */
+void cs_measure_particle_force(const struct cs_system *system, double t, const double *x,
+                               const double *v, double *out, double *work);
+
+/* Smallest and largest of n values. */
+void cs_measure_range(const double *values, uint32_t n, double range[2]);
+
+#endif

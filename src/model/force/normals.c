@@ -1,0 +1,153 @@
+#include "model/force/normals.h"
+
+#include "base/vector.h"
+#include "mesh/trimesh.h"
+
+#include <float.h>
+#include <math.h>
+
+struct neighbours {
+    uint32_t left, right, up, down;
+};
+
+static struct neighbours neighbours_of(const struct cs_body_range *body, uint32_t i) {
+    const uint32_t row = (i - body->first) / body->columns,
+                   column = (i - body->first) % body->columns;
+    return (struct neighbours){
+        .left = column > 0 ? i - 1 : i,
+        .right = column + 1 < body->columns ? i + 1 : i,
+        .up = row > 0 ? i - body->columns : i,
+        .down = row + 1 < body->rows ? i + body->columns : i,
+    };
+}
+
+static void difference(const double *p, uint32_t n, uint32_t from, uint32_t to, double out[3]) {
+    for (size_t c = 0; c < 3; c++)
+        out[c] = p[c * n + to] - p[c * n + from];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* (right - left) x (up - down) at particle i of a grid */
+static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
+                         const double *x, double product[3]) {
+    const struct neighbours at = neighbours_of(body, i);
+    double across[3], upwards[3];
+    difference(x, (uint32_t)n, at.left, at.right, across);
+    difference(x, (uint32_t)n, at.down, at.up, upwards);
+    cross(across, upwards, product);
+}
+
+/* the sum of the normals of the triangles at particle i of a mesh */
+static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
+                         const double *x, double product[3]) {
+    const struct cs_trimesh *mesh = body->mesh;
+    const uint32_t end = mesh->around_end[i - body->first];
+    product[0] = product[1] = product[2] = 0;
+    for (uint32_t k = cs_trimesh_around_begin(mesh, i - body->first); k < end; k++) {
+        double normal[3];
+        cs_trimesh_normal(mesh, mesh->around[k], x, n, body->first, normal);
+        for (int c = 0; c < 3; c++)
+            product[c] += normal[c];
+    }
+}
+
+struct update {
+    const struct cs_system *system;
+    const double *x;
+};
+
+static void update_range(const struct update *update, const struct cs_body_range *body,
+                         uint32_t begin, uint32_t end) {
+    const size_t n = update->system->view.n;
+    double *nx = update->system->normals, *ny = nx + n, *nz = ny + n;
+    for (uint32_t i = begin; i < end; i++) {
+        double product[3];
+        if (body->mesh)
+            mesh_product(body, i, n, update->x, product);
+        else
+            grid_product(body, i, n, update->x, product);
+        const double squared =
+            product[0] * product[0] + product[1] * product[1] + product[2] * product[2];
+        const double inverse = 1 / sqrt(squared + DBL_MIN);
+        nx[i] = product[0] * inverse;
+        ny[i] = product[1] * inverse;
+        nz[i] = product[2] * inverse;
+    }
+}
+
+static void update_part(void *arg, size_t begin, size_t end) {
+    const struct update *update = arg;
+    const struct cs_system *system = update->system;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = system->bodies + b;
+        const size_t last = (size_t)body->first + body->count;
+        if (begin < last && body->first < end)
+            update_range(update, body, begin > body->first ? (uint32_t)begin : body->first,
+                         (uint32_t)(end < last ? end : last));
+    }
+}
+
+void cs_normals_update(const struct cs_system *system, const double *x) {
+    struct update update = {system, x};
+    cs_vector_share(system->view.n, update_part, &update);
+}
+
+/* product and its change; d(a x b) = da x b + a x db */
+static void add_product(const double a[3], const double b[3], const double da[3],
+                        const double db[3], double product[3], double change[3]) {
+    double whole[3], first[3], second[3];
+    cross(a, b, whole);
+    cross(da, b, first);
+    cross(a, db, second);
+    for (int c = 0; c < 3; c++) {
+        product[c] += whole[c];
+        change[c] += first[c] + second[c];
+    }
+}
+
+static void grid_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
+                        const double *x, const double *dx, double product[3],
+                        double change[3]) {
+    const struct neighbours at = neighbours_of(body, i);
+    double across[3], upwards[3], d_across[3], d_upwards[3];
+    difference(x, n, at.left, at.right, across);
+    difference(x, n, at.down, at.up, upwards);
+    difference(dx, n, at.left, at.right, d_across);
+    difference(dx, n, at.down, at.up, d_upwards);
+    add_product(across, upwards, d_across, d_upwards, product, change);
+}
+
+static void mesh_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
+                        const double *x, const double *dx, double product[3],
+                        double change[3]) {
+    const struct cs_trimesh *mesh = body->mesh;
+    const uint32_t end = mesh->around_end[i - body->first], first = body->first;
+    for (uint32_t k = cs_trimesh_around_begin(mesh, i - first); k < end; k++) {
+        const uint32_t *corner = mesh->triangles + 3 * (size_t)mesh->around[k];
+        double a[3], b[3], da[3], db[3];
+        difference(x, n, first + corner[0], first + corner[1], a);
+        difference(x, n, first + corner[0], first + corner[2], b);
+        difference(dx, n, first + corner[0], first + corner[1], da);
+        difference(dx, n, first + corner[0], first + corner[2], db);
+        add_product(a, b, da, db, product, change);
+    }
+}
+
+void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
+                          uint32_t i, const double *x, const double *dx, double dn[3]) {
+    double product[3] = {0}, change[3] = {0}, normal[3], along = 0;
+    (body->mesh ? mesh_change : grid_change)(body, i, system->view.n, x, dx, product, change);
+    const double inverse = 1 / sqrt(product[0] * product[0] + product[1] * product[1] +
+                                    product[2] * product[2] + DBL_MIN);
+    for (int c = 0; c < 3; c++) {
+        normal[c] = product[c] * inverse;
+        along += normal[c] * change[c];
+    }
+    for (int c = 0; c < 3; c++)
+        dn[c] = (change[c] - along * normal[c]) * inverse;
+}

@@ -1,0 +1,276 @@
+#include "model/solver/level.h"
+
+#include "base/pool.h"
+#include "model/solver/lanes.h"
+#include "model/solver/wave.h"
+
+enum {
+    CELLS = 1024, /* of one block of a loop at least: a whole number of lanes */
+    LOOPS = 4     /* of a smoother and what follows it at most */
+};
+
+size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers) {
+    const size_t own = level->form == CS_LEVEL_FACTORED ? 1 : 6;
+    return sizeof(float) * (n_numbers + (own + 6 + 4 * 3) * level->n);
+}
+
+enum cs_status cs_level_take(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
+                             struct cs_error *error) {
+    const size_t n = level->n, own = level->form == CS_LEVEL_FACTORED ? 1 : 6;
+    float **vectors[4] = {&level->r, &level->x, &level->d, &level->e};
+    level->springs = cs_arena_take_n(arena, n_numbers, sizeof(float), error);
+    level->own = cs_arena_take_n(arena, own * n, sizeof(float), error);
+    level->inverse = cs_arena_take_n(arena, 6 * n, sizeof(float), error);
+    for (int k = 0; k < 4; k++)
+        *vectors[k] = cs_arena_take_n(arena, 3 * n, sizeof(float), error);
+    return error->status;
+}
+
+/* A loop over the cells of a level: d is the last move, e the next one. */
+struct loop {
+    struct cs_level *level;
+    void (*task)(const struct loop *loop, size_t begin, size_t end);
+    const float *d;
+    float *e; /* NULL: r alone changes */
+    float a, b;
+};
+
+/* loops one after another, each of which looks at the cells around its own */
+struct loops {
+    struct loop loops[LOOPS];
+    uint32_t n, at;
+    size_t cells; /* of a block */
+};
+
+static void run_block(void *arg, uint32_t number, uint32_t block) {
+    const struct loops *loops = arg;
+    const struct loop *loop = loops->loops + number;
+    const size_t begin = loop->level->begin + block * loops->cells, end = begin + loops->cells;
+    loop->task(loop, begin, end < loop->level->end ? end : loop->level->end);
+}
+
+static void run_block_of_one(void *arg, uint32_t block) {
+    run_block(arg, ((const struct loops *)arg)->at, block);
+}
+
+/* so many that no spring of a grid reaches beyond the next block */
+static size_t cells_of_block(const struct cs_level *level) {
+    size_t cells = CELLS;
+    for (uint32_t s = 0; s < level->n_steps; s++)
+        cells = level->steps[s] > cells ? level->steps[s] : cells;
+    return (cells + CS_LANES - 1) / CS_LANES * CS_LANES;
+}
+
+/* a mesh has neighbours anywhere: one loop after the other */
+static void run(struct loops *loops) {
+    const struct cs_level *level = loops->loops->level;
+    loops->cells = cells_of_block(level);
+    const uint32_t blocks =
+        (uint32_t)((level->end - level->begin + loops->cells - 1) / loops->cells);
+    if (level->form != CS_LEVEL_LISTS)
+        cs_wave_run(&(struct cs_wave){loops->n, blocks, run_block, loops});
+    else
+        for (loops->at = 0; loops->at < loops->n; loops->at++)
+            cs_pool_run(blocks, run_block_of_one, loops);
+}
+
+static void run_one(struct loop loop) {
+    run(&(struct loops){.loops = {loop}, .n = 1});
+}
+
+/* (s I + w w^T) p */
+CS_INLINE struct vectors factored_times(const float *spring, size_t n, struct vectors p) {
+    const lanes s = get(spring);
+    const struct vectors w = get3(spring + n, n);
+    const lanes along = w.x * p.x + w.y * p.y + w.z * p.z;
+    return (struct vectors){s * p.x + along * w.x, s * p.y + along * w.y,
+                            s * p.z + along * w.z};
+}
+
+CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const float *p,
+                                   struct vectors here, struct vectors y) {
+    const uint32_t *starts = level->starts + i / CS_LANES;
+    for (size_t k = starts[0]; k < starts[1]; k++) {
+        const struct vectors there = gather3(p, level->n, level->neighbours + k * CS_LANES);
+        const struct blocks b = get6(level->springs + k * 6 * CS_LANES, CS_LANES);
+        y = plus(y, times(b, minus(here, there)));
+    }
+    return y;
+}
+
+/* springs that begin here, and springs that end here */
+CS_INLINE struct vectors add_steps(const struct cs_level *level, const bool factored, size_t i,
+                                   const float *p, struct vectors here, struct vectors y) {
+    const size_t n = level->n;
+    const float *spring = level->springs + i;
+    for (uint32_t s = 0; s < level->n_steps; s++) {
+        const size_t step = level->steps[s];
+        const struct vectors ahead = minus(here, get3(p + i + step, n));
+        const struct vectors back = minus(here, get3(p + i - step, n));
+        if (factored) {
+            y = plus(y, factored_times(spring, n, ahead));
+            y = plus(y, factored_times(spring - step, n, back));
+        } else {
+            y = plus(y, times(get6(spring, n), ahead));
+            y = plus(y, times(get6(spring - step, n), back));
+        }
+        spring += (factored ? 4 : 6) * n;
+    }
+    return y;
+}
+
+/* A p of the 16 cells from i on, where p is `here` */
+CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_level_form form,
+                                 size_t i, const float *p, struct vectors here) {
+    if (form == CS_LEVEL_FACTORED) {
+        const lanes mass = get(level->own + i);
+        const struct vectors y = {mass * here.x, mass * here.y, mass * here.z};
+        return add_steps(level, true, i, p, here, y);
+    }
+    const struct vectors y = times(get6(level->own + i, level->n), here);
+    return form == CS_LEVEL_LISTS ? add_lists(level, i, p, here, y)
+                                  : add_steps(level, false, i, p, here, y);
+}
+
+/* r -= A d, and where that is not all: e = a d + b D^-1 r, x += e */
+CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form, size_t begin,
+                          size_t end) {
+    struct cs_level *level = loop->level;
+    const size_t n = level->n;
+    for (size_t i = begin; i < end; i += CS_LANES) {
+        const struct vectors d = get3(loop->d + i, n);
+        const struct vectors r =
+            minus(get3(level->r + i, n), product(level, form, i, loop->d, d));
+        put3(level->r + i, n, r);
+        if (!loop->e)
+            continue;
+        const struct vectors z = times(get6(level->inverse + i, n), r);
+        const struct vectors e = plus(scaled(loop->a, d), scaled(loop->b, z));
+        put3(loop->e + i, n, e);
+        put3(level->x + i, n, plus(get3(level->x + i, n), e));
+    }
+}
+
+/* a copy of the loop for every form */
+CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
+    const enum cs_level_form form = loop->level->form;
+    if (form == CS_LEVEL_FACTORED)
+        sweep_form(loop, CS_LEVEL_FACTORED, begin, end);
+    else if (form == CS_LEVEL_BLOCKS)
+        sweep_form(loop, CS_LEVEL_BLOCKS, begin, end);
+    else
+        sweep_form(loop, CS_LEVEL_LISTS, begin, end);
+}
+
+void cs_level_take_product(struct cs_level *level) {
+    run_one((struct loop){.level = level, .task = sweep, .d = level->d});
+}
+
+/* x = e = b D^-1 r */
+CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
+    struct cs_level *level = loop->level;
+    const size_t n = level->n;
+    for (size_t i = begin; i < end; i += CS_LANES) {
+        const struct vectors z = times(get6(level->inverse + i, n), get3(level->r + i, n));
+        put3(loop->e + i, n, scaled(loop->b, z));
+        put3(level->x + i, n, scaled(loop->b, z));
+    }
+}
+
+/* Chebyshev's iteration (Saad 2003, alg. 12.1): with t = 7/6 and h = 5/6 the centre and half
+ * the length of [1/3, 2] and c = t / h, the first move is D^-1 r / t, and the next ones are
+ * q' q d + 2 q' / h D^-1 r with q' = 1 / (2 c - q) after q, from q = 1 / c on. */
+static const float first_gain = 6 / 7.0F;
+static const struct {
+    float a, b;
+} gains[2] = {{25 / 73.0F, 84 / 73.0F}, {350 / 1694.0F, 1752 / 1694.0F}};
+
+void cs_level_smooth_down(struct cs_level *level) {
+    float *d = level->d, *e = level->e;
+    run(&(struct loops){.loops = {{level, start, NULL, d, 0, first_gain},
+                                  {level, sweep, d, e, gains[0].a, gains[0].b},
+                                  {level, sweep, e, d, gains[1].a, gains[1].b},
+                                  {level, sweep, d, NULL, 0, 0}},
+                        .n = 4});
+}
+
+void cs_level_smooth_up(struct cs_level *level) {
+    float *d = level->d, *e = level->e;
+    run(&(struct loops){.loops = {{level, sweep, d, e, 0, first_gain},
+                                  {level, sweep, e, d, gains[0].a, gains[0].b},
+                                  {level, sweep, d, e, gains[1].a, gains[1].b}},
+                        .n = 3});
+}
+
+void cs_level_solve_diagonal(struct cs_level *level) {
+    run_one((struct loop){.level = level, .task = start, .e = level->d, .b = 1});
+}
+
+CS_INLINE struct blocks expanded(const float *spring, size_t n) {
+    const lanes s = get(spring);
+    const struct vectors w = get3(spring + n, n);
+    return (struct blocks){s + w.x * w.x, w.x * w.y, w.x * w.z,
+                           s + w.y * w.y, w.y * w.z, s + w.z * w.z};
+}
+
+/* the springs' blocks of the 16 cells from i on, added up */
+CS_INLINE struct blocks sum_springs(const struct cs_level *level, size_t i) {
+    const size_t n = level->n;
+    struct blocks sum = {0};
+    if (level->form == CS_LEVEL_LISTS) {
+        const uint32_t *starts = level->starts + i / CS_LANES;
+        for (size_t k = starts[0]; k < starts[1]; k++)
+            sum = plus6(sum, get6(level->springs + k * 6 * CS_LANES, CS_LANES));
+        return sum;
+    }
+    const bool factored = level->form == CS_LEVEL_FACTORED;
+    const float *spring = level->springs + i;
+    for (uint32_t s = 0; s < level->n_steps; s++) {
+        const float *back = spring - level->steps[s];
+        sum = plus6(sum, factored ? expanded(spring, n) : get6(spring, n));
+        sum = plus6(sum, factored ? expanded(back, n) : get6(back, n));
+        spring += (factored ? 4 : 6) * n;
+    }
+    return sum;
+}
+
+/* the 16 blocks at m, in double: a flat sheet has only its mass across, and the determinant is
+ * a small difference. 0 where a cell is dead */
+CS_INLINE void invert_blocks(float *m, size_t n, const float *own) {
+    for (size_t l = 0; l < CS_LANES; l++) {
+        const double a = (double)m[l], b = (double)m[n + l], c = (double)m[2 * n + l];
+        const double d = (double)m[3 * n + l], e = (double)m[4 * n + l];
+        const double f = (double)m[5 * n + l];
+        const double p = d * f - e * e, q = c * e - b * f, r = b * e - c * d;
+        const double determinant = a * p + b * q + c * r;
+        const double factor = own[l] > 0 && determinant > 0 ? 1 / determinant : 0;
+        m[l] = (float)(p * factor);
+        m[n + l] = (float)(q * factor);
+        m[2 * n + l] = (float)(r * factor);
+        m[3 * n + l] = (float)((a * f - c * c) * factor);
+        m[4 * n + l] = (float)((b * c - a * e) * factor);
+        m[5 * n + l] = (float)((a * d - b * b) * factor);
+    }
+}
+
+CS_CLONES static void invert(const struct loop *loop, size_t begin, size_t end) {
+    struct cs_level *level = loop->level;
+    const size_t n = level->n;
+    for (size_t i = begin; i < end; i += CS_LANES) {
+        struct blocks sum = sum_springs(level, i);
+        if (level->form == CS_LEVEL_FACTORED) {
+            const lanes mass = get(level->own + i);
+            sum.xx += mass, sum.yy += mass, sum.zz += mass;
+        } else {
+            sum = plus6(sum, get6(level->own + i, n));
+        }
+        const lanes extra = loop->b * (sum.xx + sum.yy + sum.zz);
+        sum.xx += extra, sum.yy += extra, sum.zz += extra;
+        put6(level->inverse + i, n, sum);
+        invert_blocks(level->inverse + i, n, level->own + i);
+    }
+}
+
+void cs_level_invert(struct cs_level *level) {
+    run_one((struct loop){.level = level, .task = invert, .b = 1.0F / (1 << 20)});
+}

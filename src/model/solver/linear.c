@@ -1,0 +1,207 @@
+#include "model/solver/linear.h"
+
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
+                              struct cs_arena *arena, struct cs_error *error) {
+    const size_t n = system->view.n;
+    *linear = (struct cs_linear){.system = system};
+    linear->factors =
+        cs_arena_take_n(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
+    linear->mass = cs_arena_take_n(arena, n, sizeof(double), error);
+    linear->inverse = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
+    double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
+    for (int k = 0; k < 4; k++)
+        *vectors[k] = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+    return error->status ? error->status
+                         : cs_multigrid_init(&linear->multigrid, system, arena, error);
+}
+
+/* inverts the symmetric 3x3 block of particle i in place; false if it is not positive definite
+ */
+static bool invert(double *blocks, size_t n, size_t i) {
+    const double a = blocks[i], b = blocks[n + i], c = blocks[2 * n + i];
+    const double d = blocks[3 * n + i], e = blocks[4 * n + i], f = blocks[5 * n + i];
+    const double c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d;
+    const double minor = a * d - b * b, determinant = a * c00 + b * c01 + c * c02;
+    if (!(a > 0) || !(minor > 0) || !(determinant > 0))
+        return false;
+    const double inverse = 1 / determinant;
+    blocks[i] = c00 * inverse;
+    blocks[n + i] = c01 * inverse;
+    blocks[2 * n + i] = c02 * inverse;
+    blocks[3 * n + i] = (a * f - c * c) * inverse;
+    blocks[4 * n + i] = (b * c - a * e) * inverse;
+    blocks[5 * n + i] = minor * inverse;
+    return true;
+}
+
+static void set_mass(void *arg, size_t begin, size_t end) {
+    struct cs_linear *linear = arg;
+    const struct cs_system *system = linear->system;
+    const struct cs_forces *forces = &system->scene->forces;
+    for (size_t i = begin; i < end; i++) {
+        const double drag =
+            forces->drag *
+            (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
+        linear->mass[i] = linear->cm * system->mass[i] - linear->cd * drag;
+    }
+}
+
+/* how many blocks are not positive definite */
+static double invert_part(const void *arg, size_t begin, size_t end) {
+    const struct cs_linear *linear = arg;
+    double indefinite = 0;
+    for (size_t i = begin; i < end; i++)
+        indefinite += !invert(linear->inverse, linear->system->view.n, i);
+    return indefinite;
+}
+
+/* false: a diagonal block is not positive definite */
+static bool invert_blocks(struct cs_linear *linear) {
+    const size_t n = linear->system->view.n;
+    memset(linear->inverse, 0, 6 * n * sizeof(double));
+    for (size_t c = 0; c < 6; c += c ? 2 : 3)
+        memcpy(linear->inverse + c * n, linear->mass, n * sizeof(double));
+    cs_springs_factor_diagonal(&linear->system->springs, (uint32_t)n, linear->factors,
+                               linear->inverse);
+    return cs_vector_sum(n, invert_part, linear) == 0;
+}
+
+static double mean_mass(const struct cs_system *system) {
+    double sum = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        sum += system->mass[i];
+    return sum / system->view.n;
+}
+
+bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
+                     bool psd) {
+    const struct cs_system *system = linear->system;
+    const struct cs_view *view = &system->view;
+    const double stiffness = -ck * view->omega * view->omega - 2 * cd * view->delta;
+    linear->cm = cm, linear->cd = cd, linear->ck = ck;
+    linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * cm;
+    cs_springs_factor(&system->springs, view->n, x, cd, ck, psd, linear->factors);
+    cs_vector_share(view->n, set_mass, linear);
+    if (linear->stiff)
+        cs_multigrid_setup(&linear->multigrid, linear->factors, linear->mass,
+                           mean_mass(system) * (cm + stiffness));
+    /* an exact matrix shows in its blocks whether it is definite, mostly */
+    return (linear->stiff && psd) || invert_blocks(linear);
+}
+
+static void clear_pinned(const struct cs_system *system, double *p) {
+    for (size_t c = 0; c < 3; c++)
+        for (uint32_t k = 0; k < system->n_pinned; k++)
+            p[c * system->view.n + system->pinned[k]] = 0;
+}
+
+/* the solver between two arrays of 3-vectors */
+struct product {
+    const struct cs_linear *linear;
+    const double *from;
+    double *to;
+};
+
+static void mul_mass(void *arg, size_t begin, size_t end) {
+    const struct product *product = arg;
+    const double *mass = product->linear->mass;
+    const size_t n = product->linear->system->view.n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = begin; i < end; i++)
+            product->to[c * n + i] = mass[i] * product->from[c * n + i];
+}
+
+void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
+    const size_t n = linear->system->view.n;
+    struct product product = {linear, p, y};
+    cs_vector_share(n, mul_mass, &product);
+    cs_springs_mul_add(&linear->system->springs, (uint32_t)n, linear->factors, p, y);
+    clear_pinned(linear->system, y);
+}
+
+/* inverse blocks times what it comes from */
+static void mul_inverse(void *arg, size_t begin, size_t end) {
+    const struct product *product = arg;
+    const size_t n = product->linear->system->view.n;
+    const double *b = product->linear->inverse, *r = product->from;
+    double *restrict z = product->to;
+    for (size_t i = begin; i < end; i++) {
+        const double x = r[i], y = r[n + i], w = r[2 * n + i];
+        z[i] = b[i] * x + b[n + i] * y + b[2 * n + i] * w;
+        z[n + i] = b[n + i] * x + b[3 * n + i] * y + b[4 * n + i] * w;
+        z[2 * n + i] = b[2 * n + i] * x + b[4 * n + i] * y + b[5 * n + i] * w;
+    }
+}
+
+static void precondition(struct cs_linear *linear, const double *r, double norm, double *z) {
+    struct product product = {linear, r, z};
+    if (linear->stiff)
+        cs_multigrid_apply(&linear->multigrid, r, norm, z);
+    else
+        cs_vector_share(linear->system->view.n, mul_inverse, &product);
+}
+
+/* Single precision may be too little for a matrix: masses that differ by more than it has. */
+static void give_up_multigrid(struct cs_linear *linear) {
+    linear->stiff = false;
+    invert_blocks(linear);
+}
+
+enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
+                                   double *u, uint64_t *iterations, double *residual) {
+    const size_t n3 = 3 * (size_t)linear->system->view.n;
+    const uint64_t limit = 10 * (uint64_t)linear->system->view.n + 100;
+    double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
+
+    /* r = b - A u without the pinned rows */
+    clear_pinned(linear->system, u);
+    cs_linear_mul(linear, u, q);
+    memcpy(r, b, n3 * sizeof *r);
+    clear_pinned(linear->system, r);
+    const double size = sqrt(cs_vector_dot(n3, r, r)), goal = rtol * size;
+    *iterations = 0;
+    *residual = 0;
+    if (size == 0) {
+        memset(u, 0, n3 * sizeof *u);
+        return CS_LINEAR_DONE;
+    }
+    cs_vector_kernels.linear_sum(n3, 1, r, -1, q, r);
+    double norm = sqrt(cs_vector_dot(n3, r, r)), rz = 0;
+
+    bool fresh = true; // the direction does not lean on the last one
+    while (norm > goal) {
+        if (*iterations == limit) {
+            *residual = norm / size;
+            return CS_LINEAR_LIMIT;
+        }
+        precondition(linear, r, norm, z);
+        const double next = cs_vector_dot(n3, r, z);
+        if (linear->stiff && (*iterations == CS_LINEAR_PATIENCE || !(next > 0))) {
+            give_up_multigrid(linear);
+            fresh = true;
+            continue;
+        }
+        if (fresh)
+            memcpy(p, z, n3 * sizeof *p);
+        else
+            cs_vector_kernels.linear_sum(n3, 1, z, next / rz, p, p);
+        fresh = false;
+        rz = next;
+        cs_linear_mul(linear, p, q);
+        const double curvature = cs_vector_dot(n3, p, q);
+        if (!(curvature > 0))
+            return CS_LINEAR_INDEFINITE;
+        const double step = rz / curvature;
+        cs_vector_kernels.linear_sum(n3, 1, u, step, p, u);
+        cs_vector_kernels.linear_sum(n3, 1, r, -step, q, r);
+        norm = sqrt(cs_vector_dot(n3, r, r));
+        ++*iterations;
+    }
+    *residual = norm / size;
+    return CS_LINEAR_DONE;
+}

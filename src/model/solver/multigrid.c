@@ -1,0 +1,185 @@
+#include "model/solver/multigrid.h"
+
+#include "base/clones.h"
+#include "base/pool.h"
+#include "scene/shape.h"
+
+enum { ROW = 4096 }; /* particles of a mesh that are handled as a row; cells of a block */
+
+static bool is_worth_it(const struct cs_scene *scene) {
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        if (cs_shape_count(cs_scene_bodies(scene) + b) > CS_MULTIGRID_PARTICLES)
+            return true;
+    return false;
+}
+
+static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
+    const struct cs_body_range *range = system->bodies + body;
+    const struct cs_springs *springs = &system->springs;
+    uint32_t begin = 0;
+    while (begin < springs->n_runs && springs->runs[begin].body != body)
+        begin++;
+    uint32_t end = begin;
+    while (end < springs->n_runs && springs->runs[end].body == body)
+        end++;
+    return (struct cs_hierarchy){.first = range->first,
+                                 .count = range->count,
+                                 .columns = range->mesh ? ROW : range->columns,
+                                 .runs = springs->runs + begin,
+                                 .n_runs = end - begin};
+}
+
+enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
+                                 struct cs_arena *arena, struct cs_error *error) {
+    *multigrid = (struct cs_multigrid){.system = system};
+    if (!is_worth_it(system->scene))
+        return CS_OK;
+    const uint32_t n = system->scene->bodies.n;
+    multigrid->hierarchies = cs_arena_take_n(arena, n, sizeof *multigrid->hierarchies, error);
+    for (uint32_t b = 0; b < n && !error->status; b++) {
+        struct cs_hierarchy *hierarchy = multigrid->hierarchies + multigrid->n++;
+        *hierarchy = hierarchy_of(system, b);
+        (system->bodies[b].mesh ? cs_hierarchy_of_mesh : cs_hierarchy_of_grid)(hierarchy, arena,
+                                                                               error);
+    }
+    return error->status;
+}
+
+size_t cs_multigrid_bytes(const struct cs_scene *scene) {
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    size_t bytes = 0;
+    for (uint32_t b = 0; b < scene->bodies.n && is_worth_it(scene); b++) {
+        uint32_t n_springs = 0;
+        cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &n_springs);
+        bytes += sizeof(struct cs_hierarchy);
+        bytes += bodies[b].mesh.present
+                     ? cs_hierarchy_mesh_bytes((uint32_t)cs_shape_count(bodies + b), n_springs)
+                     : cs_hierarchy_grid_bytes((uint32_t)bodies[b].cloth.grid[0],
+                                               (uint32_t)bodies[b].cloth.grid[1]);
+    }
+    return bytes;
+}
+
+/* Numbers that go to and fro between particles and the first level's cells. */
+struct exchange {
+    const struct cs_multigrid *multigrid;
+    const struct cs_hierarchy *hierarchy;
+    const double *from;
+    double *to;
+    double gain;
+};
+
+static uint32_t rows_of_block(const struct cs_hierarchy *hierarchy) {
+    return (ROW + hierarchy->columns - 1) / hierarchy->columns;
+}
+
+static void run(struct exchange *exchange, void (*task)(void *exchange, uint32_t block)) {
+    const struct cs_hierarchy *hierarchy = exchange->hierarchy;
+    const uint32_t particles = rows_of_block(hierarchy) * hierarchy->columns;
+    cs_pool_run((hierarchy->count + particles - 1) / particles, task, exchange);
+}
+
+/* row k of a block: particles from `particle` on, in cells from `cell` on */
+struct row {
+    size_t particle, cell, count;
+};
+
+static struct row row_of(const struct cs_hierarchy *hierarchy, uint32_t block, uint32_t k) {
+    const size_t row = (size_t)block * rows_of_block(hierarchy) + k;
+    const size_t before = row * hierarchy->columns;
+    const size_t left = hierarchy->count > before ? hierarchy->count - before : 0;
+    return (struct row){hierarchy->first + before,
+                        hierarchy->levels->begin + row * hierarchy->levels->pitch,
+                        left < hierarchy->columns ? left : hierarchy->columns};
+}
+
+/* a mesh has blocks already on its first level */
+CS_CLONES static void load_mass(void *arg, uint32_t block) {
+    const struct exchange *exchange = arg;
+    const struct cs_hierarchy *hierarchy = exchange->hierarchy;
+    const struct cs_level *level = hierarchy->levels;
+    const double *inv_mass = exchange->multigrid->system->inv_mass;
+    for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
+        const struct row row = row_of(hierarchy, block, k);
+        for (size_t i = 0; i < row.count; i++) {
+            const double mass = exchange->gain * exchange->from[row.particle + i];
+            float *own = level->own + row.cell + i;
+            own[0] = inv_mass[row.particle + i] > 0 ? (float)mass : 0;
+            if (level->form == CS_LEVEL_LISTS)
+                own[3 * (size_t)level->n] = own[5 * (size_t)level->n] = own[0];
+        }
+    }
+}
+
+CS_CLONES static void load_r(void *arg, uint32_t block) {
+    const struct exchange *exchange = arg;
+    const struct cs_hierarchy *hierarchy = exchange->hierarchy;
+    const size_t n = exchange->multigrid->system->view.n;
+    for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
+        const struct row row = row_of(hierarchy, block, k);
+        for (size_t c = 0; c < 3; c++) {
+            const double *from = exchange->from + c * n + row.particle;
+            float *to = hierarchy->levels->r + c * hierarchy->levels->n + row.cell;
+            for (size_t i = 0; i < row.count; i++)
+                to[i] = (float)(exchange->gain * from[i]);
+        }
+    }
+}
+
+CS_CLONES static void store_x(void *arg, uint32_t block) {
+    const struct exchange *exchange = arg;
+    const struct cs_hierarchy *hierarchy = exchange->hierarchy;
+    const size_t n = exchange->multigrid->system->view.n;
+    for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
+        const struct row row = row_of(hierarchy, block, k);
+        for (size_t c = 0; c < 3; c++) {
+            const float *from = hierarchy->levels->x + c * hierarchy->levels->n + row.cell;
+            double *to = exchange->to + c * n + row.particle;
+            for (size_t i = 0; i < row.count; i++)
+                to[i] = exchange->gain * (double)from[i];
+        }
+    }
+}
+
+void cs_multigrid_setup(struct cs_multigrid *multigrid, const double *factors,
+                        const double *mass, double scale) {
+    multigrid->scale = scale;
+    for (uint32_t k = 0; k < multigrid->n; k++) {
+        struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
+        struct cs_level *level = hierarchy->levels;
+        struct exchange masses = {multigrid, hierarchy, mass, NULL, 1 / scale};
+        run(&masses, load_mass);
+        hierarchy->kind->load(hierarchy, factors, scale);
+        cs_level_invert(level);
+        for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
+            hierarchy->kind->coarsen(level, level + 1);
+            cs_level_invert(level + 1);
+        }
+    }
+}
+
+/* x of the first level for its r */
+static void cycle(struct cs_hierarchy *hierarchy) {
+    struct cs_level *first = hierarchy->levels, *last = first + hierarchy->n_levels - 1;
+    for (struct cs_level *level = first; level < last; level++) {
+        cs_level_smooth_down(level);
+        hierarchy->kind->restrict_r(level, level + 1);
+    }
+    cs_level_solve_diagonal(last);
+    for (struct cs_level *level = last; level-- > first;) {
+        hierarchy->kind->prolong_x(level + 1, level);
+        cs_level_smooth_up(level);
+    }
+}
+
+void cs_multigrid_apply(struct cs_multigrid *multigrid, const double *r, double size,
+                        double *z) {
+    for (uint32_t k = 0; k < multigrid->n; k++) {
+        struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
+        struct exchange in = {multigrid, hierarchy, r, NULL, 1 / size};
+        run(&in, load_r);
+        cycle(hierarchy);
+        struct exchange out = {multigrid, hierarchy, NULL, z, size / multigrid->scale};
+        run(&out, store_x);
+    }
+}

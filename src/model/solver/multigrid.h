@@ -1,0 +1,41 @@
+/* multigrid.h - an approximate inverse of the solver's matrix: aggregation multigrid in single
+ * precision, one V-cycle an application, body by body.
+ *
+ * It is symmetric and positive definite whatever the coarse levels do. With S the smoother (S A
+ * has its eigenvalues in (0, 2), see level.h, so that 2 S - S A S is positive) and C >= 0 the
+ * answer of the coarse levels, a cycle is 2 S - S A S + (I - S A) C (I - A S). Aggregates and
+ * their halved springs: hierarchy.h. */
+#ifndef CS_MULTIGRID_H
+#define CS_MULTIGRID_H
+
+#include "model/solver/hierarchy.h"
+#include "model/system/system.h"
+
+/* Scenes have levels where one body has more particles than this. */
+enum { CS_MULTIGRID_PARTICLES = 24 * 24 };
+
+struct cs_multigrid {
+    const struct cs_system *system;   /* borrowed */
+    struct cs_hierarchy *hierarchies; /* (n) one a body, or none */
+    uint32_t n;
+    double scale; /* what the matrix is divided by for single precision */
+};
+
+/* Makes the structure. CS_ERR_MEMORY. */
+enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
+                                 struct cs_arena *arena, struct cs_error *error);
+
+/* About how many bytes init takes for a scene; of a mesh an estimate. */
+size_t cs_multigrid_bytes(const struct cs_scene *scene);
+
+/* Makes the numbers from the springs' factors and the diagonal part mass (n) of the matrix;
+ * scale is about its largest number. */
+void cs_multigrid_setup(struct cs_multigrid *multigrid, const double *factors,
+                        const double *mass, double scale);
+
+/* z = one V-cycle for r. size is about that of r, so that its parts fit single precision. z is
+ * 0 where particles are pinned. */
+void cs_multigrid_apply(struct cs_multigrid *multigrid, const double *r, double size,
+                        double *z);
+
+#endif

@@ -1,0 +1,47 @@
+#include "model/solver/wave.h"
+
+#include "base/pool.h"
+
+enum { STRETCHES = 4 /* a thread, so that one that comes late leaves them to others */ };
+
+struct stretches {
+    const struct cs_wave *wave;
+    uint32_t n;
+};
+
+static uint32_t begin_of(const struct stretches *all, uint32_t stretch) {
+    return (uint32_t)((uint64_t)all->wave->n_blocks * stretch / all->n);
+}
+
+/* Loop k reaches block b at time b + k: its forerunner has just done b + 1. */
+static void run_stretch(void *arg, uint32_t stretch) {
+    const struct stretches *all = arg;
+    const struct cs_wave *wave = all->wave;
+    const uint32_t begin = begin_of(all, stretch), end = begin_of(all, stretch + 1);
+    const uint32_t left = stretch > 0, right = stretch + 1 < all->n;
+    for (uint32_t time = begin; time < end + wave->n_loops; time++)
+        for (uint32_t k = 0; k < wave->n_loops && begin + k <= time; k++) {
+            const uint32_t block = time - k;
+            if (block >= begin + k * left && block + k * right < end)
+                wave->step(wave->arg, k, block);
+        }
+}
+
+/* what two stretches have left between them */
+static void run_wedge(void *arg, uint32_t stretch) {
+    const struct stretches *all = arg;
+    const struct cs_wave *wave = all->wave;
+    const uint32_t middle = begin_of(all, stretch + 1);
+    for (uint32_t k = 1; k < wave->n_loops; k++)
+        for (uint32_t block = middle - k; block < middle + k; block++)
+            wave->step(wave->arg, k, block);
+}
+
+void cs_wave_run(const struct cs_wave *wave) {
+    const uint32_t threads = cs_pool_threads();
+    const uint32_t wanted = threads > 1 ? STRETCHES * threads : 1;
+    const uint32_t most = wave->n_blocks / (2 * wave->n_loops);
+    struct stretches all = {wave, wanted < most ? wanted : most > 1 ? most : 1};
+    cs_pool_run(all.n, run_stretch, &all);
+    cs_pool_run(all.n - 1, run_wedge, &all);
+}

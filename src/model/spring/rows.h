@@ -1,0 +1,206 @@
+/* rows.h - a run of springs in pieces: both ends' rows, and forces added back to them.
+ *
+ * A grid's rows are read and written where they lie. The ends of a mesh lie anywhere: their
+ * differences are gathered into rows on the stack, and the forces are added back one by one. */
+#ifndef CS_ROWS_H
+#define CS_ROWS_H
+
+#include "base/clones.h"
+#include "model/spring/springs.h"
+
+enum { PIECE = 256 }; /* springs whose forces wait in a buffer on the stack */
+enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
+_Static_assert(CS_LOT_MOST % PIECE == 0, "a lot is of whole pieces");
+
+/* What a kernel works on; what it has no use for stays NULL. */
+struct job {
+    const struct cs_springs *springs;
+    size_t n;
+    const double *x, *v, *dx, *dv, *factors;
+    double *to; /* what is added to */
+    uint32_t parts;
+};
+
+/* one piece of a run: both ends' rows of an array of 3-vectors, or, of a mesh, the rows of the
+ * differences in b* alone */
+struct ends {
+    const double *ax, *ay, *az, *bx, *by, *bz;
+};
+
+/* where the differences of a mesh's piece are gathered */
+struct gathered {
+    double rows[3][PIECE];
+};
+
+/* one piece: its springs, and what stands in for the run's constants in a run with lists */
+struct piece {
+    const struct cs_spring_run *run;
+    uint32_t start, count;
+    const double *lengths, *stiffnesses;
+};
+
+/* true where the run has something to add */
+typedef bool run_test(const struct job *job, const struct cs_spring_run *run);
+
+/* forces of one piece, in rows */
+typedef void piece_kernel(const struct job *job, const struct piece *piece, double *restrict fx,
+                          double *restrict fy, double *restrict fz);
+
+CS_INLINE struct piece piece_of(const struct cs_spring_run *run, uint32_t start) {
+    const uint32_t left = run->count - start;
+    return (struct piece){run, start, left < PIECE ? left : PIECE,
+                          run->lengths ? run->lengths + start : NULL,
+                          run->stiffnesses ? run->stiffnesses + start : NULL};
+}
+
+/* reversed: from end b to end a */
+CS_INLINE struct ends ends_of(const struct piece *piece, const double *p, size_t n,
+                              const bool reversed, struct gathered *gathered) {
+    const double *a = p + piece->run->a, *b = p + piece->run->b;
+    if (!piece->run->ends) {
+        a += piece->start;
+        b += piece->start;
+        return reversed ? (struct ends){b, b + n, b + 2 * n, a, a + n, a + 2 * n}
+                        : (struct ends){a, a + n, a + 2 * n, b, b + n, b + 2 * n};
+    }
+    const uint32_t *ends = piece->run->ends + 2 * (size_t)piece->start;
+    double(*rows)[PIECE] = gathered->rows;
+    for (size_t i = 0; i < piece->count; i++) {
+        size_t from = ends[2 * i + reversed], to = ends[2 * i + !reversed];
+        /* else they are loaded as vectors, only to be taken apart again */
+        __asm__("" : "+r"(from), "+r"(to));
+        rows[0][i] = b[to] - a[from];
+        rows[1][i] = b[n + to] - a[n + from];
+        rows[2][i] = b[2 * n + to] - a[2 * n + from];
+    }
+    return (struct ends){NULL, NULL, NULL, rows[0], rows[1], rows[2]};
+}
+
+struct difference {
+    double x, y, z;
+};
+
+/* between the ends of spring i of a piece */
+CS_INLINE struct difference across(struct ends e, size_t i, const bool listed) {
+    if (listed)
+        return (struct difference){e.bx[i], e.by[i], e.bz[i]};
+    return (struct difference){e.bx[i] - e.ax[i], e.by[i] - e.ay[i], e.bz[i] - e.az[i]};
+}
+
+CS_INLINE void add_row(size_t count, const double *restrict from, double *restrict to) {
+    for (size_t i = 0; i < count; i++)
+        to[i] += from[i];
+}
+
+CS_INLINE void take_row(size_t count, const double *restrict from, double *restrict to) {
+    for (size_t i = 0; i < count; i++)
+        to[i] -= from[i];
+}
+
+/* adds the buffered forces of a grid's piece at the first ends and takes them at the second */
+CS_INLINE void add_rows(const struct piece *piece, const double *fx, const double *fy,
+                        const double *fz, size_t n, bool at_a, bool at_b, double *f) {
+    double *a = f + piece->run->a + piece->start, *b = f + piece->run->b + piece->start;
+    if (at_a) {
+        add_row(piece->count, fx, a);
+        add_row(piece->count, fy, a + n);
+        add_row(piece->count, fz, a + 2 * n);
+    }
+    if (at_b) {
+        take_row(piece->count, fx, b);
+        take_row(piece->count, fy, b + n);
+        take_row(piece->count, fz, b + 2 * n);
+    }
+}
+
+/* The same for a mesh's piece, spring by spring. */
+CS_INLINE void scatter(const struct piece *piece, const double *fx, const double *fy,
+                       const double *fz, size_t n, double *f) {
+    double *a = f + piece->run->a, *b = f + piece->run->b;
+    const uint32_t *ends = piece->run->ends + 2 * (size_t)piece->start;
+    for (size_t i = 0; i < piece->count; i++) {
+        const size_t from = ends[2 * i], to = ends[2 * i + 1];
+        a[from] += fx[i];
+        a[n + from] += fy[i];
+        a[2 * n + from] += fz[i];
+        b[to] -= fx[i];
+        b[n + to] -= fy[i];
+        b[2 * n + to] -= fz[i];
+    }
+}
+
+/* the forces that wait, particle by particle, in the order of the springs; the run's body has
+ * particles in the block */
+CS_INLINE void gather(const struct cs_wait *wait, const struct cs_spring_run *run,
+                      const struct cs_block *block, size_t n, double *f) {
+    static const double sign[2] = {1, -1};
+    const uint32_t begin = block->begin > run->a ? block->begin - run->a : 0;
+    const uint32_t end = block->end - run->a < wait->n ? block->end - run->a : wait->n;
+    const double *fx = wait->forces, *fy = fx + run->count, *fz = fy + run->count;
+    double *to = f + run->a;
+    for (size_t i = begin; i < end; i++) {
+        double x = to[i], y = to[n + i], z = to[2 * n + i];
+        for (size_t k = wait->starts[i]; k < wait->starts[i + 1]; k++) {
+            const size_t spring = wait->around[k] >> 1;
+            const double s = sign[wait->around[k] & 1];
+            x += s * fx[spring];
+            y += s * fy[spring];
+            z += s * fz[spring];
+        }
+        to[i] = x;
+        to[n + i] = y;
+        to[2 * n + i] = z;
+    }
+}
+
+CS_INLINE bool is_in(const struct cs_block *block, uint32_t particle) {
+    return particle >= block->begin && particle < block->end;
+}
+
+/* adds what kernel makes of one run to the particles of a block */
+CS_INLINE void add_run(const struct job *job, const struct cs_block *block,
+                       const struct cs_spring_run *run, piece_kernel *kernel) {
+    double fx[PIECE], fy[PIECE], fz[PIECE];
+    const bool at_a = is_in(block, run->a), at_b = is_in(block, run->b);
+    if (!at_a && !at_b)
+        return;
+    for (uint32_t start = 0; start < run->count; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        kernel(job, &piece, fx, fy, fz);
+        if (run->ends)
+            scatter(&piece, fx, fy, fz, job->n, job->to);
+        else
+            add_rows(&piece, fx, fy, fz, job->n, at_a, at_b, job->to);
+    }
+}
+
+/* Adds what kernel makes of the runs to the particles of a block, in the order of the runs. */
+CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
+                        piece_kernel *kernel) {
+    const struct cs_springs *springs = job->springs;
+    for (uint32_t r = block->first_run; r < block->end_run; r++) {
+        const struct cs_spring_run *run = springs->runs + r;
+        if (!asks(job, run))
+            continue;
+        if (run->ends && springs->waits)
+            gather(springs->waits + r, run, block, job->n, job->to);
+        else
+            add_run(job, block, run, kernel);
+    }
+}
+
+/* Leaves what kernel makes of the springs of one lot to wait. */
+CS_INLINE void wait_lot(const struct job *job, const struct cs_lot *lot, run_test *asks,
+                        piece_kernel *kernel) {
+    const struct cs_spring_run *run = job->springs->runs + lot->run;
+    double *forces = job->springs->waits[lot->run].forces;
+    if (!asks(job, run))
+        return;
+    for (uint32_t start = lot->begin; start < lot->end; start += PIECE) {
+        const struct piece piece = piece_of(run, start);
+        double *fx = forces + start;
+        kernel(job, &piece, fx, fx + run->count, fx + 2 * (size_t)run->count);
+    }
+}
+
+#endif

@@ -1,0 +1,156 @@
+/* springs.h - springs as runs, and the kernels over them.
+ *
+ * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. The
+ * 12 neighbours of a grid are six runs a row, so kernels vectorise inside a run. A mesh has a
+ * run a kind, with lists of ends, lengths and stiffnesses; its ends are gathered into rows, and
+ * then the same kernels work on them. The order of runs, and of springs in a run, is the order
+ * of every sum, and the state hash depends on it.
+ */
+#ifndef CS_SPRINGS_H
+#define CS_SPRINGS_H
+
+#include "base/arena.h"
+#include "scene/scene.h"
+
+#include <clothsim/system.h>
+
+/* a grid's diagonals are shear springs, and so are the inner springs of a network */
+enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPRING_KINDS };
+
+struct cs_spring_run {
+    uint32_t a, b, count;
+    uint32_t kind; /* enum cs_spring_kind */
+    uint32_t body;
+    uint32_t first;   /* number of the run's first spring */
+    double stiffness; /* N/m; with lists: the law's, N/m or N, that they were made of */
+    double length;    /* rest length in m */
+    double damping;   /* N s/m */
+    bool axial;       /* damping along the spring only */
+
+    /* lists of a mesh's run, or all NULL: spring i joins a + ends[2 i] and b + ends[2 i + 1] */
+    const uint32_t *ends;                /* (count, 2) */
+    const double *lengths, *stiffnesses; /* (count) m, N/m, instead of those above */
+};
+
+/* Ends and law of spring i of a run, of either kind. */
+static inline uint32_t cs_spring_a(const struct cs_spring_run *run, uint32_t i) {
+    return run->a + (run->ends ? run->ends[2 * (size_t)i] : i);
+}
+static inline uint32_t cs_spring_b(const struct cs_spring_run *run, uint32_t i) {
+    return run->b + (run->ends ? run->ends[2 * (size_t)i + 1] : i);
+}
+static inline double cs_spring_length(const struct cs_spring_run *run, uint32_t i) {
+    return run->lengths ? run->lengths[i] : run->length;
+}
+static inline double cs_spring_stiffness(const struct cs_spring_run *run, uint32_t i) {
+    return run->stiffnesses ? run->stiffnesses[i] : run->stiffness;
+}
+
+/* Particles [begin, end) to which one thread adds forces: whole rows of grids, any part of a
+ * mesh. Runs [first_run, end_run) hold all that have an end there, and some that have none. A
+ * row of springs across the border of two blocks is computed for both. */
+struct cs_block {
+    uint32_t begin, end, first_run, end_run;
+};
+
+/* Springs [begin, end) of a mesh's run whose forces one thread computes. As their ends lie
+ * anywhere, each force waits in its place, and a thread adds to a particle of its block what
+ * waits for it, in the order of the springs. */
+struct cs_lot {
+    uint32_t run, begin, end;
+};
+enum { CS_LOT_MOST = 2048 };
+
+/* Of a mesh's run; all 0 of a grid's. At particle i of the body, 0..n-1, end the springs
+ * around[starts[i]..starts[i + 1]) >> 1 of the run, ascending; the last bit is 1 at their
+ * second ends. */
+struct cs_wait {
+    uint32_t n;
+    const uint32_t *starts, *around; /* (n + 1), (2 count) */
+    double *forces;                  /* (3, count) */
+};
+
+struct cs_springs {
+    const struct cs_spring_run *runs;
+    uint32_t n_runs, n; /* runs; springs */
+
+    /* how threads share them (shares.h); with one thread NULL, and one block of everything */
+    const struct cs_block *blocks; /* (n_blocks) ascending */
+    uint32_t n_blocks;
+    const struct cs_lot *lots;
+    uint32_t n_lots;
+    const struct cs_wait *waits; /* (n_runs); NULL without meshes too */
+    double *energies;            /* (n_runs) work of cs_springs_energy */
+};
+
+static inline struct cs_block cs_springs_block(const struct cs_springs *springs, uint32_t n,
+                                               uint32_t block) {
+    return springs->blocks ? springs->blocks[block]
+                           : (struct cs_block){0, n, 0, springs->n_runs};
+}
+
+/* Runs of one body whose particles start at `first`, appended at runs[0..]: of a cloth's rows,
+ * or one a kind of a mesh. lists takes the lengths and stiffnesses of a mesh, 2 doubles a
+ * spring. Both may be NULL to count. Kinds of stiffness 0 have no springs, nor has a
+ * body that shape matching holds instead. Returns the number of runs and adds the springs to
+ * *n_springs. */
+uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
+                            struct cs_spring_run *runs, double *lists, uint32_t *n_springs);
+
+/* Sets a run's stiffness, and the list of them if it has one, by the law that its body has now;
+ * the lengths are there. A list that is right already is left alone. */
+void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
+
+/* Adds the spring and damper forces of the chosen parts to f (3,n) at the particles of one of
+ * the blocks, after cs_springs_wait_force with the same arguments.
+ *
+ * For a spring of rest length L, stiffness k and damping d, with unit direction u from end a to
+ * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial
+ * damping; flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis,
+ * eq. 5.10). The smallest normal double is added to the squared length before the root, so that
+ * two particles in one place feel no spring force instead of dividing by zero. */
+void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
+                          const double *v, uint32_t parts, const struct cs_block *block,
+                          double *f);
+/* By all threads, before any block; does nothing where they do not share meshes. */
+void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n, const double *x,
+                           const double *v, uint32_t parts);
+
+/* Smallest rest length in m; 0 without springs. */
+double cs_springs_shortest(const struct cs_springs *springs);
+
+/* Elastic energy in J of the springs of `parts`. */
+double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
+                         uint32_t parts);
+
+/* Elastic energy in J that all springs would hold at twice their rest lengths. */
+double cs_springs_energy_at_twice(const struct cs_springs *springs);
+
+/* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df at the particles of a block; dx or dv
+ * may be NULL. After cs_springs_wait_jvp, as above. */
+void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
+                        const double *v, uint32_t parts, const double *dx, const double *dv,
+                        const struct cs_block *block, double *df);
+void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
+                         const double *v, uint32_t parts, const double *dx, const double *dv);
+
+/* Adds every particle's own blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
+ * The position derivative of axial damping is left out, as in the solver's matrix. */
+void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const double *x,
+                             double *kxx, double *dvv);
+
+/* The springs' part of the matrix cd df/dv + ck df/dx in factored form, for cd and ck at most 0
+ * as in implicit methods: A p = sum over springs of (s I + w w^T)(p_a - p_b), added at a and
+ * taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz, each (count).
+ * With psd the transverse part of a compressed spring is dropped (Teran et al. 2005); else s
+ * may be negative. The position derivative of axial damping is left out. */
+void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
+                       double ck, bool psd, double *factors);
+/* By all threads. */
+void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
+                        const double *p, double *y);
+/* Own blocks (6,n) of that matrix, added. */
+void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
+                                const double *factors, double *blocks);
+
+#endif

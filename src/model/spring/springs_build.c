@@ -1,0 +1,143 @@
+/* Springs of bodies: the 12 neighbours of a grid, edges and networks of a mesh. */
+#include "mesh/trimesh.h"
+#include "model/spring/springs.h"
+
+#include <math.h>
+
+/* of a body's springs of one kind: in N/m or N */
+static double stiffness_of(const struct cs_body *body, uint32_t kind) {
+    const struct cs_spring_law *law = &body->springs;
+    const double surface = body->network.present ? body->network.surface : 1;
+    if (kind == CS_SPRING_BEND)
+        return law->bend;
+    /* the shear springs of a mesh are those of its network */
+    if (body->mesh.present)
+        return kind == CS_SPRING_STRETCH ? surface * law->stretch : law->stretch;
+    return kind == CS_SPRING_STRETCH ? law->stretch : law->shear;
+}
+
+void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body) {
+    const double k = stiffness_of(body, run->kind);
+    const bool by_length = body->springs.stiffness_unit == CS_STIFFNESS_N;
+    if (!run->ends) {
+        run->stiffness = by_length ? k / run->length : k;
+        return;
+    }
+    /* the list belongs to the system; kernels only read it */
+    double *list = (double *)run->stiffnesses;
+    for (uint32_t i = 0; run->stiffness != k && i < run->count; i++)
+        list[i] = by_length ? k / run->lengths[i] : k;
+    run->stiffness = k;
+}
+
+static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint32_t first,
+                          struct cs_spring_run *runs, uint32_t *n_springs) {
+    const struct cs_spring_law *law = &body->springs;
+    const uint32_t columns = (uint32_t)body->cloth.grid[0],
+                   rows = (uint32_t)body->cloth.grid[1];
+    const double dx = columns > 1 ? body->cloth.size[0] / (columns - 1) : 0;
+    const double dy = rows > 1 ? body->cloth.size[1] / (rows - 1) : 0;
+
+    /* the six forward directions: steps right and down */
+    static const struct {
+        int32_t right, down;
+        uint32_t kind;
+    } forward[6] = {{1, 0, CS_SPRING_STRETCH}, {0, 1, CS_SPRING_STRETCH},
+                    {1, 1, CS_SPRING_SHEAR},   {-1, 1, CS_SPRING_SHEAR},
+                    {2, 0, CS_SPRING_BEND},    {0, 2, CS_SPRING_BEND}};
+
+    uint32_t n_runs = 0;
+    for (uint32_t i = 0; i < rows; i++)
+        for (uint32_t d = 0; d < 6; d++) {
+            const int32_t right = forward[d].right, down = forward[d].down;
+            const uint32_t reach = (uint32_t)(right < 0 ? -right : right);
+            if (i + (uint32_t)down >= rows || reach >= columns ||
+                stiffness_of(body, forward[d].kind) == 0)
+                continue;
+            const uint32_t row = first + i * columns, below = row + (uint32_t)down * columns;
+            const double length = sqrt(right * dx * (right * dx) + down * dy * (down * dy));
+            if (runs) {
+                runs[n_runs] = (struct cs_spring_run){
+                    .a = row + (right < 0 ? reach : 0),
+                    .b = below + (right > 0 ? reach : 0),
+                    .count = columns - reach,
+                    .kind = forward[d].kind,
+                    .body = body_index,
+                    .first = *n_springs,
+                    .length = length,
+                    .damping = law->damping,
+                    .axial = law->damping_model == CS_DAMPING_AXIAL,
+                };
+                cs_springs_stiffen(runs + n_runs, body);
+            }
+            n_runs++;
+            *n_springs += columns - reach;
+        }
+    return n_runs;
+}
+
+/* a run with lists; nothing where the stiffness is 0 */
+static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_body *body,
+                           struct cs_spring_run *run, double *lists, uint32_t *n_springs) {
+    const struct cs_trimesh *mesh = body->mesh.geometry;
+    if (like->count == 0 || stiffness_of(body, like->kind) == 0)
+        return 0;
+    *n_springs += like->count;
+    if (!run)
+        return 1;
+    double *lengths = lists;
+    *run = *like;
+    run->lengths = lengths;
+    run->stiffnesses = lists + like->count;
+    for (uint32_t i = 0; i < like->count; i++) {
+        double squared = 0;
+        for (size_t c = 0; c < 3; c++) {
+            const double d = mesh->places[c * mesh->n + like->ends[2 * (size_t)i + 1]] -
+                             mesh->places[c * mesh->n + like->ends[2 * (size_t)i]];
+            squared += d * d;
+        }
+        lengths[i] = sqrt(squared);
+    }
+    cs_springs_stiffen(run, body);
+    return 1;
+}
+
+static uint32_t mesh_runs(const struct cs_body *body, uint32_t body_index, uint32_t first,
+                          struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
+    const struct cs_spring_law *law = &body->springs;
+    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const struct {
+        uint32_t kind, count;
+        const uint32_t *ends;
+    } kinds[CS_SPRING_KINDS] = {
+        {CS_SPRING_STRETCH, mesh->n_edges, mesh->edges},
+        {CS_SPRING_SHEAR, mesh->n_inner, mesh->inner},
+        {CS_SPRING_BEND, mesh->n_hinges, mesh->hinges},
+    };
+    uint32_t n_runs = 0, before = *n_springs;
+    for (uint32_t k = 0; k < CS_SPRING_KINDS; k++) {
+        const struct cs_spring_run like = {
+            .a = first,
+            .b = first,
+            .count = kinds[k].count,
+            .kind = kinds[k].kind,
+            .body = body_index,
+            .first = *n_springs,
+            .damping = law->damping,
+            .axial = law->damping_model == CS_DAMPING_AXIAL,
+            .ends = kinds[k].ends,
+        };
+        n_runs +=
+            add_listed(&like, body, runs ? runs + n_runs : NULL,
+                       runs ? lists + 2 * (size_t)(*n_springs - before) : NULL, n_springs);
+    }
+    return n_runs;
+}
+
+uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
+                            struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
+    if (cs_scene_springs_left_out(body))
+        return 0;
+    return body->mesh.present ? mesh_runs(body, body_index, first, runs, lists, n_springs)
+                              : grid_runs(body, body_index, first, runs, n_springs);
+}

@@ -1,0 +1,49 @@
+/* feature.h - what a system may have or leave out, and what was decided for one. */
+#ifndef CS_FEATURE_H
+#define CS_FEATURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* X(name, what is printed) in the order of printing; each is a feature that may be absent */
+#define CS_FEATURE_LIST(X)                                                                     \
+    X(MESHES, "meshes")                                                                        \
+    X(SPRINGS, "springs")                                                                      \
+    X(DAMPING, "spring damping")                                                               \
+    X(GRAVITY, "gravity")                                                                      \
+    X(DRAG, "drag")                                                                            \
+    X(WIND, "wind")                                                                            \
+    X(AREA, "area shares")                                                                     \
+    X(VELOCITY_LOSS, "velocity loss")                                                          \
+    X(CONTACT, "contact")                                                                      \
+    X(STRAIN_LIMIT, "strain limit")                                                            \
+    X(EVENTS, "events")                                                                        \
+    X(PRODS, "prods")                                                                          \
+    X(SPRING_LIST, "spring list")                                                              \
+    X(CLUSTERS, "clusters")                                                                    \
+    X(SOLVER, "linear solver")                                                                 \
+    X(RENDER, "renderer")                                                                      \
+    X(THREADS, "threads")
+
+enum cs_feature {
+#define X(name, text) CS_FEATURE_##name,
+    CS_FEATURE_LIST(X)
+#undef X
+        CS_FEATURES
+};
+
+struct cs_plan_row {
+    bool built;
+    size_t bytes;    /* of arrays that exist for this feature alone */
+    const char *why; /* why it is built, or why it is left out */
+};
+
+struct cs_plan {
+    uint32_t n, n_springs, n_bodies;
+    uint32_t n_surface, n_inner; /* springs on the surfaces of meshes, of networks in them */
+    size_t state_bytes;          /* state, masses, start and ranges of bodies */
+    struct cs_plan_row rows[CS_FEATURES];
+};
+
+#endif

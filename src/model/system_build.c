@@ -1,0 +1,209 @@
+/* A scene made into arrays: counted, taken from one arena, filled, by the plan. */
+#include "model/system_build.h"
+
+#include "model/event/events.h"
+#include "model/force/bounds.h"
+#include "model/force/terms.h"
+#include "model/shares.h"
+#include "model/system/clusters.h"
+#include "scene/shape.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_built(const struct cs_plan *plan, enum cs_feature feature) {
+    return plan->rows[feature].built;
+}
+
+/* doubles from the system's arena; NULL with the error set */
+static double *take(struct cs_system *system, size_t n, struct cs_error *error) {
+    return cs_arena_take_n(&system->arena, n, sizeof(double), error);
+}
+
+static void build_springs(struct cs_system *system, struct cs_error *error) {
+    const struct cs_body *bodies = cs_scene_bodies(system->scene);
+    uint32_t n_runs = 0, n_springs = 0, n_listed = 0;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
+        n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL,
+                                     bodies[b].mesh.present ? &n_listed : &n_springs);
+    struct cs_spring_run *runs = cs_arena_take_n(&system->arena, n_runs, sizeof *runs, error);
+    double *lists = take(system, 2 * (size_t)n_listed, error);
+    if (error->status)
+        return;
+    n_runs = n_springs = 0;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const uint32_t before = n_springs;
+        n_runs += cs_springs_of_body(bodies + b, b, system->bodies[b].first, runs + n_runs,
+                                     lists, &n_springs);
+        if (bodies[b].mesh.present)
+            lists += 2 * (size_t)(n_springs - before);
+    }
+    system->springs = (struct cs_springs){.runs = runs, .n_runs = n_runs, .n = n_springs};
+}
+
+/* the runs written out, for methods that want springs one by one */
+static void build_spring_list(struct cs_system *system, struct cs_error *error) {
+    const uint32_t n = system->springs.n;
+    uint32_t *ends = cs_arena_take_n(&system->arena, 2 * (size_t)n, sizeof *ends, error);
+    double *length = take(system, n, error), *stiffness = take(system, n, error);
+    double *damping = take(system, n, error);
+    uint32_t *kind = cs_arena_take_n(&system->arena, n, sizeof *kind, error);
+    uint8_t *axial = cs_arena_take_n(&system->arena, n, sizeof *axial, error);
+    if (error->status)
+        return;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const size_t s = (size_t)run->first + i;
+            ends[2 * s] = cs_spring_a(run, i);
+            ends[2 * s + 1] = cs_spring_b(run, i);
+            length[s] = cs_spring_length(run, i);
+            stiffness[s] = cs_spring_stiffness(run, i);
+            damping[s] = run->damping;
+            kind[s] = CS_PART_STRETCH << run->kind;
+            axial[s] = run->axial;
+        }
+    }
+    system->view.n_springs = n;
+    system->view.ends = ends;
+    system->view.length = length;
+    system->view.stiffness = stiffness;
+    system->view.damping = damping;
+    system->view.kind = kind;
+    system->view.axial = axial;
+}
+
+static void fill_area(struct cs_system *system) {
+    const struct cs_body *bodies = cs_scene_bodies(system->scene);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        for (uint32_t i = 0; i < range->count; i++)
+            system->area[range->first + i] = cs_shape_area(bodies + b, i);
+    }
+}
+
+/* v += spin x (x - centre) where the particle is free */
+static void spin_body(struct cs_system *system, const struct cs_body *body,
+                      const struct cs_body_range *range, const bool *pinned) {
+    const double *w = body->mesh.present ? body->mesh.spin : body->cloth.spin;
+    const double *centre = cs_shape_placement(body)->translate;
+    const size_t n = system->view.n;
+    if (w[0] == 0 && w[1] == 0 && w[2] == 0)
+        return;
+    for (size_t i = range->first; i < (size_t)range->first + range->count; i++)
+        for (size_t c = 0; c < 3 && !pinned[i]; c++) {
+            const size_t d = (c + 1) % 3, e = (c + 2) % 3;
+            system->state[(3 + c) * n + i] += w[d] * (system->state[e * n + i] - centre[e]) -
+                                              w[e] * (system->state[d * n + i] - centre[d]);
+        }
+}
+
+static void fill_state(struct cs_system *system, bool *pinned) {
+    const struct cs_body *bodies = cs_scene_bodies(system->scene);
+    const uint32_t n = system->view.n;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        const double *velocity = cs_shape_velocity(bodies + b);
+        cs_shape_place(bodies + b, n, range->first, system->state);
+        cs_shape_pin(bodies + b, n, range->first, system->state, pinned + range->first);
+        for (uint32_t i = range->first; i < range->first + range->count; i++)
+            for (size_t c = 0; c < 3; c++)
+                system->state[(3 + c) * n + i] = pinned[i] ? 0 : velocity[c];
+        spin_body(system, bodies + b, range, pinned);
+    }
+}
+
+static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_error *error) {
+    const uint32_t n = system->view.n;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n; i++)
+        count += pinned[i];
+    system->pinned = cs_arena_take_n(&system->arena, count, sizeof *system->pinned, error);
+    if (!system->pinned)
+        return;
+    for (uint32_t i = 0; i < n; i++) {
+        system->inv_mass[i] = pinned[i] ? 0 : 1 / system->mass[i];
+        if (pinned[i])
+            system->pinned[system->n_pinned++] = i;
+    }
+}
+
+static void choose_terms(struct cs_system *system) {
+    for (uint32_t k = 0; k < CS_TERMS; k++)
+        if (is_built(&system->plan, cs_terms[k]->feature))
+            system->terms[system->n_terms++] = cs_terms[k];
+}
+
+static void take_arrays(struct cs_system *system, struct cs_error *error) {
+    const size_t n = system->view.n;
+    uint32_t first = 0;
+    system->bodies =
+        cs_arena_take_n(&system->arena, system->scene->bodies.n, sizeof *system->bodies, error);
+    system->mass = take(system, n, error);
+    system->inv_mass = take(system, n, error);
+    system->state = take(system, 6 * n, error);
+    system->start = take(system, 3 * n, error);
+    if (is_built(&system->plan, CS_FEATURE_AREA))
+        system->area = take(system, n, error);
+    if (is_built(&system->plan, CS_FEATURE_WIND))
+        system->normals = take(system, 3 * n, error);
+    if (error->status)
+        return;
+    system->view.mass = system->mass;
+    system->view.inv_mass = system->inv_mass;
+    system->view.start = system->start;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body *body = cs_scene_bodies(system->scene) + b;
+        system->bodies[b] = (struct cs_body_range){
+            first, (uint32_t)cs_shape_count(body), (uint32_t)body->cloth.grid[0],
+            (uint32_t)body->cloth.grid[1], body->mesh.geometry};
+        first += system->bodies[b].count;
+    }
+}
+
+static void build(struct cs_system *system, void *work, struct cs_error *error) {
+    take_arrays(system, error);
+    if (!error->status && is_built(&system->plan, CS_FEATURE_SPRINGS))
+        build_springs(system, error);
+    if (!error->status)
+        cs_shares_build(system, error);
+    if (!error->status && is_built(&system->plan, CS_FEATURE_SPRING_LIST))
+        build_spring_list(system, error);
+    if (!error->status && is_built(&system->plan, CS_FEATURE_CLUSTERS))
+        cs_clusters_build(system, error);
+    if (error->status)
+        return;
+    bool *pinned = work;
+    cs_system_weigh(system);
+    if (system->area)
+        fill_area(system);
+    fill_state(system, pinned);
+    fill_pins(system, pinned, error);
+    if (error->status)
+        return;
+    memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
+    choose_terms(system);
+    if (!is_built(&system->plan, CS_FEATURE_EVENTS))
+        cs_bounds_set(system, work);
+    else if (!cs_events_build(system, error))
+        cs_events_set_bounds(system, work);
+}
+
+enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *scene,
+                               const struct cs_plan *plan, struct cs_error *error) {
+    *system = (struct cs_system){.scene = scene, .plan = *plan};
+    system->view.size = sizeof system->view;
+    system->view.n = plan->n;
+
+    /* pin marks first, then the row sums of cs_bounds_set */
+    void *work = calloc(plan->n, 2 * sizeof(double));
+    if (!work)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for %u particles", plan->n);
+    else
+        build(system, work, error);
+    free(work);
+    if (error->status)
+        cs_system_finish(system);
+    return error->status;
+}

@@ -1,0 +1,255 @@
+#include "scene/event_check.h"
+
+#include "base/options.h"
+#include "scene/event_key.h"
+#include "scene/shape.h"
+#include "scene/viewpoint.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define EVENTS_MAX 4096
+/* between two times of one event: far above the rounding of times, far below any frame */
+#define APART 1e-6
+
+/* the event that is looked at, for messages */
+struct look {
+    struct cs_scene *scene;
+    uint32_t number;
+    char *path; /* CS_TEXT_MAX bytes of the caller */
+    struct cs_error *error;
+};
+
+/* part: ".impact.direction", or "" for the event itself */
+static enum cs_status refuse(const struct look *at, const char *part, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static enum cs_status refuse(const struct look *at, const char *part, const char *format, ...) {
+    char message[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    snprintf(at->path, CS_TEXT_MAX, "events[%u]%s", at->number, part);
+    return cs_fail(at->error, CS_ERR_SCENE, "%s", message);
+}
+
+static enum cs_status make_unit(const struct look *at, const char *part, double v[3]) {
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (length < 1e-12)
+        return refuse(at, part, "the zero vector has no direction");
+    /* one that is unit keeps its bits, as in cs_scene_check */
+    for (int c = 0; c < 3 && fabs(length - 1) > 1e-14; c++)
+        v[c] /= length;
+    return CS_OK;
+}
+
+static double begin_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->from : event->at;
+}
+static double end_of(const struct cs_event *event) {
+    return isnan(event->at) ? event->to : event->at;
+}
+
+static enum cs_status check_times(const struct look *at, const struct cs_event *event) {
+    const bool once = !isnan(event->at), from = !isnan(event->from), to = !isnan(event->to);
+    if (once ? from || to : !from || !to)
+        return refuse(at, "", "found %s, expected at, or from and to",
+                      once   ? "at beside from or to"
+                      : from ? "from alone"
+                      : to   ? "to alone"
+                             : "no time");
+    if (!once && !(event->to >= event->from + APART))
+        return refuse(at, ".to", "%.9g s is not after from = %.9g s", event->to, event->from);
+    if (event->release.present && !once)
+        return refuse(at, ".release", "happens at once, expected at");
+    return CS_OK;
+}
+
+static enum cs_status check_particles(const struct look *at, const char *part,
+                                      const struct cs_aim *aim, uint32_t body) {
+    const struct cs_pin *pins = aim->particles.items;
+    char place[64], fault[160];
+    for (uint32_t p = 0; p < aim->particles.n; p++) {
+        snprintf(place, sizeof place, "%s.particles[%u]", part, p);
+        if (cs_shape_pin_fault(cs_scene_bodies(at->scene) + body, pins + p, fault,
+                               sizeof fault))
+            return refuse(at, place, "body %u: %s", body, fault);
+    }
+    return CS_OK;
+}
+
+static enum cs_status check_aim(const struct look *at, const char *part,
+                                const struct cs_aim *aim) {
+    const uint32_t n = at->scene->bodies.n;
+    char place[64];
+    snprintf(place, sizeof place, "%s.body", part);
+    if (aim->body >= n)
+        return refuse(at, place, "body %lld does not exist (0..%u)", (long long)aim->body,
+                      n - 1);
+    for (uint32_t b = 0; b < n; b++)
+        if ((aim->body < 0 || aim->body == b) && check_particles(at, part, aim, b))
+            return at->error->status;
+    return CS_OK;
+}
+
+/* the scene's wind, or that of an event before this one, has a direction */
+static bool has_direction(const struct look *at) {
+    const struct cs_event *events = cs_scene_events(at->scene);
+    bool has = at->scene->forces.wind.present;
+    for (uint32_t k = 0; k < at->scene->events.n; k++)
+        has |= events[k].wind.present && !isnan(events[k].wind.direction[0]) &&
+               begin_of(events + k) < begin_of(events + at->number);
+    return has;
+}
+
+static enum cs_status check_wind(const struct look *at, struct cs_gust *gust) {
+    const bool turns = !isnan(gust->direction[0]);
+    if (!turns && isnan(gust->strength))
+        return refuse(at, ".wind", "found neither direction nor strength");
+    if (!turns && !has_direction(at))
+        return refuse(at, ".wind", "no direction, and there was no wind before");
+    return turns ? make_unit(at, ".wind.direction", gust->direction) : CS_OK;
+}
+
+/* what a viewpoint leaves out is the camera's and the picture's */
+static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint *of) {
+    const struct cs_camera *camera = &scene->camera;
+    if (isnan(of->eye[0]))
+        memcpy(of->eye, camera->eye, sizeof of->eye);
+    if (isnan(of->target[0]))
+        memcpy(of->target, camera->target, sizeof of->target);
+    if (isnan(of->up[0]))
+        memcpy(of->up, camera->up, sizeof of->up);
+    if (isnan(of->fov))
+        of->fov = camera->fov;
+    if (isnan(of->aspect))
+        of->aspect = (double)scene->render.size[0] / (double)scene->render.size[1];
+}
+
+/* a blow has a duration, a wind looks anew */
+static enum cs_status check_lengths(const struct look *at, bool once, struct cs_prod *prod) {
+    double *used = once ? &prod->duration : &prod->refresh;
+    const double other = once ? prod->refresh : prod->duration;
+    if (!isnan(other))
+        return once ? refuse(at, ".prod.refresh", "a blow is seen once, expected from and to")
+                    : refuse(at, ".prod.duration", "it lasts until to, expected at");
+    if (isnan(*used))
+        *used = once ? 1.0 / 60 : 60;
+    return CS_OK;
+}
+
+static enum cs_status check_prod(const struct look *at, bool once, struct cs_prod *prod) {
+    const struct cs_viewpoint *from = &prod->viewpoint;
+    const double *rectangle = prod->rectangle;
+    const char *key, *fault;
+    char place[64];
+    complete_viewpoint(at->scene, &prod->viewpoint);
+    fault = cs_viewpoint_fault(from->eye, from->target, from->up, &key);
+    snprintf(place, sizeof place, ".prod.viewpoint.%s", fault ? key : "");
+    if (fault)
+        return refuse(at, place, "%s", fault);
+    if (!(rectangle[0] < rectangle[2]))
+        return refuse(at, ".prod.rectangle", "left = %.9g is not below right = %.9g",
+                      rectangle[0], rectangle[2]);
+    if (!(rectangle[1] < rectangle[3]))
+        return refuse(at, ".prod.rectangle", "top = %.9g is not below bottom = %.9g",
+                      rectangle[1], rectangle[3]);
+    if (isnan(prod->force))
+        return refuse(at, ".prod", "found no force");
+    if (prod->body >= at->scene->bodies.n)
+        return refuse(at, ".prod.body", "body %lld does not exist (0..%u)",
+                      (long long)prod->body, at->scene->bodies.n - 1);
+    return check_lengths(at, once, prod);
+}
+
+static enum cs_status check_ramp(const struct look *at, const struct cs_event *event) {
+    const struct cs_ramp *ramp = &event->ramp;
+    struct cs_event_key key;
+    struct cs_error said = {0};
+    if (cs_event_key_find(at->scene, ramp->key, &key, &said))
+        return refuse(at, ".ramp.key", "%s", said.message);
+    if (isnan(ramp->value))
+        return refuse(at, ".ramp", "found no value, expected one for %s", ramp->key);
+    /* its message starts with the ": " behind no place */
+    if (cs_option_check_range(key.row, ramp->value, -1, "", CS_ERR_SCENE, &said))
+        return refuse(at, ".ramp.value", "%s", said.message + 2);
+    /* methods take a mass for constant within an advance */
+    if (cs_event_weighs(event) && isnan(event->at))
+        return refuse(at, "", "found from and to, expected at: masses change at once");
+    return CS_OK;
+}
+
+static enum cs_status check_grab(const struct look *at, const struct cs_event *event) {
+    const struct cs_grab *grab = &event->grab;
+    const struct cs_path_point *path = grab->path.items;
+    double before = begin_of(event);
+    if (grab->path.n == 0)
+        return refuse(at, ".grab.path", "found no point, expected at least one");
+    for (uint32_t p = 0; p < grab->path.n; p++) {
+        char place[64];
+        snprintf(place, sizeof place, ".grab.path[%u]", p);
+        if (isnan(path[p].at))
+            return refuse(at, place, "found no time, expected at");
+        if (!(path[p].at >= before + APART))
+            return refuse(at, place, "at = %.9g s is not after %.9g s", path[p].at, before);
+        before = path[p].at;
+        if (before > event->to)
+            return refuse(at, place, "at = %.9g s is after the end, to = %.9g s", before,
+                          event->to);
+    }
+    return check_aim(at, ".grab", &grab->aim);
+}
+
+/* the key whose value an event moves, or NULL */
+static const char *moved_key(const struct cs_event *event) {
+    return event->ramp.present   ? event->ramp.key
+           : event->wind.present ? "forces.wind.strength"
+                                 : NULL;
+}
+
+static enum cs_status check_overlap(const struct look *at, const struct cs_event *event) {
+    const struct cs_event *events = cs_scene_events(at->scene);
+    const char *key = moved_key(event);
+    for (uint32_t k = 0; key && k < at->number; k++) {
+        const char *other = moved_key(events + k);
+        if (other && !strcmp(key, other) && begin_of(event) < end_of(events + k) &&
+            begin_of(events + k) < end_of(event))
+            return refuse(at, "", "changes %s while events[%u] does", key, k);
+    }
+    return CS_OK;
+}
+
+static enum cs_status check_event(const struct look *at, struct cs_event *event) {
+    if (check_times(at, event) || check_overlap(at, event))
+        return at->error->status;
+    if (event->impact.present)
+        return make_unit(at, ".impact.direction", event->impact.direction)
+                   ? at->error->status
+                   : check_aim(at, ".impact", &event->impact.aim);
+    if (event->wind.present)
+        return check_wind(at, &event->wind);
+    if (event->prod.present)
+        return check_prod(at, !isnan(event->at), &event->prod);
+    if (event->ramp.present)
+        return check_ramp(at, event);
+    if (event->grab.present)
+        return check_grab(at, event);
+    return event->pin.present ? check_aim(at, ".pin", &event->pin.aim)
+                              : check_aim(at, ".release", &event->release.aim);
+}
+
+enum cs_status cs_events_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {
+    struct cs_event *events = scene->events.items;
+    struct look at = {.scene = scene, .path = path_out, .error = error};
+    if (scene->events.n > EVENTS_MAX) {
+        snprintf(path_out, CS_TEXT_MAX, "events");
+        return cs_fail(error, CS_ERR_SCENE, "found %u, expected at most %d", scene->events.n,
+                       EVENTS_MAX);
+    }
+    for (at.number = 0; at.number < scene->events.n; at.number++)
+        if (check_event(&at, events + at.number))
+            return error->status;
+    return CS_OK;
+}

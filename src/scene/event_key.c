@@ -1,0 +1,194 @@
+#include "scene/event_key.h"
+
+#include "base/options.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* paths without their indices */
+static const char *const changeable[] = {"forces.gravity",         "forces.drag",
+                                         "forces.velocity_loss",   "forces.wind.strength",
+                                         "bodies.springs.stretch", "bodies.springs.shear",
+                                         "bodies.springs.bend",    "bodies.springs.damping",
+                                         "bodies.strain_limit",    "bodies.mass.particle",
+                                         "bodies.mass.total",      "bodies.mass.areal_density",
+                                         "bodies.mass.degree",     "colliders.friction",
+                                         "colliders.absorption",   NULL};
+
+/* why the others are not; the first that fits counts */
+static const struct {
+    const char *start, *why;
+} fixed[] = {
+    {"forces.wind.direction", "the wind is turned by an event of its own: wind"},
+    {"bodies.cloth", "it says how the body starts"},
+    {"bodies.mesh", "it says how the body starts"},
+    {"bodies.network", "springs are made at the start"},
+    {"bodies.shape_matching", "a run keeps its shapes and how they are held"},
+    {"bodies.pins", "particles are held and let go by the events pin and release"},
+    {"bodies.material", "it is of the pictures, not of the motion"},
+    {"camera", "it is of the pictures, not of the motion"},
+    {"light", "it is of the pictures, not of the motion"},
+    {"render", "it is of the pictures, not of the motion"},
+    {"time", "frames are evenly spaced"},
+    {"colliders", "contact knows no moving obstacles"},
+    {"events", "events cannot change events"},
+};
+
+/* a place on the way along a path */
+struct walk {
+    const char *path, *rest;
+    const struct cs_table *table;
+    char *object;
+    char plain[CS_TEXT_MAX]; /* the path so far without indices */
+    struct cs_error *error;
+};
+
+static enum cs_status refuse_key(struct walk *walk, const char *name) {
+    if (!*name)
+        return cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": expected a key", walk->path);
+    const char *nearest = cs_option_nearest(walk->table, name);
+    return cs_fail(walk->error, CS_ERR_SCENE, "no key \"%.60s\" in \"%.120s\"%s%s%s", name,
+                   walk->path, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                   nearest ? "\"?" : "");
+}
+
+/* the row of the next name, which is cut off */
+static const struct cs_option *next_row(struct walk *walk) {
+    char name[64] = "";
+    const size_t length = strcspn(walk->rest, ".[");
+    memcpy(name, walk->rest, length < sizeof name ? length : sizeof name - 1);
+    const struct cs_option *row = cs_option_find(walk->table, name);
+    if (!row) {
+        refuse_key(walk, name);
+        return NULL;
+    }
+    walk->rest += length;
+    if (*walk->plain)
+        strcat(walk->plain, ".");
+    strcat(walk->plain, name);
+    return row;
+}
+
+/* "[3]" below n; there is one way to write an index */
+static bool next_index(struct walk *walk, uint32_t n, uint32_t *index) {
+    char *end;
+    const char *digits = walk->rest + 1;
+    const unsigned long value = *walk->rest == '[' ? strtoul(digits, &end, 10) : 0;
+    if (*walk->rest != '[' || *digits < '0' || *digits > '9' ||
+        (*digits == '0' && end != digits + 1) || *end != ']' || value >= n) {
+        if (n)
+            cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": expected an index 0..%u behind %s",
+                    walk->path, n - 1, walk->plain);
+        else
+            cs_fail(walk->error, CS_ERR_SCENE, "\"%.120s\": the scene has no %s", walk->path,
+                    walk->plain);
+        return false;
+    }
+    *index = (uint32_t)value;
+    walk->rest = end + 1;
+    return true;
+}
+
+/* goes down to the row that is no table and no list, and into a vector */
+static const struct cs_option *descend(struct walk *walk) {
+    for (;;) {
+        const struct cs_option *row = next_row(walk);
+        uint32_t index = 0;
+        if (!row)
+            return NULL;
+        walk->object += row->offset;
+        if (row->type == CS_LIST) {
+            const struct cs_list *list = (const void *)walk->object;
+            if (!next_index(walk, list->n, &index))
+                return NULL;
+            walk->object = (char *)list->items + index * row->table->size;
+        } else if (row->type == CS_VECTOR || row->type == CS_COUNTS) {
+            if (!next_index(walk, row->count, &index))
+                return NULL;
+            walk->object += index * sizeof(double);
+        }
+        if (!row->table) {
+            if (*walk->rest)
+                refuse_key(walk, walk->rest);
+            return *walk->rest ? NULL : row;
+        }
+        walk->table = row->table;
+        if (*walk->rest != '.') {
+            refuse_key(walk, "");
+            return NULL;
+        }
+        walk->rest++;
+    }
+}
+
+static enum cs_status check_changeable(const struct walk *walk) {
+    for (uint32_t k = 0; changeable[k]; k++)
+        if (!strcmp(walk->plain, changeable[k]))
+            return CS_OK;
+    for (uint32_t k = 0; k < sizeof fixed / sizeof *fixed; k++)
+        if (!strncmp(walk->plain, fixed[k].start, strlen(fixed[k].start)))
+            return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path,
+                           fixed[k].why);
+    return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: it is no plain number",
+                   walk->path);
+}
+
+/* the body that a key of bodies belongs to */
+static const struct cs_body *body_of(const struct walk *walk, const struct cs_scene *scene) {
+    const char *first = scene->bodies.items;
+    return cs_scene_bodies(scene) + (size_t)(walk->object - first) / sizeof(struct cs_body);
+}
+
+static enum cs_status check_springs(const struct walk *walk, const struct cs_body *body,
+                                    double value) {
+    const bool shear = !strcmp(walk->plain, "bodies.springs.shear");
+    const bool damping = !strcmp(walk->plain, "bodies.springs.damping");
+    const char *why = cs_scene_springs_left_out(body) ? "shape_matching leaves the springs out"
+                      : shear && body->mesh.present   ? "a mesh has none"
+                      : !damping && value <= 0 ? "it is 0, so that there are no such springs"
+                                               : NULL;
+    return why ? cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path, why)
+               : CS_OK;
+}
+
+/* what the scene left out cannot come in the middle of a run */
+static enum cs_status check_there(const struct walk *walk, const struct cs_scene *scene) {
+    const double value = *(const double *)(const void *)walk->object;
+    if (isnan(value))
+        return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: the scene has none",
+                       walk->path);
+    if (!strcmp(walk->plain, "forces.wind.strength") && !scene->forces.wind.present)
+        return cs_fail(walk->error, CS_ERR_SCENE,
+                       "%.120s cannot change: the scene has no forces.wind", walk->path);
+    return strncmp(walk->plain, "bodies.springs.", 15)
+               ? CS_OK
+               : check_springs(walk, body_of(walk, scene), value);
+}
+
+enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,
+                                 struct cs_event_key *key, struct cs_error *error) {
+    struct walk walk = {.path = path,
+                        .rest = path,
+                        .table = &cs_scene_table,
+                        .object = (char *)scene,
+                        .error = error};
+    const struct cs_option *row = descend(&walk);
+    if (!row || check_changeable(&walk) || check_there(&walk, scene))
+        return error->status;
+    *key = (struct cs_event_key){row, (double *)(void *)walk.object};
+    return CS_OK;
+}
+
+bool cs_event_key_changes(const struct cs_scene *scene, const char *key) {
+    const struct cs_event *events = cs_scene_events(scene);
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (events[e].ramp.present && events[e].ramp.value != 0 &&
+            strstr(events[e].ramp.key, key))
+            return true;
+    return false;
+}
+
+bool cs_event_weighs(const struct cs_event *event) {
+    return event->ramp.present && strstr(event->ramp.key, "].mass.");
+}

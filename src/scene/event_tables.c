@@ -1,0 +1,130 @@
+/* The rows of the scene's events; see scene_tables.c. */
+#include "scene/scene.h"
+#include "scene/table_rows.h"
+
+static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
+
+/* what an event acts on: the same two keys in each that acts on particles */
+#define AIM_ROWS(s)                                                                            \
+    {.name = "body",                                                                           \
+     .unit = "",                                                                               \
+     .help = "number of the body from 0; absent: every body",                                  \
+     .type = CS_INT,                                                                           \
+     .count = 1,                                                                               \
+     .offset = offsetof(s, aim.body),                                                          \
+     .def = -1,                                                                                \
+     .min = 0,                                                                                 \
+     .max = 4294967295.0},                                                                     \
+    {                                                                                          \
+        .name = "particles", .unit = "",                                                       \
+        .help = "of the body, named as in its pins; absent: all of them", .type = CS_LIST,     \
+        .count = 1, .offset = offsetof(s, aim.particles), .table = &cs_pin_table               \
+    }
+
+static const struct cs_option impact_rows[] = {
+    AIM_ROWS(struct cs_impact),
+    VECTOR(struct cs_impact, direction, 3, "", NULL, -BIG, BIG, "of any length but 0"),
+    REAL(struct cs_impact, impulse, "N s", 0, 0, BIG,
+         "change of the momentum of all free ones together, shared by mass: each changes its "
+         "velocity by the same; over an interval a steady force"),
+};
+static const struct cs_table impact_table = {
+    ROWS(impact_rows), .size = sizeof(struct cs_impact), .optional = true};
+
+static const struct cs_option gust_rows[] = {
+    VECTOR(struct cs_gust, direction, 3, "", absent3, -BIG, BIG,
+           "to which the wind then blows; absent: as before"),
+    REAL(struct cs_gust, strength, "Pa or N", ABSENT, 0, BIG,
+         "in the unit of forces.wind; 0 turns it off; absent: as before"),
+};
+static const struct cs_table gust_table = {ROWS(gust_rows), .size = sizeof(struct cs_gust),
+                                           .optional = true};
+
+static const struct cs_option viewpoint_rows[] = {
+    VECTOR(struct cs_viewpoint, eye, 3, "m", absent3, -BIG, BIG,
+           "where it is; absent here and below: as the camera's"),
+    VECTOR(struct cs_viewpoint, target, 3, "m", absent3, -BIG, BIG, "what lies in the middle"),
+    VECTOR(struct cs_viewpoint, up, 3, "", absent3, -BIG, BIG, "direction that is up"),
+    REAL(struct cs_viewpoint, fov, "degrees", ABSENT, 1, 170, "vertical field of view"),
+    REAL(struct cs_viewpoint, aspect, "", ABSENT, 0.01, 100,
+         "width over height; absent: as the picture's"),
+};
+static const struct cs_table viewpoint_table = {ROWS(viewpoint_rows),
+                                                .size = sizeof(struct cs_viewpoint)};
+static const double whole[4] = {0, 0, 1, 1};
+static const struct cs_option prod_rows[] = {
+    TABLE(struct cs_prod, viewpoint, viewpoint_table,
+          "from where; the force is along its view"),
+    VECTOR(struct cs_prod, rectangle, 4, "", whole, 0, 1,
+           "left, top, right, bottom: shares of what is seen, from its top left corner"),
+    REAL(
+        struct cs_prod, force, "N", ABSENT, -BIG, BIG,
+        "on each particle that is seen in it, along the view; below 0 towards the eye; must be "
+        "given"),
+    REAL(struct cs_prod, duration, "s", ABSENT, 1e-9, BIG,
+         "with at: the blow is force times this on each particle; absent: 1/60"),
+    REAL(struct cs_prod, refresh, "1/s", ABSENT, 0, 1e5,
+         "with from and to: how often it is seen anew; 0: at from alone; absent: 60"),
+    INT(struct cs_prod, body, "", -1, 0, 4294967295.0,
+        "number of the body from 0 that it acts on; absent: every body"),
+};
+static const struct cs_table prod_table = {ROWS(prod_rows), .size = sizeof(struct cs_prod),
+                                           .optional = true};
+
+static const struct cs_option ramp_rows[] = {
+    TEXT(struct cs_ramp, key,
+         "path of a number of forces, springs, strain limit, friction or absorption, such as "
+         "bodies[0].springs.stretch or forces.gravity[1]"),
+    REAL(struct cs_ramp, value, "", ABSENT, -1e12, 1e12,
+         "what it then is, within the key's own range; must be given"),
+};
+static const struct cs_table ramp_table = {ROWS(ramp_rows), .size = sizeof(struct cs_ramp),
+                                           .optional = true};
+
+static const char *const motion_names[] = {"linear", "smooth", NULL};
+static const struct cs_option path_rows[] = {
+    REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
+         "when the point is reached; must be given"),
+    VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
+           "where the first of the particles then is; the others keep their distances from it"),
+};
+static const struct cs_table path_table = {ROWS(path_rows),
+                                           .size = sizeof(struct cs_path_point)};
+static const struct cs_option grab_rows[] = {
+    AIM_ROWS(struct cs_grab),
+    LIST(
+        struct cs_grab, path, path_table,
+        "points behind the place where it is grabbed, in the order of their times; at the last "
+        "it stays"),
+    CHOICE(struct cs_grab, motion, motion_names, CS_MOTION_LINEAR,
+           "from point to point at constant velocity, or by a cubic that rests at each point, "
+           "followed in 16 chords"),
+    BOOL(struct cs_grab, relative, 0, "points are shifts from where each particle was grabbed"),
+};
+static const struct cs_table grab_table = {ROWS(grab_rows), .size = sizeof(struct cs_grab),
+                                           .optional = true};
+
+static const struct cs_option hold_rows[] = {AIM_ROWS(struct cs_hold)};
+static const struct cs_table hold_table = {ROWS(hold_rows), .size = sizeof(struct cs_hold),
+                                           .optional = true};
+
+static const struct cs_option event_rows[] = {
+    REAL(struct cs_event, at, "s", ABSENT, 0, BIG, "when it happens, at once"),
+    REAL(struct cs_event, from, "s", ABSENT, 0, BIG, "when it begins, instead of at"),
+    REAL(struct cs_event, to, "s", ABSENT, 0, BIG, "when it ends, with from"),
+    TABLE(struct cs_event, impact, impact_table, "a blow to particles or bodies"),
+    TABLE(struct cs_event, wind, gust_table,
+          "another wind; over an interval its vector changes linearly"),
+    TABLE(struct cs_event, prod, prod_table,
+          "a blow, or over an interval a wind, to the particles that are seen in a rectangle "
+          "from a viewpoint"),
+    TABLE(struct cs_event, ramp, ramp_table,
+          "another value for a key; over an interval it changes linearly"),
+    TABLE(struct cs_event, grab, grab_table, "particles follow a path, until to or a release"),
+    TABLE(struct cs_event, pin, hold_table,
+          "particles keep their place, until to or a release"),
+    TABLE(struct cs_event, release, hold_table,
+          "particles are free, with the velocity that they have"),
+};
+const struct cs_table cs_event_table = {ROWS(event_rows), .size = sizeof(struct cs_event),
+                                        .one_of = true, .uncounted = 3};

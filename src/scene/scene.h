@@ -1,0 +1,353 @@
+/* scene.h - a scene as plain structs, every value present: what the JSON file says.
+ *
+ * The tables in scene_tables.c name, type, default and bound each field; the reader fills the
+ * structs by them and nothing else knows the JSON. cs_scene_check adds what ranges cannot say.
+ */
+#ifndef CS_SCENE_H
+#define CS_SCENE_H
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "mesh/network.h"
+
+#include <clothsim/option.h>
+
+/* where the cloth's plane lies before `place` is applied */
+enum cs_start { CS_START_HANGING, CS_START_FLAT };
+
+struct cs_place {
+    double translate[3]; /* m */
+    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
+    double matrix[9];    /* rows of a rotation matrix, used where present */
+};
+
+struct cs_cloth {
+    bool present;
+    int64_t grid[2];   /* particles: columns, rows */
+    double size[2];    /* m: along a row, from row to row */
+    int32_t start;     /* enum cs_start */
+    double stretch[2]; /* size at time 0 over the rest size, along a row and from row to row */
+    double bump;       /* m, height of the middle over the edges at time 0 */
+    struct cs_place place;
+    double velocity[3]; /* m/s, of every free particle at time 0 */
+    double spin[3];     /* rad/s, about place.translate */
+};
+
+/* either a file or a shape */
+struct cs_mesh_source {
+    bool present;
+    char file[CS_TEXT_MAX]; /* OBJ, relative to the scene file; "" = none */
+    int32_t shape;          /* enum cs_mesh_shape, -1: none */
+    int64_t detail;         /* how finely a shape is divided */
+    double scale[3];        /* times the coordinates of file or shape */
+    struct cs_place place;
+    double velocity[3]; /* m/s, of every free particle at time 0 */
+    double spin[3];     /* rad/s, about place.translate */
+
+    /* not in the tables: made by the reader, owned by the scene's arena */
+    const struct cs_trimesh *geometry;
+};
+
+struct cs_clusters;
+
+/* a body that is drawn back to its shape (Mueller et al. 2005), not held by springs */
+struct cs_shape_matching {
+    bool present;
+    double alpha;      /* share of the way to the goals in a step; 1: rigid */
+    double beta;       /* share of the linear deformation in the goals */
+    double alpha_step; /* s, length of that step; 0: alpha holds for a step of any length */
+    int64_t clusters;  /* parts that keep their shapes, each on its own */
+    double overlap;    /* of parts: share of a part's longest side */
+    bool springs;      /* the body's springs act too */
+
+    /* not in the tables: made by the reader, owned by the scene's arena */
+    const struct cs_clusters *parts;
+};
+
+/* exactly one is not NAN */
+struct cs_mass {
+    double particle;      /* kg each */
+    double areal_density; /* kg/m2, lumped by each particle's share of the area */
+    double total;         /* kg, shared equally */
+    double degree;        /* kg for each spring at the particle */
+};
+
+enum cs_damping_model { CS_DAMPING_RELATIVE, CS_DAMPING_AXIAL };
+enum cs_stiffness_unit { CS_STIFFNESS_N_PER_M, CS_STIFFNESS_N };
+
+struct cs_spring_law {
+    double stretch, shear,
+        bend;               /* N/m, or N (divided by the rest length); 0: no such springs */
+    double damping;         /* N s/m per spring */
+    int32_t damping_model;  /* enum cs_damping_model */
+    int32_t stiffness_unit; /* enum cs_stiffness_unit */
+};
+
+struct cs_box {
+    bool present;
+    double min[3], max[3]; /* m, at the start */
+};
+
+/* in the order of cs_pin_names: corners, then edges */
+enum cs_pin_name {
+    CS_PIN_TOP_LEFT,
+    CS_PIN_TOP_RIGHT,
+    CS_PIN_BOTTOM_LEFT,
+    CS_PIN_BOTTOM_RIGHT,
+    CS_PIN_TOP,
+    CS_PIN_BOTTOM,
+    CS_PIN_LEFT,
+    CS_PIN_RIGHT,
+    CS_PIN_EDGES
+};
+
+/* one of: a named corner or edge, a particle index, a box that holds the pinned particles */
+struct cs_pin {
+    int32_t at;    /* enum cs_pin_name, -1: not given */
+    int64_t index; /* particle within the body, -1: not given */
+    struct cs_box box;
+};
+
+enum cs_shading { CS_SHADING_SMOOTH, CS_SHADING_FLAT };
+
+/* Blinn-Phong coefficients; colours are linear RGB in 0..1 */
+struct cs_material {
+    double colour[3];
+    double back_colour[3]; /* of the other side; first component NAN: as the front */
+    double ambient, diffuse, specular, shininess;
+    int32_t shading;           /* enum cs_shading */
+    char texture[CS_TEXT_MAX]; /* PNG beside the scene file; "" = none */
+    double texture_repeat[2];  /* times over the cloth */
+};
+
+struct cs_body {
+    struct cs_cloth cloth; /* either this or the mesh */
+    struct cs_mesh_source mesh;
+    struct cs_network network;
+    struct cs_shape_matching shape_matching;
+    struct cs_mass mass;
+    struct cs_spring_law springs;
+    struct cs_list pins; /* struct cs_pin */
+    double strain_limit; /* longest length of a stretch spring / rest length; NAN: none */
+    int64_t strain_limit_sweeps;
+    struct cs_material material;
+};
+
+struct cs_sphere {
+    bool present;
+    double centre[3], radius; /* m */
+};
+struct cs_plane {
+    bool present;
+    double point[3], normal[3]; /* m; normal is made a unit vector by cs_scene_check */
+    double extent;              /* m, half the side of the square that is drawn */
+};
+struct cs_floor {
+    bool present;
+    double height; /* m: the plane y = height */
+    double extent; /* m, as above */
+};
+struct cs_collider {
+    struct cs_sphere sphere;
+    struct cs_plane plane;
+    struct cs_floor floor;
+    double friction;   /* Coulomb coefficient */
+    double absorption; /* share of the inward normal velocity taken away; < 0: restitution */
+    double thickness;  /* m, skin in front of the surface */
+    double colour[3];
+    bool visible;
+};
+
+enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
+struct cs_wind {
+    bool present;
+    double direction[3]; /* made a unit vector by cs_scene_check */
+    double strength;
+    int32_t strength_unit; /* enum cs_wind_unit */
+};
+enum cs_drag_unit { CS_DRAG_PARTICLE, CS_DRAG_AREA };
+struct cs_forces {
+    double gravity[3];    /* m/s2 */
+    double drag;          /* N s/m per particle, or Pa s/m */
+    int32_t drag_unit;    /* enum cs_drag_unit */
+    double velocity_loss; /* share of the velocity removed after every internal step */
+    struct cs_wind wind;
+};
+
+/* what an event acts on */
+struct cs_aim {
+    int64_t body;             /* -1: every body */
+    struct cs_list particles; /* struct cs_pin; none: all of them */
+};
+
+struct cs_impact {
+    bool present;
+    struct cs_aim aim;
+    double direction[3]; /* made a unit vector by cs_scene_check */
+    double impulse;      /* N s, on all of them together */
+};
+struct cs_gust {
+    bool present;
+    double direction[3]; /* first component NAN: as it was */
+    double strength;     /* NAN: as it was */
+};
+struct cs_ramp {
+    bool present;
+    char key[CS_TEXT_MAX]; /* forces.gravity[1] */
+    double value;          /* NAN: not given, refused */
+};
+/* of a picture that may be another than the camera's; values left out are the camera's and the
+ * picture's, filled in by cs_scene_check */
+struct cs_viewpoint {
+    double eye[3], target[3], up[3]; /* m; first component NAN: absent */
+    double fov;                      /* degrees, vertical; NAN: absent */
+    double aspect;                   /* width over height; NAN: absent */
+};
+struct cs_prod {
+    bool present;
+    struct cs_viewpoint viewpoint;
+    double
+        rectangle[4]; /* left, top, right, bottom: shares of width and height, from top left */
+    double force;     /* N on each particle that is seen; NAN: not given, refused */
+    double duration;  /* s, of what happens at once; NAN: absent */
+    double refresh; /* looks a second over an interval, 0: only at its beginning; NAN: absent */
+    int64_t body;   /* -1: every body */
+};
+struct cs_path_point {
+    double at;       /* s; NAN: not given, refused */
+    double point[3]; /* m */
+};
+enum cs_motion { CS_MOTION_LINEAR, CS_MOTION_SMOOTH };
+struct cs_grab {
+    bool present;
+    struct cs_aim aim;
+    struct cs_list path; /* struct cs_path_point, at least one */
+    int32_t motion;      /* enum cs_motion */
+    bool relative;       /* points are shifts from where it was grabbed */
+};
+struct cs_hold {
+    bool present;
+    struct cs_aim aim;
+};
+
+/* exactly one of impact ... release; `at`, or `from` and `to` */
+struct cs_event {
+    double at, from, to; /* s; NAN: absent */
+    struct cs_impact impact;
+    struct cs_gust wind;
+    struct cs_prod prod;
+    struct cs_ramp ramp;
+    struct cs_grab grab;
+    struct cs_hold pin, release;
+};
+
+struct cs_time {
+    double fps; /* frame k shows t = k / fps */
+};
+
+struct cs_camera {
+    double eye[3], target[3], up[3]; /* m */
+    double fov;                      /* degrees, vertical */
+};
+
+/* one of point and direction */
+struct cs_light {
+    double point[3];     /* m; first component NAN: absent */
+    double direction[3]; /* from which the light travels; first component NAN: absent */
+    double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
+};
+
+enum cs_look {
+    CS_LOOK_LIT,
+    CS_LOOK_WIREFRAME,
+    CS_LOOK_SPRINGS,
+    CS_LOOK_FORCE,
+    CS_LOOK_STRAIN,
+    CS_LOOK_GOALS
+};
+struct cs_render {
+    int64_t size[2]; /* pixels: width, height */
+    int64_t samples; /* of multisampling: 1 or 4 */
+    int32_t look;    /* enum cs_look */
+    double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
+    double background[3]; /* linear RGB */
+    bool prods;           /* show what the prods of events see, and from where */
+    bool ground;          /* draw a grid on the plane y = ground_height */
+    double ground_height; /* m */
+};
+
+/* one integrator option as text, checked when the integrator is known */
+struct cs_setting {
+    const char *name, *value; /* borrowed from the scene's arena */
+};
+
+struct cs_scene {
+    char about[CS_TEXT_MAX], source[CS_TEXT_MAX];
+    struct cs_list bodies;    /* struct cs_body, at least one */
+    struct cs_list colliders; /* struct cs_collider */
+    struct cs_forces forces;
+    struct cs_list events; /* struct cs_event */
+    struct cs_time time;
+    struct cs_camera camera;
+    struct cs_light light;
+    struct cs_render render;
+
+    /* not in the tables: the "integrator" object, read apart */
+    char integrator[64];
+    struct cs_list integrator_settings; /* struct cs_setting */
+
+    /* where it came from */
+    const char *path, *folder; /* as given; the folder that textures are relative to */
+    const char *text;          /* the file's text, for the scene hash */
+    size_t text_bytes;
+    struct cs_arena arena; /* owns all of the above */
+};
+
+/* The root of the scene's tables, and names of its choices. */
+extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table;
+extern const char *const cs_pin_names[];
+extern const char *const cs_look_names[];
+extern const char *const cs_mesh_shape_names[];
+#define CS_INTEGRATOR_DEFAULT "implicit-linearised"
+
+/* The colliders, bodies and pins of a scene with their type. */
+static inline struct cs_body *cs_scene_bodies(const struct cs_scene *scene) {
+    return scene->bodies.items;
+}
+static inline struct cs_collider *cs_scene_colliders(const struct cs_scene *scene) {
+    return scene->colliders.items;
+}
+
+/* The body is drawn to its shape instead of held by springs. */
+static inline bool cs_scene_springs_left_out(const struct cs_body *body) {
+    return body->shape_matching.present && !body->shape_matching.springs;
+}
+
+/* Number of the first body that is drawn to its shape; bodies.n: there is none. */
+static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
+    uint32_t b = 0;
+    while (b < scene->bodies.n && !cs_scene_bodies(scene)[b].shape_matching.present)
+        b++;
+    return b;
+}
+
+static inline const struct cs_event *cs_scene_events(const struct cs_scene *scene) {
+    return scene->events.items;
+}
+/* 4096 x 4096 particles: about 10 GB with springs and solver */
+#define CS_PARTICLES_MAX 16777216.0
+
+/* true if a file named in a scene lies in the scene's folder or below: a scene from elsewhere
+ * must not open any file it names. */
+bool cs_scene_is_below(const char *file);
+
+/* Checks what single ranges cannot say (pins exist, one kind of mass, a size that fits in
+ * memory, a camera that looks somewhere, ...) and normalises directions, quaternion and
+ * normals. On failure: CS_ERR_SCENE, and *path_out (CS_TEXT_MAX bytes) holds the JSON path of
+ * the value at fault, so that the caller can add its place in the file; *error's message starts
+ * behind it. */
+enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error);
+
+void cs_scene_finish(struct cs_scene *scene);
+
+#endif

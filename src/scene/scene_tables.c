@@ -1,0 +1,322 @@
+/* The scene's rows: the one place that says which keys a scene has. Parsing, --set, --resolved,
+ * the schema and the man page all come from here. A default outside its range (NAN, -1) means:
+ * absent unless given. */
+#include "scene/scene.h"
+#include "scene/table_rows.h"
+
+static const double zero3[3] = {0, 0, 0};
+static const double one2[2] = {1, 1};
+static const double up3[3] = {0, 1, 0};
+static const double no_turn[4] = {0, 0, 0, 1};
+static const double absent9[9] = {ABSENT, ABSENT, ABSENT, ABSENT, ABSENT,
+                                  ABSENT, ABSENT, ABSENT, ABSENT};
+
+static const char *const start_names[] = {"hanging", "flat", NULL};
+static const struct cs_option place_rows[] = {
+    VECTOR(struct cs_place, translate, 3, "m", zero3, -BIG, BIG, "shift, after the rotation"),
+    VECTOR(struct cs_place, rotate, 4, "", no_turn, -BIG, BIG,
+           "rotation as a quaternion x, y, z, w of any length"),
+    VECTOR(struct cs_place, matrix, 9, "", absent9, -1, 1,
+           "rotation as the rows of a matrix, instead of rotate"),
+};
+static const struct cs_table place_table = {ROWS(place_rows), .size = sizeof(struct cs_place)};
+
+static const struct cs_option cloth_rows[] = {
+    COUNTS(struct cs_cloth, grid, 2, "particles", NULL, 1, 65535, "columns and rows"),
+    VECTOR(struct cs_cloth, size, 2, "m", one2, 1e-6, 1e6,
+           "width of a row, height of a column"),
+    CHOICE(struct cs_cloth, start, start_names, CS_START_HANGING,
+           "hanging: in the xy plane, row 0 on top; flat: turned back into the xz plane, row 0 "
+           "at -z"),
+    VECTOR(struct cs_cloth, stretch, 2, "", one2, 1e-3, 1e3,
+           "width and height at time 0 over those of size, which stays the rest size"),
+    REAL(struct cs_cloth, bump, "m", 0, -BIG, BIG,
+         "height at time 0 of a bump sin(pi a) sin(pi b) along the normal, a and b from 0 to 1 "
+         "over the cloth"),
+    TABLE(struct cs_cloth, place, place_table, "rigid placement, about the cloth's centre"),
+    VECTOR(struct cs_cloth, velocity, 3, "m/s", zero3, -BIG, BIG,
+           "of every particle that is not pinned, at time 0"),
+    VECTOR(
+        struct cs_cloth, spin, 3, "rad/s", zero3, -BIG, BIG,
+        "angular velocity about the point that place moves the centre to, added to velocity"),
+};
+static const struct cs_table cloth_table = {ROWS(cloth_rows), .size = sizeof(struct cs_cloth),
+                                            .optional = true};
+
+const char *const cs_mesh_shape_names[] = {"box", "sphere", "torus", "limbs", NULL};
+static const double one3[3] = {1, 1, 1};
+static const struct cs_option mesh_rows[] = {
+    TEXT(struct cs_mesh_source, file, "OBJ file, relative to the scene file"),
+    CHOICE(
+        struct cs_mesh_source, shape, cs_mesh_shape_names, -1,
+        "generated: fits a cube of side 1 about the origin; limbs: a rounded body with head, "
+        "ears, arms and legs"),
+    INT(struct cs_mesh_source, detail, "", 12, 3, CS_MESH_DETAIL_MAX,
+        "parts of a shape: of an edge of the box, of an edge of the icosahedron that becomes "
+        "the sphere, round the torus's tube, or of the height of limbs"),
+    VECTOR(struct cs_mesh_source, scale, 3, "", one3, 1e-6, 1e6,
+           "times the coordinates of file or shape, before the placement"),
+    TABLE(struct cs_mesh_source, place, place_table, "rigid placement, about the origin"),
+    VECTOR(struct cs_mesh_source, velocity, 3, "m/s", zero3, -BIG, BIG,
+           "of every particle that is not pinned, at time 0"),
+    VECTOR(struct cs_mesh_source, spin, 3, "rad/s", zero3, -BIG, BIG,
+           "about place.translate, added to the velocity"),
+};
+static const struct cs_table mesh_table = {
+    ROWS(mesh_rows), .size = sizeof(struct cs_mesh_source), .optional = true, .one_of = true};
+
+static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
+static const struct cs_option network_rows[] = {
+    CHOICE(struct cs_network, placement, placement_names, CS_PLACEMENT_NEAREST,
+           "random: any two particles; opposed-normals: only where their normals point away "
+           "from each other; nearest: the nearest of some such candidates"),
+    INT(struct cs_network, springs, "", 6, 0, 1000,
+        "inner springs tried for each particle; 0: springs on the surface only"),
+    INT(struct cs_network, candidates, "", 4, 1, 1000,
+        "of placement nearest, from which the nearest is taken"),
+    INT(struct cs_network, tries, "", 64, 1, 100000,
+        "draws for one spring; where none of them suits, there is none"),
+    INT(struct cs_network, seed, "", 1, 0, 4294967295.0, "of the draws"),
+    REAL(struct cs_network, surface, "", 4, 1e-6, 1e6,
+         "stiffness of the springs on the surface over that of the inner ones, which is "
+         "springs.stretch"),
+};
+static const struct cs_table network_table = {
+    ROWS(network_rows), .size = sizeof(struct cs_network), .optional = true};
+
+static const struct cs_option matching_rows[] = {
+    REAL(struct cs_shape_matching, alpha, "", 0.5, 0, 1,
+         "share of the way to its goal that a particle goes in a step: 0 leaves it free, 1 "
+         "makes "
+         "the body rigid"),
+    REAL(
+        struct cs_shape_matching, beta, "", 0, 0, 1,
+        "share of the best linear transformation, at its old volume, in the goals; the rest is "
+        "the rotation"),
+    REAL(struct cs_shape_matching, alpha_step, "s", 1.0 / 60, 0, 10,
+         "step that alpha is meant for; others get the share of the same stiffness. 0: alpha "
+         "holds for a step of any length, so that shorter ones are stiffer"),
+    INT(struct cs_shape_matching, clusters, "", 1, 1, 1024,
+        "parts that keep their shapes, each its own"),
+    REAL(struct cs_shape_matching, overlap, "", 0.25, 0, 10,
+         "of parts: each takes in what its box holds when it is grown by that share of its "
+         "longest side; the more, the less they bend against each other"),
+    BOOL(struct cs_shape_matching, springs, 0, "the body's springs act as well"),
+};
+static const struct cs_table matching_table = {
+    ROWS(matching_rows), .size = sizeof(struct cs_shape_matching), .optional = true};
+
+static const struct cs_option mass_rows[] = {
+    REAL(struct cs_mass, particle, "kg", ABSENT, 1e-12, BIG, "of each particle"),
+    REAL(struct cs_mass, areal_density, "kg/m2", ABSENT, 1e-12, BIG,
+         "each particle gets its share of the area: a quarter of every cell, or a third of "
+         "every "
+         "triangle, that it touches"),
+    REAL(struct cs_mass, total, "kg", ABSENT, 1e-12, BIG, "of the body, shared equally"),
+    REAL(struct cs_mass, degree, "kg", ABSENT, 1e-12, BIG, "for each spring at the particle"),
+};
+static const struct cs_table mass_table = {ROWS(mass_rows), .size = sizeof(struct cs_mass),
+                                           .one_of = true};
+
+static const char *const damping_names[] = {"relative", "axial", NULL};
+static const char *const stiffness_names[] = {"N/m", "N", NULL};
+static const struct cs_option spring_rows[] = {
+    REAL(struct cs_spring_law, stretch, "N/m", 50, 0, 1e12,
+         "stiffness between direct neighbours, or along the edges of a mesh; 0: no such "
+         "springs"),
+    REAL(struct cs_spring_law, shear, "N/m", 20, 0, 1e12,
+         "stiffness between diagonal neighbours of a grid"),
+    REAL(struct cs_spring_law, bend, "N/m", 8, 0, 1e12,
+         "stiffness between second neighbours, or across the edges of a mesh"),
+    REAL(struct cs_spring_law, damping, "N s/m", 0, 0, 1e12, "damper beside every spring"),
+    CHOICE(struct cs_spring_law, damping_model, damping_names, CS_DAMPING_AXIAL,
+           "relative: on the whole relative velocity; axial: on its part along the spring"),
+    CHOICE(struct cs_spring_law, stiffness_unit, stiffness_names, CS_STIFFNESS_N_PER_M,
+           "N: the stiffness is divided by each spring's rest length"),
+};
+static const struct cs_table spring_table = {ROWS(spring_rows),
+                                             .size = sizeof(struct cs_spring_law)};
+
+const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right",
+                                    "top",      "bottom",    "left",        "right",
+                                    "edges",    NULL};
+static const struct cs_option box_rows[] = {
+    VECTOR(struct cs_box, min, 3, "m", NULL, -BIG, BIG, "corner with the smallest coordinates"),
+    VECTOR(struct cs_box, max, 3, "m", NULL, -BIG, BIG, "corner with the largest coordinates"),
+};
+static const struct cs_table box_table = {ROWS(box_rows), .size = sizeof(struct cs_box),
+                                          .optional = true};
+static const struct cs_option pin_rows[] = {
+    CHOICE(struct cs_pin, at, cs_pin_names, -1,
+           "a corner or an edge of the grid; a plain string means this"),
+    INT(struct cs_pin, index, "", -1, 0, 4294967295.0,
+        "a particle of the body, row * columns + column, or a vertex from 0; a plain number "
+        "means "
+        "this"),
+    TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
+};
+const struct cs_table cs_pin_table = {ROWS(pin_rows), .size = sizeof(struct cs_pin),
+                                      .one_of = true, .shorthand_text = "at",
+                                      .shorthand_number = "index"};
+
+static const char *const shading_names[] = {"smooth", "flat", NULL};
+static const double red_cloth[3] = {0.60, 0.06, 0.07};
+static const struct cs_option material_rows[] = {
+    VECTOR(struct cs_material, colour, 3, "", red_cloth, 0, 1, "of the front, linear RGB"),
+    VECTOR(struct cs_material, back_colour, 3, "", absent9, 0, 1, "of the back; as the front"),
+    REAL(struct cs_material, ambient, "", 1, 0, 10, "coefficient ka of the ambient light"),
+    REAL(struct cs_material, diffuse, "", 1, 0, 10, "coefficient kd of the diffuse light"),
+    REAL(struct cs_material, specular, "", 0.2, 0, 10, "coefficient ks of the highlight"),
+    REAL(struct cs_material, shininess, "", 24, 1, 1000, "exponent of the highlight"),
+    CHOICE(struct cs_material, shading, shading_names, CS_SHADING_SMOOTH,
+           "normals: interpolated, or one a triangle"),
+    TEXT(struct cs_material, texture, "PNG file, relative to the scene file; times the colour"),
+    VECTOR(struct cs_material, texture_repeat, 2, "", one2, 1e-3, 1e4,
+           "how often the texture fits along a row and a column, or a mesh's width and height"),
+};
+static const struct cs_table material_table = {ROWS(material_rows),
+                                               .size = sizeof(struct cs_material)};
+
+static const struct cs_option body_rows[] = {
+    TABLE(struct cs_body, cloth, cloth_table, "a rectangular grid of particles"),
+    TABLE(struct cs_body, mesh, mesh_table, "triangles, instead of cloth"),
+    TABLE(struct cs_body, network, network_table,
+          "springs through the inside of a closed mesh"),
+    TABLE(struct cs_body, shape_matching, matching_table,
+          "drawn back to its shape at time 0, for integrator shape-matching"),
+    TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
+    TABLE(struct cs_body, springs, spring_table, "spring law"),
+    LIST(struct cs_body, pins, cs_pin_table, "particles that keep their place"),
+    REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
+         "largest length of a stretch spring over its rest length; absent: no limit"),
+    INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
+        "passes of the strain limit over the springs after each step"),
+    TABLE(struct cs_body, material, material_table, "Blinn-Phong look"),
+};
+static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};
+
+static const struct cs_option sphere_rows[] = {
+    VECTOR(struct cs_sphere, centre, 3, "m", NULL, -BIG, BIG, "centre"),
+    REAL(struct cs_sphere, radius, "m", 0.3, 1e-9, BIG, "radius"),
+};
+static const struct cs_table sphere_table = {
+    ROWS(sphere_rows), .size = sizeof(struct cs_sphere), .optional = true};
+static const struct cs_option plane_rows[] = {
+    VECTOR(struct cs_plane, point, 3, "m", zero3, -BIG, BIG, "a point of the plane"),
+    VECTOR(struct cs_plane, normal, 3, "", up3, -BIG, BIG,
+           "points to the free side; of any length but 0"),
+    REAL(struct cs_plane, extent, "m", 1, 1e-6, 1e6,
+         "half the side of the square that is drawn"),
+};
+static const struct cs_table plane_table = {ROWS(plane_rows), .size = sizeof(struct cs_plane),
+                                            .optional = true};
+static const struct cs_option floor_rows[] = {
+    REAL(struct cs_floor, height, "m", 0, -BIG, BIG, "the plane y = height"),
+    REAL(struct cs_floor, extent, "m", 3, 1e-6, 1e6,
+         "half the side of the square that is drawn"),
+};
+static const struct cs_table floor_table = {ROWS(floor_rows), .size = sizeof(struct cs_floor),
+                                            .optional = true};
+static const double grey[3] = {0.32, 0.36, 0.42};
+static const struct cs_option collider_rows[] = {
+    TABLE(struct cs_collider, sphere, sphere_table, "a sphere"),
+    TABLE(struct cs_collider, plane, plane_table, "an infinite plane"),
+    TABLE(struct cs_collider, floor, floor_table, "an infinite horizontal plane"),
+    REAL(struct cs_collider, friction, "", 0, 0, 1000, "Coulomb coefficient"),
+    REAL(struct cs_collider, absorption, "", 1, -1, 1,
+         "share of the inward normal velocity that is taken away; -e: it is turned round and "
+         "multiplied by e (restitution)"),
+    REAL(struct cs_collider, thickness, "m", 0, 0, BIG, "skin in front of the surface"),
+    VECTOR(struct cs_collider, colour, 3, "", grey, 0, 1, "linear RGB"),
+    BOOL(struct cs_collider, visible, 1, "draw it"),
+};
+static const struct cs_table collider_table = {
+    ROWS(collider_rows), .size = sizeof(struct cs_collider), .one_of = true};
+
+static const char *const wind_units[] = {"Pa", "N", NULL};
+static const struct cs_option wind_rows[] = {
+    VECTOR(struct cs_wind, direction, 3, "", NULL, -BIG, BIG,
+           "to which it blows; of any length but 0"),
+    REAL(struct cs_wind, strength, "Pa or N", 0, 0, BIG,
+         "pressure or force where the cloth faces it; times |direction . normal| elsewhere"),
+    CHOICE(
+        struct cs_wind, strength_unit, wind_units, CS_WIND_PA,
+        "Pa: times the particle's share of the area, whatever the grid; N: on each particle"),
+};
+static const struct cs_table wind_table = {ROWS(wind_rows), .size = sizeof(struct cs_wind),
+                                           .optional = true};
+static const double earth[3] = {0, -9.81, 0};
+static const char *const drag_units[] = {"N s/m", "Pa s/m", NULL};
+static const struct cs_option force_rows[] = {
+    VECTOR(struct cs_forces, gravity, 3, "m/s2", earth, -BIG, BIG, "acceleration of free fall"),
+    REAL(struct cs_forces, drag, "N s/m or Pa s/m", 0, 0, BIG, "force of still air: -drag * v"),
+    CHOICE(struct cs_forces, drag_unit, drag_units, CS_DRAG_PARTICLE,
+           "N s/m: on each particle; Pa s/m: times the particle's share of the area"),
+    REAL(
+        struct cs_forces, velocity_loss, "", 0, 0, 1,
+        "share of the velocity removed after every internal step: a factor that depends on the "
+        "step, no force"),
+    TABLE(struct cs_forces, wind, wind_table, "steady wind, by the particle normals"),
+};
+static const struct cs_table force_table = {ROWS(force_rows), .size = sizeof(struct cs_forces)};
+
+static const struct cs_option time_rows[] = {
+    REAL(struct cs_time, fps, "1/s", 60, 1e-3, 1e6,
+         "frames a second; frame k shows t = k / fps"),
+};
+static const struct cs_table time_table = {ROWS(time_rows), .size = sizeof(struct cs_time)};
+
+static const double eye[3] = {1.2, 0.7, 2.2};
+static const struct cs_option camera_rows[] = {
+    VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "where it stands"),
+    VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG, "what it looks at"),
+    VECTOR(struct cs_camera, up, 3, "", up3, -BIG, BIG, "direction that is up in the picture"),
+    REAL(struct cs_camera, fov, "degrees", 40, 1, 170, "vertical field of view"),
+};
+static const struct cs_table camera_table = {ROWS(camera_rows),
+                                             .size = sizeof(struct cs_camera)};
+
+static const double dim[3] = {0.16, 0.17, 0.19};
+static const double bright[3] = {1, 0.97, 0.92};
+static const struct cs_option light_rows[] = {
+    VECTOR(struct cs_light, point, 3, "m", absent9, -BIG, BIG, "where a lamp hangs"),
+    VECTOR(struct cs_light, direction, 3, "", absent9, -BIG, BIG,
+           "in which sunlight travels, instead of point"),
+    VECTOR(struct cs_light, ambient, 3, "", dim, 0, 10, "intensity ia, linear RGB"),
+    VECTOR(struct cs_light, diffuse, 3, "", bright, 0, 10, "intensity id, linear RGB"),
+    VECTOR(struct cs_light, specular, 3, "", bright, 0, 10, "intensity is, linear RGB"),
+};
+static const struct cs_table light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
+
+const char *const cs_look_names[] = {"lit",    "wireframe", "springs", "force",
+                                     "strain", "goals",     NULL};
+static const double vga[2] = {640, 480};
+static const double paper[3] = {0.82, 0.86, 0.91};
+static const struct cs_option render_rows[] = {
+    COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
+    INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
+    CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "what the picture shows"),
+    VECTOR(struct cs_render, range, 2, "N or 1", absent9, -BIG, BIG,
+           "force or strain at the ends of the colours; absent: from each frame"),
+    VECTOR(struct cs_render, background, 3, "", paper, 0, 1, "linear RGB"),
+    BOOL(struct cs_render, prods, 0,
+         "draw what the prods under way see, and their rectangles from their eyes"),
+    BOOL(struct cs_render, ground, 0, "draw a grid of lines on the ground"),
+    REAL(struct cs_render, ground_height, "m", 0, -BIG, BIG, "the grid lies at y = this"),
+};
+static const struct cs_table render_table = {ROWS(render_rows),
+                                             .size = sizeof(struct cs_render)};
+
+static const struct cs_option scene_rows[] = {
+    TEXT(struct cs_scene, about, "what the scene shows"),
+    TEXT(struct cs_scene, source, "where it comes from"),
+    LIST(struct cs_scene, bodies, body_table, "what moves; at least one"),
+    LIST(struct cs_scene, colliders, collider_table, "what bodies rest on and slide off"),
+    TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
+    LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
+    TABLE(struct cs_scene, time, time_table, "frames"),
+    TABLE(struct cs_scene, camera, camera_table, "look-at camera with perspective"),
+    TABLE(struct cs_scene, light, light_table, "one light, at a point or from a direction"),
+    TABLE(struct cs_scene, render, render_table, "picture"),
+};
+const struct cs_table cs_scene_table = {ROWS(scene_rows), .size = sizeof(struct cs_scene)};

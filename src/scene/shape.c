@@ -1,0 +1,166 @@
+#include "scene/shape.h"
+
+#include "base/sine.h"
+#include "mesh/trimesh.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+int64_t cs_shape_count(const struct cs_body *body) {
+    return body->mesh.present ? body->mesh.geometry->n
+                              : body->cloth.grid[0] * body->cloth.grid[1];
+}
+
+const struct cs_place *cs_shape_placement(const struct cs_body *body) {
+    return body->mesh.present ? &body->mesh.place : &body->cloth.place;
+}
+
+const double *cs_shape_velocity(const struct cs_body *body) {
+    return body->mesh.present ? body->mesh.velocity : body->cloth.velocity;
+}
+
+/* rows of the rotation: the given matrix, or that of the unit quaternion */
+static void rotation_of(const struct cs_place *place, double r[9]) {
+    if (!isnan(place->matrix[0])) {
+        memcpy(r, place->matrix, 9 * sizeof *r);
+        return;
+    }
+    const double x = place->rotate[0], y = place->rotate[1], z = place->rotate[2];
+    const double w = place->rotate[3];
+    const double turned[9] = {
+        1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+        2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+        2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    memcpy(r, turned, sizeof turned);
+}
+
+/* place of particle i between the edges, 0 to 1; 0.5 for a single one */
+static double share_of(uint32_t i, uint32_t count) {
+    return count > 1 ? (double)i / (count - 1) : 0.5;
+}
+
+/* sin(pi a) for a in 0..1, 0 at both ends */
+static double arch(double a) {
+    return cs_quarter_sine(2 * (a > 0.5 ? 1 - a : a));
+}
+
+static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const double *p = mesh->places, *shift = body->mesh.place.translate;
+    double r[9];
+    rotation_of(&body->mesh.place, r);
+    for (size_t i = 0; i < mesh->n; i++)
+        for (size_t c = 0; c < 3; c++)
+            x[c * n + first + i] = r[3 * c] * p[i] + r[3 * c + 1] * p[mesh->n + i] +
+                                   r[3 * c + 2] * p[2 * (size_t)mesh->n + i] + shift[c];
+}
+
+static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+    const struct cs_cloth *cloth = &body->cloth;
+    const uint32_t columns = (uint32_t)cloth->grid[0], rows = (uint32_t)cloth->grid[1];
+    double r[9];
+    rotation_of(&cloth->place, r);
+    for (uint32_t i = 0; i < rows; i++)
+        for (uint32_t j = 0; j < columns; j++) {
+            const double a = share_of(j, columns), b = share_of(i, rows);
+            // from -size/2 to size/2 in equal steps (cloth thesis, eq. 4.1)
+            const double across = (a - 0.5) * (cloth->size[0] * cloth->stretch[0]);
+            const double up = -((b - 0.5) * (cloth->size[1] * cloth->stretch[1]));
+            const double out = cloth->bump * arch(a) * arch(b);
+            const bool flat = cloth->start == CS_START_FLAT;
+            const double p[3] = {across, flat ? out : up, flat ? -up : out};
+            const size_t at = first + (size_t)i * columns + j;
+            for (size_t c = 0; c < 3; c++)
+                x[c * n + at] = r[3 * c] * p[0] + r[3 * c + 1] * p[1] + r[3 * c + 2] * p[2] +
+                                cloth->place.translate[c];
+        }
+}
+
+void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+    if (body->mesh.present)
+        place_mesh(body, n, first, x);
+    else
+        place_grid(body, n, first, x);
+}
+
+double cs_shape_area(const struct cs_body *body, uint32_t i) {
+    if (body->mesh.present)
+        return body->mesh.geometry->area[i];
+    const uint32_t columns = (uint32_t)body->cloth.grid[0],
+                   rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t row = i / columns, column = i % columns;
+    /* half a cell to each side that has one; a single row or column keeps the whole size */
+    const double width = columns > 1 ? body->cloth.size[0] / (columns - 1) *
+                                           (0.5 * (column > 0) + 0.5 * (column + 1 < columns))
+                                     : body->cloth.size[0];
+    const double height =
+        rows > 1 ? body->cloth.size[1] / (rows - 1) * (0.5 * (row > 0) + 0.5 * (row + 1 < rows))
+                 : body->cloth.size[1];
+    return width * height;
+}
+
+static bool is_named(enum cs_pin_name name, uint32_t i, uint32_t j, uint32_t rows,
+                     uint32_t columns) {
+    const bool top = i == 0, bottom = i + 1 == rows, left = j == 0, right = j + 1 == columns;
+    switch (name) {
+    case CS_PIN_TOP_LEFT:
+        return top && left;
+    case CS_PIN_TOP_RIGHT:
+        return top && right;
+    case CS_PIN_BOTTOM_LEFT:
+        return bottom && left;
+    case CS_PIN_BOTTOM_RIGHT:
+        return bottom && right;
+    case CS_PIN_TOP:
+        return top;
+    case CS_PIN_BOTTOM:
+        return bottom;
+    case CS_PIN_LEFT:
+        return left;
+    case CS_PIN_RIGHT:
+        return right;
+    case CS_PIN_EDGES:
+        return top || bottom || left || right;
+    }
+    return false;
+}
+
+static bool is_inside(const struct cs_box *box, uint32_t n, size_t at, const double *x) {
+    for (size_t c = 0; c < 3; c++)
+        if (x[c * n + at] < box->min[c] || x[c * n + at] > box->max[c])
+            return false;
+    return true;
+}
+
+void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
+                  bool *pinned) {
+    const uint32_t columns = (uint32_t)body->cloth.grid[0],
+                   rows = (uint32_t)body->cloth.grid[1];
+    const uint32_t count = (uint32_t)cs_shape_count(body);
+    const struct cs_pin *pins = body->pins.items;
+    for (uint32_t p = 0; p < body->pins.n; p++)
+        for (uint32_t at = 0; at < count; at++)
+            if ((pins[p].at >= 0 && is_named((enum cs_pin_name)pins[p].at, at / columns,
+                                             at % columns, rows, columns)) ||
+                pins[p].index == (int64_t)at ||
+                (pins[p].box.present && is_inside(&pins[p].box, n, (size_t)first + at, x)))
+                pinned[at] = true;
+}
+
+bool cs_shape_pin_fault(const struct cs_body *body, const struct cs_pin *pin, char *text,
+                        size_t size) {
+    const long long count = (long long)cs_shape_count(body), index = (long long)pin->index;
+    if (index >= count)
+        return snprintf(text, size, "particle %lld does not exist (0..%lld)", index, count - 1);
+    if (body->mesh.present && pin->at >= 0)
+        return snprintf(text, size,
+                        "found \"%s\", expected an index or a box: a mesh has no named corners "
+                        "or edges",
+                        cs_pin_names[pin->at]);
+    for (int c = 0; c < 3 && pin->box.present; c++)
+        if (pin->box.min[c] > pin->box.max[c])
+            return snprintf(text, size, "box.min[%d] = %.9g lies above box.max[%d] = %.9g", c,
+                            pin->box.min[c], c, pin->box.max[c]);
+    return false;
+}

@@ -1,0 +1,156 @@
+#include "study/compare/compare.h"
+
+#include "base/hash.h"
+#include "model/event/events.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The scene as it is, and what its smooth form comes to. */
+static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_course_settings *settings = &compare->settings->course;
+    struct cs_session_settings asked = settings->session;
+    struct cs_session session = {0};
+    struct cs_course course = {0};
+    asked.integrator = "velocity-verlet";
+    if (!cs_session_open_plan(&session, &asked, error))
+        cs_course_describe_changes(&session.scene, &compare->changes);
+    cs_session_close(&session);
+    if (!error->status && !cs_course_open(&course, settings, asked.integrator, error)) {
+        const struct cs_system *system = &course.session.system;
+        snprintf(compare->scene, sizeof compare->scene, "%.255s", asked.scene);
+        compare->particles = system->view.n;
+        compare->springs = course.session.plan.n_springs;
+        compare->fps = course.session.scene.time.fps;
+        compare->omega = fmax(system->view.omega, 1e-3);
+        compare->time = settings->frames / compare->fps;
+        compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;
+    }
+    cs_course_close(&course);
+    return error->status;
+}
+
+static struct cs_yardstick_settings ask_reference(const struct cs_compare *compare) {
+    const struct cs_compare_settings *settings = compare->settings;
+    return (struct cs_yardstick_settings){
+        .course = &settings->course,
+        .methods = {settings->reference[0], settings->reference[1]},
+        .accuracy = settings->accuracy,
+        .cache = settings->cache,
+        .progress = settings->reference_progress,
+        .ctx = settings->ctx};
+}
+
+/* Without a budget of the user's own, all cells together get a time. Steps are halved, so the
+ * runs of one method that get through, each timed several times, come to about as much again
+ * as those that do not. */
+static void share_time(struct cs_compare *compare) {
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < compare->sweep.n; k++)
+        n += !*compare->sweep.cells[k].outcome;
+    compare->budget = compare->settings->budget > 0
+                          ? compare->settings->budget
+                          : fmin(CS_COMPARE_SECONDS / (2 * fmax(n, 1)), CS_COMPARE_MOST);
+}
+
+static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_session_settings *session = &compare->settings->course.session;
+    const struct cs_sweep_settings asked = {.list = compare->settings->methods,
+                                            .plugins = session->plugins,
+                                            .n_plugins = session->n_plugins,
+                                            .fps = compare->fps,
+                                            .omega = compare->omega};
+    if (!cs_sweep_make(&compare->sweep, &asked, error))
+        share_time(compare);
+    return error->status;
+}
+
+/* An option that a method does not have is known before anything runs. */
+static enum cs_status check_options(const struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_cell *cells = compare->sweep.cells;
+    struct cs_session_settings asked = compare->settings->course.session;
+    char integrator[320];
+    for (uint32_t k = 0; k < compare->sweep.n && !error->status; k++) {
+        struct cs_session session = {0};
+        if (*cells[k].outcome || (k > 0 && !strcmp(cells[k].method, cells[k - 1].method)))
+            continue;
+        cs_cell_integrator(cells + k, integrator, sizeof integrator);
+        asked.integrator = integrator;
+        cs_session_open_plan(&session, &asked, error);
+        cs_session_close(&session);
+    }
+    return error->status;
+}
+
+/* What a row depends on: reference (with scene, overrides, length), then method and ways to
+ * measure. The sweep has put the hash of the module there. */
+static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_yardstick_settings asked = ask_reference(compare);
+    struct cs_yardstick yardstick;
+    char of_reference[CS_HASH_DIGITS], of_cell[CS_HASH_DIGITS];
+    cs_yardstick_plan(&yardstick, &asked, of_reference, error);
+    for (uint32_t k = 0; k < compare->sweep.n && !error->status; k++) {
+        struct cs_cell *cell = compare->sweep.cells + k;
+        struct cs_text all = {0};
+        cs_text_add(&all, "%s|%s|%s|%u", cell->key, cell->method, cell->options,
+                    compare->settings->runs);
+        cs_hash_bytes(cs_text_get(&all), all.length, of_cell);
+        snprintf(cell->key, sizeof cell->key, "%.*s-%.16s", CS_COMPARE_DIGITS, of_reference,
+                 of_cell);
+        cs_text_finish(&all);
+    }
+    return error->status;
+}
+
+static void report_row(struct cs_compare *compare, const struct cs_cell *cell, bool taken) {
+    compare->done++;
+    if (compare->settings->row)
+        compare->settings->row(compare->settings->ctx, cell, taken);
+}
+
+static enum cs_status measure_cells(struct cs_compare *compare, struct cs_ledger *ledger,
+                                    struct cs_error *error) {
+    for (uint32_t k = 0; k < compare->sweep.n; k++)
+        if (*compare->sweep.cells[k].outcome)
+            report_row(compare, compare->sweep.cells + k, true);
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        struct cs_cell *cell = compare->sweep.cells + k;
+        if (*cell->outcome)
+            continue;
+        if (cs_compare_measure(compare, cell, error) || cs_ledger_append(ledger, cell, error))
+            return error->status;
+        report_row(compare, cell, false);
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_compare_run(struct cs_compare *compare,
+                              const struct cs_compare_settings *settings,
+                              struct cs_error *error) {
+    struct cs_ledger ledger = {0};
+    *compare = (struct cs_compare){.settings = settings};
+    const struct cs_yardstick_settings reference = ask_reference(compare);
+    // the folder is looked at before the reference, which may take long
+    if (!look_at_scene(compare, error) && !make_cells(compare, error) &&
+        !check_options(compare, error) && !make_keys(compare, error) &&
+        !cs_ledger_open(&ledger, compare, error) &&
+        !cs_yardstick_get(&compare->yardstick, &reference, error)) {
+        if (settings->begun)
+            settings->begun(settings->ctx);
+        if (!measure_cells(compare, &ledger, error)) {
+            cs_compare_find_orders(compare->sweep.cells, compare->sweep.n,
+                                   compare->yardstick.bar, compare->yardstick.scale);
+            cs_ledger_rewrite(&ledger, compare, error);
+        }
+    }
+    cs_ledger_close(&ledger);
+    return error->status;
+}
+
+void cs_compare_finish(struct cs_compare *compare) {
+    cs_yardstick_finish(&compare->yardstick);
+    cs_sweep_finish(&compare->sweep);
+    cs_text_finish(&compare->changes);
+    *compare = (struct cs_compare){0};
+}

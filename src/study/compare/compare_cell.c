@@ -1,0 +1,103 @@
+#include "study/compare/compare_cell.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define TEXT(field)                                                                            \
+    {                                                                                          \
+#field, NULL, CS_CELL_TEXT, offsetof(struct cs_cell, field),                           \
+            sizeof((struct cs_cell *)0)->field                                                 \
+    }
+#define NUMBER(field, label)                                                                   \
+    { #field, label, CS_CELL_NUMBER, offsetof(struct cs_cell, field), sizeof(double) }
+
+const struct cs_column cs_columns[] = {
+    TEXT(method),
+    TEXT(options),
+    TEXT(family),
+    TEXT(control),
+    NUMBER(value, "step in s, or tolerance"),
+    {"adaptive", NULL, CS_CELL_FLAG, offsetof(struct cs_cell, adaptive), sizeof(bool)},
+    TEXT(outcome),
+    NUMBER(time, NULL),
+    NUMBER(step, "mean step in s"),
+    NUMBER(error, "position error at the end in m (RMS)"),
+    NUMBER(max_error, "largest position error at the end in m"),
+    NUMBER(path_error, "position error over all frames in m (RMS)"),
+    NUMBER(max_path_error, "largest position error of all frames in m"),
+    NUMBER(velocity_error, "velocity error at the end in m/s (RMS)"),
+    NUMBER(energy_error, "energy error / largest kinetic energy"),
+    NUMBER(centre_error, "error of the centre of mass in m"),
+    NUMBER(box_error, "error of the bounding box in m"),
+    NUMBER(strain, "largest strain"),
+    NUMBER(bar, NULL),
+    NUMBER(order, NULL),
+    NUMBER(achieved, "achieved error / asked tolerance"),
+    NUMBER(work, "force evaluations, Jacobian products and solver iterations"),
+    NUMBER(evals, "force evaluations"),
+    NUMBER(jvps, "Jacobian products"),
+    NUMBER(solves, "linear solves"),
+    NUMBER(iterations, "iterations of the linear solver"),
+    NUMBER(setups, "matrices set up"),
+    NUMBER(steps, "steps"),
+    NUMBER(rejected, "rejected steps"),
+    NUMBER(newton, "nonlinear iterations"),
+    NUMBER(clamped, NULL),
+    NUMBER(cpu, "processor time in s"),
+    NUMBER(cpu_low, NULL),
+    NUMBER(cpu_high, NULL),
+    NUMBER(wall, "wall time in s"),
+    NUMBER(runs, NULL),
+    NUMBER(outliers, NULL),
+    TEXT(note),
+    TEXT(key),
+};
+const uint32_t cs_n_columns = sizeof cs_columns / sizeof *cs_columns;
+
+enum { EXPLICIT, IMPLICIT, APPROXIMATE, EXPLICIT_ADAPTIVE, IMPLICIT_ADAPTIVE };
+const char *const cs_family_names[] = {"explicit",          "implicit",          "approximate",
+                                       "adaptive explicit", "adaptive implicit", NULL};
+
+const char *cs_family_of(const struct cs_integrator *integrator) {
+    const bool implicit = integrator->traits & CS_IMPLICIT;
+    if (integrator->traits & CS_ADAPTIVE)
+        return cs_family_names[implicit ? IMPLICIT_ADAPTIVE : EXPLICIT_ADAPTIVE];
+    if (integrator->fidelity != CS_FIDELITY_ODE)
+        return cs_family_names[APPROXIMATE];
+    return cs_family_names[implicit ? IMPLICIT : EXPLICIT];
+}
+
+const struct cs_column *cs_column_find(const char *name) {
+    for (uint32_t c = 0; c < cs_n_columns; c++)
+        if (!strcmp(cs_columns[c].name, name))
+            return cs_columns + c;
+    return NULL;
+}
+
+const char *const *cs_column_axes(void) {
+    static const char *names[sizeof cs_columns / sizeof *cs_columns + 1];
+    uint32_t n = 0;
+    for (uint32_t c = 0; c < cs_n_columns; c++)
+        if (cs_columns[c].label)
+            names[n++] = cs_columns[c].name;
+    return names;
+}
+
+double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column) {
+    double value;
+    memcpy(&value, (const char *)cell + column->offset, sizeof value);
+    return value;
+}
+
+void cs_cell_init(struct cs_cell *cell, const char *method) {
+    *cell = (struct cs_cell){0};
+    for (uint32_t c = 0; c < cs_n_columns; c++)
+        if (cs_columns[c].type == CS_CELL_NUMBER)
+            memcpy((char *)cell + cs_columns[c].offset, &(double){(double)NAN}, sizeof(double));
+    snprintf(cell->method, sizeof cell->method, "%s", method);
+}
+
+bool cs_cell_is_finished(const struct cs_cell *cell) {
+    return !strcmp(cell->outcome, cs_outcome_text(CS_RUNNING));
+}

@@ -1,0 +1,222 @@
+#include "study/compare/compare_sheet.h"
+
+#include "base/file.h"
+#include "io/gnuplot.h"
+#include "io/png.h"
+#include "sim/folders.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Pictures are drawn wider than they are kept: the bar of colours, in units that are none of
+ * ours, stands in what is cut off. */
+enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, MARGIN = 92, TILES_MAX = 64, COLUMNS = 5 };
+enum { DRAWN_WIDTH = TILE_WIDTH + 2 * MARGIN };
+
+/* The cells of one sheet, one a method at most. */
+struct sheet {
+    const char *kind;
+    const struct cs_cell *cells[TILES_MAX];
+    uint32_t n;
+    double range[2]; /* log10 m */
+};
+
+static bool is_first_of_method(const struct cs_compare *compare, uint32_t k) {
+    const struct cs_cell *cells = compare->sweep.cells;
+    return k == 0 || strcmp(cells[k].method, cells[k - 1].method) != 0;
+}
+
+static bool has_step(const struct cs_cell *cell, double step) {
+    return cs_cell_is_finished(cell) && !cell->adaptive && fabs(cell->value / step - 1) < 1e-6;
+}
+
+/* the step with most finished methods, the longer one of two */
+static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
+    const struct cs_sweep *sweep = &compare->sweep;
+    double best = (double)NAN;
+    uint32_t most = 0;
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        uint32_t n = 0;
+        for (uint32_t i = 0; i < sweep->n; i++)
+            n += has_step(sweep->cells + i, sweep->cells[k].value);
+        if (n > most || (n == most && sweep->cells[k].value > best)) {
+            most = n;
+            best = sweep->cells[k].value;
+        }
+    }
+    for (uint32_t k = 0; k < sweep->n && sheet->n < TILES_MAX; k++)
+        if (has_step(sweep->cells + k, best))
+            sheet->cells[sheet->n++] = sweep->cells + k;
+}
+
+/* The cheapest cells of the methods: the dearest of them is what all can keep. */
+static double common_cost(const struct cs_compare *compare) {
+    const struct cs_sweep *sweep = &compare->sweep;
+    double cost = 0, least = HUGE_VAL;
+    for (uint32_t k = 0; k <= sweep->n; k++) {
+        if (k == sweep->n || is_first_of_method(compare, k)) {
+            cost = least < HUGE_VAL ? fmax(cost, least) : cost;
+            least = HUGE_VAL;
+        }
+        if (k < sweep->n && cs_cell_is_finished(sweep->cells + k))
+            least = fmin(least, sweep->cells[k].cpu);
+    }
+    return cost;
+}
+
+static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
+    const struct cs_sweep *sweep = &compare->sweep;
+    const double cost = common_cost(compare);
+    const struct cs_cell *best = NULL;
+    for (uint32_t k = 0; k <= sweep->n; k++) {
+        if ((k == sweep->n || is_first_of_method(compare, k)) && best && sheet->n < TILES_MAX) {
+            sheet->cells[sheet->n++] = best;
+            best = NULL;
+        }
+        const struct cs_cell *cell = sweep->cells + k;
+        if (k < sweep->n && cs_cell_is_finished(cell) && cell->cpu <= cost &&
+            (!best || cell->cpu > best->cpu))
+            best = cell;
+    }
+}
+
+static void cut_margins(struct cs_image *image) {
+    for (uint32_t row = 0; row < image->height; row++)
+        memmove(image->rgb + 3 * (size_t)TILE_WIDTH * row,
+                image->rgb + 3 * ((size_t)DRAWN_WIDTH * row + MARGIN), 3 * (size_t)TILE_WIDTH);
+    image->width = TILE_WIDTH;
+}
+
+static enum cs_status paint(struct cs_course *course, const struct cs_frame *frame,
+                            enum cs_gl gl, const char *path, struct cs_error *error) {
+    struct cs_scene *scene = &course->session.scene;
+    const struct cs_renderer *renderer = NULL;
+    struct cs_canvas *canvas = NULL;
+    struct cs_image image = {DRAWN_WIDTH, TILE_HEIGHT, malloc(3 * DRAWN_WIDTH * TILE_HEIGHT)};
+    struct cs_image *textures = calloc(scene->bodies.n, sizeof *textures);
+    const struct cs_canvas_settings settings = {scene, &course->session.system, textures,
+                                                false};
+    scene->render.size[0] = DRAWN_WIDTH;
+    scene->render.size[1] = TILE_HEIGHT;
+    scene->render.look = CS_LOOK_STRAIN; // any that colours by a value
+    if (!image.rgb || !textures)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+    else if (!cs_renderer_open(cs_renderer_folder(), gl, &renderer, error) &&
+             !renderer->create(&settings, &canvas, error) &&
+             !renderer->paint(canvas, frame, &image, error)) {
+        cut_margins(&image);
+        cs_png_write(path, &image, 6, NULL, 0, error);
+    }
+    if (renderer)
+        renderer->destroy(canvas);
+    free(textures);
+    free(image.rgb);
+    return error->status;
+}
+
+/* Runs a cell again and draws its last frame. */
+static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
+                                const struct cs_compare *compare, enum cs_gl gl,
+                                struct cs_error *error) {
+    char integrator[320], path[4200];
+    struct cs_course course;
+    struct cs_track track = {0};
+    struct cs_course_end end;
+    double *distance = calloc(compare->particles, sizeof *distance);
+    cs_cell_integrator(cell, integrator, sizeof integrator);
+    snprintf(path, sizeof path, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind,
+             cell->method);
+    if (!distance)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
+    else if (!cs_course_open(&course, &compare->settings->course, integrator, error)) {
+        if (!cs_track_init(&track, &course, error) &&
+            !cs_course_run(&course, 0, &track, &end, error) && track.done == track.frames) {
+            const double *x = cs_track_state(&track, track.frames);
+            cs_distance_each(track.n, x,
+                             cs_track_state(&compare->yardstick.track, track.frames), distance);
+            for (uint32_t i = 0; i < track.n; i++)
+                distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
+            /* no time: what prods saw was forgotten at the end of the run */
+            const struct cs_frame frame = {.x = x,
+                                           .scalar = distance,
+                                           .range = {sheet->range[0], sheet->range[1]},
+                                           .inv_mass = course.session.system.inv_mass};
+            paint(&course, &frame, gl, path, error);
+        }
+        cs_track_finish(&track);
+        cs_course_close(&course);
+    }
+    free(distance);
+    return error->status;
+}
+
+static void print_script(const struct sheet *sheet, const struct cs_compare *compare,
+                         struct cs_text *out) {
+    const uint32_t lines = (sheet->n + COLUMNS - 1) / COLUMNS;
+    cs_text_add(
+        out,
+        "set terminal pngcairo size %d,%u font \"DejaVu Sans,11\"\n"
+        "set output \"%s.png\"\n"
+        "set multiplot layout %u,%d title \"%s at %.4g s: distance to the reference from "
+        "10^{%.0f} m (dark) to 10^{%.0f} m (bright)\"\n"
+        "unset key\nunset border\nunset tics\nset size ratio -1\n"
+        "set lmargin 0\nset rmargin 0\nset bmargin 0\n",
+        COLUMNS * 320, 60 + lines * 275, sheet->kind, lines, COLUMNS,
+        !strcmp(sheet->kind, "equal_step") ? "Equal step" : "Equal cost", compare->time,
+        sheet->range[0], sheet->range[1]);
+    for (uint32_t k = 0; k < sheet->n; k++) {
+        const struct cs_cell *cell = sheet->cells[k];
+        cs_text_add(out,
+                    "set title \"%s\\n%s %.3g, %.3g ms, error %.1e m\" noenhanced\n"
+                    "plot \"pictures/%s_%s.png\" binary filetype=png with rgbimage\n",
+                    cell->method, cell->control, cell->value, 1e3 * cell->cpu, cell->error,
+                    sheet->kind, cell->method);
+    }
+    cs_text_add(out, "unset multiplot\n");
+}
+
+static void set_range(struct sheet *sheet, const struct cs_compare *compare) {
+    double least = HUGE_VAL, most = 0;
+    for (uint32_t k = 0; k < sheet->n; k++) {
+        least = fmin(least, sheet->cells[k]->error);
+        most = fmax(most, sheet->cells[k]->max_error);
+    }
+    sheet->range[0] = floor(log10(fmax(least, compare->yardstick.bar)));
+    sheet->range[1] = fmax(ceil(log10(most)), sheet->range[0] + 1);
+}
+
+static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *compare,
+                                  enum cs_gl gl, struct cs_error *error) {
+    struct cs_text script = {0};
+    char name[32], path[4200];
+    bool drawn;
+    set_range(sheet, compare);
+    snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
+    if (sheet->n == 0 || cs_folder_make(path, error))
+        return error->status;
+    for (uint32_t k = 0; k < sheet->n && !error->status; k++)
+        draw_tile(sheet, sheet->cells[k], compare, gl, error);
+    print_script(sheet, compare, &script);
+    snprintf(name, sizeof name, "%s.gp", sheet->kind);
+    snprintf(path, sizeof path, "%s/%s", compare->settings->folder, name);
+    if (script.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a script");
+    if (!error->status && !cs_file_write(path, cs_text_get(&script), script.length, error))
+        cs_gnuplot_run(compare->settings->folder, name, &drawn, error);
+    cs_text_finish(&script);
+    return error->status;
+}
+
+enum cs_status cs_sheet_write(const struct cs_compare *compare, enum cs_gl gl,
+                              struct cs_error *error) {
+    struct sheet step = {.kind = "equal_step"}, cost = {.kind = "equal_cost"};
+    if (!compare->yardstick.pointwise)
+        return CS_OK;
+    choose_step(&step, compare);
+    choose_cost(&cost, compare);
+    if (!write_sheet(&step, compare, gl, error))
+        write_sheet(&cost, compare, gl, error);
+    return error->status;
+}

@@ -1,0 +1,115 @@
+#include "study/compare/compare_table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out) {
+    const struct cs_yardstick *yardstick = &compare->yardstick;
+    const struct cs_horizon *horizon = &yardstick->horizon;
+    cs_text_add(out, "%s: %u particles, %u springs, %.4g s in %u frames\n", compare->scene,
+                compare->particles, compare->springs, compare->time,
+                compare->settings->course.frames);
+    cs_text_add(out, "reference  %s\n   against %s\n", yardstick->methods[1],
+                yardstick->methods[3]);
+    if (!yardstick->agree) {
+        cs_text_add(out, "  no reference: %s\n", yardstick->reason);
+        return;
+    }
+    cs_text_add(out,
+                " error bar %.1e m (twins %.1e, %.1e; families %.1e); the motion is %.2g m%s\n",
+                yardstick->bar, yardstick->differences[0], yardstick->differences[1],
+                yardstick->differences[2], yardstick->scale,
+                yardstick->cached ? "; from the cache" : "");
+    cs_text_add(out, "   horizon ");
+    if (horizon->time <= compare->time)
+        cs_text_add(out, "%.3g s", horizon->time);
+    else
+        cs_text_add(out, "beyond %.3g s", compare->time);
+    cs_text_add(out, " for %.0e m; a displacement at the start grows %.3g times\n",
+                yardstick->accuracy, horizon->amplification);
+    if (!yardstick->pointwise)
+        cs_text_add(out, "           statistics only: %s\n", yardstick->reason);
+    if (cs_text_get(&compare->changes)[0])
+        cs_text_add(out, "       off %s\n", cs_text_get(&compare->changes));
+}
+
+void cs_table_add_head(struct cs_text *out) {
+    cs_text_add(out, "%-20s %-14s %8s %8s %8s %9s %18s  %s\n", "method", "", "error m",
+                "largest", "energy", "work", "processor time", "");
+}
+
+static void add_control(const struct cs_cell *cell, struct cs_text *out) {
+    char control[32] = "";
+    if (!strcmp(cell->control, "dt"))
+        snprintf(control, sizeof control, "dt %.3g ms",
+                 1e3 * (isfinite(cell->step) ? cell->step : cell->value));
+    else if (*cell->control)
+        snprintf(control, sizeof control, "%s %.1e", cell->control, cell->value);
+    cs_text_add(out, "%-20s %-14s", cell->method, control);
+}
+
+static void add_number(struct cs_text *out, double value) {
+    if (isfinite(value))
+        cs_text_add(out, " %8.1e", value);
+    else
+        cs_text_add(out, " %8s", "-");
+}
+
+void cs_table_add_row(const struct cs_cell *cell, struct cs_text *out) {
+    add_control(cell, out);
+    add_number(out, cell->error);
+    add_number(out, cell->max_error);
+    add_number(out, cell->energy_error);
+    if (isfinite(cell->work))
+        cs_text_add(out, " %9.0f %8.3g ms", cell->work, 1e3 * cell->cpu);
+    else
+        cs_text_add(out, " %9s %8s   ", "-", "-");
+    if (cell->runs > 1)
+        cs_text_add(out, " +-%4.1f%%  ", 50 * (cell->cpu_high - cell->cpu_low) / cell->cpu);
+    else
+        cs_text_add(out, "          ");
+    cs_text_add(out, "%s", cell->outcome);
+    if (isfinite(cell->time) && !cs_cell_is_finished(cell))
+        cs_text_add(out, " at %.3g s", cell->time);
+    cs_text_add(out, "\n");
+}
+
+/* what is said of one method: the cells from..to */
+static void add_method(const struct cs_cell *cells, uint32_t n, struct cs_text *out) {
+    double least = HUGE_VAL, most = 0, step = 0, low = HUGE_VAL, high = 0;
+    uint32_t finished = 0;
+    for (uint32_t k = 0; k < n; k++) {
+        if (!cs_cell_is_finished(cells + k))
+            continue;
+        finished++;
+        step = fmax(step, cells[k].step);
+        if (isfinite(cells[k].order)) {
+            low = fmin(low, cells[k].order);
+            high = fmax(high, cells[k].order);
+        }
+        if (isfinite(cells[k].achieved)) {
+            least = fmin(least, cells[k].achieved);
+            most = fmax(most, cells[k].achieved);
+        }
+    }
+    cs_text_add(out, "%-20s %2u of %2u", cells->method, finished, n);
+    if (high > 0)
+        cs_text_add(out, high - low > 0.1 ? "  order %.2f to %.2f" : "  order %.2f", low, high);
+    if (finished > 0 && !cells->adaptive)
+        cs_text_add(out, "  largest step that held %.3g ms", 1e3 * step);
+    if (most > 0)
+        cs_text_add(out, "  error / tolerance from %.1e to %.1e", least, most);
+    if (!strcmp(cells->outcome, "refused"))
+        cs_text_add(out, "  refused: %s", cells->note);
+    cs_text_add(out, "\n");
+}
+
+void cs_table_add_methods(const struct cs_compare *compare, struct cs_text *out) {
+    const struct cs_sweep *sweep = &compare->sweep;
+    for (uint32_t first = 0, k = 1; k <= sweep->n; k++)
+        if (k == sweep->n || strcmp(sweep->cells[k].method, sweep->cells[first].method) != 0) {
+            add_method(sweep->cells + first, k - first, out);
+            first = k;
+        }
+}

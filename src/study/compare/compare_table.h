@@ -1,0 +1,17 @@
+/* compare_table.h - a comparison as aligned text. */
+#ifndef CS_COMPARE_TABLE_H
+#define CS_COMPARE_TABLE_H
+
+#include "study/compare/ranking.h"
+
+/* Adds the reference in a few lines: methods, error bar, horizon, what is switched off. */
+void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out);
+
+/* Adds the names of the columns, or the row of a cell. */
+void cs_table_add_head(struct cs_text *out);
+void cs_table_add_row(const struct cs_cell *cell, struct cs_text *out);
+
+/* Adds one line a method: its observed order, largest step that held, tolerance kept. */
+void cs_table_add_methods(const struct cs_compare *compare, struct cs_text *out);
+
+#endif

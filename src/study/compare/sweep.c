@@ -1,0 +1,259 @@
+#include "study/compare/sweep.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/options.h"
+#include "sim/registry.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEFAULT_STEPS = 8, MOST_POINTS = 64, MODULE_BYTES_MAX = 1 << 28 };
+
+/* First step of an explicit method in units of the safe bound 2/omega, which is up to 1.5 times
+ * below the limit of the leap-frog and twice below that of Runge-Kutta. */
+#define BEYOND_LIMIT 2.2
+
+/* One method of the list on its way to cells. */
+struct entry {
+    const struct cs_integrator *integrator;
+    struct cs_table table;
+    char fixed[192]; /* options without the swept one */
+    const char *control;
+    double low, high; /* NAN: the default sweep */
+    bool atol_is_fixed;
+    char module[CS_HASH_DIGITS]; /* hash of the file: a module built anew is another one */
+};
+
+enum cs_status cs_sweep_insert(struct cs_sweep *sweep, uint32_t at, const struct cs_cell *cell,
+                               struct cs_error *error) {
+    if (sweep->n == sweep->capacity) {
+        const uint32_t capacity = sweep->capacity ? 2 * sweep->capacity : 64;
+        struct cs_cell *cells = realloc(sweep->cells, capacity * sizeof *cells);
+        if (!cells)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", capacity);
+        sweep->cells = cells;
+        sweep->capacity = capacity;
+    }
+    struct cs_cell *place = sweep->cells + at;
+    memmove(place + 1, place, (sweep->n++ - at) * sizeof *place);
+    *place = *cell;
+    return CS_OK;
+}
+
+static void add_option(char *options, size_t size, const char *name, double value) {
+    struct cs_text number = {0};
+    const size_t used = strlen(options);
+    cs_text_add_real(&number, value);
+    snprintf(options + used, size - used, "%s%s=%s", used ? "," : "", name,
+             cs_text_get(&number));
+    cs_text_finish(&number);
+}
+
+static enum cs_status add_point(struct cs_sweep *sweep, const struct entry *entry, double value,
+                                struct cs_error *error) {
+    struct cs_cell cell;
+    cs_cell_init(&cell, entry->integrator->name);
+    snprintf(cell.family, sizeof cell.family, "%s", cs_family_of(entry->integrator));
+    snprintf(cell.key, sizeof cell.key, "%s", entry->module);
+    cell.adaptive = entry->integrator->traits & CS_ADAPTIVE;
+    snprintf(cell.options, sizeof cell.options, "%s", entry->fixed);
+    snprintf(cell.control, sizeof cell.control, "%s", entry->control);
+    if (*entry->control) {
+        cell.value = value;
+        add_option(cell.options, sizeof cell.options, entry->control, value);
+    }
+    const struct cs_option *atol = cs_option_find(&entry->table, "atol");
+    if (cell.adaptive && *entry->control && atol && !entry->atol_is_fixed)
+        add_option(cell.options, sizeof cell.options, "atol",
+                   fmin(fmax(value, atol->min), atol->max));
+    return cs_sweep_insert(sweep, sweep->n, &cell, error);
+}
+
+static enum cs_status refuse(struct cs_sweep *sweep, const char *name, const char *why,
+                             struct cs_error *error) {
+    struct cs_cell cell;
+    cs_cell_init(&cell, name);
+    snprintf(cell.outcome, sizeof cell.outcome, "refused");
+    snprintf(cell.note, sizeof cell.note, "%.239s", why);
+    return cs_sweep_insert(sweep, sweep->n, &cell, error);
+}
+
+/* what the default sweep goes over, largest first */
+static void default_range(const struct entry *entry, const struct cs_sweep_settings *settings,
+                          double *high, double *low) {
+    const struct cs_option *row = cs_option_find(&entry->table, entry->control);
+    if (entry->integrator->traits & CS_ADAPTIVE) {
+        *high = fmin(1e-2, row->max);
+        *low = fmax(1e-9, row->min);
+        return;
+    }
+    *high = 1 / settings->fps;
+    if (!(entry->integrator->traits & CS_IMPLICIT))
+        while (*high > 2 * BEYOND_LIMIT * 2 / settings->omega)
+            *high /= 2;
+    *low = fmax(*high / (1 << (DEFAULT_STEPS - 1)), row->min);
+}
+
+static enum cs_status expand(struct cs_sweep *sweep, const struct entry *entry,
+                             const struct cs_sweep_settings *settings, struct cs_error *error) {
+    double high = entry->high, low = entry->low;
+    if (entry->integrator->fidelity == CS_FIDELITY_OTHER)
+        return refuse(sweep, entry->integrator->name,
+                      "another model than the equation of motion: an error against it has no "
+                      "meaning",
+                      error);
+    if (!*entry->control)
+        return add_point(sweep, entry, (double)NAN, error);
+    if (isnan(high))
+        default_range(entry, settings, &high, &low);
+    const bool adaptive = entry->integrator->traits & CS_ADAPTIVE;
+    for (int k = 0; k < MOST_POINTS; k++) {
+        // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
+        const double value =
+            adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
+        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, error))
+            break;
+    }
+    return error->status;
+}
+
+/* "low..high" or one number */
+static bool read_range(const char *text, double *low, double *high) {
+    char first[64];
+    const char *dots = strstr(text, "..");
+    if (!dots)
+        return cs_parse_real(text, low) && (*high = *low, true);
+    if (dots - text >= (long)sizeof first)
+        return false;
+    memcpy(first, text, dots - text);
+    first[dots - text] = 0;
+    return cs_parse_real(first, low) && cs_parse_real(dots + 2, high) && *low > 0 &&
+           *low <= *high;
+}
+
+static enum cs_status read_option(struct entry *entry, char *pair, struct cs_error *error) {
+    const char *name = entry->integrator->name;
+    char *equals = strchr(pair, '=');
+    if (!equals)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--integrators: %s: found \"%.60s\", expected key=value", name, pair);
+    const size_t used = strlen(entry->fixed);
+    *equals = 0;
+    if (!strcmp(pair, entry->control)) {
+        if (!read_range(equals + 1, &entry->low, &entry->high))
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--integrators: %s: %s: found \"%.60s\", expected a number or "
+                           "LOW..HIGH",
+                           name, pair, equals + 1);
+        return CS_OK;
+    }
+    entry->atol_is_fixed |= !strcmp(pair, "atol");
+    snprintf(entry->fixed + used, sizeof entry->fixed - used, "%s%s=%s", used ? "," : "", pair,
+             equals + 1);
+    return CS_OK;
+}
+
+static void hash_module(const char *file, char digits[CS_HASH_DIGITS]) {
+    char *bytes;
+    size_t length;
+    struct cs_error unread = {0};
+    if (!cs_file_read(file, MODULE_BYTES_MAX, &bytes, &length, &unread))
+        cs_hash_bytes(bytes, length, digits);
+    free(bytes);
+}
+
+static void begin_entry(struct entry *entry, const struct cs_registered *registered) {
+    const struct cs_integrator *integrator = registered->integrator;
+    *entry = (struct entry){
+        .integrator = integrator, .low = (double)NAN, .high = (double)NAN, .control = ""};
+    entry->table = (struct cs_table){.rows = integrator->options,
+                                     .n = integrator->n_options,
+                                     .size = integrator->options_size};
+    hash_module(registered->file, entry->module);
+    const char *control = integrator->traits & CS_ADAPTIVE ? "rtol" : "dt";
+    if (cs_option_find(&entry->table, control))
+        entry->control = control;
+}
+
+/* A comma stands between methods, and between options: what holds no ':' before its '=' is
+ * an option of the method before. */
+static bool is_option(const char *token) {
+    const char *equals = strchr(token, '='), *colon = strchr(token, ':');
+    return equals && (!colon || colon > equals);
+}
+
+static enum cs_status read_list(struct cs_sweep *sweep, struct cs_registry *registry,
+                                const struct cs_sweep_settings *settings, char *list,
+                                struct cs_error *error) {
+    struct entry entry = {0};
+    for (char *token; (token = strsep(&list, ","));) {
+        if (is_option(token)) {
+            if (!entry.integrator)
+                return cs_fail(error, CS_ERR_USAGE,
+                               "--integrators: found \"%.60s\", expected a method first",
+                               token);
+            if (read_option(&entry, token, error))
+                return error->status;
+            continue;
+        }
+        char *options = token;
+        const char *name = strsep(&options, ":");
+        const struct cs_registered *found;
+        if (entry.integrator && expand(sweep, &entry, settings, error))
+            return error->status;
+        if (cs_registry_find(registry, name, &found, error))
+            return error->status;
+        begin_entry(&entry, found);
+        if (options && read_option(&entry, options, error))
+            return error->status;
+    }
+    return entry.integrator ? expand(sweep, &entry, settings, error) : error->status;
+}
+
+static enum cs_status take_all(struct cs_sweep *sweep, struct cs_registry *registry,
+                               const struct cs_sweep_settings *settings,
+                               struct cs_error *error) {
+    if (cs_registry_open_all(registry, error))
+        return error->status;
+    for (uint32_t k = 0; k < registry->n; k++) {
+        struct entry entry;
+        if (!registry->entries[k].integrator)
+            continue;
+        begin_entry(&entry, registry->entries + k);
+        if (expand(sweep, &entry, settings, error))
+            return error->status;
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_settings *settings,
+                             struct cs_error *error) {
+    struct cs_registry registry = {0};
+    char *list = settings->list ? strdup(settings->list) : NULL;
+    *sweep = (struct cs_sweep){0};
+    for (uint32_t k = 0; k < settings->n_plugins && !error->status; k++)
+        cs_registry_add_file(&registry, settings->plugins[k], error);
+    if (settings->list && !list)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
+    if (!error->status && list)
+        read_list(sweep, &registry, settings, list, error);
+    else if (!error->status)
+        take_all(sweep, &registry, settings, error);
+    free(list);
+    cs_registry_finish(&registry);
+    if (error->status)
+        cs_sweep_finish(sweep);
+    return error->status;
+}
+
+void cs_sweep_finish(struct cs_sweep *sweep) {
+    free(sweep->cells);
+    *sweep = (struct cs_sweep){0};
+}
+
+void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size) {
+    snprintf(out, size, "%s%s%s", cell->method, *cell->options ? ":" : "", cell->options);
+}

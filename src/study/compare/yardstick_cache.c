@@ -1,0 +1,111 @@
+/* yardstick_cache.c - a reference in a file, for the next comparison of the same scene. */
+#include "base/file.h"
+#include "base/hash.h"
+#include "io/scene_write.h"
+#include "study/compare/yardstick.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAGIC "clothsim ref 1\n"
+enum { FILE_BYTES_MAX = 1 << 30 };
+
+/* Native byte order: a file of another machine fails the test of `one`. */
+struct header {
+    char magic[16];
+    double one;
+    uint32_t n, frames;
+    double fps;
+    char hash[40];                 /* of the states */
+    struct cs_yardstick yardstick; /* pointers in it mean nothing */
+};
+
+void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_course *course,
+                      const struct cs_yardstick_settings *settings, char *key) {
+    const struct cs_session_settings *session = &settings->course->session;
+    const struct cs_scene *scene = &course->session.scene;
+    const size_t values = 6 * (size_t)course->session.system.view.n;
+    char start[CS_HASH_DIGITS];
+    struct cs_text all = {0};
+    // meshes are files of their own or made here: the start is as they came out
+    cs_hash_doubles(course->start, values, start);
+    cs_text_add(&all, "%s|", start);
+    cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
+                settings->course->frames, scene->time.fps, settings->accuracy);
+    for (int k = 0; k < CS_YARDSTICK_RUNS; k++)
+        cs_text_add(&all, "%s|", yardstick->methods[k]);
+    for (uint32_t k = 0; k < session->n_overrides; k++)
+        cs_text_add(&all, "%s=%s|", session->overrides[k].path, session->overrides[k].value);
+    // where the methods are chosen here, a module that is added changes nothing
+    for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
+        cs_text_add(&all, "%s|", session->plugins[k]);
+    cs_scene_print_files(scene, &all);
+    cs_text_add(&all, "%s", scene->text);
+    cs_hash_bytes(cs_text_get(&all), all.length, key);
+    cs_text_finish(&all);
+}
+
+static void file_path(const char *folder, const char *key, char *path, size_t size) {
+    snprintf(path, size, "%s/reference-%.16s.state", folder, key);
+}
+
+bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const char *key,
+                       const struct cs_course *course) {
+    char path[4096], *bytes, hash[CS_HASH_DIGITS];
+    size_t length;
+    struct cs_error missing = {0};
+    struct header header;
+    file_path(folder, key, path, sizeof path);
+    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, &missing))
+        return false;
+    struct cs_track track;
+    bool good = length > sizeof header && !cs_track_init(&track, course, &missing);
+    if (good) {
+        memcpy(&header, bytes, sizeof header);
+        const size_t values = ((size_t)track.frames + 1) * 6 * track.n;
+        good = !memcmp(header.magic, MAGIC, sizeof MAGIC) && header.one == 1 &&
+               header.n == track.n && header.frames == track.frames &&
+               length == sizeof header + values * sizeof(double);
+        if (good) {
+            memcpy(track.states, bytes + sizeof header, values * sizeof(double));
+            cs_hash_doubles(track.states, values, hash);
+            good = !strcmp(hash, header.hash);
+        }
+        if (good) {
+            *yardstick = header.yardstick;
+            track.done = track.frames;
+            yardstick->track = track;
+            yardstick->cached = true;
+        } else
+            cs_track_finish(&track);
+    }
+    free(bytes);
+    return good;
+}
+
+enum cs_status cs_yardstick_write(const struct cs_yardstick *yardstick, const char *folder,
+                                  const char *key, struct cs_error *error) {
+    const struct cs_track *track = &yardstick->track;
+    const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
+    struct header *header = calloc(1, sizeof *header);
+    struct cs_file_out out = {0};
+    char path[4096];
+    if (!header)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the reference");
+    file_path(folder, key, path, sizeof path);
+    memcpy(header->magic, MAGIC, sizeof MAGIC);
+    header->one = 1;
+    header->n = track->n;
+    header->frames = track->frames;
+    header->yardstick = *yardstick;
+    header->yardstick.track.states = NULL;
+    cs_hash_doubles(track->states, values, header->hash);
+    if (!cs_folder_make(folder, error) && !cs_file_create(&out, path, error)) {
+        fwrite(header, sizeof *header, 1, out.file);
+        fwrite(track->states, sizeof(double), values, out.file);
+        cs_file_finish(&out, error);
+    }
+    free(header);
+    return error->status;
+}

@@ -1,0 +1,128 @@
+#include "study/conform/conform.h"
+
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_probe.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name, *what;
+    enum cs_conform_of of;
+    void (*run)(const struct cs_conform *card, struct cs_conform_row *row);
+} checks[] = {
+#define X(name, function, of, what) {name, what, CS_CONFORM_##of, cs_check_##function},
+    CS_CONFORM_LIST(X)
+#undef X
+};
+enum { CHECKS = sizeof checks / sizeof *checks };
+
+const char *cs_verdict_text(enum cs_verdict verdict) {
+    static const char *const texts[] = {
+#define X(name, text) text,
+        CS_VERDICT_LIST(X)
+#undef X
+    };
+    return texts[verdict];
+}
+
+static void note(struct cs_conform_row *row, const char *format, va_list args) {
+    vsnprintf(row->note, sizeof row->note, format, args);
+}
+
+/* share of the bound that is used up; not a number counts as all of it and more */
+static double used(double figure, double bound) {
+    return !(figure <= bound) ? (figure > bound && bound > 0 ? figure / bound : HUGE_VAL)
+           : bound > 0        ? figure / bound
+                              : 0;
+}
+
+void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
+                  ...) {
+    // the first that fails is the plainest
+    if (row->verdict == CS_VERDICT_FAIL)
+        return;
+    if (!isnan(row->bound) && used(figure, bound) <= used(row->figure, row->bound))
+        return;
+    row->figure = figure;
+    row->bound = bound;
+    row->verdict = figure <= bound ? CS_VERDICT_PASS : CS_VERDICT_FAIL;
+    va_list args;
+    va_start(args, format);
+    note(row, format, args);
+    va_end(args);
+}
+
+void cs_row_skip(struct cs_conform_row *row, const char *reason) {
+    row->verdict = CS_VERDICT_NONE;
+    snprintf(row->note, sizeof row->note, "%s", reason);
+}
+
+void cs_row_fail(struct cs_conform_row *row, const char *format, ...) {
+    if (row->verdict == CS_VERDICT_FAIL)
+        return;
+    row->verdict = CS_VERDICT_FAIL;
+    row->figure = row->bound = (double)NAN;
+    va_list args;
+    va_start(args, format);
+    note(row, format, args);
+    va_end(args);
+}
+
+static bool is_named(const struct cs_integrator *method, const char *check) {
+    for (const char *const *name = method->fails; name && *name; name++)
+        if (!strcmp(*name, check))
+            return true;
+    return false;
+}
+
+/* what the method says of itself turns a failure into an expected one, and a pass into a claim
+ * that is no longer true */
+static void weigh(const struct cs_integrator *method, struct cs_conform_row *row) {
+    if (!is_named(method, row->check))
+        return;
+    if (row->verdict == CS_VERDICT_FAIL)
+        row->verdict = CS_VERDICT_EXPECTED;
+    else
+        row->verdict = CS_VERDICT_STALE;
+}
+
+enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
+    const char *names[CHECKS + 1] = {NULL};
+    bool found = false;
+    if (cs_probe_check_settings(card, error))
+        return error->status;
+    memset(card->counts, 0, sizeof card->counts);
+    for (uint32_t k = 0; k < CHECKS; k++) {
+        names[k] = checks[k].name;
+        if (card->only && strcmp(card->only, checks[k].name) != 0)
+            continue;
+        found = true;
+        struct cs_conform_row row = {.check = checks[k].name,
+                                     .what = checks[k].what,
+                                     .figure = (double)NAN,
+                                     .bound = (double)NAN};
+        if (checks[k].of == CS_CONFORM_SPRINGS && card->method->fidelity == CS_FIDELITY_OTHER)
+            cs_row_skip(&row, "another model: it does not follow the motion of springs");
+        else
+            checks[k].run(card, &row);
+        weigh(card->method, &row);
+        card->counts[row.verdict]++;
+        if (card->report)
+            card->report(card->ctx, &row);
+    }
+    if (found)
+        return CS_OK;
+    const char *nearest = cs_nearest(card->only, names);
+    return cs_fail(error, CS_ERR_USAGE,
+                   "no check \"%.60s\"%s%s%s (see: clothsim conform --list)", card->only,
+                   nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                   nearest ? "\"?" : "");
+}
+
+void cs_conform_print_checks(struct cs_text *out) {
+    for (uint32_t k = 0; k < CHECKS; k++)
+        cs_text_add(out, "%-20s %s\n", checks[k].name, checks[k].what);
+}

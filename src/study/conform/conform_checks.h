@@ -1,0 +1,55 @@
+/* conform_checks.h - the checks of a card, a group a file, and how one states its result. */
+#ifndef CS_CONFORM_CHECKS_H
+#define CS_CONFORM_CHECKS_H
+
+#include "study/conform/conform.h"
+
+/* Whether a check holds a method against the motion of springs, which one of another model
+ * (CS_FIDELITY_OTHER) does not follow. */
+enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
+
+/* X(name, function, of, what it shows), in the order of the card */
+#define CS_CONFORM_LIST(X)                                                                     \
+    X("abi", abi, ANY, "descriptor within the contract")                                       \
+    X("options", options, ANY, "every option at the ends of its range")                        \
+    X("free-fall", free_fall, ANY, "a sheet falls straight, at its method's order")            \
+    X("translation", translation, ANY, "a uniform velocity changes nothing else")              \
+    X("rotation", rotation, SPRINGS, "a stretched pair turns on its circle")                   \
+    X("commit", commit, ANY, "every step is committed, and they fill the time")                \
+    X("momentum", momentum, ANY, "no momentum without outer forces")                           \
+    X("angular-momentum", angular_momentum, ANY, "no angular momentum either")                 \
+    X("oscillator-axial", oscillator_axial, SPRINGS,                                           \
+      "axially damped pair against its closed form")                                           \
+    X("oscillator-relative", oscillator_relative, SPRINGS, "the same with relative damping")   \
+    X("order", order, SPRINGS, "order on the drum without damping")                            \
+    X("order-damped", order_damped, SPRINGS, "order on the damped drum")                       \
+    X("solution", solution, SPRINGS, "the limit is the solution of the equation of motion")    \
+    X("tolerance", tolerance, SPRINGS, "achieved error against the asked tolerance")           \
+    X("event", event, SPRINGS, "order through a change of the state at a known time")          \
+    X("reversible", reversible, ANY, "forwards, turned round, and back to the start")          \
+    X("energy", energy, SPRINGS, "no energy is gained; bounded where symplectic")              \
+    X("pins", pins, ANY, "pinned particles keep their bits")                                   \
+    X("not-finite", not_finite, ANY, "numbers that are none are reported")                     \
+    X("failed-solve", failed_solve, ANY, "a linear solve that fails ends the run")             \
+    X("allocation", allocation, ANY, "no memory is taken in a step")                           \
+    X("same-bits", same_bits, ANY, "two runs, one result")                                     \
+    X("fidelity", fidelity, ANY, "the limit of the iterations is the stated one")              \
+    X("threads", threads, ANY, "the same bits over thread counts")                             \
+    X("resume", resume, ANY, "a resumed run is the unbroken one")
+
+#define X(name, function, of, what)                                                            \
+    void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row);
+CS_CONFORM_LIST(X)
+#undef X
+
+/* States a figure that must not be above its bound. Where a check states several, the row keeps
+ * the first that fails, else the one nearest to its bound. */
+void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
+                  ...) __attribute__((format(printf, 4, 5)));
+/* The check does not apply, and why. */
+void cs_row_skip(struct cs_conform_row *row, const char *reason);
+/* The check failed without a figure. */
+void cs_row_fail(struct cs_conform_row *row, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+#endif

@@ -1,0 +1,73 @@
+#include "study/conform/conform_drum.h"
+
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_reference.h"
+
+#include <math.h>
+#include <string.h>
+
+/* not from rest: the velocity of symplectic Euler would be right to h^2 by symmetry */
+#define DRUM                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [7, 7], \"stretch\": [1.05, 1.05], \"bump\": 0.08,"  \
+    " \"velocity\": [0.05, 0.03, 0.4]}, \"mass\": {\"particle\": 0.1}, \"springs\":"           \
+    " {\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": %g, \"damping_model\":"       \
+    " \"axial\"}, \"pins\": [\"edges\"]}], \"forces\": {\"gravity\": [0, 0, 0]},"              \
+    " \"time\": {\"fps\": 10}}"
+
+/* error of the reference: (h w)^4 w T / 120, near 1e-12 of the motion */
+#define REFERENCE_STEP (CS_DRUM_FRAME / 4096)
+
+double cs_drum_step(void) {
+    return CS_DRUM_FRAME / ceil(CS_DRUM_FRAME * CS_DRUM_OMEGA / 0.25);
+}
+
+static bool kick(struct cs_probe *probe, double t, double dt, double *x, double *v) {
+    (void)x, (void)dt;
+    if (fabs(t - CS_DRUM_FRAME) > 1e-9)
+        return false;
+    for (size_t i = 0; i < 3 * probe->n; i++)
+        v[i] *= -0.5;
+    return true;
+}
+
+bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
+                  const struct cs_integrator *method, const struct cs_drum *drum) {
+    if (!cs_probe_open(probe, card, method, DRUM, drum->damping))
+        return false;
+    if (drum->kicked)
+        probe->watch = kick;
+    return true;
+}
+
+bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *method,
+                   const struct cs_drum *drum, double step_or_rtol, double *state,
+                   struct cs_conform_row *row) {
+    struct cs_probe probe;
+    cs_drum_open(&probe, card, method, drum);
+    if (method->traits & CS_ADAPTIVE && !drum->fixed)
+        cs_probe_set_tolerance(&probe, step_or_rtol);
+    else
+        cs_probe_set_step(&probe, step_or_rtol);
+    const bool done = cs_probe_run(&probe, CS_DRUM_FRAMES);
+    if (done)
+        memcpy(state, probe.x, 2 * CS_DRUM_VALUES * sizeof *state);
+    else
+        cs_row_fail(row, "%s", probe.error.message);
+    cs_probe_close(&probe);
+    return done;
+}
+
+bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum, double *state,
+                       double scale[2], struct cs_conform_row *row) {
+    struct cs_probe start;
+    if (!cs_drum_state(card, &cs_conform_reference, drum, REFERENCE_STEP, state, row))
+        return false;
+    const bool opened = cs_drum_open(&start, card, &cs_conform_reference, drum);
+    if (opened) {
+        scale[0] = cs_probe_rms(state, start.x, CS_DRUM_VALUES);
+        scale[1] = cs_probe_rms(state + CS_DRUM_VALUES, start.v, CS_DRUM_VALUES);
+    } else
+        cs_row_fail(row, "%s", start.error.message);
+    cs_probe_close(&start);
+    return opened;
+}

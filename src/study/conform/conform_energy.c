@@ -1,0 +1,86 @@
+/* conform_energy.c - what symplectic methods promise, and what no method may do to energy. */
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_drum.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    FRAMES = 100
+}; /* ten seconds: a hundred periods of the fastest mode, 20 of the slowest */
+
+/* Runs to the end, turns all velocities round, and runs back. A symmetric method is at the
+ * start again but for rounding. */
+void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *row) {
+    static const struct cs_drum drum = {0};
+    struct cs_probe there, back;
+    if (!(card->method->traits & CS_SYMPLECTIC)) {
+        cs_row_skip(row, "it does not claim to be symplectic");
+        return;
+    }
+    if (card->method->order < 2) {
+        cs_row_skip(row, "a symplectic method of order 1 is not symmetric in time");
+        return;
+    }
+    cs_drum_open(&there, card, card->method, &drum);
+    cs_probe_set_level(&there, cs_drum_step(), CS_DRUM_OMEGA, 1, 0);
+    if (cs_drum_open(&back, card, card->method, &drum) &&
+        cs_probe_run(&there, CS_DRUM_FRAMES)) {
+        double start[CS_DRUM_VALUES];
+        memcpy(start, back.x, sizeof start);
+        const double move = cs_probe_rms(there.x, start, CS_DRUM_VALUES);
+        for (size_t i = 0; i < CS_DRUM_VALUES; i++) {
+            back.x[i] = there.x[i];
+            back.v[i] = -there.v[i];
+        }
+        cs_probe_set_level(&back, cs_drum_step(), CS_DRUM_OMEGA, 1, 0);
+        if (cs_probe_run(&back, CS_DRUM_FRAMES))
+            cs_row_state(row, cs_probe_rms(back.x, start, CS_DRUM_VALUES) / move, 1e-9,
+                         "of the motion away from the start");
+    }
+    if (there.ended || back.ended)
+        cs_row_fail(row, "%s", there.ended ? there.error.message : back.error.message);
+    cs_probe_close(&there);
+    cs_probe_close(&back);
+}
+
+/* energy of the drum at rest: stretched, without its bump */
+static double rest_energy(const struct cs_conform *card) {
+    struct cs_probe rest;
+    double energy = (double)NAN;
+    if (cs_drum_open(&rest, card, card->method, &(struct cs_drum){0})) {
+        memset(rest.x + 2 * rest.n, 0, rest.n * sizeof *rest.x);
+        memset(rest.v, 0, 3 * rest.n * sizeof *rest.v);
+        energy = cs_probe_energy(&rest);
+    }
+    cs_probe_close(&rest);
+    return energy;
+}
+
+/* Without damping, energy may fall (many implicit methods) but not grow beyond what a step's
+ * error makes of it; where the method is symplectic it stays near its start for good. The run
+ * is thirty times as long as that of the tolerance: ten times the error are allowed there. */
+void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) {
+    const struct cs_integrator *method = card->method;
+    const bool both = method->traits & CS_SYMPLECTIC;
+    struct cs_probe drum;
+    double start = (double)NAN, motion = (double)NAN, worst = 0;
+    if (cs_drum_open(&drum, card, method, &(struct cs_drum){0})) {
+        start = cs_probe_energy(&drum);
+        motion = start - rest_energy(card);
+    }
+    const bool adaptive = method->traits & CS_ADAPTIVE;
+    const double share = cs_probe_set_level(&drum, cs_drum_step(), CS_DRUM_OMEGA,
+                                            method->order > 1 ? 2 : 1, adaptive);
+    for (int k = 0; k < FRAMES && cs_probe_run(&drum, 1); k++) {
+        const double gained = (cs_probe_energy(&drum) - start) / motion;
+        worst = fmax(worst, both ? fabs(gained) : gained);
+    }
+    if (drum.ended)
+        cs_row_fail(row, "%s", drum.error.message);
+    else
+        cs_row_state(row, worst, adaptive ? 10 * share : share,
+                     "of the motion's energy %s in ten seconds",
+                     both ? "gained or lost at most" : "gained");
+    cs_probe_close(&drum);
+}

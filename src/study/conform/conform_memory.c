@@ -1,0 +1,76 @@
+/* conform_memory.c - whether a method takes memory in a step, seen from the C library's own
+ * account of what is handed out, over all of its arenas. */
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_probe.h"
+
+#include <malloc.h>
+#include <stdlib.h>
+
+/* The C library keeps a few freed pieces of each small size for the thread, and counts them as
+ * handed out: memory taken and given back in a step would not show. With these shelves empty it
+ * does, since what is given back then goes onto them. */
+enum { SIZES = 64, SIZE_STEP = 16, SHELF = 7, WARM_UP = 3, WATCHED = 5 };
+
+struct ledger {
+    void *held[SIZES][SHELF];
+    size_t before; /* bytes handed out */
+    size_t most;   /* more than that, at the end of a step */
+};
+
+/* bytes, 0 where there is no such account */
+static size_t handed_out(void) {
+#if __GLIBC_PREREQ(2, 33)
+    const struct mallinfo2 account = mallinfo2();
+    return account.uordblks + account.hblkhd;
+#else
+    return 0;
+#endif
+}
+
+static bool look(struct cs_probe *probe, double t, double dt, double *x, double *v) {
+    (void)t, (void)dt, (void)x, (void)v;
+    struct ledger *ledger = probe->watcher;
+    const size_t now = ledger ? handed_out() : 0;
+    if (ledger && now > ledger->before && now - ledger->before > ledger->most)
+        ledger->most = now - ledger->before;
+    return false;
+}
+
+static bool watched_frame(struct cs_probe *probe, struct ledger *ledger) {
+    for (int k = 0; k < SIZES; k++)
+        for (int j = 0; j < SHELF; j++)
+            ledger->held[k][j] = malloc((size_t)(k + 1) * SIZE_STEP);
+    ledger->before = handed_out();
+    probe->watcher = ledger;
+    const bool done = cs_probe_run(probe, 1);
+    look(probe, 0, 0, NULL, NULL);
+    probe->watcher = NULL;
+    for (int k = 0; k < SIZES; k++)
+        for (int j = 0; j < SHELF; j++)
+            free(ledger->held[k][j]);
+    return done;
+}
+
+void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *row) {
+    static const char scene[] =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"particle\": 0.05},"
+        " \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"
+        " \"pins\": [\"top-left\"]}], \"colliders\": [{\"floor\": {\"height\": -0.55}}]}";
+    if (handed_out() == 0) {
+        cs_row_skip(row, "this C library keeps no account of its memory");
+        return;
+    }
+    struct cs_probe sheet;
+    struct ledger ledger = {.most = 0};
+    cs_probe_open(&sheet, card, card->method, "%s", scene);
+    sheet.watch = look;
+    cs_probe_run(&sheet, WARM_UP);
+    for (int k = 0; k < WATCHED && !sheet.ended; k++)
+        watched_frame(&sheet, &ledger);
+    if (sheet.ended)
+        cs_row_fail(row, "%s", sheet.error.message);
+    else
+        cs_row_state(row, (double)ledger.most, 0,
+                     "bytes more in use within a frame than before");
+    cs_probe_close(&sheet);
+}

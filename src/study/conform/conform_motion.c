@@ -1,0 +1,190 @@
+/* conform_motion.c - motions that are known in advance: fall, translation, rotation, and the
+ * momenta of what is left alone. */
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_probe.h"
+
+#include <math.h>
+#include <string.h>
+
+/* a sheet at rest length, stiff enough that any false force shows */
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"velocity\": [%g, %g, %g]},"                \
+    " \"mass\": {\"particle\": 1}, \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": "  \
+    "25}}], \"forces\": {\"gravity\": [0, %g, 0]}, \"time\": {\"fps\": 60}}"
+#define G 9.81
+
+#define PAIR                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"particle\": 0.5},"             \
+    " \"springs\": {\"stretch\": 25}}], \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": "      \
+    "{\"fps\": 20}}"
+
+/* stirred, so that all springs pull; axial damping, whose forces have no torque */
+#define FREE                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5]}, \"mass\": {\"particle\": 0.1},"             \
+    " \"springs\": {\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": 0.05,"           \
+    " \"damping_model\": \"axial\"}}], \"forces\": {\"gravity\": [0, 0, 0]},"                  \
+    " \"time\": {\"fps\": 10}}"
+#define FREE_OMEGA 60 /* 1/s, near the bound on its frequencies */
+
+/* what rounding and the inner solves may leave */
+#define SMALL 1e-9
+
+static uint32_t lower_order(const struct cs_integrator *method) {
+    return method->order < method->order_damped ? method->order : method->order_damped;
+}
+
+/* Largest distance of a component from its start plus the same shift for all particles. */
+static double deformation(const struct cs_probe *probe, const double shift[3]) {
+    double most = 0;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = c * probe->n; i < (c + 1) * probe->n; i++)
+            most = fmax(most, fabs(probe->x[i] - probe->system.start[i] - shift[c]));
+    return most;
+}
+
+static double mean_shift(const struct cs_probe *probe, size_t component) {
+    double sum = 0;
+    for (size_t i = component * probe->n; i < (component + 1) * probe->n; i++)
+        sum += probe->x[i] - probe->system.start[i];
+    return sum / (double)probe->n;
+}
+
+/* One second from rest. Sums of constant acceleration are right to (h/T)^2, or h/T of it where
+ * the order is 1, and all springs stay at their rest length. */
+static void fall(const struct cs_conform *card, struct cs_conform_row *row, int level) {
+    struct cs_probe sheet;
+    cs_probe_open(&sheet, card, card->method, SHEET, 0.0, 0.0, 0.0, -G);
+    const uint32_t order = lower_order(card->method) > 1 ? 2 : 1;
+    const double share = cs_probe_set_level(&sheet, 1.0 / 240, 1, order, level);
+    if (!cs_probe_run(&sheet, 60))
+        cs_row_fail(row, "%s", sheet.error.message);
+    else {
+        const double shift[3] = {0, mean_shift(&sheet, 1), 0};
+        cs_row_state(row, fabs(shift[1] / (-G / 2) - 1), 2 * share,
+                     "fell %.6f m in the first second instead of %.6f m", -shift[1], G / 2);
+        cs_row_state(row, deformation(&sheet, shift), 1e-8,
+                     "deformed in free fall by so many m");
+    }
+    cs_probe_close(&sheet);
+}
+
+void cs_check_free_fall(const struct cs_conform *card, struct cs_conform_row *row) {
+    if (!cs_probe_can_be_set(card, row))
+        return;
+    fall(card, row, 0);
+    fall(card, row, 1);
+}
+
+void cs_check_translation(const struct cs_conform *card, struct cs_conform_row *row) {
+    const double speed[3] = {1, 2, 3};
+    struct cs_probe sheet;
+    cs_probe_open(&sheet, card, card->method, SHEET, speed[0], speed[1], speed[2], 0.0);
+    cs_probe_set_level(&sheet, 1.0 / 60, 1, 1, 0);
+    if (!cs_probe_run(&sheet, 60))
+        cs_row_fail(row, "%s", sheet.error.message);
+    else
+        cs_row_state(row, deformation(&sheet, speed), 1e-8,
+                     "m off the straight path after a second at 3.7 m/s");
+    cs_probe_close(&sheet);
+}
+
+/* Two particles whose spring is pulled out by just what keeps them on their circle: m w^2 l/2 =
+ * k (l - 1). */
+static void turn(const struct cs_conform *card, struct cs_conform_row *row, int level) {
+    const double length = 1.1, w = sqrt(2 * 25 * (length - 1) / length / 0.5), time = 0.5;
+    struct cs_probe pair;
+    if (cs_probe_open(&pair, card, card->method, PAIR)) {
+        for (size_t i = 0; i < 2; i++) {
+            const double side = (i ? 0.5 : -0.5) * length;
+            pair.x[i] = side;
+            pair.v[2 + i] = w * side;
+        }
+    }
+    const double share = cs_probe_set_level(&pair, 2e-3, 10, lower_order(card->method), level);
+    if (!cs_probe_run(&pair, 10))
+        cs_row_fail(row, "%s", pair.error.message);
+    else {
+        const double expected[6] = {-cos(w * time) * length / 2, cos(w * time) * length / 2,
+                                    -sin(w * time) * length / 2, sin(w * time) * length / 2};
+        const double off = cs_probe_rms(pair.x, expected, 6) / length;
+        cs_row_state(row, off, fmax(2 * share, 1e-11),
+                     "of the length off its place after %.2f rad", w * time);
+    }
+    cs_probe_close(&pair);
+}
+
+void cs_check_rotation(const struct cs_conform *card, struct cs_conform_row *row) {
+    if (!cs_probe_can_be_set(card, row))
+        return;
+    turn(card, row, 0);
+    turn(card, row, 1);
+}
+
+/* p and l: momentum and angular momentum about the origin; scale: sums of magnitudes. */
+static void momenta(const struct cs_probe *probe, double p[3], double l[3], double scale[2]) {
+    const size_t n = probe->n;
+    const double *x = probe->x, *v = probe->v, *mass = probe->system.mass;
+    memset(scale, 0, 2 * sizeof *scale);
+    for (size_t c = 0; c < 3; c++) {
+        const size_t d = (c + 1) % 3 * n, e = (c + 2) % 3 * n;
+        p[c] = l[c] = 0;
+        for (size_t i = 0; i < n; i++) {
+            p[c] += mass[i] * v[c * n + i];
+            l[c] += mass[i] * (x[d + i] * v[e + i] - x[e + i] * v[d + i]);
+            scale[0] += mass[i] * fabs(v[c * n + i]);
+            scale[1] += mass[i] * fabs(x[d + i] * v[e + i]);
+        }
+    }
+}
+
+static double farthest(const double a[3], const double b[3]) {
+    return fmax(fmax(fabs(a[0] - b[0]), fabs(a[1] - b[1])), fabs(a[2] - b[2]));
+}
+
+/* Changes of momentum and angular momentum in half a second, relative; returns what an error of
+ * the method's order may be, NAN where the run ended. */
+static double drift(const struct cs_conform *card, struct cs_conform_row *row, int level,
+                    double change[2]) {
+    double before[2][3], after[2][3], scale[2];
+    struct cs_probe sheet;
+    if (cs_probe_open(&sheet, card, card->method, FREE)) {
+        cs_probe_stir(&sheet, 0.01, 0.2);
+        momenta(&sheet, before[0], before[1], scale);
+    }
+    double share = cs_probe_set_level(&sheet, 0.1 / FREE_OMEGA, FREE_OMEGA,
+                                      lower_order(card->method), level);
+    if (!cs_probe_run(&sheet, 5)) {
+        cs_row_fail(row, "%s", sheet.error.message);
+        share = (double)NAN;
+    } else {
+        double unused[2];
+        momenta(&sheet, after[0], after[1], unused);
+        for (int k = 0; k < 2; k++)
+            change[k] = farthest(before[k], after[k]) / scale[k];
+    }
+    cs_probe_close(&sheet);
+    return share;
+}
+
+void cs_check_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
+    double change[2];
+    if (!isnan(drift(card, row, 0, change)))
+        cs_row_state(row, change[0], SMALL, "of the momentum lost or made in 0.5 s");
+}
+
+/* Exact for symplectic methods, at the method's order for the others. */
+void cs_check_angular_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
+    const bool exact = card->method->traits & CS_SYMPLECTIC;
+    if (!exact && !cs_probe_can_be_set(card, row))
+        return;
+    for (int level = 0; level < (exact ? 1 : 2); level++) {
+        double change[2];
+        const double share = drift(card, row, level, change);
+        if (!isnan(share))
+            cs_row_state(row, change[1], exact ? SMALL : fmax(share, 1e-11),
+                         "of the angular momentum lost or made in 0.5 s%s",
+                         exact   ? ""
+                         : level ? ", fine"
+                                 : ", coarse");
+    }
+}

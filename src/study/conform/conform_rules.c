@@ -1,0 +1,213 @@
+/* conform_rules.c - rules of the contract that hold for every method. */
+#include "sim/host.h"
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_probe.h"
+
+#include <math.h>
+#include <string.h>
+
+/* hung at two corners, pulled by gravity and wind, into a floor: all that commit does */
+#define HANGING                                                                                \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"bump\": 0.02}, \"mass\": {\"particle\": "  \
+    "0.05}, \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1,"      \
+    " \"damping_model\": \"%s\"}, \"pins\": [\"top-left\", \"top-right\"]}],"                  \
+    " \"colliders\": [{\"floor\": {\"height\": -0.55}}], \"forces\": {\"drag\": 0.01,"         \
+    " \"wind\": {\"direction\": [0, 0, 1], \"strength\": 2}}, \"time\": {\"fps\": 60}}"
+enum { HANGING_FRAMES = 30 };
+
+static bool is_check(const char *name) {
+#define X(check, function, of, what)                                                           \
+    if (!strcmp(name, check))                                                                  \
+        return true;
+    CS_CONFORM_LIST(X)
+#undef X
+    return false;
+}
+
+/* What opening a module does not look at, since a run does not need it. */
+void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
+    const struct cs_integrator *method = card->method;
+    const uint32_t needs = CS_NEED_JVP | CS_NEED_DIAGONAL | CS_NEED_ENERGY | CS_NEED_SPRINGS |
+                           CS_NEED_SOLVE | CS_NEED_CLUSTERS,
+                   traits = CS_IMPLICIT | CS_ADAPTIVE | CS_MULTISTEP | CS_SYMPLECTIC |
+                            CS_LIBRARY_BITS | CS_NOT_GALILEAN;
+    bool falls_off = false;
+    if (method->needs & ~needs)
+        cs_row_fail(row, "unknown bits in needs: %#x", method->needs & ~needs);
+    if (method->traits & ~traits)
+        cs_row_fail(row, "unknown bits in traits: %#x", method->traits & ~traits);
+    if (method->fidelity > CS_FIDELITY_OTHER)
+        cs_row_fail(row, "unknown fidelity %u", method->fidelity);
+    if (method->order < 1 || method->order_damped < 1)
+        cs_row_fail(row, "order %u and %u with damping, expected at least 1", method->order,
+                    method->order_damped);
+    for (const char *const *name = method->fails; name && *name; name++) {
+        falls_off |= !strcmp(*name, "translation");
+        if (!is_check(*name))
+            cs_row_fail(row, "\"%.60s\" in fails is no check", *name);
+    }
+    if (falls_off != !!(method->traits & CS_NOT_GALILEAN))
+        cs_row_fail(row, "CS_NOT_GALILEAN and \"translation\" in fails say the same: one of "
+                         "them is missing");
+    if (row->verdict == CS_VERDICT_PASS)
+        cs_row_state(row, CS_ABI, CS_ABI, "interface of the module");
+}
+
+/* Makes the method with one option at the end of its range: it does, or it says why not. */
+static void try_option(const struct cs_conform *card, struct cs_conform_row *row,
+                       const struct cs_option *option, double value) {
+    struct cs_probe probe;
+    cs_probe_open(&probe, card, card->method, HANGING, "axial");
+    cs_probe_set(&probe, option->name, value);
+    if (!cs_probe_run(&probe, 0) && strstr(probe.error.message, "it gave no reason"))
+        cs_row_fail(row, "%s = %g: it cannot be made, and gives no reason", option->name,
+                    value);
+    cs_probe_close(&probe);
+}
+
+void cs_check_options(const struct cs_conform *card, struct cs_conform_row *row) {
+    const struct cs_integrator *method = card->method;
+    struct cs_probe plain;
+    cs_probe_open(&plain, card, method, HANGING, "axial");
+    if (!cs_probe_run(&plain, HANGING_FRAMES))
+        cs_row_fail(row, "with its defaults: %s", plain.error.message);
+    cs_probe_close(&plain);
+    for (uint32_t k = 0; k < method->n_options; k++) {
+        const struct cs_option *option = method->options + k;
+        if (!cs_method_has(method, option->name))
+            continue;
+        try_option(card, row, option, option->min);
+        try_option(card, row, option, option->max);
+    }
+    if (row->verdict == CS_VERDICT_PASS)
+        cs_row_state(row, 0, 0, "options that failed without a reason, of %u",
+                     method->n_options);
+}
+
+/* The steps as they were committed. */
+struct ledger {
+    double t;   /* s, the end of the last */
+    double gap; /* s, the farthest that a step did not begin there */
+};
+
+static bool keep_account(struct cs_probe *probe, double t, double dt, double *x, double *v) {
+    (void)x, (void)v;
+    struct ledger *ledger = probe->watcher;
+    ledger->gap = fmax(ledger->gap, dt > 0 ? fabs(t - dt - ledger->t) : HUGE_VAL);
+    ledger->t = t;
+    return false;
+}
+
+void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe sheet;
+    struct ledger ledger = {0};
+    cs_probe_open(&sheet, card, card->method, HANGING, "axial");
+    sheet.watch = keep_account;
+    sheet.watcher = &ledger;
+    if (!cs_probe_run(&sheet, HANGING_FRAMES))
+        cs_row_fail(row, "%s", sheet.error.message);
+    else
+        cs_row_state(row, fmax(ledger.gap, fabs(sheet.run.t - ledger.t)), 1e-12,
+                     "s of the time left out by the committed steps");
+    cs_probe_close(&sheet);
+}
+
+void cs_check_pins(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe sheet;
+    uint32_t moved = 0;
+    cs_probe_open(&sheet, card, card->method, HANGING, "relative");
+    if (!cs_probe_run(&sheet, HANGING_FRAMES))
+        cs_row_fail(row, "%s", sheet.error.message);
+    else {
+        for (uint32_t k = 0; k < sheet.system.n_pinned; k++)
+            for (size_t c = 0; c < 3; c++) {
+                const size_t i = c * sheet.n + sheet.system.pinned[k];
+                moved += memcmp(sheet.x + i, sheet.system.start + i, sizeof *sheet.x) != 0 ||
+                         sheet.v[i] != 0;
+            }
+        cs_row_state(row, moved, 0, "components of %u pinned particles moved",
+                     sheet.system.n_pinned);
+    }
+    cs_probe_close(&sheet);
+}
+
+/* Whether a run from a state that cannot go well ended as a finished one. */
+static bool hides(struct cs_probe *probe) {
+    bool finite = true;
+    if (!cs_probe_run(probe, 10))
+        return false;
+    for (size_t i = 0; i < 6 * probe->n; i++)
+        finite &= isfinite(probe->x[i]) != 0;
+    return !finite;
+}
+
+void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *row) {
+    static const char *const cases[] = {"a position that is no number", "a speed of 1e200 m/s",
+                                        "a step far too large"};
+    uint32_t hidden = 0;
+    const char *which = "none";
+    for (int k = 0; k < 3; k++) {
+        struct cs_probe sheet;
+        cs_probe_open(&sheet, card, card->method, HANGING, "axial");
+        if (k == 0 && !sheet.ended)
+            sheet.x[sheet.n / 2] = (double)NAN;
+        if (k == 1 && !sheet.ended)
+            sheet.v[sheet.n / 2] = 1e200;
+        if (k == 2)
+            cs_probe_set(&sheet, "dt", 1);
+        if (hides(&sheet)) {
+            hidden++;
+            which = cases[k];
+        }
+        cs_probe_close(&sheet);
+    }
+    cs_row_state(row, hidden, 0, "absurd runs of 3 that ended as if all were well (%s)", which);
+}
+
+static enum cs_step failing_solve(void *ctx, const double *b, double rtol, double *u) {
+    (void)b, (void)rtol, (void)u;
+    const struct cs_run_host *host = ctx;
+    return host->calls.fail(ctx, "this solve fails on purpose");
+}
+
+void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe sheet;
+    if (!(card->method->needs & CS_NEED_SOLVE)) {
+        cs_row_skip(row, "it does not use the host's solver");
+        return;
+    }
+    cs_probe_open(&sheet, card, card->method, HANGING, "axial");
+    if (!cs_probe_run(&sheet, 0))
+        cs_row_fail(row, "%s", sheet.error.message);
+    else {
+        sheet.run.host->calls.solve = failing_solve;
+        cs_row_state(row, cs_probe_run(&sheet, 1), 0,
+                     "frames finished though no linear solve succeeded");
+    }
+    cs_probe_close(&sheet);
+}
+
+void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe one, two;
+    cs_probe_open(&one, card, card->method, HANGING, "axial");
+    cs_probe_open(&two, card, card->method, HANGING, "axial");
+    uint32_t differ = 0;
+    for (int k = 0; k < HANGING_FRAMES && !differ; k++) {
+        // one after the other, so that neither can lean on the other's memory
+        if (!cs_probe_run(&one, 1) || !cs_probe_run(&two, 1))
+            break;
+        for (size_t i = 0; i < 6 * one.n; i++)
+            differ += memcmp(one.x + i, two.x + i, sizeof *one.x) != 0;
+    }
+    if (one.ended || two.ended)
+        cs_row_fail(row, "%s", one.ended ? one.error.message : two.error.message);
+    else
+        cs_row_state(row, differ, 0, "values differ after frame %u", one.run.frame);
+    cs_probe_close(&one);
+    cs_probe_close(&two);
+}
+
+void cs_check_resume(const struct cs_conform *card, struct cs_conform_row *row) {
+    (void)card;
+    cs_row_skip(row, "there are no checkpoints");
+}

@@ -1,0 +1,185 @@
+#include "study/golden/golden.h"
+
+#include "base/file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TABLE_BYTES_MAX = 1 << 20, HASH_FIELDS = 6, IMAGE_FIELDS = 7 };
+
+struct table {
+    char path[1024];
+    const char *head; /* first line, without its end */
+    int n_fields;
+    char *text; /* owned; rows point into it */
+    struct cs_golden_row *rows;
+    uint32_t n;
+};
+
+static char *next_field(char **line) {
+    char *field = *line, *tab = field ? strchr(field, '\t') : NULL;
+    if (tab)
+        *tab++ = 0;
+    *line = tab;
+    return field;
+}
+
+static enum cs_status read_row(const struct table *table, struct cs_golden_row *row, char *line,
+                               struct cs_error *error) {
+    row->line = line;
+    row->run.scene = next_field(&line);
+    row->run.integrator = next_field(&line);
+    row->run.overrides = next_field(&line);
+    const char *frames = next_field(&line);
+    if (table->n_fields == IMAGE_FIELDS)
+        row->image = next_field(&line);
+    row->hash = next_field(&line);
+    row->note = next_field(&line);
+    row->run.frames = frames ? (uint32_t)strtoul(frames, NULL, 10) : 0;
+    if (!row->note || row->run.frames == 0)
+        return cs_fail(error, CS_ERR_FILE, "%s: a row has less than %d fields or no frames: %s",
+                       table->path, table->n_fields, row->line);
+    return CS_OK;
+}
+
+static enum cs_status read_table(struct table *table, const char *folder, const char *name,
+                                 struct cs_error *error) {
+    snprintf(table->path, sizeof table->path, "%s/%s", folder, name);
+    size_t length;
+    if (cs_file_read(table->path, TABLE_BYTES_MAX, &table->text, &length, error))
+        return error->status;
+    uint32_t lines = 0;
+    for (size_t k = 0; k < length; k++)
+        lines += table->text[k] == '\n';
+    table->rows = calloc(lines + 1, sizeof *table->rows);
+    if (!table->rows)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    char *rest = table->text, *line = strsep(&rest, "\n");
+    if (strcmp(line, table->head))
+        return cs_fail(error, CS_ERR_FILE, "%s: the first line is not \"%s\"", table->path,
+                       table->head);
+    while ((line = strsep(&rest, "\n")) && !error->status)
+        if (*line)
+            read_row(table, table->rows + table->n++, line, error);
+    return error->status;
+}
+
+static enum cs_status write_table(const struct table *table, struct cs_error *error) {
+    struct cs_text text = {0};
+    cs_text_add(&text, "%s\n", table->head);
+    for (uint32_t k = 0; k < table->n; k++) {
+        const struct cs_golden_row *row = table->rows + k;
+        cs_text_add(&text, "%s\t%s\t%s\t%u\t", row->run.scene, row->run.integrator,
+                    row->run.overrides, row->run.frames);
+        if (row->image)
+            cs_text_add(&text, "%s\t", row->image);
+        cs_text_add(&text, "%s\t%s\n", row->hash, row->note);
+    }
+    const enum cs_status status =
+        text.failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory")
+                    : cs_file_write(table->path, cs_text_get(&text), text.length, error);
+    cs_text_finish(&text);
+    return status;
+}
+
+static void free_table(struct table *table) {
+    for (uint32_t k = 0; k < table->n; k++)
+        cs_text_finish(&table->rows[k].message);
+    free(table->rows);
+    free(table->text);
+}
+
+/* splits "path=value;path=value" in place; returns the number of overrides */
+static uint32_t split_overrides(char *text, struct cs_override *overrides, uint32_t most) {
+    uint32_t n = 0;
+    char *pair;
+    while (n < most && (pair = strsep(&text, ";"))) {
+        char *equals = strchr(pair, '=');
+        if (!equals)
+            continue;
+        *equals = 0;
+        overrides[n++] = (struct cs_override){pair, equals + 1};
+    }
+    return n;
+}
+
+enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
+                              bool render, struct cs_session *session, struct cs_error *error) {
+    char scene[1280], text[1024];
+    struct cs_override overrides[16];
+    snprintf(scene, sizeof scene, "%s/../%s", golden->folder, run->scene);
+    snprintf(text, sizeof text, "%s", run->overrides);
+    const struct cs_session_settings settings = {
+        .scene = scene,
+        .overrides = overrides,
+        .n_overrides = split_overrides(text, overrides, 16),
+        .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
+        .render = render,
+        .threads = golden->threads,
+        .stop = golden->stop,
+    };
+    if (cs_session_open(session, &settings, error))
+        return error->status;
+    while (session->run.frame < run->frames && session->run.outcome == CS_RUNNING)
+        if (cs_run_frame(&session->run, error))
+            break;
+    if (session->run.outcome == CS_INTERRUPTED)
+        cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
+    if (error->status)
+        cs_session_close(session);
+    return error->status;
+}
+
+static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row *row) {
+    return !golden->only || strstr(row->run.scene, golden->only) ||
+           strstr(row->run.integrator, golden->only);
+}
+
+static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
+    if (row->skipped)
+        golden->skipped++;
+    else if (row->message.length == 0)
+        golden->passed++;
+    else if (golden->accept)
+        golden->accepted++;
+    else
+        golden->failed++;
+}
+
+/* one table; check handles a row */
+static enum cs_status
+check_table(struct cs_golden *golden, const char *name, const char *head, int n_fields,
+            enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,
+                                    struct cs_error *error),
+            struct cs_error *error) {
+    struct table table = {.head = head, .n_fields = n_fields};
+    const uint32_t before = golden->accepted;
+    read_table(&table, golden->folder, name, error);
+    for (uint32_t k = 0; k < table.n && !error->status; k++) {
+        struct cs_golden_row *row = table.rows + k;
+        if (!is_wanted(golden, row) || check(golden, row, error))
+            continue;
+        count(golden, row);
+        if (golden->report)
+            golden->report(golden->ctx, row);
+        if (golden->accept && row->message.length > 0)
+            row->hash = row->found;
+    }
+    if (!error->status && golden->accepted > before)
+        write_table(&table, error);
+    free_table(&table);
+    return error->status;
+}
+
+enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error) {
+    if (golden->hashes &&
+        check_table(golden, "hash.tsv", "scene\tintegrator\toverrides\tframes\thash\tbuilds",
+                    HASH_FIELDS, cs_golden_check_hash, error))
+        return error->status;
+    if (golden->images)
+        check_table(golden, "image.tsv",
+                    "scene\tintegrator\toverrides\tframe\timage\tpixels\trenderer",
+                    IMAGE_FIELDS, cs_golden_check_image, error);
+    return error->status;
+}

@@ -1,0 +1,127 @@
+/* One picture through the two-level gate: pixel for pixel where the renderer is the golden's
+ * own, else within the calibrated tolerance. */
+#include "draw/compare.h"
+#include "io/png.h"
+#include "study/golden/golden.h"
+#include "study/picture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void path_of(const struct cs_golden *golden, const struct cs_golden_row *row,
+                    const char *ending, char path[1024]) {
+    snprintf(path, 1024, "%.500s/image/%.400s%s", golden->folder, row->image, ending);
+}
+
+static size_t bytes_of(const struct cs_image *image) {
+    return 3 * (size_t)image->width * image->height;
+}
+
+static enum cs_status paint(const struct cs_golden *golden, const struct cs_golden_row *row,
+                            struct cs_image *image, struct cs_text *renderer,
+                            struct cs_error *error) {
+    struct cs_session session;
+    struct cs_picture picture;
+    if (cs_golden_step(golden, &row->run, true, &session, error))
+        return error->status;
+    image->width = (uint32_t)session.scene.render.size[0];
+    image->height = (uint32_t)session.scene.render.size[1];
+    image->rgb = malloc(bytes_of(image));
+    if (!image->rgb) {
+        cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    } else if (!cs_picture_open(&picture, &session.system, golden->gl, false, false, error)) {
+        cs_picture_begin(&picture, &session.run, image);
+        cs_picture_end(&picture, error);
+        cs_text_add(renderer, "%s", cs_picture_renderer(&picture));
+        cs_picture_close(&picture);
+    }
+    cs_session_close(&session);
+    return error->status;
+}
+
+static enum cs_status write_image(const struct cs_golden *golden,
+                                  const struct cs_golden_row *row, const char *ending,
+                                  const struct cs_image *image, struct cs_error *error) {
+    char path[1024];
+    path_of(golden, row, ending, path);
+    return cs_png_write(path, image, 6, NULL, 0, error);
+}
+
+/* what was drawn, and 16 times the difference, beside the golden image */
+static enum cs_status write_evidence(const struct cs_golden *golden,
+                                     const struct cs_golden_row *row,
+                                     const struct cs_image *found,
+                                     const struct cs_image *expected, struct cs_error *error) {
+    struct cs_image amplified = {found->width, found->height, malloc(bytes_of(found))};
+    if (!amplified.rgb)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    cs_image_amplify(found, expected, &amplified);
+    if (!write_image(golden, row, ".actual.png", found, error))
+        write_image(golden, row, ".difference.png", &amplified, error);
+    free(amplified.rgb);
+    return error->status;
+}
+
+/* fills row->message where the picture does not pass */
+static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row *row,
+                            const struct cs_image *found, const char *renderer,
+                            struct cs_error *error) {
+    const bool same_renderer = !strcmp(renderer, row->note);
+    if (same_renderer && !strcmp(row->found, row->hash))
+        return CS_OK;
+    char path[1024];
+    struct cs_image expected;
+    path_of(golden, row, ".png", path);
+    if (cs_png_read(path, &expected, error))
+        return error->status;
+    if (expected.width != found->width || expected.height != found->height) {
+        cs_text_add(&row->message, "%u x %u pixels, expected %u x %u", found->width,
+                    found->height, expected.width, expected.height);
+    } else {
+        const struct cs_image_difference d = cs_image_compare(found, &expected);
+        if (same_renderer || !cs_image_difference_passes(&d)) {
+            cs_text_add(
+                &row->message,
+                "%llu pixels differ, RMSE %.3f, %.3f %% off by more than 2, largest %d%s",
+                (unsigned long long)d.pixels, d.rmse, 100 * d.share, d.largest,
+                same_renderer ? " (same renderer: every pixel counts)" : "");
+            write_evidence(golden, row, found, &expected, error);
+        }
+    }
+    free(expected.rgb);
+    return error->status;
+}
+
+/* --accept: only the pinned renderer may bless, so that goldens are everyone's */
+static enum cs_status bless(const struct cs_golden *golden, struct cs_golden_row *row,
+                            const struct cs_image *found, struct cs_text *renderer,
+                            struct cs_error *error) {
+    if (!strstr(cs_text_get(renderer), "caps=sse4.1") ||
+        !strstr(cs_text_get(renderer), "llvmpipe"))
+        return cs_fail(error, CS_ERR_CHECK,
+                       "%s: only the pinned llvmpipe may accept images, found %s", row->image,
+                       cs_text_get(renderer));
+    if (!strcmp(row->found, row->hash) && !strcmp(row->note, cs_text_get(renderer)))
+        return CS_OK;
+    cs_text_add(&row->message, "accepted");
+    snprintf(row->renderer, sizeof row->renderer, "%s", cs_text_get(renderer));
+    row->note = row->renderer;
+    return write_image(golden, row, ".png", found, error);
+}
+
+enum cs_status cs_golden_check_image(struct cs_golden *golden, struct cs_golden_row *row,
+                                     struct cs_error *error) {
+    struct cs_image found = {0};
+    struct cs_text renderer = {0};
+    if (!paint(golden, row, &found, &renderer, error)) {
+        cs_hash_bytes(found.rgb, bytes_of(&found), row->found);
+        if (golden->accept)
+            bless(golden, row, &found, &renderer, error);
+        else
+            judge(golden, row, &found, cs_text_get(&renderer), error);
+    }
+    free(found.rgb);
+    cs_text_finish(&renderer);
+    return error->status;
+}

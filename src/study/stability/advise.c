@@ -1,0 +1,215 @@
+#include "study/stability/advise.h"
+
+#include "model/system_build.h"
+#include "study/workers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SAMPLES = 32 };
+#define SHAKE  1e-4 /* of the shortest spring */
+#define MARGIN 0.9  /* of the limit that is advised */
+
+struct work {
+    struct cs_advise *advise;
+    struct cs_workers workers;
+};
+
+/* A run with the advised step: its verdict and what a frame costs. */
+static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_settings *settings,
+                               const struct cs_reference *reference, double frame,
+                               struct cs_error *error) {
+    struct cs_trial_settings asked = *settings;
+    struct cs_trial trial;
+    asked.dt = row->safe;
+    asked.seconds = reference->seconds;
+    asked.limits = cs_fate_limits(&reference->trial);
+    if (cs_trial_run(&trial, &asked, error))
+        return error->status;
+    row->verdict = cs_fate_of(&trial, &reference->trial, true);
+    if (trial.failed)
+        snprintf(row->message, sizeof row->message, "%s", trial.message);
+    if (trial.end > 0) {
+        row->frame_cost = trial.seconds / trial.end * frame;
+        row->steps = (double)trial.steps / trial.end * frame;
+    }
+    return CS_OK;
+}
+
+/* Theory has no limit: one step a frame is tried, and what is wrong with it is bisected. */
+static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_settings *settings,
+                                const struct cs_reference *reference, double frame,
+                                struct cs_error *error) {
+    row->kind = CS_ADVICE_FRAME;
+    row->limit = HUGE_VAL;
+    row->safe = fmin(frame, 10);
+    if (try_safe(row, settings, reference, frame, error) || cs_fate_is_stable(row->verdict) ||
+        row->verdict == CS_FATE_OVER_BUDGET)
+        return error->status;
+    row->kind = CS_ADVICE_MEASURED;
+    if (cs_stability_border(settings, reference, 0, row->safe, &row->limit, error))
+        return error->status;
+    if (isnan(row->limit)) {
+        row->kind = CS_ADVICE_REFUSED;
+        snprintf(row->message, sizeof row->message,
+                 "one step a frame does not live, and the budget ends the search for less");
+        return CS_OK;
+    }
+    if (!(row->limit > 0)) {
+        row->kind = CS_ADVICE_NONE;
+        return CS_OK;
+    }
+    *row->message = 0;
+    row->safe = MARGIN * row->limit;
+    return try_safe(row, settings, reference, frame, error);
+}
+
+/* Where even a part of theory's limit does not live, what does is bisected: a motion that is
+ * large from the start passes the bound with less growth than theory allows. */
+static enum cs_status try_lower(struct cs_advice *row, const struct cs_trial_settings *settings,
+                                const struct cs_reference *reference, double frame,
+                                struct cs_error *error) {
+    double border;
+    if (cs_stability_border(settings, reference, 0, row->safe, &border, error) ||
+        !(border > 0 && border < HUGE_VAL))
+        return error->status;
+    row->kind = CS_ADVICE_LOWERED;
+    row->limit = border;
+    row->safe = MARGIN * border;
+    *row->message = 0;
+    return try_safe(row, settings, reference, frame, error);
+}
+
+static enum cs_status check_limit(struct cs_advice *row,
+                                  const struct cs_trial_settings *settings,
+                                  const struct cs_reference *reference,
+                                  struct cs_error *error) {
+    return cs_stability_border(settings, reference, 0, 1.5 * row->limit, &row->measured, error);
+}
+
+static enum cs_status advise_fixed(struct cs_advice *row,
+                                   const struct cs_trial_settings *settings, double frame,
+                                   bool check, struct cs_error *error) {
+    struct cs_reference reference;
+    if (cs_reference_run(&reference, settings, error))
+        return error->status;
+    if (!reference.found) {
+        row->kind = CS_ADVICE_REFUSED;
+        snprintf(row->message, sizeof row->message, "no run to judge by: %.280s",
+                 reference.message);
+        return CS_OK;
+    }
+    row->limit = row->theory = reference.worst.dt;
+    row->mode = reference.worst.mode;
+    if (row->limit > 1e100)
+        return try_frame(row, settings, &reference, frame, error);
+    row->kind = row->limit > 0 ? CS_ADVICE_THEORY : CS_ADVICE_NONE;
+    row->safe = fmin(MARGIN * row->limit, fmin(frame, 10));
+    if (row->kind == CS_ADVICE_NONE)
+        return CS_OK;
+    if (check && check_limit(row, settings, &reference, error))
+        return error->status;
+    if (try_safe(row, settings, &reference, frame, error) || cs_fate_is_stable(row->verdict) ||
+        row->verdict == CS_FATE_OVER_BUDGET)
+        return error->status;
+    return try_lower(row, settings, &reference, frame, error);
+}
+
+static enum cs_status advise_adaptive(struct cs_advice *row,
+                                      const struct cs_trial_settings *settings, double frame,
+                                      struct cs_error *error) {
+    struct cs_reference none = {.seconds = settings->seconds,
+                                .trial = {.speed = 1e100, .held = 1e100}};
+    row->kind = CS_ADVICE_ADAPTIVE;
+    return try_safe(row, settings, &none, frame, error);
+}
+
+/* A method that cannot follow the scene, which was opened with its own before, is a row. */
+static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
+    if (error->status != CS_ERR_SCENE)
+        return error->status;
+    row->kind = CS_ADVICE_REFUSED;
+    snprintf(row->message, sizeof row->message, "%.300s", error->message);
+    *error = (struct cs_error){0};
+    return CS_OK;
+}
+
+static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *error) {
+    struct work *work = ctx;
+    struct cs_advise *advise = work->advise;
+    struct cs_advice *row = advise->rows + task;
+    struct cs_session session;
+    struct cs_trial_settings trial = {
+        .session = advise->session,
+        .seconds = advise->seconds,
+        .samples = SAMPLES,
+        .shake = SHAKE * cs_springs_shortest(&advise->opened.system.springs),
+        .budget = advise->budget};
+    const double frame = 1 / advise->opened.scene.time.fps;
+    trial.session.integrator = row->method = advise->names[task];
+    if (cs_session_open_plan(&session, &trial.session, error)) {
+        cs_workers_tick(&work->workers, 1);
+        return refuse(row, error);
+    }
+    const bool fixed = cs_trial_takes_dt(session.integrator);
+    cs_session_close(&session);
+    if (fixed)
+        advise_fixed(row, &trial, frame, advise->check, error);
+    else
+        advise_adaptive(row, &trial, frame, error);
+    cs_workers_tick(&work->workers, 1);
+    return error->status;
+}
+
+static void report(void *ctx, uint32_t ticks) {
+    const struct cs_advise *advise = ctx;
+    if (advise->progress)
+        advise->progress(advise->ctx, ticks, advise->n);
+}
+
+static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *error) {
+    for (uint32_t k = 0; k < advise->session.n_plugins; k++)
+        if (cs_registry_add_file(&advise->registry, advise->session.plugins[k], error))
+            return error->status;
+    if (!advise->n_methods && cs_registry_open_all(&advise->registry, error))
+        return error->status;
+    advise->names = calloc(advise->n_methods + advise->registry.n + 1, sizeof(char *));
+    if (!advise->names)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    for (uint32_t k = 0; k < advise->n_methods; k++)
+        advise->names[advise->n++] = advise->methods[k];
+    for (uint32_t k = 0; k < advise->registry.n && !advise->n_methods; k++)
+        if (advise->registry.entries[k].integrator)
+            advise->names[advise->n++] = advise->registry.entries[k].integrator->name;
+    return CS_OK;
+}
+
+enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
+    struct work work = {advise, {.task = advise_task, .progress = report}};
+    if (cs_session_open_plan(&advise->opened, &advise->session, error) ||
+        cs_system_build(&advise->opened.system, &advise->opened.scene, &advise->opened.plan,
+                        error) ||
+        list_methods(advise, error))
+        return error->status;
+    work.workers.ctx = &work;
+    work.workers.progress_ctx = advise;
+    work.workers.n_workers = advise->workers;
+    work.workers.n_tasks = advise->n;
+    work.workers.stop = advise->stop;
+    advise->rows = cs_workers_take(advise->n * sizeof *advise->rows, error);
+    work.workers.ticks = cs_workers_take(sizeof(uint32_t), error);
+    if (!error->status)
+        cs_workers_run(&work.workers, error);
+    cs_workers_give_back(work.workers.ticks, sizeof(uint32_t));
+    return error->status;
+}
+
+void cs_advise_finish(struct cs_advise *advise) {
+    cs_workers_give_back(advise->rows, advise->n * sizeof *advise->rows);
+    free(advise->names);
+    cs_registry_finish(&advise->registry);
+    cs_session_close(&advise->opened);
+    *advise = (struct cs_advise){0};
+}

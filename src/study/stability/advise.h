@@ -1,0 +1,53 @@
+/* advise.h - which step each method takes safely on a scene, what binds it, what it costs. */
+#ifndef CS_ADVISE_H
+#define CS_ADVISE_H
+
+#include "study/stability/stability.h"
+
+enum cs_advice_kind {
+    CS_ADVICE_THEORY,   /* the limit of linear theory along a trusted run */
+    CS_ADVICE_LOWERED,  /* 0.9 of theory's limit was tried and does not live: bisected */
+    CS_ADVICE_MEASURED, /* theory knows no limit, but one was found by bisection */
+    CS_ADVICE_FRAME,    /* one step a frame was tried and is stable */
+    CS_ADVICE_NONE,     /* no step is stable without damping */
+    CS_ADVICE_ADAPTIVE, /* chooses its own steps */
+    CS_ADVICE_REFUSED   /* message says why */
+};
+
+struct cs_advice {
+    const char *method;
+    enum cs_advice_kind kind;
+    double limit, safe;       /* s: largest stable step, and the one advised */
+    double theory;            /* s, limit of linear theory; HUGE_VAL: none */
+    struct cs_mode mode;      /* that binds it, where theory has a limit */
+    enum cs_fate verdict;     /* of a run with the safe step */
+    double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
+    double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
+    char message[320];
+};
+
+struct cs_advise {
+    struct cs_session_settings session; /* of the scene; integrator is not used */
+    const char *const *methods;         /* (n_methods); 0: all that can be used */
+    uint32_t n_methods;
+    double seconds,
+        budget; /* of the trusted run and the trials, at least; a trial's CPU time */
+    bool check; /* bisect the limit too */
+    uint32_t workers;
+    const volatile sig_atomic_t *stop;
+    void (*progress)(void *ctx, uint32_t done, uint32_t total);
+    void *ctx;
+    /* out */
+    struct cs_session opened; /* the scene as it is given */
+    struct cs_registry registry;
+    const char **names;
+    struct cs_advice *rows; /* (n) by method; workers see them */
+    uint32_t n;
+};
+
+enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error);
+void cs_advise_finish(struct cs_advise *advise);
+
+void cs_advise_print(const struct cs_advise *advise, struct cs_text *out);
+
+#endif

@@ -1,0 +1,257 @@
+#include "study/stability/extreme.h"
+
+#include "base/clock.h"
+#include "model/system_build.h"
+#include "study/stability/extreme_scene.h"
+#include "study/workers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* what a run is judged by when it has ended */
+struct ending {
+    bool refused, silent; /* silent: not finite, and the run did not say so */
+    double theory;        /* s, limit at the start; HUGE_VAL: none */
+};
+
+static void say(struct cs_extreme_row *row, const char *text) {
+    snprintf(row->message, sizeof row->message, "%.310s", text);
+}
+
+/* steps to the end, a verdict or the end of the budget */
+static void step(struct cs_extreme_row *row, struct cs_session *session, double seconds,
+                 double budget, struct ending *ending, struct cs_error *error) {
+    struct cs_run *run = &session->run;
+    struct cs_watch watch;
+    struct cs_watch_row look;
+    struct cs_error failure = {0};
+    struct cs_text text = {0};
+    const double frames = ceil(seconds * session->scene.time.fps * (1 - 1e-9));
+    cs_run_set_budget(run, budget);
+    if (cs_watch_begin(&watch, run, error))
+        return;
+    while (run->frame < frames && run->outcome == CS_RUNNING && !cs_run_frame(run, &failure))
+        if (run->outcome == CS_RUNNING) {
+            cs_watch_look(&watch, run, &look);
+            ending->silent |= look.verdict == CS_FATE_NOT_FINITE;
+        }
+    row->verdict = watch.worst;
+    cs_watch_print(&watch, run->system, &text);
+    if (failure.status == CS_ERR_MODULE) {
+        ending->refused = true;
+        row->verdict = CS_FATE_FAILED;
+        say(row, failure.message);
+    } else if (failure.status)
+        *error = failure;
+    else if (run->outcome == CS_OVER_BUDGET)
+        row->verdict = CS_FATE_OVER_BUDGET;
+    else if (run->outcome == CS_NOT_FINITE)
+        row->verdict = CS_FATE_NOT_FINITE;
+    else if (run->outcome == CS_UNBOUNDED)
+        row->verdict = CS_FATE_GLOBAL;
+    if (!*row->message)
+        say(row, cs_text_get(&text));
+    cs_text_finish(&text);
+}
+
+static bool is_blown(enum cs_fate verdict) {
+    return verdict == CS_FATE_GLOBAL || verdict == CS_FATE_NOT_FINITE;
+}
+
+static bool is_met(const struct cs_extreme_row *row, double dt, const struct ending *ending) {
+    const bool bounded = cs_fate_is_stable(row->verdict);
+    const bool finite = bounded || row->verdict == CS_FATE_LOCAL;
+    const bool blown = is_blown(row->verdict) || row->verdict == CS_FATE_LOCAL;
+    if (ending->silent)
+        return false;
+    if (cs_extreme_expects(row->expected, "theory") &&
+        (dt < 1.1 * ending->theory ? bounded && !ending->refused : false))
+        return true;
+    if (cs_extreme_expects(row->expected, "theory") && dt > 0.9 * ending->theory && blown)
+        return true;
+    return (cs_extreme_expects(row->expected, "bounded") && bounded) ||
+           (cs_extreme_expects(row->expected, "finite") && finite) ||
+           (cs_extreme_expects(row->expected, "blows up") && is_blown(row->verdict)) ||
+           (cs_extreme_expects(row->expected, "refused") && ending->refused) ||
+           (cs_extreme_expects(row->expected, "over budget") &&
+            row->verdict == CS_FATE_OVER_BUDGET);
+}
+
+static enum cs_status find_theory(struct cs_session *session, double seconds, double *limit,
+                                  struct cs_error *error) {
+    struct cs_theory theory;
+    struct cs_theory_limit found = {.dt = HUGE_VAL};
+    /* what grows less than e^7 in the time of the run is not seen */
+    if (!cs_theory_init(&theory, &session->system, session->integrator, session->options,
+                        7 / seconds, error))
+        cs_theory_at(&theory, session->system.state, &found, error);
+    cs_theory_finish(&theory);
+    *limit = found.dt;
+    return error->status;
+}
+
+/* A scene or a method that is refused before the first step is an outcome as well. */
+static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *ending,
+                                   struct cs_error *error) {
+    if (error->status == CS_ERR_MEMORY || error->status == CS_ERR_INTERRUPT)
+        return error->status;
+    ending->refused = true;
+    row->verdict = CS_FATE_FAILED;
+    say(row, error->message);
+    *error = (struct cs_error){0};
+    return CS_OK;
+}
+
+static enum cs_status run_row(const struct cs_extreme *extreme,
+                              const struct cs_extreme_scene *scene, struct cs_extreme_row *row,
+                              struct cs_error *error) {
+    struct cs_session session = {0};
+    struct ending ending = {.theory = HUGE_VAL};
+    const struct cs_session_settings settings = {.scene = scene->path,
+                                                 .integrator = row->method,
+                                                 .plugins = extreme->plugins,
+                                                 .n_plugins = extreme->n_plugins,
+                                                 .stop = extreme->stop};
+    const double begin = cs_clock_wall();
+    double dt = 0;
+    if (cs_session_open_plan(&session, &settings, error))
+        return take_refusal(row, &ending, error);
+    row->expected = cs_extreme_expected(scene, session.integrator);
+    if (scene->dt > 0 && cs_trial_set_dt(session.integrator, session.options, scene->dt))
+        dt = scene->dt;
+    if (!cs_system_build(&session.system, &session.scene, &session.plan, error)) {
+        cs_trial_shake(&session.system, 1e-4 * cs_springs_shortest(&session.system.springs));
+        if (dt > 0 && cs_extreme_expects(row->expected, "theory"))
+            find_theory(&session, scene->seconds, &ending.theory, error);
+        if (!error->status && !cs_run_begin(&session.run, &session.system, session.integrator,
+                                            session.options, false, extreme->stop, error))
+            step(row, &session, scene->seconds, extreme->budget, &ending, error);
+    }
+    if (error->status)
+        take_refusal(row, &ending, error);
+    row->met = is_met(row, dt, &ending);
+    row->seconds = cs_clock_wall() - begin;
+    row->done = true;
+    cs_session_close(&session);
+    return error->status;
+}
+
+struct catalogue {
+    struct cs_extreme *extreme;
+    struct cs_extreme_scene *scenes;
+    uint32_t reported;
+    struct cs_extreme_row *rows; /* (n_scenes, n_methods), seen by all workers */
+    const char **methods;
+    uint32_t n_scenes, n_methods;
+    struct cs_workers workers;
+};
+
+static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error) {
+    struct catalogue *catalogue = ctx;
+    return run_row(catalogue->extreme, catalogue->scenes + task / catalogue->n_methods,
+                   catalogue->rows + task, error);
+}
+
+/* the names that are asked for, or all that can be used and follow the motion of springs */
+static enum cs_status list_methods(struct catalogue *catalogue, struct cs_registry *registry,
+                                   struct cs_error *error) {
+    const struct cs_extreme *extreme = catalogue->extreme;
+    for (uint32_t k = 0; k < extreme->n_plugins; k++)
+        if (cs_registry_add_file(registry, extreme->plugins[k], error))
+            return error->status;
+    if (!extreme->n_methods && cs_registry_open_all(registry, error))
+        return error->status;
+    catalogue->methods = calloc(extreme->n_methods + registry->n + 1, sizeof(char *));
+    if (!catalogue->methods)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    for (uint32_t k = 0; k < extreme->n_methods; k++)
+        catalogue->methods[catalogue->n_methods++] = extreme->methods[k];
+    for (uint32_t k = 0; k < registry->n && !extreme->n_methods; k++)
+        if (registry->entries[k].integrator &&
+            registry->entries[k].integrator->fidelity != CS_FIDELITY_OTHER)
+            catalogue->methods[catalogue->n_methods++] = registry->entries[k].integrator->name;
+    return CS_OK;
+}
+
+/* keeps the scenes whose name holds the text */
+static void filter_scenes(struct catalogue *catalogue, const char *part) {
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < catalogue->n_scenes; k++)
+        if (!part || strstr(catalogue->scenes[k].name, part))
+            catalogue->scenes[kept++] = catalogue->scenes[k];
+    catalogue->n_scenes = kept;
+}
+
+/* rows whose turn it is, in their order; all: also those that were left */
+static void report_rows(struct catalogue *catalogue, bool all) {
+    struct cs_extreme *extreme = catalogue->extreme;
+    const uint32_t n = catalogue->n_scenes * catalogue->n_methods;
+    while (catalogue->reported < n && (all || catalogue->rows[catalogue->reported].done)) {
+        struct cs_extreme_row *row = catalogue->rows + catalogue->reported++;
+        if (!row->done) {
+            row->met = cs_extreme_expects(row->expected, "over budget");
+            row->verdict = CS_FATE_OVER_BUDGET;
+            say(row, "no step ended within twice the budget");
+        }
+        *(row->met ? &extreme->met : &extreme->missed) += 1;
+        if (extreme->report)
+            extreme->report(extreme->ctx, row);
+    }
+}
+
+static void progress(void *ctx, uint32_t ticks) {
+    (void)ticks;
+    report_rows(ctx, false);
+}
+
+static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
+                              struct cs_error *error) {
+    const uint32_t n = catalogue->n_scenes * catalogue->n_methods;
+    catalogue->rows = cs_workers_take(n * sizeof *catalogue->rows, error);
+    catalogue->workers.ticks = cs_workers_take(sizeof(uint32_t), error);
+    if (!catalogue->rows || !catalogue->workers.ticks)
+        return error->status;
+    for (uint32_t k = 0; k < n; k++) {
+        catalogue->rows[k].scene = catalogue->scenes[k / catalogue->n_methods].name;
+        catalogue->rows[k].method = catalogue->methods[k % catalogue->n_methods];
+        catalogue->rows[k].expected = "";
+    }
+    catalogue->workers.n_workers = n_workers;
+    catalogue->workers.n_tasks = n;
+    catalogue->workers.task = run_task;
+    catalogue->workers.ctx = catalogue;
+    catalogue->workers.progress = progress;
+    catalogue->workers.progress_ctx = catalogue;
+    catalogue->workers.most_seconds = 2 * catalogue->extreme->budget + 1;
+    catalogue->workers.stop = catalogue->extreme->stop;
+    return cs_workers_run(&catalogue->workers, error);
+}
+
+enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error) {
+    struct catalogue catalogue = {.extreme = extreme};
+    struct cs_registry registry = {0};
+    extreme->met = extreme->missed = 0;
+    if (cs_extreme_scenes(extreme->folder, &catalogue.scenes, &catalogue.n_scenes, error) ||
+        list_methods(&catalogue, &registry, error))
+        goto done;
+    filter_scenes(&catalogue, extreme->only_scene);
+    if (!catalogue.n_scenes)
+        cs_fail(error, CS_ERR_USAGE, "no scene of the catalogue has \"%.60s\" in its name",
+                extreme->only_scene);
+    else if (!run_all(&catalogue, extreme->n_workers, error)) {
+        report_rows(&catalogue, true);
+        if (extreme->missed)
+            cs_fail(error, CS_ERR_CHECK, "%u of %u runs did not end as expected",
+                    extreme->missed, extreme->missed + extreme->met);
+    }
+done:
+    cs_workers_give_back(catalogue.rows,
+                         catalogue.n_scenes * catalogue.n_methods * sizeof *catalogue.rows);
+    cs_workers_give_back(catalogue.workers.ticks, sizeof(uint32_t));
+    free(catalogue.methods);
+    free(catalogue.scenes);
+    cs_registry_finish(&registry);
+    return error->status;
+}

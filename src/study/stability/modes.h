@@ -1,0 +1,41 @@
+/* modes.h - the motions of a system that bind the step: how fast they swing and are damped.
+ *
+ * With K = -df/dx and C = -df/dv of springs, dampers and drag at one state, and p of length 1
+ * in the masses (p^T M p = 1), a motion along p swings with square = p^T K p and is damped at
+ * rate = p^T C p, as in s'' + rate s' + square s = 0.
+ */
+#ifndef CS_MODES_H
+#define CS_MODES_H
+
+#include "model/system/system.h"
+
+struct cs_mode {
+    double square;     /* 1/s2; below 0: the state is not stable there */
+    double rate;       /* 1/s */
+    uint32_t particle; /* that moves most */
+    double share;      /* of the motion's kinetic energy in it, 0..1 */
+};
+
+/* Memory of the search; zeroed: empty. */
+struct cs_modes {
+    const struct cs_system *system; /* borrowed */
+    double *basis;                  /* (CS_MODES_BASIS + 1, 3n) */
+    double *dx, *dv, *zero;         /* (3,n) each: arguments of the products */
+    double *root;                   /* (n) root of 1/m */
+    double *last;                   /* (3,n) the motion found last, where the next starts */
+    bool warm;
+    struct cs_arena arena;
+};
+enum { CS_MODES_BASIS = 24 };
+
+/* CS_ERR_MEMORY. */
+enum cs_status cs_modes_init(struct cs_modes *modes, const struct cs_system *system,
+                             struct cs_error *error);
+void cs_modes_finish(struct cs_modes *modes);
+
+/* The motion with the largest a square + b rate at the positions x, by power iteration
+ * accelerated over its Krylov space (Lanczos 1950; Golub and Van Loan 2013, ch. 10), to a
+ * relative 1e-4. Starts where the last search ended. Only + - * / sqrt: the same everywhere. */
+struct cs_mode cs_modes_largest(struct cs_modes *modes, const double *x, double a, double b);
+
+#endif

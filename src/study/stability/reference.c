@@ -1,0 +1,110 @@
+#include "study/stability/reference.h"
+#include "model/system_build.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Halvings of the step before a scene counts as having no reference. */
+enum { MOST_HALVINGS = 4 };
+/* at the limit, that an instability needs to show */
+enum { STEPS = 200 };
+
+struct way {
+    struct cs_theory *theory; /* NULL: no limits are asked for */
+    struct cs_reference *reference;
+    struct cs_error *error;
+};
+
+static void look(void *ctx, const struct cs_run *run, const struct cs_energy *energy) {
+    struct way *way = ctx;
+    (void)energy;
+    if (way->theory && !way->error->status)
+        cs_theory_lower(way->theory, run->x, &way->reference->worst, way->error);
+}
+
+/* one run; false: it was not stable by what it can be judged without a reference */
+static bool run_once(struct cs_reference *reference, const struct cs_trial_settings *settings,
+                     double dt, struct way *way, struct cs_error *error) {
+    struct cs_trial_settings asked = *settings;
+    asked.session.integrator = "velocity-verlet";
+    asked.dt = dt;
+    asked.limits = (struct cs_trial_limits){HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    asked.sampled = look;
+    asked.ctx = way;
+    reference->worst = reference->at_rest;
+    return !cs_trial_run(&reference->trial, &asked, error) && !way->error->status &&
+           reference->trial.outcome == CS_RUNNING && !reference->trial.failed;
+}
+
+static void run_way(struct cs_reference *reference, const struct cs_trial_settings *settings,
+                    double dt, struct way *way, struct cs_error *error) {
+    for (int k = 0; k < MOST_HALVINGS && !reference->found && !error->status; k++) {
+        reference->found = run_once(reference, settings, dt, way, error);
+        if (reference->trial.outcome == CS_OVER_BUDGET)
+            break;
+        dt /= 2;
+    }
+    if (!reference->found)
+        snprintf(reference->message, sizeof reference->message, "velocity-verlet: %.280s",
+                 reference->trial.failed ? reference->trial.message
+                                         : cs_outcome_text(reference->trial.outcome));
+}
+
+/* Growth that a run cannot show: from the shake to the length of a spring in its time. */
+static double growth_of(const struct cs_system *system,
+                        const struct cs_trial_settings *settings) {
+    double length = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++)
+        for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
+            length = fmax(length, cs_spring_length(system->springs.runs + r, i));
+    return settings->shake > 0 && length > settings->shake
+               ? log(length / settings->shake) / settings->seconds
+               : 0;
+}
+
+/* The step of the reference: half of what the row sums allow, and at least one a sample. */
+static double choose_dt(const struct cs_system *system, double space) {
+    const double w = system->view.omega, r = 2 * system->view.delta;
+    const double limit = 4 / (r + sqrt(r * r + 4 * w * w));
+    return fmin(fmin(0.5 * limit, space), 10);
+}
+
+static enum cs_status run_with(struct cs_reference *reference, struct cs_session *session,
+                               const struct cs_trial_settings *settings,
+                               struct cs_error *error) {
+    struct cs_theory theory = {0};
+    struct way way = {NULL, reference, error};
+    reference->row_sums = reference->at_rest.dt = reference->worst.dt = HUGE_VAL;
+    if (cs_trial_takes_dt(session->integrator)) {
+        way.theory = &theory;
+        if (cs_theory_init(&theory, &session->system, session->integrator, session->options,
+                           growth_of(&session->system, settings), error) ||
+            cs_theory_row_sums(&theory, &reference->row_sums, error) ||
+            cs_theory_at(&theory, session->system.state, &reference->at_rest, error))
+            goto done;
+    }
+    run_way(reference, settings,
+            choose_dt(&session->system, settings->seconds / settings->samples), &way, error);
+done:
+    cs_theory_finish(&theory);
+    return error->status;
+}
+
+enum cs_status cs_reference_run(struct cs_reference *reference,
+                                const struct cs_trial_settings *settings,
+                                struct cs_error *error) {
+    struct cs_session session;
+    *reference = (struct cs_reference){0};
+    if (cs_session_open_plan(&session, &settings->session, error))
+        return error->status;
+    if (!cs_system_build(&session.system, &session.scene, &session.plan, error)) {
+        struct cs_trial_settings asked = *settings;
+        if (session.system.view.omega > 0)
+            asked.seconds = fmax(asked.seconds, STEPS * 2 / session.system.view.omega);
+        reference->seconds = asked.seconds;
+        run_with(reference, &session, &asked, error);
+    }
+    cs_session_close(&session);
+    return error->status;
+}

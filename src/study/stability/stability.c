@@ -1,0 +1,186 @@
+/* stability.c - a map: its columns are shared out among workers. */
+#include "study/stability/stability.h"
+
+#include "base/clock.h"
+#include "model/system_build.h"
+#include "study/workers.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SAMPLES = 32, TRIALS_OF_BORDER = 7 };
+/* largest move at the start in lengths of the shortest spring: what an instability grows from
+ */
+#define SHAKE 1e-4
+
+/* A map in the making. */
+struct work {
+    struct cs_stability *map;
+    struct cs_workers workers;
+};
+
+/* between the highest row that is stable with all below it and the next one; a row that was not
+ * run to the end does not stand for a stable one */
+static enum cs_status find_border(struct cs_stability_column *column, uint32_t n_rows,
+                                  const struct cs_trial_settings *trial,
+                                  struct cs_error *error) {
+    uint32_t row = 0;
+    while (row < n_rows && cs_fate_is_sound(column->cells[row].verdict))
+        row++;
+    column->border = HUGE_VAL;
+    if (row == n_rows)
+        return CS_OK;
+    /* a row that ran out of time says nothing */
+    if (column->cells[row].verdict == CS_FATE_OVER_BUDGET) {
+        column->border = (double)NAN;
+        return CS_OK;
+    }
+    const bool known = row && cs_fate_is_stable(column->cells[row - 1].verdict);
+    return cs_stability_border(trial, &column->reference, known ? column->cells[row - 1].dt : 0,
+                               column->cells[row].dt, &column->border, error);
+}
+
+static enum cs_status make_column(struct work *work, struct cs_stability_column *column,
+                                  struct cs_arena *arena, struct cs_error *error) {
+    const struct cs_stability *map = work->map;
+    struct cs_trial_settings trial = {
+        .session = map->settings->session,
+        .seconds = map->settings->seconds,
+        .samples = SAMPLES,
+        .shake = SHAKE * cs_springs_shortest(&map->session.system.springs),
+        .budget = map->settings->budget};
+    if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
+        trial.shake *= map->own / column->value;
+    if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
+                          trial.session.overrides, trial.session.n_overrides,
+                          &trial.session.overrides, &trial.session.n_overrides, error) ||
+        cs_reference_run(&column->reference, &trial, error))
+        return error->status;
+    if (!column->reference.found)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "%s = %g: no run to judge by (%.200s); a shorter --seconds or a longer "
+                       "--budget may help",
+                       cs_axis_names[map->settings->axis], column->value,
+                       column->reference.message);
+    for (uint32_t r = 0; r < map->n_rows; r++) {
+        if (cs_stability_try(&trial, &column->reference, map->dt[r], column->cells + r, error))
+            return error->status;
+        cs_workers_tick(&work->workers, 1);
+    }
+    find_border(column, map->n_rows, &trial, error);
+    cs_workers_tick(&work->workers, TRIALS_OF_BORDER);
+    return error->status;
+}
+
+static enum cs_status make_task(void *ctx, uint32_t task, struct cs_error *error) {
+    struct work *work = ctx;
+    struct cs_arena arena = {0};
+    /* the last columns are the slowest: they go first */
+    make_column(work, work->map->columns + (work->map->n_columns - 1 - task), &arena, error);
+    cs_arena_finish(&arena);
+    return error->status;
+}
+
+static void report(void *ctx, uint32_t ticks) {
+    const struct cs_stability *map = ctx;
+    if (map->settings->progress)
+        map->settings->progress(map->settings->ctx, ticks,
+                                map->n_columns * (map->n_rows + TRIALS_OF_BORDER));
+}
+
+static enum cs_status share_out(struct cs_stability *map, struct cs_error *error) {
+    struct work work = {map,
+                        {.n_workers = map->settings->workers,
+                         .n_tasks = map->n_columns,
+                         .task = make_task,
+                         .progress = report,
+                         .progress_ctx = map,
+                         .stop = map->settings->session.stop}};
+    work.workers.ctx = &work;
+    work.workers.ticks = cs_workers_take(sizeof *work.workers.ticks, error);
+    if (work.workers.ticks)
+        cs_workers_run(&work.workers, error);
+    cs_workers_give_back(work.workers.ticks, sizeof *work.workers.ticks);
+    return error->status;
+}
+
+static double share(double from, double to, uint32_t i, uint32_t n) {
+    return n > 1 ? from * pow(to / from, (double)i / (n - 1)) : from;
+}
+
+/* From a quarter of the step that the row sums allow at the stiff end to eight times the one at
+ * the soft end. */
+static struct cs_range choose_dt(const struct cs_stability *map, struct cs_range values) {
+    const struct cs_view *view = &map->session.system.view;
+    double fast = view->omega > 0 ? view->omega : 60, slow = fast;
+    if (map->settings->axis == CS_AXIS_STIFFNESS && map->own > 0) {
+        slow *= sqrt(values.from / map->own);
+        fast *= sqrt(values.to / map->own);
+    } else if (map->settings->axis == CS_AXIS_MASS && map->own > 0) {
+        slow *= sqrt(map->own / values.to);
+        fast *= sqrt(map->own / values.from);
+    } else if (map->settings->axis == CS_AXIS_DAMPING)
+        fast *= 8;
+    return (struct cs_range){0.5 / fast, fmin(16 / slow, 10)};
+}
+
+/* columns, then the cells of all of them */
+static size_t bytes_of(const struct cs_stability *map) {
+    return map->n_columns * (sizeof *map->columns + map->n_rows * sizeof *map->columns->cells);
+}
+
+static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) {
+    const struct cs_stability_settings *settings = map->settings;
+    const bool whole = settings->axis == CS_AXIS_RESOLUTION;
+    struct cs_range values = settings->values, dt = settings->dt;
+    map->own = cs_axis_own(&map->session.system, settings->axis);
+    if (values.to <= 0)
+        values = cs_axis_range(&map->session.system, settings->axis);
+    if (!(values.from > 0))
+        return cs_fail(error, CS_ERR_USAGE, "the scene has no %s to vary",
+                       cs_axis_names[settings->axis]);
+    if (dt.to <= 0)
+        dt = choose_dt(map, values);
+    map->n_columns = settings->columns;
+    map->n_rows = settings->rows;
+    map->columns = cs_workers_take(bytes_of(map), error);
+    map->dt = cs_arena_take_n(&map->arena, map->n_rows, sizeof *map->dt, error);
+    if (error->status)
+        return error->status;
+    for (uint32_t r = 0; r < map->n_rows; r++)
+        map->dt[r] = share(dt.from, dt.to, r, map->n_rows);
+    for (uint32_t c = 0; c < map->n_columns; c++) {
+        const double value = share(values.from, values.to, c, map->n_columns);
+        map->columns[c].value = whole ? floor(value + 0.5) : value;
+        map->columns[c].cells =
+            (struct cs_stability_cell *)(map->columns + map->n_columns) + c * map->n_rows;
+    }
+    return error->status;
+}
+
+enum cs_status cs_stability_run(struct cs_stability *map,
+                                const struct cs_stability_settings *settings,
+                                struct cs_error *error) {
+    const double begin = cs_clock_wall();
+    *map = (struct cs_stability){.settings = settings};
+    if (cs_session_open_plan(&map->session, &settings->session, error))
+        return error->status;
+    map->integrator = map->session.integrator;
+    if (!cs_trial_takes_dt(map->integrator))
+        return cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" %s: it has no map of dt",
+                       map->integrator->name,
+                       map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
+                                                             : "has no option dt");
+    if (cs_system_build(&map->session.system, &map->session.scene, &map->session.plan, error) ||
+        lay_out(map, error) || share_out(map, error))
+        return error->status;
+    map->wall = cs_clock_wall() - begin;
+    return CS_OK;
+}
+
+void cs_stability_finish(struct cs_stability *map) {
+    cs_workers_give_back(map->columns, bytes_of(map));
+    cs_session_close(&map->session);
+    cs_arena_finish(&map->arena);
+    *map = (struct cs_stability){0};
+}

@@ -1,0 +1,118 @@
+#include "study/stability/stability.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *const cs_axis_names[] = {"stiffness", "damping", "mass", "resolution", NULL};
+
+const char *cs_axis_unit(enum cs_axis axis) {
+    static const char *const units[CS_AXES] = {"N/m", "N s/m", "kg", "columns"};
+    return units[axis];
+}
+
+double cs_axis_own(const struct cs_system *system, enum cs_axis axis) {
+    const struct cs_body *body = cs_scene_bodies(system->scene);
+    switch (axis) {
+    case CS_AXIS_STIFFNESS:
+        return fmax(body->springs.stretch, fmax(body->springs.shear, body->springs.bend));
+    case CS_AXIS_DAMPING:
+        return body->springs.damping;
+    case CS_AXIS_MASS:
+        return system->mass[0];
+    default:
+        return (double)body->cloth.grid[0];
+    }
+}
+
+struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis) {
+    const double own = cs_axis_own(system, axis);
+    if (axis == CS_AXIS_RESOLUTION)
+        return (struct cs_range){fmin(8, own), fmin(48, fmax(1.5 * own, 24))};
+    if (axis == CS_AXIS_DAMPING && own <= 0) {
+        /* up to what damps a lone spring at its critical rate */
+        const double k = cs_axis_own(system, CS_AXIS_STIFFNESS);
+        const double critical = 2 * sqrt(k * system->mass[0]);
+        return (struct cs_range){1e-4 * critical, critical};
+    }
+    return (struct cs_range){own / 100, own * 100};
+}
+
+static enum cs_status add(struct cs_override *list, uint32_t *n, struct cs_arena *arena,
+                          uint32_t body, const char *key, double value,
+                          struct cs_error *error) {
+    char path[64];
+    struct cs_text text = {0};
+    snprintf(path, sizeof path, "bodies[%u].%s", body, key);
+    cs_text_add_real(&text, value);
+    list[*n].path = cs_arena_take_text(arena, path, error);
+    list[*n].value = text.failed ? NULL : cs_arena_take_text(arena, cs_text_get(&text), error);
+    if (text.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    cs_text_finish(&text);
+    ++*n;
+    return error->status;
+}
+
+static void add_grid(struct cs_override *list, uint32_t *n, struct cs_arena *arena,
+                     uint32_t body, const int64_t *grid, double factor,
+                     struct cs_error *error) {
+    char path[64], value[64];
+    snprintf(path, sizeof path, "bodies[%u].cloth.grid", body);
+    snprintf(value, sizeof value, "[%.0f, %.0f]",
+             fmax(1, floor((double)grid[0] * factor + 0.5)),
+             fmax(1, floor((double)grid[1] * factor + 0.5)));
+    list[*n].path = cs_arena_take_text(arena, path, error);
+    list[*n].value = cs_arena_take_text(arena, value, error);
+    ++*n;
+}
+
+static void add_scaled(struct cs_override *list, uint32_t *n, struct cs_arena *arena,
+                       uint32_t b, const struct cs_body *body, enum cs_axis axis, double value,
+                       double factor, struct cs_error *error) {
+    const struct cs_spring_law *law = &body->springs;
+    const struct cs_mass *mass = &body->mass;
+    const struct {
+        enum cs_axis axis;
+        const char *key;
+        double value;
+    } rows[] = {
+        {CS_AXIS_STIFFNESS, "springs.stretch", law->stretch * factor},
+        {CS_AXIS_STIFFNESS, "springs.shear", law->shear * factor},
+        {CS_AXIS_STIFFNESS, "springs.bend", law->bend * factor},
+        /* a body without damping gets that of the axis */
+        {CS_AXIS_DAMPING, "springs.damping", law->damping > 0 ? law->damping * factor : value},
+        {CS_AXIS_MASS, "mass.particle", mass->particle * factor},
+        {CS_AXIS_MASS, "mass.areal_density", mass->areal_density * factor},
+        {CS_AXIS_MASS, "mass.total", mass->total * factor},
+        {CS_AXIS_MASS, "mass.degree", mass->degree * factor},
+    };
+    for (uint32_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        if (rows[k].axis == axis && !isnan(rows[k].value))
+            add(list, n, arena, b, rows[k].key, rows[k].value, error);
+    if (axis == CS_AXIS_RESOLUTION)
+        add_grid(list, n, arena, b, body->cloth.grid, factor, error);
+}
+
+enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
+                                 double value, struct cs_arena *arena,
+                                 const struct cs_override *given, uint32_t n_given,
+                                 const struct cs_override **out, uint32_t *n_out,
+                                 struct cs_error *error) {
+    enum { MOST_A_BODY = 4 };
+    const struct cs_scene *scene = system->scene;
+    const double own = cs_axis_own(system, axis);
+    struct cs_override *list = cs_arena_take_n(
+        arena, n_given + (size_t)MOST_A_BODY * scene->bodies.n, sizeof *list, error);
+    uint32_t n = n_given;
+    if (!list)
+        return error->status;
+    if (n_given)
+        memcpy(list, given, n_given * sizeof *list);
+    for (uint32_t b = 0; b < scene->bodies.n && !error->status; b++)
+        add_scaled(list, &n, arena, b, cs_scene_bodies(scene) + b, axis, value,
+                   own > 0 ? value / own : 1, error);
+    *out = list;
+    *n_out = n;
+    return error->status;
+}

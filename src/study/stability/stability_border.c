@@ -1,0 +1,88 @@
+/* stability_border.c - one cell, and the border between stable and unstable ones. */
+#include "study/stability/stability.h"
+
+#include <math.h>
+
+enum { MOST_SEARCHES = 12, BISECTIONS = 14 };
+#define RESOLUTION 1.01 /* of the border: unstable step / stable step */
+#define LONGEST_DT 10
+
+/* over the time of the reference, but most_seconds at most */
+static enum cs_status try_step(const struct cs_trial_settings *settings,
+                               const struct cs_reference *reference, double dt,
+                               double most_seconds, struct cs_stability_cell *cell,
+                               struct cs_error *error) {
+    struct cs_trial_settings asked = *settings;
+    struct cs_trial trial;
+    asked.dt = dt;
+    asked.seconds = fmin(reference->seconds, most_seconds);
+    asked.limits = cs_fate_limits(&reference->trial);
+    if (cs_trial_run(&trial, &asked, error))
+        return error->status;
+    *cell = (struct cs_stability_cell){
+        .dt = dt,
+        .verdict = cs_fate_of(&trial, &reference->trial, asked.seconds >= reference->seconds),
+        .drift = (double)NAN,
+        .time = trial.end,
+        .particles = trial.excess.particles,
+    };
+    if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)
+        cell->drift = cs_fate_drift(&trial, &reference->trial);
+    if (trial.outcome == CS_UNBOUNDED || trial.outcome == CS_NOT_FINITE)
+        cell->time = trial.blow_up.time;
+    if (cell->verdict == CS_FATE_GLOBAL && trial.beyond)
+        cell->time = trial.beyond_time;
+    else if (cell->verdict == CS_FATE_LOCAL)
+        cell->time = trial.excess.time;
+    return CS_OK;
+}
+
+enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
+                                const struct cs_reference *reference, double dt,
+                                struct cs_stability_cell *cell, struct cs_error *error) {
+    return try_step(settings, reference, dt, CS_CELL_STEPS * dt, cell, error);
+}
+
+/* Steps by a factor of 4 until both sides are known; *known is false where a budget ran out. */
+static enum cs_status enclose(const struct cs_trial_settings *settings,
+                              const struct cs_reference *reference, double *stable,
+                              double *unstable, bool *known, struct cs_error *error) {
+    struct cs_stability_cell cell;
+    for (int k = 0; k < MOST_SEARCHES && (*stable <= 0 || *unstable > LONGEST_DT); k++) {
+        const double dt = *stable > 0 ? 4 * *stable : *unstable / 4;
+        if (!(dt <= LONGEST_DT))
+            break;
+        if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
+            return error->status;
+        *known = cell.verdict != CS_FATE_OVER_BUDGET;
+        if (!*known)
+            break;
+        *(cs_fate_is_stable(cell.verdict) ? stable : unstable) = dt;
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_stability_border(const struct cs_trial_settings *settings,
+                                   const struct cs_reference *reference, double stable,
+                                   double unstable, double *border, struct cs_error *error) {
+    struct cs_stability_cell cell;
+    bool known = true;
+    *border = (double)NAN;
+    if (enclose(settings, reference, &stable, &unstable, &known, error) || !known)
+        return error->status;
+    *border = stable <= 0 ? 0 : HUGE_VAL;
+    if (stable <= 0 || unstable > LONGEST_DT)
+        return CS_OK;
+    for (int k = 0; k < BISECTIONS && unstable > RESOLUTION * stable; k++) {
+        const double dt = sqrt(stable * unstable);
+        if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
+            return error->status;
+        if (cell.verdict == CS_FATE_OVER_BUDGET) {
+            *border = (double)NAN;
+            return CS_OK;
+        }
+        *(cs_fate_is_stable(cell.verdict) ? &stable : &unstable) = dt;
+    }
+    *border = sqrt(stable * unstable);
+    return CS_OK;
+}

@@ -1,0 +1,110 @@
+#include "study/stability/theory.h"
+
+#include <math.h>
+
+enum { MOST_TURNS = 5 };
+
+enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
+                              const struct cs_integrator *integrator, const void *options,
+                              double growth, struct cs_error *error) {
+    *theory = (struct cs_theory){.amplify = {integrator, options, growth}, .direction = {1, 0}};
+    return cs_modes_init(&theory->modes, system, error);
+}
+
+void cs_theory_finish(struct cs_theory *theory) {
+    cs_modes_finish(&theory->modes);
+}
+
+enum cs_status cs_theory_row_sums(struct cs_theory *theory, double *dt,
+                                  struct cs_error *error) {
+    const struct cs_view *view = &theory->modes.system->view;
+    const double square = view->omega * view->omega;
+    double damped = HUGE_VAL;
+    *dt = HUGE_VAL;
+    if (cs_amplify_limit(&theory->amplify, square, 0, dt, error) ||
+        cs_amplify_limit(&theory->amplify, square, 2 * view->delta, &damped, error))
+        return error->status;
+    *dt = fmin(*dt, damped);
+    return CS_OK;
+}
+
+/* The limit of one motion replaces a larger one. A motion that pushes itself away is unstable
+ * in nature: it limits no step, but what its damping does counts. */
+static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
+                               struct cs_theory_limit *limit, struct cs_error *error) {
+    struct cs_theory_limit found = {HUGE_VAL, *mode};
+    const double square = mode->square > 0 ? mode->square : 0;
+    const double rate = mode->rate > 0 ? mode->rate : 0;
+    if (cs_amplify_limit(&theory->amplify, square, rate, &found.dt, error))
+        return error->status;
+    if (found.dt < limit->dt)
+        *limit = found;
+    return CS_OK;
+}
+
+/* the search turns to the normal of the stable set just outside the limit */
+static enum cs_status turn(struct cs_theory *theory, const struct cs_theory_limit *limit,
+                           struct cs_error *error) {
+    const double h = limit->dt;
+    double normal[2];
+    if (!(limit->mode.square > 0) ||
+        cs_amplify_normal(&theory->amplify, 1.002 * h, limit->mode.square,
+                          fmax(limit->mode.rate, 0), normal, error))
+        return error->status;
+    const double a = h * h * normal[0], b = h * normal[1];
+    const double scale = fabs(a) + fabs(b) / h;
+    if (isfinite(scale) && scale > 0) {
+        theory->direction[0] = a / scale;
+        theory->direction[1] = b / scale;
+    }
+    return CS_OK;
+}
+
+static bool has_limit(const struct cs_theory_limit *limit) {
+    return limit->dt > 0 && limit->dt < HUGE_VAL;
+}
+
+/* From one direction on, as long as turning it finds a smaller limit. */
+static enum cs_status descend(struct cs_theory *theory, const double *x, double a, double b,
+                              struct cs_theory_limit *limit, struct cs_error *error) {
+    theory->direction[0] = a;
+    theory->direction[1] = b;
+    theory->modes.warm = false;
+    for (int k = 0; k < MOST_TURNS; k++) {
+        const double before = limit->dt;
+        const struct cs_mode mode =
+            cs_modes_largest(&theory->modes, x, theory->direction[0], theory->direction[1]);
+        if (consider(theory, &mode, limit, error))
+            return error->status;
+        if (!has_limit(limit) || !(limit->dt < 0.999 * before) || turn(theory, limit, error))
+            break;
+    }
+    return error->status;
+}
+
+enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
+                            struct cs_theory_limit *limit, struct cs_error *error) {
+    *limit = (struct cs_theory_limit){.dt = HUGE_VAL};
+    if (theory->modes.system->view.delta > 0 && descend(theory, x, 0, 1, limit, error))
+        return error->status;
+    struct cs_theory_limit swing = {.dt = HUGE_VAL};
+    if (descend(theory, x, 1, 0, &swing, error))
+        return error->status;
+    if (swing.dt < limit->dt)
+        *limit = swing;
+    if (has_limit(limit))
+        turn(theory, limit, error);
+    return error->status;
+}
+
+enum cs_status cs_theory_lower(struct cs_theory *theory, const double *x,
+                               struct cs_theory_limit *limit, struct cs_error *error) {
+    if (!has_limit(limit))
+        return CS_OK;
+    const struct cs_mode mode =
+        cs_modes_largest(&theory->modes, x, theory->direction[0], theory->direction[1]);
+    const double before = limit->dt;
+    if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
+        turn(theory, limit, error);
+    return error->status;
+}
