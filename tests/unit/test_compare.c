@@ -1,7 +1,7 @@
 /* The second level of the golden gate: what passes, what does not, and the figures. */
 #include "draw/compare.h"
+#include "unit.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -121,20 +121,13 @@ START_TEST(empty_images_are_equal) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("compare");
-    TCase *tests = tcase_create("compare");
-    suite_add_tcase(suite, tests);
-    tcase_add_test(tests, identical_images_pass);
-    tcase_add_test(tests, figures_of_a_small_image);
-    tcase_add_test(tests, rounding_passes);
-    tcase_add_test(tests, light_shift_fails);
-    tcase_add_test(tests, lost_edge_fails);
-    tcase_add_test(tests, bounds_are_inclusive);
-    tcase_add_test(tests, amplified_difference_is_clamped);
-    tcase_add_test(tests, empty_images_are_equal);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    const TTest *const tests[] = {identical_images_pass,
+                                  figures_of_a_small_image,
+                                  rounding_passes,
+                                  light_shift_fails,
+                                  lost_edge_fails,
+                                  bounds_are_inclusive,
+                                  amplified_difference_is_clamped,
+                                  empty_images_are_equal};
+    return unit_run("compare", tests, sizeof tests / sizeof *tests);
 }

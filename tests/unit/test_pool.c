@@ -145,6 +145,18 @@ START_TEST(starts_and_stops_repeatedly) {
 }
 END_TEST
 
+/* Under the address sanitizer this case is left out: a thread of the parent may hold a lock of
+ * the sanitizer's allocator while the process forks. Nobody opens that lock in the child, which
+ * hangs as soon as it starts a thread. */
+#ifdef __SANITIZE_ADDRESS__
+#define FORKS 0
+#elif defined(__has_feature)
+#define FORKS !__has_feature(address_sanitizer)
+#else
+#define FORKS 1
+#endif
+
+#if FORKS
 /* a child has one thread and may start its own; the parent's go on */
 START_TEST(a_child_has_no_pool) {
     static struct tally tally;
@@ -169,6 +181,7 @@ START_TEST(a_child_has_no_pool) {
     cs_pool_stop();
 }
 END_TEST
+#endif
 
 /* a thread of the pool never takes a signal */
 static pthread_t taker;
@@ -200,13 +213,17 @@ START_TEST(signals_are_the_callers) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {every_block_is_done_once,
-                                  one_thread_goes_in_order,
-                                  a_loop_within_a_loop_is_the_threads_own,
-                                  two_callers_do_not_disturb_each_other,
-                                  a_loop_sees_what_the_last_one_wrote,
-                                  starts_and_stops_repeatedly,
-                                  a_child_has_no_pool,
-                                  signals_are_the_callers};
+    const TTest *const tests[] = {
+        every_block_is_done_once,
+        one_thread_goes_in_order,
+        a_loop_within_a_loop_is_the_threads_own,
+        two_callers_do_not_disturb_each_other,
+        a_loop_sees_what_the_last_one_wrote,
+        starts_and_stops_repeatedly,
+#if FORKS
+        a_child_has_no_pool,
+#endif
+        signals_are_the_callers
+    };
     return unit_run("pool", tests, sizeof tests / sizeof *tests);
 }
