@@ -2,8 +2,8 @@
  *
  *   ark-erk   explicit
  *   ark-dirk  diagonally implicit: one Newton iteration a stage
- *   ark-imex  additive pairs: x' = v and the forces of springs and dampers by the implicit
- *             table, the other forces by the explicit one
+ *   ark-imex  additive pairs: x' = v and all forces that can be stiff by
+ *             the implicit table, the other forces by the explicit one
  * One-step methods lose nothing but a slope where the state was moved.
  */
 #include "arkode_calls.h"
@@ -11,7 +11,7 @@
 #include "fixed_step.h"
 #include "sundials_common.h"
 
-#define IMPLICIT_PARTS (CS_PART_SPRINGS | CS_PART_DAMPING)
+#define EXPLICIT_PARTS (CS_PART_ALL & ~CS_PART_STIFF)
 
 /* Of state, error weights, work, interpolation and Newton, and some to spare. */
 enum { WORK_VECTORS = 20 };
@@ -54,11 +54,11 @@ struct ark {
 };
 
 static int implicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
-    return sundials_slope(object, t, y, IMPLICIT_PARTS, true, slope);
+    return sundials_slope(object, t, y, CS_PART_STIFF, true, slope);
 }
 
 static int explicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
-    return sundials_slope(object, t, y, CS_PART_ALL & ~(uint32_t)IMPLICIT_PARTS, false, slope);
+    return sundials_slope(object, t, y, EXPLICIT_PARTS, false, slope);
 }
 
 static int newton_system(void *memory, double *t, N_Vector *y, double *g) {
@@ -223,7 +223,7 @@ static const struct cs_integrator ark_dirk = {
 static const struct cs_integrator ark_imex = {
     ARKODE(imex_rows),
     .name = "ark-imex",
-    .summary = "additive Runge-Kutta of orders 3 to 5, springs and dampers implicit, the rest "
+    .summary = "additive Runge-Kutta of orders 3 to 5, stiff forces implicit, the rest "
                "explicit, by SUNDIALS ARKODE",
     .source = "Kennedy, Carpenter 2003, 2019; Reynolds et al. 2023",
     .order = 4,

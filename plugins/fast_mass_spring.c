@@ -13,13 +13,16 @@
  * Dampers and drag are implicit too. Relative dampers and drag are in the matrix. An axial
  * damper is there as if it were relative, and its part across the spring is given back from the
  * last x: h c (I - n n^T)((x_b - x_a) - (x_b - x_a)_old), which is the same kind of projection.
- * Wind is that at the start of the step.
+ * All other forces are those at the start of the step.
  */
 #include "constant_matrix.h"
 #include "fixed_step.h"
 
 #include <float.h>
 #include <string.h>
+
+/* what springs and matrix do not hold */
+#define EXPLICIT_PARTS (CS_PART_OUTER & ~CS_PART_DRAG)
 
 struct local_global_options {
     double dt;
@@ -106,7 +109,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double step_length, 
     if (status != CS_STEP_OK)
         return status;
     const double h = self->matrix.h;
-    host->force(host->ctx, t, x, v, CS_PART_GRAVITY | CS_PART_WIND, self->f);
+    host->force(host->ctx, t, x, v, EXPLICIT_PARTS, self->f);
     memcpy(self->old, x, 3 * n * sizeof *x);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {

@@ -1,6 +1,6 @@
 /* implicit.c - implicit Euler methods that solve one linear system a step.
  *
- * With K = df/dx, D = df/dv of springs, dampers and drag at (x, v), and step h:
+ * With K = df/dx, D = df/dv of CS_PART_LINEARISED at (x, v), and step h:
  *
  *   implicit-linearised  (M - h D - h^2 K) dv = h (f + h K v)                the whole system
  *
@@ -55,7 +55,7 @@ struct linearised {
     double *b;        /* (3,n) in N s: the right-hand side */
     const double *v;  /* (3,n) of the running step, borrowed */
     double *dv;       /* (3,n) in m/s */
-    double *external; /* (3,n) in N: gravity, which does not depend on the state */
+    double *external; /* (3,n) in N: CS_PART_FREE_FALL at the last restart */
 };
 
 struct block {
@@ -140,7 +140,7 @@ static enum cs_step restart_linearised(void *object, double t, const double *x,
                                        const double *v) {
     struct linearised *self = object;
     const struct cs_host *host = self->loop.host;
-    host->force(host->ctx, t, x, v, CS_PART_GRAVITY, self->external);
+    host->force(host->ctx, t, x, v, CS_PART_FREE_FALL, self->external);
     return CS_STEP_OK;
 }
 

@@ -128,8 +128,8 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
         if (isnan(start)) {
             // only now, for most searches end above
             start = potential(newton, stage, newton->u0);
-            host->force(host->ctx, stage->t, newton->x, newton->v,
-                        CS_PART_DAMPING | CS_PART_DRAG | CS_PART_WIND, newton->f);
+            host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_WITHOUT_ENERGY,
+                        newton->f);
             work = stage->s * host->vector->dot(n3, newton->f, newton->du);
         }
         if (potential(newton, stage, u) - a * work <= start + LINE_DECREASE * a * slope &&

@@ -3,7 +3,7 @@
  * A stage asks for a velocity u, from which position and velocity of the stage follow:
  *   r(u) = M (u - ub) - s f(t, X, V) = 0,   X = xb + gx u,   V = vb + gv u
  * so that a method is a table of coefficients (t, s, gx, gv) and of known vectors. Newton:
- *   A du = -r,   A = M - s gv D - s gx K,   K = df/dx, D = df/dv of springs, dampers and drag
+ *   A du = -r,   A = M - s gv D - s gx K,   K = df/dx, D = df/dv of CS_PART_LINEARISED
  * with the exact force in r. A is the host's matrix with compressed springs clamped (Teran et
  * al. 2005) while |r| is large: positive definite, so that du goes downhill. Once |r| is below
  * a tenth of the impulse it is the exact one, unless that is indefinite, which gives Newton's
@@ -11,9 +11,9 @@
  *
  * Line search: u + a du with a = 1, 1/2, ... is taken where |r| falls, or where the incremental
  * potential (Martin et al. 2011; Gast et al. 2015)
- *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (elastic + gravity)(X) - s w.(u - u0)
- * falls by 1e-4 of what its slope r.du promises. Dampers, drag and wind have no potential:
- * their force w is frozen at the start u0 of the search, where P then has the slope of r.
+ *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (potential energy)(X) - s w.(u - u0)
+ * falls by 1e-4 of what its slope r.du promises. Forces without energy, such as dampers, drag
+ * and wind, have no potential: their force w is frozen at the start u0 of the search, where P then has the slope of r.
  *
  * Norms of r are |r|^2 = sum r_i^2 / m_i. Done: |r| <= rtol |M (u - ub)|, the impulse of the
  * stage, or |r| below what rounding of x and u alone may cause.

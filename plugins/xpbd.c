@@ -133,7 +133,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     struct xpbd *self = (struct xpbd *)loop;
     const struct cs_host *host = loop->host;
     const size_t n = host->view->n;
-    host->force(host->ctx, t, x, v, CS_PART_GRAVITY | CS_PART_DRAG | CS_PART_WIND, self->f);
+    host->force(host->ctx, t, x, v, CS_PART_OUTER, self->f);
     memcpy(self->old, x, 3 * n * sizeof *x);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {

@@ -15,7 +15,7 @@ static void add_force(const struct cs_system *system, double t, const double *x,
 }
 
 const struct cs_term cs_term_push = {
-    .parts = CS_PART_GRAVITY,
+    .parts = CS_PART_EXTERNAL,
     .feature = CS_FEATURE_EVENTS,
     .add_force = add_force,
 };
