@@ -1,11 +1,13 @@
 #!/bin/sh
-# man_examples.sh PROGRAM - runs every line of every EXAMPLES section of the man pages (as TAP).
+# man_examples.sh PROGRAM [slow] - runs every line of every EXAMPLES section of the man pages (as
+# TAP); those of a block below the remark "; slow" only where that is asked for, and then no others.
 #
 # A block of a page that opens with `{` is the scene sketch.json, one that opens with a comment
 # `/* NAME.c` is that file; both are there when the page's examples run, each page in an own folder.
 set -eu
 
 program=$(realpath "$1")
+speed=${2:-quick}
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -22,16 +24,23 @@ for page in "$root"/man/*.scd; do
     folder=$work/$(basename "$page" .scd)
     mkdir "$folder"
     ln -s "$root/scenes" "$root/golden" "$folder"
-    awk -v folder="$folder" '
+    awk -v folder="$folder" -v speed="$speed" '
         /^# / { examples = $0 == "# EXAMPLES" }
-        /^```$/ { inside = !inside; into = ""; first = inside; next }
+        /^; slow$/ { slow = 1; next }
+        /^```$/ {
+            inside = !inside; into = ""; first = inside
+            wanted = examples && (slow ? "slow" : "quick") == speed
+            if (!inside) slow = 0
+            next
+        }
         !inside { next }
         first && /^{/ { into = folder "/sketch.json" }
         first && /^\/\* [a-z]*\.c / { into = folder "/" $2 }
         { first = 0 }
         into { print > into; next }
-        examples { print > (folder "/examples") }' "$page"
+        wanted { print > (folder "/examples") }' "$page"
     if ! [ -s "$folder/examples" ]; then
+        [ "$speed" = quick ] || continue
         n=$((n + 1)) failed=1
         echo "not ok $n - $(basename "$page") has no examples"
         continue
@@ -44,5 +53,6 @@ for page in "$root"/man/*.scd; do
         [ "$verdict" = ok ] || sed 's/^/#   /' "$work/output"
     done <"$folder/examples"
 done
+[ $n -gt 0 ] || failed=1
 echo "1..$n"
 exit $failed
