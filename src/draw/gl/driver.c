@@ -9,7 +9,9 @@ const char *cs_driver_pin(bool fast) {
         return in_force;
     setenv("GALLIUM_DRIVER", "llvmpipe", 1); // an unknown driver here would crash OSMesa
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1); // nothing is written into the user's home
+    // nothing is written into the user's home; where a folder is named, shaders are kept there
+    if (!getenv("MESA_SHADER_CACHE_DIR"))
+        setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     unsetenv("MESA_GL_VERSION_OVERRIDE");
     unsetenv("MESA_GLSL_VERSION_OVERRIDE");
     unsetenv("LP_NATIVE_VECTOR_WIDTH");
