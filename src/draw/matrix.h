@@ -71,6 +71,21 @@ static inline void cs_matrix_look(const double eye[3], const double target[3],
     out[15] = 1;
 }
 
+/* Tangent of an angle of 0..1.5 from the series of sine and cosine: libm's last bit depends on
+ * the machine. Terms shrink as 1.5^k / k!, below the last bit after 24 of them. */
+static inline double cs_tangent(double angle) {
+    double sine = 0, cosine = 0, term = 1;
+    for (int k = 0; k < 28; k++) {
+        const double signed_term = k & 2 ? -term : term;
+        if (k & 1)
+            sine += signed_term;
+        else
+            cosine += signed_term;
+        term = term * angle / (k + 1);
+    }
+    return sine / cosine;
+}
+
 /* slope: tangent of half the vertical angle. */
 static inline void cs_matrix_perspective(double slope, double aspect, double near, double far,
                                          double out[16]) {

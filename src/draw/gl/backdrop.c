@@ -1,42 +1,23 @@
 #include "draw/gl/backdrop.h"
 
-#include "draw/colour.h"
 #include "draw/gl/gl.h"
 #include "draw/gl/shader.h"
-
-// the power of ten at or below length
-static double power_of_ten(double length) {
-    double power = 1;
-    while (power > length)
-        power /= 10;
-    while (power * 10 <= length)
-        power *= 10;
-    return power;
-}
-
-static bool has_floor(const struct cs_scene *scene) {
-    for (uint32_t i = 0; i < scene->colliders.n; i++)
-        if (cs_scene_colliders(scene)[i].visible && cs_scene_colliders(scene)[i].floor.present)
-            return true;
-    return false;
-}
+#include "draw/ground.h"
 
 static enum cs_status init_ground(struct cs_backdrop *backdrop, const struct cs_scene *scene,
                                   const struct cs_ball *extent, struct cs_error *error) {
-    float ink[3];
+    struct cs_ground ground;
     if (cs_shader_make(&cs_shader_ground, &backdrop->ground, error) != CS_OK)
         return error->status;
-    cs_colour_ink(scene->render.background, ink);
-    gl.UseProgram(backdrop->ground);
-    gl.Uniform4f(gl.GetUniformLocation(backdrop->ground, "span"), (float)extent->centre[0],
-                 (float)scene->render.ground_height, (float)extent->centre[2],
-                 (float)(6 * extent->radius));
-    gl.Uniform1f(gl.GetUniformLocation(backdrop->ground, "pitch"),
-                 (float)power_of_ten(0.3 * extent->radius));
-    gl.Uniform3f(gl.GetUniformLocation(backdrop->ground, "ink"), ink[0], ink[1], ink[2]);
-    // a floor shows the shadow itself
-    gl.Uniform1f(gl.GetUniformLocation(backdrop->ground, "shadow_ink"),
-                 has_floor(scene) ? 0.0f : 0.4f);
+    cs_ground_make(&ground, scene, extent);
+    const GLuint program = backdrop->ground;
+    gl.UseProgram(program);
+    gl.Uniform4f(gl.GetUniformLocation(program, "span"), ground.span[0], ground.span[1],
+                 ground.span[2], ground.span[3]);
+    gl.Uniform1f(gl.GetUniformLocation(program, "pitch"), ground.pitch);
+    gl.Uniform3f(gl.GetUniformLocation(program, "ink"), ground.ink[0], ground.ink[1],
+                 ground.ink[2]);
+    gl.Uniform1f(gl.GetUniformLocation(program, "shadow_ink"), ground.shadow);
     return CS_OK;
 }
 

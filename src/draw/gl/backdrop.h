@@ -2,7 +2,7 @@
 #ifndef CS_DRAW_BACKDROP_H
 #define CS_DRAW_BACKDROP_H
 
-#include "draw/gl/view.h"
+#include "draw/view.h"
 
 struct cs_backdrop {
     unsigned object, sky, ground;

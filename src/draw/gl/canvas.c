@@ -1,18 +1,17 @@
 /* canvas.c - a scene made ready to draw, and the table that the module exports. */
+#include "draw/aim.h"
+#include "draw/extent.h"
 #include "draw/gl/backdrop.h"
-#include "draw/gl/bar.h"
 #include "draw/gl/collider.h"
 #include "draw/gl/context.h"
 #include "draw/gl/driver.h"
-#include "draw/gl/extent.h"
 #include "draw/gl/gl.h"
-#include "draw/gl/mesh.h"
-#include "draw/gl/net.h"
-#include "draw/gl/prods.h"
+#include "draw/gl/lines.h"
 #include "draw/gl/shadow.h"
 #include "draw/gl/target.h"
 #include "draw/gl/texture.h"
-#include "draw/matrix.h"
+#include "draw/mesh.h"
+#include "draw/overlay.h"
 #include "draw/render.h"
 
 #include <stdio.h>
@@ -36,36 +35,10 @@ struct cs_canvas {
     struct cs_shadow shadow;
     struct cs_obstacles obstacles;
     struct cs_cloth_picture *cloths; /* (scene->bodies.n) */
-    struct cs_lines lines;
-    struct cs_net net;
-    struct cs_bar bar;
+    struct cs_gl_lines lines;
+    struct cs_overlay overlay;
     char description[256];
 };
-
-static bool colours_by_value(int32_t look) {
-    return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN;
-}
-
-static void set_style(struct cs_surface_style *style, const struct cs_material *material,
-                      const struct cs_image *texture, int32_t look) {
-    const bool has_back = !isnan(material->back_colour[0]);
-    memcpy(style->front, material->colour, sizeof style->front);
-    memcpy(style->back, has_back ? material->back_colour : material->colour,
-           sizeof style->back);
-    style->ambient = material->ambient;
-    style->diffuse = material->diffuse;
-    style->specular = material->specular;
-    style->shininess = material->shininess;
-    style->scale = 1;
-    if (colours_by_value(look)) {
-        style->mode = CS_SURFACE_VALUE;
-    } else if (look != CS_LOOK_LIT) {
-        style->mode = CS_SURFACE_FAINT;
-    } else if (texture->width) {
-        style->mode = CS_SURFACE_TEXTURED;
-        style->texture = cs_texture_make(texture);
-    }
-}
 
 static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                                  const struct cs_image *texture, struct cs_error *error) {
@@ -77,9 +50,10 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
         return error->status;
     cs_surface_init(&cloth->surface, cloth->mesh.split ? NULL : cloth->mesh.indices,
                     cloth->mesh.n_indices);
-    set_style(&cloth->style, material, texture, canvas->scene->render.look);
+    cs_style_cloth(&cloth->style, material, texture->width > 0, canvas->scene->render.look);
     if (cloth->style.mode != CS_SURFACE_TEXTURED)
         return CS_OK;
+    cloth->style.texture = cs_texture_make(texture);
     float *uv = cs_arena_take_n(&canvas->arena, cloth->mesh.n_vertices, 2 * sizeof *uv, error);
     if (!uv)
         return error->status;
@@ -96,20 +70,6 @@ static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_imag
     for (uint32_t b = 0; b < n && error->status == CS_OK; b++)
         init_cloth(canvas, b, textures ? textures + b : &none, error);
     return error->status;
-}
-
-static enum cs_status init_lines(struct cs_canvas *canvas, struct cs_error *error) {
-    const double cell = cs_extent_cell(canvas->system);
-    uint32_t capacity = cs_net_capacity(canvas->system);
-    canvas->net =
-        (struct cs_net){.system = canvas->system,
-                        .unit = fmax((double)canvas->scene->render.size[1] / 480, 0.5),
-                        .cell = cell * canvas->view.pixels_per_m,
-                        .lift = 0.12 * cell};
-    capacity = capacity > CS_BAR_LINES ? capacity : CS_BAR_LINES;
-    if (cs_lines_init(&canvas->lines, capacity, &canvas->arena, error) != CS_OK)
-        return error->status;
-    return cs_bar_init(&canvas->bar, &canvas->scene->render, error);
 }
 
 static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_settings *settings,
@@ -131,7 +91,9 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
         cs_shadow_init(&canvas->shadow, error) != CS_OK ||
         cs_obstacles_init(&canvas->obstacles, canvas->system, &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
-        init_lines(canvas, error) != CS_OK)
+        cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
+        cs_overlay_init(&canvas->overlay, canvas->system, canvas->view.pixels_per_m,
+                        &canvas->lines.lines, &canvas->arena, error) != CS_OK)
         return error->status;
     gl.DepthFunc(GL_LEQUAL);
     gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -174,7 +136,6 @@ static void draw_shadow(struct cs_canvas *canvas, const double *x) {
 }
 
 static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
-    const int32_t look = canvas->scene->render.look;
     cs_shadow_bind(&canvas->shadow);
     cs_target_begin(&canvas->target);
     cs_backdrop_draw_sky(&canvas->backdrop);
@@ -182,28 +143,12 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     if (canvas->scene->render.ground)
         cs_backdrop_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
-        // the springs of a network lie behind the surface
-        if (look == CS_LOOK_SPRINGS && cs_scene_bodies(canvas->scene)[b].network.present)
+        if (cs_overlay_hides(canvas->scene, b))
             continue;
         cs_surface_program_use(&canvas->program, &canvas->cloths[b].style);
         cs_surface_draw(&canvas->cloths[b].surface);
     }
-    cs_net_draw_threads(&canvas->net, &canvas->lines, frame->x);
-    if (look == CS_LOOK_WIREFRAME)
-        cs_net_draw_edges(&canvas->net, &canvas->lines, frame->x);
-    if (look == CS_LOOK_SPRINGS) {
-        cs_net_draw_springs(&canvas->net, &canvas->lines, frame->x);
-        cs_net_draw_pins(&canvas->net, &canvas->lines, frame->x, frame->inv_mass);
-    }
-    if (look == CS_LOOK_GOALS && frame->goals)
-        cs_net_draw_goals(&canvas->net, &canvas->lines, frame->x, frame->goals);
-    if (canvas->scene->render.prods)
-        cs_prods_draw(&canvas->net, &canvas->lines, frame);
-    if (colours_by_value(look)) {
-        gl.Disable(GL_DEPTH_TEST);
-        cs_bar_draw(&canvas->bar, &canvas->lines, frame->range);
-        gl.Enable(GL_DEPTH_TEST);
-    }
+    cs_overlay_draw(&canvas->overlay, frame);
 }
 
 static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,

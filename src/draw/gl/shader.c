@@ -1,7 +1,7 @@
 #include "draw/gl/shader.h"
 
 #include "draw/gl/gl.h"
-#include "draw/gl/view.h"
+#include "draw/view.h"
 
 #include <stdbool.h>
 #include <string.h>

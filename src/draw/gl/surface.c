@@ -1,8 +1,8 @@
 #include "draw/gl/surface.h"
 
 #include "draw/gl/gl.h"
-#include "draw/gl/mesh.h"
 #include "draw/gl/shader.h"
+#include "draw/mesh.h"
 
 static void attribute(GLuint index, GLint size, size_t stride, size_t offset) {
     gl.EnableVertexAttribArray(index);

@@ -2,13 +2,11 @@
 #ifndef CS_DRAW_SURFACE_H
 #define CS_DRAW_SURFACE_H
 
-#include "base/status.h"
+#include "draw/style.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-struct cs_vertex;
 
 /* Buffers of one mesh. */
 struct cs_surface {
@@ -25,24 +23,6 @@ void cs_surface_upload(struct cs_surface *surface, const struct cs_vertex *verti
 void cs_surface_set_uv(struct cs_surface *surface, const float *uv, uint32_t n);
 /* Draws with the program in use. */
 void cs_surface_draw(const struct cs_surface *surface);
-
-enum cs_surface_mode {
-    CS_SURFACE_PLAIN,
-    CS_SURFACE_TEXTURED,
-    CS_SURFACE_VALUE,
-    CS_SURFACE_FAINT
-};
-
-/* How a surface looks: the uniforms of the program. */
-struct cs_surface_style {
-    enum cs_surface_mode mode;
-    unsigned texture;
-    double front[3], back[3]; /* linear RGB */
-    double ambient, diffuse, specular, shininess;
-    double centre[3], scale; /* placement of the vertices */
-    double sink;             /* m by which the depth is moved away */
-    double fade;             /* m about the origin where it has melted; 0: none */
-};
 
 struct cs_surface_program {
     unsigned name;

@@ -1,23 +1,16 @@
-#include "draw/gl/bar.h"
+#include "draw/bar.h"
 
 #include "draw/colour.h"
-#include "draw/gl/gl.h"
-#include "draw/gl/glyph.h"
-#include "draw/gl/shader.h"
+#include "draw/glyph.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum cs_status cs_bar_init(struct cs_bar *bar, const struct cs_render *render,
-                           struct cs_error *error) {
+void cs_bar_init(struct cs_bar *bar, const struct cs_render *render) {
     bar->width = (double)render->size[0];
     bar->height = (double)render->size[1];
     bar->percent = render->look == CS_LOOK_STRAIN;
     cs_colour_ink(render->background, bar->ink);
-    gl.GenVertexArrays(1, &bar->object);
-    if (cs_shader_make(&cs_shader_bar, &bar->program, error) == CS_OK)
-        bar->box = gl.GetUniformLocation(bar->program, "box");
-    return error->status;
 }
 
 static void add_frame(struct cs_lines *lines, const double box[4]) {
@@ -46,11 +39,7 @@ void cs_bar_draw(const struct cs_bar *bar, struct cs_lines *lines, const double 
     struct cs_line_style style = {
         .colour = {bar->ink[0], bar->ink[1], bar->ink[2]}, .alpha = 0.85, .flat = true};
 
-    gl.UseProgram(bar->program);
-    gl.Uniform4f(bar->box, (float)box[0], (float)box[1], (float)box[2], (float)box[3]);
-    gl.BindVertexArray(bar->object);
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-
+    lines->ramp(lines, box);
     add_frame(lines, box);
     for (int i = 0; i <= steps; i++) {
         const double y = box[1] + box[3] * (1 - (double)i / steps);

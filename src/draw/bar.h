@@ -2,12 +2,10 @@
 #ifndef CS_DRAW_BAR_H
 #define CS_DRAW_BAR_H
 
-#include "draw/gl/line.h"
+#include "draw/line.h"
 #include "scene/scene.h"
 
 struct cs_bar {
-    unsigned program, object;
-    int box;
     float ink[3];
     double width, height; /* of the picture */
     bool percent;         /* values are shown times 100 as %, else in N */
@@ -15,8 +13,7 @@ struct cs_bar {
 
 enum { CS_BAR_LINES = 1024 }; /* lines that it draws at once at most */
 
-enum cs_status cs_bar_init(struct cs_bar *bar, const struct cs_render *render,
-                           struct cs_error *error);
+void cs_bar_init(struct cs_bar *bar, const struct cs_render *render);
 void cs_bar_draw(const struct cs_bar *bar, struct cs_lines *lines, const double range[2]);
 
 #endif

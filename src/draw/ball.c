@@ -1,4 +1,4 @@
-#include "draw/gl/ball.h"
+#include "draw/ball.h"
 
 #include "draw/matrix.h"
 

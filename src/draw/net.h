@@ -2,7 +2,7 @@
 #ifndef CS_DRAW_NET_H
 #define CS_DRAW_NET_H
 
-#include "draw/gl/line.h"
+#include "draw/line.h"
 #include "model/system/system.h"
 
 /* Sizes of lines on a picture. */

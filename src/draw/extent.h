@@ -2,7 +2,7 @@
 #ifndef CS_DRAW_EXTENT_H
 #define CS_DRAW_EXTENT_H
 
-#include "draw/gl/view.h"
+#include "draw/view.h"
 #include "model/system/system.h"
 
 /* A ball around the particles at x (3,n) and the visible spheres. */

@@ -1,8 +1,7 @@
-#include "draw/gl/prods.h"
+#include "draw/prods.h"
 
 #include "draw/colour.h"
-#include "draw/gl/gl.h"
-#include "draw/gl/mesh.h"
+#include "draw/mesh.h"
 #include "draw/matrix.h"
 #include "model/event/event_times.h"
 #include "model/event/prods.h"
@@ -56,9 +55,8 @@ static void draw(const struct cs_net *net, struct cs_lines *lines,
     cs_lines_draw(lines, &style);
     for (int k = 0; k < 4; k++)
         cs_lines_add(lines, corners[k], corners[(k + 1) % 4]);
-    gl.Disable(GL_DEPTH_TEST);
+    style.over = true;
     cs_lines_draw(lines, &style);
-    gl.Enable(GL_DEPTH_TEST);
 }
 
 void cs_prods_draw(const struct cs_net *net, struct cs_lines *lines,

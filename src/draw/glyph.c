@@ -1,4 +1,4 @@
-#include "draw/gl/glyph.h"
+#include "draw/glyph.h"
 
 #include <string.h>
 

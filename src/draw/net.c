@@ -1,7 +1,7 @@
-#include "draw/gl/net.h"
+#include "draw/net.h"
 
 #include "draw/colour.h"
-#include "draw/gl/mesh.h"
+#include "draw/mesh.h"
 #include "mesh/trimesh.h"
 
 #include <math.h>

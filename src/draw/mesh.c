@@ -1,4 +1,4 @@
-#include "draw/gl/mesh.h"
+#include "draw/mesh.h"
 
 #include "draw/matrix.h"
 #include "model/system/faces.h"

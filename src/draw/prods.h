@@ -3,7 +3,7 @@
 #ifndef CS_DRAW_PRODS_H
 #define CS_DRAW_PRODS_H
 
-#include "draw/gl/net.h"
+#include "draw/net.h"
 #include "draw/render.h"
 
 /* Of each prod that acted in the frame that ends now: dots on the particles that it saw last,

@@ -1,7 +1,6 @@
-#include "draw/gl/view.h"
+#include "draw/view.h"
 
 #include "draw/colour.h"
-#include "draw/gl/gl.h"
 #include "draw/matrix.h"
 
 static void copy3(const double from[3], double last, float to[4]) {
@@ -22,7 +21,7 @@ static void set_camera(struct cs_view_state *view, const struct cs_scene *scene,
     // bodies may fall or be blown away: four times as far as anything is now
     const double far = 4 * fmax(distance, cs_length(to_centre) + extent->radius);
     const double near = fmin(far / 1000, distance / 20);
-    const double slope = tan(camera->fov * (3.14159265358979323846 / 360));
+    const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
 
     double look[16], lens[16], both[16];
     cs_matrix_look(camera->eye, camera->target, camera->up, look);
@@ -61,11 +60,4 @@ void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
     set_light(&view->block, &scene->light);
     copy3(scene->render.background, 1, view->block.sky);
     cs_colour_stops(scene->render.look, view->block.stops);
-    gl.GenBuffers(1, &view->buffer);
-}
-
-void cs_view_upload(const struct cs_view_state *view) {
-    gl.BindBuffer(GL_UNIFORM_BUFFER, view->buffer);
-    gl.BufferData(GL_UNIFORM_BUFFER, sizeof view->block, &view->block, GL_DYNAMIC_DRAW);
-    gl.BindBufferBase(GL_UNIFORM_BUFFER, CS_VIEW_BINDING, view->buffer);
 }

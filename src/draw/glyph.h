@@ -2,7 +2,7 @@
 #ifndef CS_DRAW_GLYPH_H
 #define CS_DRAW_GLYPH_H
 
-#include "draw/gl/line.h"
+#include "draw/line.h"
 
 enum { CS_GLYPH_LINES = 16 }; /* no glyph has more strokes' lines */
 

@@ -4,6 +4,8 @@
 
 #include "scene/scene.h"
 
+#include <stdbool.h>
+
 enum { CS_VIEW_BINDING = 0, CS_VIEW_STOPS = 6 };
 
 /* The uniform block View of the shaders in std140 layout: mat4 and vec4 only. */
@@ -21,7 +23,7 @@ struct cs_view_block {
 
 struct cs_view_state {
     struct cs_view_block block;
-    unsigned buffer;
+    unsigned buffer;     /* of OpenGL, made by the first upload */
     double pixels_per_m; /* at the camera's target */
 };
 
@@ -35,6 +37,6 @@ void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent);
 
 /* Hands the block to the shaders. */
-void cs_view_upload(const struct cs_view_state *view);
+void cs_view_upload(struct cs_view_state *view);
 
 #endif

@@ -1,7 +1,7 @@
-#include "draw/gl/extent.h"
+#include "draw/extent.h"
 
-#include "draw/gl/mesh.h"
 #include "draw/matrix.h"
+#include "draw/mesh.h"
 #include "mesh/trimesh.h"
 
 static void grow(double low[3], double high[3], const double place[3], double reach) {

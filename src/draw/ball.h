@@ -2,7 +2,7 @@
 #ifndef CS_DRAW_BALL_H
 #define CS_DRAW_BALL_H
 
-#include "draw/gl/mesh.h"
+#include "draw/mesh.h"
 
 /* The icosahedron with each triangle cut in four, four times: 5120 triangles, three vertices
  * each, whose middles lie 0.06 % of the radius too low. The arena owns them. */

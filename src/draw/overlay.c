@@ -1,0 +1,46 @@
+#include "draw/overlay.h"
+
+#include "draw/extent.h"
+#include "draw/prods.h"
+#include "draw/style.h"
+
+#include <math.h>
+
+enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_system *system,
+                               double pixels_per_m, struct cs_lines *lines,
+                               struct cs_arena *arena, struct cs_error *error) {
+    const struct cs_render *render = &system->scene->render;
+    const double cell = cs_extent_cell(system);
+    const uint32_t most = cs_net_capacity(system);
+    overlay->lines = lines;
+    overlay->net = (struct cs_net){.system = system,
+                                   .unit = fmax((double)render->size[1] / 480, 0.5),
+                                   .cell = cell * pixels_per_m,
+                                   .lift = 0.12 * cell};
+    cs_bar_init(&overlay->bar, render);
+    return cs_lines_init(lines, most > CS_BAR_LINES ? most : CS_BAR_LINES, arena, error);
+}
+
+bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
+    return scene->render.look == CS_LOOK_SPRINGS &&
+           cs_scene_bodies(scene)[body].network.present;
+}
+
+void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
+    const struct cs_render *render = &overlay->net.system->scene->render;
+    const struct cs_net *net = &overlay->net;
+    struct cs_lines *lines = overlay->lines;
+    cs_net_draw_threads(net, lines, frame->x);
+    if (render->look == CS_LOOK_WIREFRAME)
+        cs_net_draw_edges(net, lines, frame->x);
+    if (render->look == CS_LOOK_SPRINGS) {
+        cs_net_draw_springs(net, lines, frame->x);
+        cs_net_draw_pins(net, lines, frame->x, frame->inv_mass);
+    }
+    if (render->look == CS_LOOK_GOALS && frame->goals)
+        cs_net_draw_goals(net, lines, frame->x, frame->goals);
+    if (render->prods)
+        cs_prods_draw(net, lines, frame);
+    if (cs_look_has_values(render->look))
+        cs_bar_draw(&overlay->bar, lines, frame->range);
+}

@@ -1,0 +1,40 @@
+/* style.h - how a surface looks, whatever draws it. */
+#ifndef CS_DRAW_STYLE_H
+#define CS_DRAW_STYLE_H
+
+#include "draw/mesh.h"
+#include "scene/scene.h"
+
+enum cs_surface_mode {
+    CS_SURFACE_PLAIN,
+    CS_SURFACE_TEXTURED,
+    CS_SURFACE_VALUE,
+    CS_SURFACE_FAINT
+};
+
+struct cs_surface_style {
+    enum cs_surface_mode mode;
+    unsigned texture;         /* the renderer's name of it */
+    double front[3], back[3]; /* linear RGB */
+    double ambient, diffuse, specular, shininess;
+    double centre[3], scale; /* placement of the vertices */
+    double sink;             /* m by which the depth is moved away */
+    double fade;             /* m about the origin where it has melted; 0: none */
+};
+
+/* Looks that colour by a value, and have a bar. */
+bool cs_look_has_values(int32_t look);
+
+/* The style of a body, but for its texture. */
+void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
+                    bool textured, int32_t look);
+
+/* The style of a collider under cloth as coarse as `cell` (m): spheres are placed and sunk. */
+void cs_style_solid(struct cs_surface_style *style, const struct cs_collider *collider,
+                    double cell);
+
+/* The two triangles of a visible plane or floor; false for anything else. */
+bool cs_solid_square(const struct cs_collider *collider, double cell,
+                     struct cs_vertex corners[6]);
+
+#endif
