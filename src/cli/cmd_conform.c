@@ -4,6 +4,7 @@
 #include "cli/print.h"
 #include "sim/registry.h"
 #include "study/conform/conform.h"
+#include "study/conform/conform_cache.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +30,8 @@ struct output {
     const struct cs_conform *card; /* that is being made */
     bool text, quiet, first;       /* first: no row is in the JSON yet */
     struct cs_text json;
-    uint32_t counts[CS_VERDICTS]; /* over all methods */
+    struct cs_conform_cache cache; /* shared by all cards */
+    uint32_t counts[CS_VERDICTS];  /* over all methods */
 };
 
 static bool is_bad(const struct cs_conform_row *row) {
@@ -107,6 +109,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .settings = settings,
         .implicit_euler = euler ? euler->integrator : NULL,
         .only = cs_args_get(output->args, CONFORM_ONLY),
+        .cache = &output->cache,
         .report = report,
         .ctx = output,
     };
@@ -218,6 +221,7 @@ static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
     if (!error->status)
         finish(&output, error);
     cs_text_finish(&output.json);
+    cs_conform_cache_finish(&output.cache);
     cs_registry_finish(&registry);
     return error->status;
 }

@@ -32,12 +32,16 @@ struct cs_conform_row {
     char note[320];       /* what the figure is, or why there is none */
 };
 
+struct cs_conform_cache;
+
 struct cs_conform {
     const struct cs_integrator *method;
     const char *settings; /* "key=value,..." before the checks' own, NULL: the defaults */
     /* the method that CS_FIDELITY_IMPLICIT_EULER is held against; NULL: there is none */
     const struct cs_integrator *implicit_euler;
     const char *only; /* one check by its name; NULL: all */
+    /* references that earlier cards have run, and where this one's go; NULL: none are kept */
+    struct cs_conform_cache *cache;
     /* called after each check */
     void (*report)(void *ctx, const struct cs_conform_row *row);
     void *ctx;

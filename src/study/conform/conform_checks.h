@@ -21,6 +21,15 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("oscillator-axial", oscillator_axial, SPRINGS,                                           \
       "axially damped pair against its closed form")                                           \
     X("oscillator-relative", oscillator_relative, SPRINGS, "the same with relative damping")   \
+    X("force-gravity", force_gravity, ANY, "motion under gravity alone")                       \
+    X("force-springs", force_springs, SPRINGS, "under stretch, shear and bend springs, each")  \
+    X("force-damping", force_damping, SPRINGS, "under axial and relative dampers, each")       \
+    X("force-drag", force_drag, ANY, "under drag of each particle, and by area")               \
+    X("force-wind", force_wind, ANY, "under wind on each particle, and by area")               \
+    X("force-push", force_push, ANY, "under impacts and prods")                                \
+    X("unequal-masses", unequal_masses, ANY, "under all forces, with unequal masses")          \
+    X("time-dependence", time_dependence, ANY, "forces that change with time are followed")    \
+    X("stage-times", stage_times, ANY, "at the method's own order")                            \
     X("order", order, SPRINGS, "order on the drum without damping")                            \
     X("order-damped", order_damped, SPRINGS, "order on the damped drum")                       \
     X("solution", solution, SPRINGS, "the limit is the solution of the equation of motion")    \

@@ -1,9 +1,11 @@
 #include "study/conform/conform_drum.h"
 
+#include "study/conform/conform_cache.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_reference.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* not from rest: the velocity of symplectic Euler would be right to h^2 by symmetry */
@@ -57,8 +59,8 @@ bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *me
     return done;
 }
 
-bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum, double *state,
-                       double scale[2], struct cs_conform_row *row) {
+static bool run_reference(const struct cs_conform *card, const struct cs_drum *drum,
+                          double *state, double scale[2], struct cs_conform_row *row) {
     struct cs_probe start;
     if (!cs_drum_state(card, &cs_conform_reference, drum, REFERENCE_STEP, state, row))
         return false;
@@ -70,4 +72,23 @@ bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum
         cs_row_fail(row, "%s", start.error.message);
     cs_probe_close(&start);
     return opened;
+}
+
+bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum, double *state,
+                       double scale[2], struct cs_conform_row *row) {
+    enum { STATE = 2 * CS_DRUM_VALUES };
+    double made[STATE + 2];
+    char name[64];
+    snprintf(name, sizeof name, "drum, damping %g%s", drum->damping,
+             drum->kicked ? ", kicked" : "");
+    const double *kept = cs_conform_cache_find(card->cache, name, STATE + 2);
+    if (!kept) {
+        if (!run_reference(card, drum, made, made + STATE, row))
+            return false;
+        cs_conform_cache_keep(card->cache, name, made, STATE + 2);
+        kept = made;
+    }
+    memcpy(state, kept, STATE * sizeof *state);
+    memcpy(scale, kept + STATE, 2 * sizeof *scale);
+    return true;
 }

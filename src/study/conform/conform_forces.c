@@ -1,0 +1,175 @@
+/* conform_forces.c - the motion under one force at a time, under unequal masses, and under
+ * forces that change with time, against the reference.
+ *
+ * With step h and the rate w of the scene, a method of order p may be off by (h w)^p of the
+ * motion times w T, the length of the run; twice that is left to it. A force that is missed, or
+ * taken twice, is off by all of the motion, at any step. */
+#include "study/conform/conform_cache.h"
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_probe.h"
+#include "study/conform/conform_reference.h"
+#include "study/conform/conform_scenes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define DURATION (CS_FORCE_FRAMES * CS_FORCE_FRAME)
+
+/* error of the reference: (h w)^4 w T / 120, near 1e-13 of the motion for w = 10/s */
+#define REFERENCE_STEP (CS_FORCE_FRAME / 1024)
+
+/* what rounding, inner solves and the reference may leave */
+#define FLOOR 1e-10
+
+/* h w at the coarse level */
+#define COARSE 0.1
+
+struct truth {
+    double state[2 * CS_FORCE_VALUES];
+    double scale[2]; /* root mean square of the move, and of the change of velocity */
+};
+enum { TRUTH = sizeof(struct truth) / sizeof(double) };
+
+static bool run_reference(const struct cs_conform *card, const struct cs_force_scene *scene,
+                          struct truth *truth, struct cs_conform_row *row) {
+    double start[2 * CS_FORCE_VALUES];
+    struct cs_probe probe;
+    if (cs_probe_open(&probe, card, &cs_conform_reference, "%s", scene->json))
+        memcpy(start, probe.x, 6 * probe.n * sizeof *start);
+    cs_probe_set_step(&probe, REFERENCE_STEP);
+    const bool done = cs_probe_run(&probe, CS_FORCE_FRAMES);
+    if (!done)
+        cs_row_fail(row, "%s: %s", scene->what, probe.error.message);
+    for (size_t k = 0; k < 2 && done; k++) {
+        const size_t part = k * 3 * probe.n;
+        memcpy(truth->state + part, probe.x + part, 3 * probe.n * sizeof *start);
+        truth->scale[k] = cs_probe_rms(probe.x + part, start + part, 3 * probe.n);
+    }
+    cs_probe_close(&probe);
+    return done;
+}
+
+static bool find_truth(const struct cs_conform *card, const struct cs_force_scene *scene,
+                       struct truth *truth, struct cs_conform_row *row) {
+    const double *kept = cs_conform_cache_find(card->cache, scene->what, TRUTH);
+    if (kept) {
+        memcpy(truth, kept, sizeof *truth);
+        return true;
+    }
+    *truth = (struct truth){.scale = {0}};
+    if (!run_reference(card, scene, truth, row))
+        return false;
+    cs_conform_cache_keep(card->cache, scene->what, (const double *)truth, TRUTH);
+    return true;
+}
+
+/* How far the order's share is that a level of accuracy may be off. */
+struct accuracy {
+    uint32_t order;
+    int level;
+    bool fixed; /* steps of dt, also of a method that can choose its own */
+};
+
+static double set_accuracy(struct cs_probe *probe, const struct cs_force_scene *scene,
+                           const struct accuracy *accuracy) {
+    const double h = COARSE / scene->rate;
+    if (!accuracy->fixed)
+        return cs_probe_set_level(probe, h, scene->rate, accuracy->order, accuracy->level);
+    const double dt = accuracy->level ? h / 8 : h;
+    cs_probe_set_step(probe, dt);
+    return pow(dt * scene->rate, accuracy->order);
+}
+
+static void follow(const struct cs_conform *card, struct cs_conform_row *row,
+                   const struct cs_force_scene *scene, const struct accuracy *accuracy) {
+    static const char *const parts[2] = {"position", "velocity"};
+    struct truth truth;
+    struct cs_probe probe;
+    if (!find_truth(card, scene, &truth, row))
+        return;
+    cs_probe_open(&probe, card, card->method, "%s", scene->json);
+    const double share = set_accuracy(&probe, scene, accuracy);
+    if (!cs_probe_run(&probe, CS_FORCE_FRAMES))
+        cs_row_fail(row, "%s: %s", scene->what, probe.error.message);
+    for (size_t k = 0; k < 2 && !probe.ended; k++) {
+        const size_t part = k * 3 * probe.n;
+        const double off =
+            cs_probe_rms(probe.x + part, truth.state + part, 3 * probe.n) / truth.scale[k];
+        cs_row_state(row, off, fmax(2 * share * fmax(scene->rate * DURATION, 1), FLOOR),
+                     "of the motion off the reference in %s, %s: %s", parts[k],
+                     accuracy->level ? "fine" : "coarse", scene->what);
+    }
+    cs_probe_close(&probe);
+}
+
+static bool is_for(const struct cs_conform *card, const struct cs_force_scene *scene,
+                   const char *check) {
+    return !strcmp(scene->check, check) &&
+           !(scene->deforms && card->method->fidelity == CS_FIDELITY_OTHER);
+}
+
+/* All scenes of a check, at the method's order. */
+static void check_scenes(const struct cs_conform *card, struct cs_conform_row *row) {
+    bool any = false;
+    if (!cs_probe_can_be_set(card, row))
+        return;
+    for (uint32_t k = 0; k < cs_n_force_scenes; k++) {
+        const struct cs_force_scene *scene = cs_force_scenes + k;
+        if (!is_for(card, scene, row->check))
+            continue;
+        any = true;
+        for (int level = 0; level < 2; level++)
+            follow(card, row, scene,
+                   &(struct accuracy){.order = cs_probe_order(card, scene->by_velocity),
+                                      .level = level});
+    }
+    if (!any)
+        cs_row_skip(row, "another model: it does not follow the motion of springs");
+}
+
+#define X(function)                                                                            \
+    void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row) {      \
+        check_scenes(card, row);                                                               \
+    }
+X(force_gravity)
+X(force_springs)
+X(force_damping)
+X(force_drag)
+X(force_wind)
+X(force_push)
+X(unequal_masses)
+#undef X
+
+/* Whether forces are followed in time at all, whatever the order: see stage-times. */
+void cs_check_time_dependence(const struct cs_conform *card, struct cs_conform_row *row) {
+    if (!cs_probe_can_be_set(card, row))
+        return;
+    for (uint32_t k = 0; k < cs_n_force_scenes; k++)
+        if (is_for(card, cs_force_scenes + k, row->check))
+            follow(card, row, cs_force_scenes + k, &(struct accuracy){.order = 1, .level = 1});
+}
+
+/* A stage that asks for its forces at another time than its own costs all orders but one. */
+void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *row) {
+    if (!cs_method_has(card->method, "dt")) {
+        cs_row_skip(row, card->method->traits & CS_ADAPTIVE
+                             ? "its step is its own: see time-dependence"
+                             : "it has no option dt");
+        return;
+    }
+    if (cs_probe_order(card, false) < 2) {
+        cs_row_skip(row, "its order is 1: see time-dependence");
+        return;
+    }
+    for (uint32_t k = 0; k < cs_n_force_scenes; k++) {
+        const struct cs_force_scene *scene = cs_force_scenes + k;
+        if (!is_for(card, scene, "time-dependence"))
+            continue;
+        for (int level = 0; level < 2; level++)
+            follow(card, row, scene,
+                   &(struct accuracy){.order = cs_probe_order(card, scene->by_velocity),
+                                      .level = level,
+                                      .fixed = true});
+    }
+}

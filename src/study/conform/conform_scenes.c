@@ -1,0 +1,114 @@
+/* conform_scenes.c - small scenes as text, a table of them below: a new force adds its own. */
+#include "study/conform/conform_scenes.h"
+
+#define FREE_OF_SPRINGS "\"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\": 0}"
+#define FIVE_FRAMES     "\"time\": {\"fps\": 10}"
+#define NO_GRAVITY      "\"gravity\": [0, 0, 0]"
+
+/* Two sheets of four particles without springs, the second one turned and further back. All
+ * particles of a sheet have the same mass, share of the area and normal, so that it moves as a
+ * rigid body under any outer force, in any model. */
+#define SHEETS_OF(first, second)                                                               \
+    "\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [1, 2, -1]},"                   \
+    " \"mass\": {\"particle\": " first "}, " FREE_OF_SPRINGS "},"                              \
+    " {\"cloth\": {\"grid\": [2, 2], \"velocity\": [-1, 0.5, 2], \"place\": {\"translate\":"   \
+    " [2, 0, 0], \"rotate\": [0.2, 0.3, 0.1, 0.9]}}, \"mass\": {\"particle\": " second         \
+    "}, " FREE_OF_SPRINGS "}]"
+#define SHEETS(forces)                                                                         \
+    "{" SHEETS_OF("0.1", "0.1") ", \"forces\": {" forces "}, " FIVE_FRAMES "}"
+#define SHEETS_WITH(forces, event)                                                             \
+    "{" SHEETS_OF("0.1", "0.1") ", \"forces\": {" forces "}, \"events\": [{" event             \
+                                "}], " FIVE_FRAMES "}"
+
+/* one sheet, stretched and turning, so that springs pull and normals change */
+#define CLOTH                                                                                  \
+    "\"cloth\": {\"grid\": [3, 3], \"stretch\": [1.1, 0.95], \"bump\": 0.1,"                   \
+    " \"spin\": [0.5, 1, 0.3]}, \"mass\": {\"particle\": 0.1}"
+#define SPRINGS(values)                                                                        \
+    "{\"bodies\": [{" CLOTH ", \"springs\": {" values "}}], \"forces\": {" NO_GRAVITY          \
+    "}, " FIVE_FRAMES "}"
+
+/* springs so soft that dampers do all; the pinned edge makes the velocities differ */
+#define DAMPERS(model)                                                                         \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"velocity\": [0.4, -0.5, 0.6]},"            \
+    " \"mass\": {\"particle\": 0.1}, \"pins\": [\"top\"], \"springs\": {\"stretch\": 0.001,"   \
+    " \"shear\": 0, \"bend\": 0, \"damping\": 0.1, \"damping_model\": \"" model "\"}}],"       \
+    " \"forces\": {" NO_GRAVITY "}, " FIVE_FRAMES "}"
+
+#define WIND(strength, unit)                                                                   \
+    "\"wind\": {\"direction\": [1, 2, 3], \"strength\": " strength                             \
+    ", \"strength_unit\": \"" unit "\"}"
+#define PROD(times, more)                                                                      \
+    times ", \"prod\": {\"viewpoint\": {\"eye\": [1, 0, 6], \"target\": [1, 0, 0], \"fov\":"   \
+          " 60, \"aspect\": 1.5}, \"force\": 0.8, " more "}"
+
+// ends of ramps lie between frames
+#define RAMP(key, value)                                                                       \
+    "\"from\": 0.05, \"to\": 0.45, \"ramp\": {\"key\": \"" key "\", \"value\": " value "}"
+
+// clang-format off
+const struct cs_force_scene cs_force_scenes[] = {
+    {"force-gravity", "gravity", SHEETS("\"gravity\": [1, -9, 4]"), 2, false, false},
+
+    {"force-springs", "stretch springs",
+     SPRINGS("\"stretch\": 1, \"shear\": 0, \"bend\": 0"), 9, false, true},
+    {"force-springs", "shear springs",
+     SPRINGS("\"stretch\": 0, \"shear\": 1, \"bend\": 0"), 9, false, true},
+    {"force-springs", "bend springs",
+     SPRINGS("\"stretch\": 0, \"shear\": 0, \"bend\": 1"), 9, false, true},
+
+    {"force-damping", "axial dampers", DAMPERS("axial"), 8, true, true},
+    {"force-damping", "relative dampers", DAMPERS("relative"), 8, true, true},
+
+    {"force-drag", "drag of each particle", SHEETS(NO_GRAVITY ", \"drag\": 0.4"),
+     4, true, false},
+    {"force-drag", "drag by area",
+     SHEETS(NO_GRAVITY ", \"drag\": 1.6, \"drag_unit\": \"Pa s/m\""), 4, true, false},
+
+    {"force-wind", "wind on each particle", SHEETS(NO_GRAVITY ", " WIND("0.5", "N")),
+     2, false, false},
+    {"force-wind", "wind by area", SHEETS(NO_GRAVITY ", " WIND("2", "Pa")), 2, false, false},
+    {"force-wind", "wind on a turning sheet",
+     "{\"bodies\": [{" CLOTH ", " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY ", "
+     WIND("2", "Pa") "}, " FIVE_FRAMES "}", 4, false, true},
+
+    {"force-push", "a steady impact",
+     SHEETS_WITH(NO_GRAVITY, "\"from\": 0, \"to\": 0.35, \"impact\": {\"body\": 1,"
+                 " \"direction\": [1, -2, 1], \"impulse\": 1}"), 4, false, false},
+    {"force-push", "an impact at once",
+     SHEETS_WITH(NO_GRAVITY, "\"at\": 0.25, \"impact\": {\"body\": 0,"
+                 " \"direction\": [1, -2, 1], \"impulse\": 1}"), 4, false, false},
+    {"force-push", "a steady prod",
+     SHEETS_WITH(NO_GRAVITY, PROD("\"from\": 0, \"to\": 0.35", "\"refresh\": 0")),
+     4, false, false},
+    {"force-push", "a prod at once",
+     SHEETS_WITH(NO_GRAVITY, PROD("\"at\": 0.25", "\"duration\": 0.2")), 4, false, false},
+
+    {"unequal-masses", "two sheets in gravity, wind and drag",
+     "{" SHEETS_OF("0.1", "0.3") ", \"forces\": {\"gravity\": [1, -3, 2], \"drag\": 0.4, "
+     WIND("0.5", "N") "}, " FIVE_FRAMES "}", 4, true, false},
+    {"unequal-masses", "a sheet with springs and dampers",
+     "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"stretch\": [1.1, 0.95], \"bump\": 0.1,"
+     " \"spin\": [0.5, 1, 0.3]}, \"mass\": {\"degree\": 0.02}, \"springs\": {\"stretch\": 1,"
+     " \"shear\": 0.5, \"bend\": 0.3, \"damping\": 0.02}}], \"forces\": {" NO_GRAVITY "}, "
+     FIVE_FRAMES "}", 9, true, true},
+
+    {"time-dependence", "a ramp of gravity",
+     SHEETS_WITH("\"gravity\": [0, -2, 0]", RAMP("forces.gravity[1]", "-9")),
+     4, false, false},
+    {"time-dependence", "a ramp of drag",
+     SHEETS_WITH(NO_GRAVITY ", \"drag\": 0.1", RAMP("forces.drag", "0.5")), 5, true, false},
+    {"time-dependence", "a ramp of the wind's strength",
+     SHEETS_WITH(NO_GRAVITY ", " WIND("0.1", "N"), RAMP("forces.wind.strength", "1")),
+     4, false, false},
+    {"time-dependence", "a gust",
+     SHEETS_WITH(NO_GRAVITY ", " WIND("0.3", "N"), "\"from\": 0.05, \"to\": 0.45, \"wind\":"
+                 " {\"direction\": [3, -1, 1], \"strength\": 1}"), 4, false, false},
+    {"time-dependence", "a ramp of stretch springs",
+     "{\"bodies\": [{" CLOTH ", \"springs\": {\"stretch\": 0.2, \"shear\": 0, \"bend\": 0}}],"
+     " \"forces\": {" NO_GRAVITY "}, \"events\": [{" RAMP("bodies[0].springs.stretch", "1")
+     "}], " FIVE_FRAMES "}", 9, false, true},
+};
+// clang-format on
+
+const uint32_t cs_n_force_scenes = sizeof cs_force_scenes / sizeof *cs_force_scenes;
