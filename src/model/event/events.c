@@ -193,7 +193,8 @@ bool cs_events_apply(struct cs_system *system, double t) {
 
 void cs_events_move_values(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
-    const double now = fmin(fmax(t, events->begin), events->end);
+    // stages may lie behind the end of their step, and forces are smooth there too
+    const double now = fmax(t, events->begin);
     if (!events->ramps || now == events->now)
         return;
     events->now = now;

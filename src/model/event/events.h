@@ -62,7 +62,9 @@ bool cs_events_apply(struct cs_system *system, double t);
 /* Times up to t, besides those of frames, at which a method may have to stop, or more. */
 uint32_t cs_events_cuts(const struct cs_events *events, double t);
 
-/* Sets ramped values to those at t, or at the end of the segment that is nearer. */
+/* Sets ramped values to those at t, or at the begin of the segment if t lies before it. Behind
+ * its end they go on at the same rate: a stage of a method may lie there, and a bend within its
+ * step would cost the method its order. */
 void cs_events_move_values(struct cs_system *system, double t);
 
 /* Largest velocity in m/s of a path in the segment. */
