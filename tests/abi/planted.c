@@ -36,7 +36,13 @@ enum plant {
     STALE_CLAIM,
     UNKNOWN_CHECK,
     FORGETS_COMMIT,
-    IGNORES_FAILURE
+    IGNORES_FAILURE,
+    IGNORES_WIND,
+    IGNORES_DRAG,
+    DOUBLES_DRAG,
+    SINGLE_MASS,
+    WRONG_STAGE_TIME, /* Heun's method, whose second stage asks for the forces of the first's */
+    TIME_STANDS_STILL
 };
 
 struct options {
@@ -45,8 +51,9 @@ struct options {
 
 struct planted {
     const struct cs_host *host;
-    double dt, *f; /* (3,n) in N */
-    double *b, *u; /* (3,n) of IGNORES_FAILURE */
+    double dt, *f;   /* (3,n) in N */
+    double *b, *u;   /* (3,n) of IGNORES_FAILURE, faulty_force and heun */
+    double *xs, *vs; /* (3,n) of heun: the second stage */
 };
 
 static const struct cs_option rows[] = {
@@ -84,10 +91,12 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     struct planted *self = host->alloc(host->ctx, sizeof *self);
     const size_t length = 3 * (size_t)host->view->n;
-    if (!self || !(self->f = host->alloc(host->ctx, 3 * length * sizeof *self->f)))
+    if (!self || !(self->f = host->alloc(host->ctx, 5 * length * sizeof *self->f)))
         return CS_STEP_FAIL;
     self->b = self->f + length;
     self->u = self->b + length;
+    self->xs = self->u + length;
+    self->vs = self->xs + length;
     *out = self;
     self->host = host;
     self->dt = ((const struct options *)options)->dt;
@@ -114,14 +123,53 @@ static void solve(struct planted *self, double t, const double *x, const double 
         self->f[k] = self->u[k] * host->view->mass[k % n];
 }
 
-static void step(struct planted *self, double t, double h, double *x, double *v) {
+/* The forces, with what is wrong in them. */
+static void faulty_force(struct planted *self, double t, const double *x, const double *v) {
+    const struct cs_host *host = self->host;
+    const uint32_t parts = PLANT == IGNORES_WIND ? CS_PART_WIND : CS_PART_DRAG;
+    host->force(host->ctx, PLANT == TIME_STANDS_STILL ? 0 : t, x, v, CS_PART_ALL, self->f);
+    if (PLANT != IGNORES_WIND && PLANT != IGNORES_DRAG && PLANT != DOUBLES_DRAG)
+        return;
+    host->force(host->ctx, t, x, v, parts, self->b);
+    for (uint32_t k = 0; k < 3 * host->view->n; k++)
+        self->f[k] += PLANT == DOUBLES_DRAG ? self->b[k] : -self->b[k];
+}
+
+static double inverse_mass(const struct planted *self, uint32_t i) {
+    const struct cs_view *view = self->host->view;
+    return PLANT == SINGLE_MASS && view->inv_mass[i] > 0 ? 1 / view->mass[0]
+                                                         : view->inv_mass[i];
+}
+
+/* v' = v + h/2 (a + a_s), a_s the acceleration at the second stage: at its place, but at the
+ * time of the first one */
+static void heun(struct planted *self, double t, double h, double *x, double *v) {
     const struct cs_host *host = self->host;
     const uint32_t n = host->view->n;
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+    for (uint32_t k = 0; k < 3 * n; k++) {
+        self->xs[k] = x[k] + h * v[k];
+        self->vs[k] = v[k] + h * self->f[k] * host->view->inv_mass[k % n];
+    }
+    host->force(host->ctx, t, self->xs, self->vs, CS_PART_ALL, self->b);
+    for (uint32_t k = 0; k < 3 * n; k++) {
+        x[k] += h / 2 * (v[k] + self->vs[k]);
+        v[k] += h / 2 * (self->f[k] + self->b[k]) * host->view->inv_mass[k % n];
+    }
+}
+
+static void step(struct planted *self, double t, double h, double *x, double *v) {
+    const struct cs_host *host = self->host;
+    const uint32_t n = host->view->n;
+    if (PLANT == WRONG_STAGE_TIME) {
+        heun(self, t, h, x, v);
+        return;
+    }
+    faulty_force(self, t, x, v);
     if (PLANT == IGNORES_FAILURE)
         solve(self, t, x, v);
     for (uint32_t k = 0; k < 3 * n; k++) {
-        v[k] += h * self->f[k] * host->view->inv_mass[k % n];
+        v[k] += h * self->f[k] * inverse_mass(self, k % n);
         if (PLANT == LEAKS_MOMENTUM)
             v[k] *= 1 - 1e-4 * h;
         x[k] += h * v[k];
@@ -173,10 +221,10 @@ static const struct cs_integrator planted = {
     .name = PLANT == BAD_NAME ? "Planted!" : "planted",
     .summary = "symplectic Euler with one thing wrong",
     .source = "tests",
-    .order = PLANT == WRONG_ORDER ? 2 : 1,
-    .order_damped = 1,
+    .order = PLANT == WRONG_ORDER || PLANT == WRONG_STAGE_TIME ? 2 : 1,
+    .order_damped = PLANT == WRONG_STAGE_TIME ? 2 : 1,
     .needs = PLANT == IGNORES_FAILURE ? CS_NEED_SOLVE : 0,
-    .traits = CS_SYMPLECTIC,
+    .traits = PLANT == WRONG_STAGE_TIME ? 0 : CS_SYMPLECTIC,
     .fidelity = CS_FIDELITY_ODE,
     .fails = PLANT == STALE_CLAIM || PLANT == UNKNOWN_CHECK ? fails : NULL,
     .options = rows,
