@@ -36,12 +36,16 @@ struct bed {
 
 static void force(void *object) {
     struct bed *bed = object;
-    cs_terms_force(&bed->session.system, 0, bed->x, bed->v, INTERNAL, bed->out);
+    cs_terms_force(&bed->session.system,
+                   &(struct cs_eval){.x = bed->x, .v = bed->v, .parts = INTERNAL}, bed->out);
 }
 
 static void jvp(void *object) {
     struct bed *bed = object;
-    cs_terms_jvp(&bed->session.system, 0, bed->x, bed->v, INTERNAL, bed->dx, bed->dv, bed->out);
+    cs_terms_jvp(&bed->session.system,
+                 &(struct cs_eval){
+                     .x = bed->x, .v = bed->v, .parts = INTERNAL, .dx = bed->dx, .dv = bed->dv},
+                 bed->out);
 }
 
 static void energy(void *object) {
@@ -53,14 +57,19 @@ static void energy(void *object) {
 static void factor(void *object) {
     struct bed *bed = object;
     const struct cs_linear *linear = &bed->linear;
-    cs_springs_factor(&bed->session.system.springs, bed->session.system.view.n, bed->x,
-                      linear->cd, linear->ck, true, linear->factors);
+    cs_springs_factor(
+        &bed->session.system.springs, bed->session.system.view.n,
+        &(struct cs_matrix){
+            .x = bed->x, .cd = linear->matrix.cd, .ck = linear->matrix.ck, .psd = true},
+        linear->factors);
 }
 
 static void setup(void *object) {
     struct bed *bed = object;
     const double h = 1 / 60.0;
-    cs_linear_setup(&bed->linear, bed->x, 1, -h, -h * h, true);
+    cs_linear_setup(
+        &bed->linear,
+        &(struct cs_matrix){.x = bed->x, .cm = 1, .cd = -h, .ck = -h * h, .psd = true});
 }
 
 static void matvec(void *object) {
@@ -70,7 +79,9 @@ static void matvec(void *object) {
 
 static void diagonal(void *object) {
     struct bed *bed = object;
-    cs_terms_diagonal(&bed->session.system, bed->x, bed->kxx, bed->dvv);
+    cs_terms_diagonal(&bed->session.system,
+                      &(struct cs_eval){.x = bed->x, .parts = CS_PART_LINEARISED}, bed->kxx,
+                      bed->dvv);
 }
 
 static void normals(void *object) {

@@ -83,10 +83,12 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
 }
 
 static void add_measures(const struct cs_run *run, struct cs_text *out) {
-    const struct cs_energy energy = cs_measure_energy(run->system, run->x, run->v);
+    const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
     add_real(out, "  \"energy\": {\"kinetic\": ", energy.kinetic);
     add_real(out, ", \"elastic\": ", energy.elastic);
     add_real(out, ", \"gravity\": ", energy.gravity);
+    if (energy.other != 0)
+        add_real(out, ", \"other\": ", energy.other);
     add_real(out, "},\n  \"largest_strain\": ", cs_measure_strain(run->system, run->x));
     cs_text_add(out, ",\n  \"memory\": {\"bytes\": %zu, \"method\": %zu", cs_run_bytes(run),
                 run->method_bytes);

@@ -79,9 +79,11 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
 
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
-    const struct cs_energy energy = cs_measure_energy(run->system, run->x, run->v);
+    const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
     add_row(out, "energy", "%.6g J kinetic, %.6g J elastic, %.6g J gravity", energy.kinetic,
             energy.elastic, energy.gravity);
+    if (energy.other != 0)
+        add_row(out, "other energy", "%.6g J", energy.other);
     add_row(out, "largest strain", "%.4g %%", 100 * cs_measure_strain(run->system, run->x));
     add_row(out, "memory", "%zu bytes in arrays, %.1f a particle", cs_run_bytes(run),
             (double)cs_run_bytes(run) / run->system->view.n);

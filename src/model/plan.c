@@ -4,6 +4,7 @@
 #include "mesh/trimesh.h"
 #include "model/event/events.h"
 #include "model/event/prods.h"
+#include "model/force/terms.h"
 #include "model/shares.h"
 #include "model/solver/multigrid.h"
 #include "model/spring/springs.h"
@@ -64,14 +65,29 @@ static bool is_mesh(const struct cs_body *body) {
 static bool has_damping(const struct cs_body *body) {
     return body->springs.damping > 0;
 }
-static bool has_gust(const struct cs_scene *scene) {
-    for (uint32_t e = 0; e < scene->events.n; e++)
-        if (cs_scene_events(scene)[e].wind.present)
+static bool has_limit(const struct cs_body *body) {
+    return !isnan(body->strain_limit);
+}
+
+static bool has_blocks(const struct cs_plan *plan) {
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (plan->forces[k].built && cs_terms[k]->add_blocks)
             return true;
     return false;
 }
-static bool has_limit(const struct cs_body *body) {
-    return !isnan(body->strain_limit);
+
+/* each force by its term; the array of normals is counted with the first that uses it */
+static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
+    bool normals = false;
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const struct cs_term *term = cs_terms[k];
+        struct cs_plan_row *row = plan->forces + k;
+        *row = term->plan(scene);
+        if (!row->built || !term->uses || normals)
+            continue;
+        normals = term->uses(scene) & CS_USE_NORMALS;
+        row->bytes += normals ? 3 * plan->n * sizeof(double) : 0;
+    }
 }
 
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
@@ -81,12 +97,6 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     count_bodies(plan, scene, &n_runs);
     const size_t n = plan->n, s = plan->n_springs, real = sizeof(double);
     const struct cs_forces *forces = &scene->forces;
-    const double *g = forces->gravity;
-    const bool wind = (forces->wind.present && forces->wind.strength > 0) || has_gust(scene) ||
-                      cs_event_key_changes(scene, "forces.wind.strength"),
-               drag = forces->drag > 0 || cs_event_key_changes(scene, "forces.drag");
-    const bool area = (wind && forces->wind.strength_unit == CS_WIND_PA) ||
-                      (drag && forces->drag_unit == CS_DRAG_AREA);
     plan->state_bytes = (6 + 3 + 2) * n * real + scene->bodies.n * sizeof(struct cs_body_range);
 
     const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
@@ -101,14 +111,9 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_DAMPING,
            s > 0 && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),
            0, "springs.damping is above 0", "springs.damping is 0");
-    decide(plan, CS_FEATURE_GRAVITY,
-           g[0] != 0 || g[1] != 0 || g[2] != 0 || cs_event_key_changes(scene, "forces.gravity"),
-           0, "forces.gravity", "forces.gravity is 0");
-    decide(plan, CS_FEATURE_DRAG, drag, 0, "forces.drag is above 0", "forces.drag is 0");
-    decide(plan, CS_FEATURE_WIND, wind, 3 * n * real, "forces.wind blows; it needs normals",
-           forces->wind.present ? "forces.wind.strength is 0" : "no forces.wind");
-    decide(plan, CS_FEATURE_AREA, area, n * real, "drag or wind are by area",
-           "nothing is by area");
+    plan_forces(plan, scene);
+    decide(plan, CS_FEATURE_AREA, cs_terms_use(scene, plan) & CS_USE_AREA, n * real,
+           "a force is by area", "nothing is by area");
     decide(plan, CS_FEATURE_VELOCITY_LOSS,
            forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"), 0,
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
@@ -132,8 +137,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "bodies have shape_matching, and the integrator asks for it",
            needs & CS_NEED_CLUSTERS ? "no body has shape_matching"
                                     : "the integrator does not ask for it");
-    const size_t levels = cs_multigrid_bytes(scene);
-    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE, (4 * s + 22 * n) * real + levels,
+    const bool forced = has_blocks(plan);
+    const size_t levels = cs_multigrid_bytes(scene, forced);
+    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
+           (4 * s + 22 * n + (forced ? 9 * n : 0)) * real + levels,
            levels ? "the integrator asks for it; multigrid for stiff steps"
                   : "the integrator asks for it",
            "the integrator does not ask for it");
@@ -160,6 +167,11 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uin
     return CS_OK;
 }
 
+static void print_row(const char *name, const struct cs_plan_row *row, struct cs_text *out) {
+    cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", name, row->built ? "built" : "left out",
+                row->bytes, row->why);
+}
+
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
     cs_text_add(
         out,
@@ -170,8 +182,9 @@ void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
     if (plan->n_inner)
         cs_text_add(out, "inside         %u springs\n", plan->n_inner);
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
-        const struct cs_plan_row *row = plan->rows + f;
-        cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", feature_names[f],
-                    row->built ? "built" : "left out", row->bytes, row->why);
+        for (uint32_t k = 0; f == CS_FEATURE_AREA && k < cs_n_terms; k++)
+            if (plan->forces[k].why)
+                print_row(cs_terms[k]->name, plan->forces + k, out);
+        print_row(feature_names[f], plan->rows + f, out);
     }
 }

@@ -130,8 +130,8 @@ static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_er
 }
 
 static void choose_terms(struct cs_system *system) {
-    for (uint32_t k = 0; k < CS_TERMS; k++)
-        if (is_built(&system->plan, cs_terms[k]->feature))
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (system->plan.forces[k].built)
             system->terms[system->n_terms++] = cs_terms[k];
 }
 
@@ -146,7 +146,7 @@ static void take_arrays(struct cs_system *system, struct cs_error *error) {
     system->start = take(system, 3 * n, error);
     if (is_built(&system->plan, CS_FEATURE_AREA))
         system->area = take(system, n, error);
-    if (is_built(&system->plan, CS_FEATURE_WIND))
+    if (cs_terms_use(system->scene, &system->plan) & CS_USE_NORMALS)
         system->normals = take(system, 3 * n, error);
     if (error->status)
         return;

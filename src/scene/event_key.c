@@ -6,15 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* paths without their indices */
-static const char *const changeable[] = {"forces.gravity",         "forces.drag",
-                                         "forces.velocity_loss",   "forces.wind.strength",
-                                         "bodies.springs.stretch", "bodies.springs.shear",
-                                         "bodies.springs.bend",    "bodies.springs.damping",
-                                         "bodies.strain_limit",    "bodies.mass.particle",
-                                         "bodies.mass.total",      "bodies.mass.areal_density",
-                                         "bodies.mass.degree",     "colliders.friction",
-                                         "colliders.absorption",   NULL};
+/* paths without their indices; every number of `forces` may change too, unless it is below */
+static const char *const changeable[] = {
+    "bodies.springs.stretch", "bodies.springs.shear", "bodies.springs.bend",
+    "bodies.springs.damping", "bodies.strain_limit",  "bodies.mass.particle",
+    "bodies.mass.total",      "bodies.mass.degree",   "bodies.mass.areal_density",
+    "colliders.friction",     "colliders.absorption", NULL};
 
 /* why the others are not; the first that fits counts */
 static const struct {
@@ -122,7 +119,7 @@ static const struct cs_option *descend(struct walk *walk) {
     }
 }
 
-static enum cs_status check_changeable(const struct walk *walk) {
+static enum cs_status check_changeable(const struct walk *walk, const struct cs_option *row) {
     for (uint32_t k = 0; changeable[k]; k++)
         if (!strcmp(walk->plain, changeable[k]))
             return CS_OK;
@@ -130,6 +127,8 @@ static enum cs_status check_changeable(const struct walk *walk) {
         if (!strncmp(walk->plain, fixed[k].start, strlen(fixed[k].start)))
             return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path,
                            fixed[k].why);
+    if (!strncmp(walk->plain, "forces.", 7) && (row->type == CS_REAL || row->type == CS_VECTOR))
+        return CS_OK;
     return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: it is no plain number",
                    walk->path);
 }
@@ -174,7 +173,7 @@ enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,
                         .object = (char *)scene,
                         .error = error};
     const struct cs_option *row = descend(&walk);
-    if (!row || check_changeable(&walk) || check_there(&walk, scene))
+    if (!row || check_changeable(&walk, row) || check_there(&walk, scene))
         return error->status;
     *key = (struct cs_event_key){row, (double *)(void *)walk.object};
     return CS_OK;
@@ -187,6 +186,10 @@ bool cs_event_key_changes(const struct cs_scene *scene, const char *key) {
             strstr(events[e].ramp.key, key))
             return true;
     return false;
+}
+
+bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key) {
+    return value != 0 || cs_event_key_changes(scene, key);
 }
 
 bool cs_event_weighs(const struct cs_event *event) {

@@ -19,6 +19,10 @@ enum cs_status cs_event_key_find(struct cs_scene *scene, const char *path,
  * negative) to a key that ends with (or, with an index behind it, is) `key` */
 bool cs_event_key_changes(const struct cs_scene *scene, const char *key);
 
+/* Whether a number of the scene is ever other than 0: now, or by an event that changes `key`.
+ */
+bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key);
+
 /* Whether an event of a checked scene changes masses. */
 bool cs_event_weighs(const struct cs_event *event);
 

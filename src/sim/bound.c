@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "model/event/events.h"
 #include "model/force/measure.h"
+#include "model/force/terms.h"
 #include "model/system/clusters.h"
 
 #include <math.h>
@@ -15,27 +16,22 @@ static double energy_at(const struct cs_bound *bound, double t) {
 
 /* sum m a^2 of the outer forces in J/s2 */
 static double sum_push(const struct cs_system *system) {
-    const struct cs_forces *forces = &system->scene->forces;
-    const size_t n = system->view.n;
-    const double *g = forces->gravity, *a = system->push;
     double sum = 0;
-    for (size_t i = 0; i < n; i++) {
-        double push = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-        if (system->normals)
-            push += forces->wind.strength * system->inv_mass[i] *
-                    (forces->wind.strength_unit == CS_WIND_PA ? system->area[i] : 1);
-        if (a)
-            push += sqrt(a[i] * a[i] + a[n + i] * a[n + i] + a[2 * n + i] * a[2 * n + i]);
-        sum += system->mass[i] * push * push;
+    for (size_t i = 0; i < system->view.n; i++) {
+        double push = 0;
+        for (uint32_t k = 0; k < system->n_terms; k++)
+            if (system->terms[k]->strongest)
+                push += system->terms[k]->strongest(system, i);
+        sum += push * push / system->mass[i];
     }
     return sum;
 }
 
 void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t) {
     const double *x = system->state, *v = x + 3 * (size_t)system->view.n;
-    const struct cs_energy energy = cs_measure_energy(system, x, v);
+    const struct cs_energy energy = cs_measure_energy(system, t, x, v);
     *bound = (struct cs_bound){
-        .start = energy.elastic + cs_springs_energy_at_twice(&system->springs) +
+        .start = energy.elastic + energy.other + cs_springs_energy_at_twice(&system->springs) +
                  cs_clusters_energy(system),
         .speed = 2 * energy.kinetic,
         .push = sum_push(system),

@@ -77,7 +77,8 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
     move_values(host, t);
     update_normals(host, x, parts);
     const double begin = stage_begin(host);
-    cs_terms_force(host->run->system, t, x, v, parts, f);
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
+    cs_terms_force(host->run->system, &at, f);
     host->run->counts.forces++;
     stage_end(host, CS_STAGE_FORCE, begin);
 }
@@ -86,8 +87,8 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
     struct cs_run_host *host = ctx;
     move_values(host, t);
     host->run->counts.energies++;
-    const struct cs_energy energy = cs_measure_energy(host->run->system, x, v);
-    return energy.kinetic + energy.elastic + energy.gravity;
+    const struct cs_energy energy = cs_measure_energy(host->run->system, t, x, v);
+    return cs_energy_whole(&energy);
 }
 
 static void host_jvp(void *ctx, double t, const double *x, const double *v, uint32_t parts,
@@ -96,7 +97,8 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
     move_values(host, t);
     update_normals(host, x, parts);
     const double begin = stage_begin(host);
-    cs_terms_jvp(host->run->system, t, x, v, parts, dx, dv, df);
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts, .dx = dx, .dv = dv};
+    cs_terms_jvp(host->run->system, &at, df);
     host->run->counts.jvps++;
     stage_end(host, CS_STAGE_FORCE, begin);
 }
@@ -104,26 +106,26 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
 static void host_diagonal(void *ctx, double t, const double *x, const double *v, double *kxx,
                           double *dvv) {
     struct cs_run_host *host = ctx;
-    (void)v;
     move_values(host, t);
     const double begin = stage_begin(host);
-    cs_terms_diagonal(host->run->system, x, kxx, dvv);
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_LINEARISED};
+    cs_terms_diagonal(host->run->system, &at, kxx, dvv);
     host->run->counts.diagonals++;
     stage_end(host, CS_STAGE_FORCE, begin);
 }
 
 /* an exact matrix that is not positive definite is made so, and that is counted */
 static void clamp(struct cs_run_host *host) {
-    struct cs_linear *linear = &host->linear;
+    struct cs_matrix matrix = host->linear.matrix;
     host->run->counts.clamped++;
-    host->clamped = true;
-    cs_linear_setup(linear, host->kept_x, linear->cm, linear->cd, linear->ck, true);
+    matrix.psd = host->clamped = true;
+    cs_linear_setup(&host->linear, &matrix);
 }
 
 static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const double *v,
                                      double cm, double cd, double ck, uint32_t flags) {
     struct cs_run_host *host = ctx;
-    (void)v;
+    const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
     move_values(host, t);
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
@@ -133,8 +135,17 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     const double begin = stage_begin(host);
     host->run->counts.solve_setups++;
     host->clamped = flags & CS_SOLVE_PSD;
-    memcpy(host->kept_x, x, 3 * sizeof *x * host->run->system->view.n);
-    if (!cs_linear_setup(&host->linear, x, cm, cd, ck, host->clamped) && !host->clamped)
+    memcpy(host->kept_x, x, bytes);
+    if (host->kept_v)
+        memcpy(host->kept_v, v, bytes);
+    const struct cs_matrix matrix = {.t = t,
+                                     .x = host->kept_x,
+                                     .v = host->kept_v,
+                                     .cm = cm,
+                                     .cd = cd,
+                                     .ck = ck,
+                                     .psd = host->clamped};
+    if (!cs_linear_setup(&host->linear, &matrix) && !host->clamped)
         clamp(host);
     stage_end(host, CS_STAGE_SOLVE, begin);
     return CS_STEP_OK;
@@ -262,8 +273,10 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     cs_bound_set(&host->bound, system, 0);
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
-    host->kept_x =
-        cs_arena_take_n(&host->arena, 3 * (size_t)system->view.n, sizeof(double), error);
+    const size_t n3 = 3 * (size_t)system->view.n;
+    host->kept_x = cs_arena_take_n(&host->arena, n3, sizeof(double), error);
+    if (cs_terms_have_blocks(system))
+        host->kept_v = cs_arena_take_n(&host->arena, n3, sizeof(double), error);
     return cs_linear_init(&host->linear, system, &host->arena, error);
 }
 

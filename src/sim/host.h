@@ -14,6 +14,7 @@ struct cs_run_host {
     struct cs_run *run;      /* borrowed: counts, outcome, notes */
     struct cs_linear linear; /* only with CS_NEED_SOLVE */
     double *kept_x; /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
+    double *kept_v; /* (3,n) its velocity; NULL: no force's share of the matrix depends on it */
     bool clamped;   /* the matrix in use is positive definite by construction */
     bool creating;  /* the method may take memory */
     bool timed;

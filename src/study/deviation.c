@@ -37,10 +37,10 @@ void cs_distance_each(uint32_t n, const double *a, const double *b, double *out)
         out[i] = sqrt(squared(n, a, b, i));
 }
 
-static double energy_of(const struct cs_system *system, const double *x) {
+static double energy_of(const struct cs_system *system, double t, const double *x) {
     const struct cs_energy energy =
-        cs_measure_energy(system, x, x + 3 * (size_t)system->view.n);
-    return energy.kinetic + energy.elastic + energy.gravity;
+        cs_measure_energy(system, t, x, x + 3 * (size_t)system->view.n);
+    return cs_energy_whole(&energy);
 }
 
 static double centre_distance(const struct cs_system *system, const double *a,
@@ -71,10 +71,10 @@ static double box_distance(size_t n, const double *a, const double *b) {
 }
 
 static void take_statistics(struct cs_deviation *deviation, const struct cs_system *system,
-                            const double *a, const double *b) {
+                            double t, const double *a, const double *b) {
     const size_t n = system->view.n;
     deviation->energy =
-        fmax(deviation->energy, fabs(energy_of(system, a) - energy_of(system, b)));
+        fmax(deviation->energy, fabs(energy_of(system, t, a) - energy_of(system, t, b)));
     deviation->centre = fmax(deviation->centre, centre_distance(system, a, b));
     deviation->box = fmax(deviation->box, box_distance(n, a, b));
     deviation->strain = fmax(deviation->strain, cs_measure_strain(system, a));
@@ -87,7 +87,7 @@ void cs_deviation_take(struct cs_deviation *deviation, const struct cs_system *s
     *deviation = (struct cs_deviation){0};
     for (uint32_t k = 1; k <= frames; k++) {
         const double *a = cs_track_state(track, k), *b = cs_track_state(reference, k);
-        take_statistics(deviation, system, a, b);
+        take_statistics(deviation, system, k / system->scene->time.fps, a, b);
         if (k > pointwise_frames)
             continue;
         deviation->end = cs_distance_rms(system, a, b);

@@ -76,16 +76,16 @@ static void note_excess(struct cs_trial *trial, const struct cs_run *run, double
 
 static void take_sample(struct cs_trial *trial, const struct cs_trial_settings *settings,
                         const struct cs_run *run) {
-    const struct cs_energy energy = cs_measure_energy(run->system, run->x, run->v);
-    const double whole = energy.kinetic + energy.elastic + energy.gravity;
+    const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
+    const double whole = cs_energy_whole(&energy);
     if (run->frame == 0)
         trial->start_energy = whole;
     trial->end_energy = whole;
     trial->kinetic = fmax(trial->kinetic, energy.kinetic);
     trial->elastic = fmax(trial->elastic, energy.elastic);
-    trial->held = fmax(trial->held, energy.kinetic + energy.elastic);
+    trial->held = fmax(trial->held, cs_energy_held(&energy));
     double *half = run->t < settings->seconds / 2 ? &trial->early : &trial->late;
-    *half = fmax(*half, energy.kinetic + energy.elastic);
+    *half = fmax(*half, cs_energy_held(&energy));
     trial->gained = fmax(trial->gained, whole - trial->start_energy);
     trial->mean_kinetic += energy.kinetic;
     trial->strain = fmax(trial->strain, cs_measure_strain(run->system, run->x));

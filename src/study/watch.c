@@ -2,6 +2,7 @@
 
 #include "model/event/events.h"
 #include "model/event/prods.h"
+#include "model/force/terms.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -64,40 +65,41 @@ static double fastest(const struct cs_run *run, double limit, uint32_t *particle
     return largest;
 }
 
-/* largest acceleration in m/s2 of a particle by wind and events, were it seen by all prods */
-static double push_of(const struct cs_system *system, size_t i) {
-    const struct cs_wind *wind = &system->scene->forces.wind;
-    const struct cs_events *events = system->events;
-    const size_t n = system->view.n;
+/* largest acceleration in m/s2 of a particle by forces with an energy, or by the others */
+static double push_of(const struct cs_system *system, size_t i, bool with_energy) {
     double push = 0;
-    if (system->normals)
-        push += wind->strength * system->inv_mass[i] *
-                (wind->strength_unit == CS_WIND_PA ? system->area[i] : 1);
-    if (system->push) {
-        const double *a = system->push + i;
-        push += length_of((double[3]){a[0], a[n], a[2 * n]});
+    for (uint32_t k = 0; k < system->n_terms; k++) {
+        const struct cs_term *term = system->terms[k];
+        if (term->strongest && !!term->energy == with_energy)
+            push += term->strongest(system, i) * system->inv_mass[i];
     }
-    if (events && events->prods)
-        push += cs_prods_force(events->prods, system->scene) * system->inv_mass[i];
     return push;
+}
+
+/* and by the viewpoint forces, were it seen by all */
+static double seen_push(const struct cs_system *system, size_t i) {
+    const struct cs_events *events = system->events;
+    return events && events->prods
+               ? cs_prods_force(events->prods, system->scene) * system->inv_mass[i]
+               : 0;
 }
 
 /* from what there is now */
 static void start(struct cs_watch *watch, const struct cs_run *run) {
     const struct cs_system *system = run->system;
-    const struct cs_energy energy = cs_measure_energy(system, run->x, run->v);
+    const struct cs_energy energy = cs_measure_energy(system, run->t, run->x, run->v);
     uint32_t particle, count;
     watch->since = run->t;
-    watch->held = energy.kinetic + energy.elastic;
+    watch->held = cs_energy_held(&energy);
     watch->gravity = energy.gravity;
     watch->released = 0;
     watch->start_speed = fmax(watch->start_speed, fastest(run, HUGE_VAL, &particle, &count));
-    watch->pull = length_of(system->scene->forces.gravity);
-    watch->push = watch->mass = watch->wind_mass = 0;
+    watch->pull = watch->push = watch->mass = watch->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
         if (system->inv_mass[i] <= 0)
             continue;
-        const double push = push_of(system, i);
+        const double push = push_of(system, i, false) + seen_push(system, i);
+        watch->pull = fmax(watch->pull, push_of(system, i, true));
         watch->push = fmax(watch->push, push);
         watch->mass += system->mass[i];
         watch->wind_mass += system->mass[i] * push * push;
@@ -133,7 +135,7 @@ static double available(const struct cs_watch *watch, double t) {
 void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_watch_row *row) {
     const struct cs_system *system = run->system;
     *row = (struct cs_watch_row){.t = run->t};
-    row->energy = cs_measure_energy(system, run->x, run->v);
+    row->energy = cs_measure_energy(system, run->t, run->x, run->v);
     row->strain = cs_measure_strain(system, run->x);
     if (is_disturbed(watch, run))
         start(watch, run);
@@ -146,7 +148,7 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     row->energy_limit = ENERGY_FACTOR * energy;
     row->speed_limit = SPEED_FACTOR * fmax(watch->start_speed + fall, LEAST_SPEED);
     row->speed = fastest(run, row->speed_limit, &row->particle, &row->particles);
-    const double held = row->energy.kinetic + row->energy.elastic;
+    const double held = cs_energy_held(&row->energy);
     if (!isfinite(held + row->speed + row->strain))
         row->verdict = CS_FATE_NOT_FINITE;
     else if (held > row->energy_limit)
@@ -169,8 +171,7 @@ void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system
     cs_text_add(out, "%s from t = %.6g s on: ", cs_fate_word(first->verdict), first->t);
     if (first->verdict == CS_FATE_GLOBAL)
         cs_text_add(out, "%.3g J in motion and springs, where %.3g J can be",
-                    first->energy.kinetic + first->energy.elastic,
-                    first->energy_limit / ENERGY_FACTOR);
+                    cs_energy_held(&first->energy), first->energy_limit / ENERGY_FACTOR);
     else {
         cs_text_add(out, "%u particle%s, the fastest ", first->particles,
                     first->particles == 1 ? "" : "s");
@@ -188,12 +189,8 @@ void cs_watch_print_head(struct cs_text *out) {
 
 void cs_watch_print_row(const struct cs_watch_row *row, uint32_t frame, struct cs_text *out) {
     const struct cs_energy *energy = &row->energy;
-    const double values[] = {row->t,
-                             energy->kinetic,
-                             energy->elastic,
-                             energy->gravity,
-                             energy->kinetic + energy->elastic + energy->gravity,
-                             row->strain,
+    const double values[] = {row->t,          energy->kinetic,         energy->elastic,
+                             energy->gravity, cs_energy_whole(energy), row->strain,
                              row->speed};
     cs_text_add(out, "%u", frame);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {

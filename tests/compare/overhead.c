@@ -22,7 +22,8 @@ struct bench {
 
 static void call_force(const struct bench *bench) {
     const struct cs_run *run = &bench->session->run;
-    cs_terms_force(run->system, 0, run->x, run->v, CS_PART_ALL, bench->f);
+    cs_terms_force(run->system,
+                   &(struct cs_eval){.x = run->x, .v = run->v, .parts = CS_PART_ALL}, bench->f);
 }
 
 static void call_table(const struct bench *bench) {

@@ -94,8 +94,9 @@ double fixture_rms(const double *a, const double *b, size_t n) {
 }
 
 double fixture_energy(const struct fixture *fixture) {
-    const struct cs_energy energy = cs_measure_energy(fixture->system, fixture->x, fixture->v);
-    return energy.kinetic + energy.elastic + energy.gravity;
+    const struct cs_energy energy =
+        cs_measure_energy(fixture->system, fixture->session.run.t, fixture->x, fixture->v);
+    return cs_energy_whole(&energy);
 }
 
 int fixture_run(const char *name, const TTest *const *tests, size_t n_tests) {

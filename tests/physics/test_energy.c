@@ -21,8 +21,11 @@ static double power(const struct fixture *cloth) {
     double f[3 * N], sum = 0;
     if (cloth->system->normals)
         cs_normals_update(cloth->system, cloth->x);
-    cs_terms_force(cloth->system, 0, cloth->x, cloth->v,
-                   CS_PART_DAMPING | CS_PART_DRAG | CS_PART_WIND, f);
+    cs_terms_force(cloth->system,
+                   &(struct cs_eval){.x = cloth->x,
+                                     .v = cloth->v,
+                                     .parts = CS_PART_DAMPING | CS_PART_DRAG | CS_PART_WIND},
+                   f);
     for (size_t i = 0; i < 3 * N; i++)
         sum += f[i] * cloth->v[i];
     return sum;

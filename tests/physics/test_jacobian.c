@@ -34,7 +34,7 @@ static void open(struct fixture *cloth, bool axial) {
 static void force(const struct fixture *cloth, const double *x, const double *v, uint32_t parts,
                   double f[VALUES]) {
     cs_normals_update(cloth->system, x);
-    cs_terms_force(cloth->system, 0, x, v, parts, f);
+    cs_terms_force(cloth->system, &(struct cs_eval){.x = x, .v = v, .parts = parts}, f);
 }
 
 /* (f(x + e dx, v + e dv) - f(x - e dx, v - e dv)) / 2 e */
@@ -72,8 +72,13 @@ static void check_part(const struct fixture *cloth, uint32_t part, const char *n
         *moved = 1;
         difference(cloth, part, dx, dv, slope);
         cs_normals_update(cloth->system, cloth->x);
-        cs_terms_jvp(cloth->system, 0, cloth->x, cloth->v, part, column < VALUES ? dx : NULL,
-                     column < VALUES ? NULL : dv, df);
+        cs_terms_jvp(cloth->system,
+                     &(struct cs_eval){.x = cloth->x,
+                                       .v = cloth->v,
+                                       .parts = part,
+                                       .dx = column < VALUES ? dx : NULL,
+                                       .dv = column < VALUES ? NULL : dv},
+                     df);
         for (size_t i = 0; i < VALUES; i++)
             off[i] = df[i] - slope[i];
         size = fmax(size, largest(slope, VALUES));
@@ -111,9 +116,16 @@ START_TEST(jvp_is_linear) {
     for (size_t i = 0; i < VALUES; i++)
         dx[i] = sin(0.7 * (double)i), dv[i] = cos(1.1 * (double)i);
     cs_normals_update(cloth.system, cloth.x);
-    cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_ALL, dx, dv, both);
-    cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_ALL, dx, NULL, one);
-    cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_ALL, NULL, dv, other);
+    cs_terms_jvp(
+        cloth.system,
+        &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL, .dx = dx, .dv = dv},
+        both);
+    cs_terms_jvp(cloth.system,
+                 &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL, .dx = dx},
+                 one);
+    cs_terms_jvp(cloth.system,
+                 &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL, .dv = dv},
+                 other);
     for (size_t i = 0; i < VALUES; i++)
         ck_assert_double_eq_tol(both[i], one[i] + other[i], 1e-11);
     fixture_close(&cloth);
@@ -133,15 +145,23 @@ START_TEST(diagonal_is_that_of_jvp) {
         struct fixture cloth;
         double kxx[6 * N], dvv[6 * N], unit[VALUES] = {0}, df[VALUES];
         open_at_rest(&cloth, axial);
-        cs_terms_diagonal(cloth.system, cloth.x, kxx, dvv);
+        cs_terms_diagonal(cloth.system,
+                          &(struct cs_eval){.x = cloth.x, .parts = CS_PART_LINEARISED}, kxx,
+                          dvv);
         for (size_t i = 0; i < N; i++)
             for (int e = 0; e < 6 && cloth.system->inv_mass[i] > 0; e++) {
                 unit[column[e] * N + i] = 1;
-                cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_LINEARISED, unit, NULL,
-                             df);
+                cs_terms_jvp(
+                    cloth.system,
+                    &(struct cs_eval){
+                        .x = cloth.x, .v = cloth.v, .parts = CS_PART_LINEARISED, .dx = unit},
+                    df);
                 ck_assert_double_eq_tol(kxx[e * N + i], df[row[e] * N + i], 1e-10);
-                cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_LINEARISED, NULL, unit,
-                             df);
+                cs_terms_jvp(
+                    cloth.system,
+                    &(struct cs_eval){
+                        .x = cloth.x, .v = cloth.v, .parts = CS_PART_LINEARISED, .dv = unit},
+                    df);
                 ck_assert_double_eq_tol(dvv[e * N + i], df[row[e] * N + i], 1e-12);
                 unit[column[e] * N + i] = 0;
             }
@@ -160,12 +180,19 @@ START_TEST(solver_matrix_is_that_of_jvp) {
         double p[VALUES], found[VALUES], dk[VALUES], dd[VALUES];
         open_at_rest(&cloth, axial);
         ck_assert_int_eq(cs_linear_init(&linear, cloth.system, &arena, &error), CS_OK);
-        cs_linear_setup(&linear, cloth.x, cm, cd, ck, false);
+        cs_linear_setup(&linear, &(struct cs_matrix){
+                                     .x = cloth.x, .cm = cm, .cd = cd, .ck = ck, .psd = false});
         for (size_t i = 0; i < VALUES; i++)
             p[i] = cloth.system->inv_mass[i % N] > 0 ? sin(0.9 * (double)i) : 0;
         cs_linear_mul(&linear, p, found);
-        cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_LINEARISED, p, NULL, dk);
-        cs_terms_jvp(cloth.system, 0, cloth.x, cloth.v, CS_PART_LINEARISED, NULL, p, dd);
+        cs_terms_jvp(
+            cloth.system,
+            &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_LINEARISED, .dx = p},
+            dk);
+        cs_terms_jvp(
+            cloth.system,
+            &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_LINEARISED, .dv = p},
+            dd);
         for (size_t i = 0; i < VALUES; i++) {
             const double expected =
                 cm * cloth.system->mass[i % N] * p[i] + cd * dd[i] + ck * dk[i];

@@ -88,6 +88,8 @@ static size_t promised(const struct fixture *cloth) {
     size_t bytes = system->plan.state_bytes + system->n_pinned * sizeof *system->pinned;
     for (uint32_t f = 0; f < CS_FEATURES; f++)
         bytes += system->plan.rows[f].bytes;
+    for (uint32_t k = 0; k < CS_TERMS_MOST; k++)
+        bytes += system->plan.forces[k].bytes;
     return bytes;
 }
 

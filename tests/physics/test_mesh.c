@@ -37,7 +37,7 @@ static void open(struct fixture *body, bool axial) {
 static void force(const struct fixture *body, const double *x, const double *v, uint32_t parts,
                   double f[VALUES]) {
     cs_normals_update(body->system, x);
-    cs_terms_force(body->system, 0, x, v, parts, f);
+    cs_terms_force(body->system, &(struct cs_eval){.x = x, .v = v, .parts = parts}, f);
 }
 
 static double vector(const double *p, uint32_t a, uint32_t b, double d[3]) {
@@ -131,7 +131,10 @@ static void check_part(const struct fixture *body, uint32_t part, double least) 
         }
         difference(body, part, dx, dv, slope);
         cs_normals_update(body->system, body->x);
-        cs_terms_jvp(body->system, 0, body->x, body->v, part, dx, dv, df);
+        cs_terms_jvp(
+            body->system,
+            &(struct cs_eval){.x = body->x, .v = body->v, .parts = part, .dx = dx, .dv = dv},
+            df);
         for (size_t i = 0; i < VALUES; i++) {
             size = fmax(size, fabs(slope[i]));
             error = fmax(error, fabs(slope[i] - df[i]));
@@ -168,23 +171,34 @@ START_TEST(solver_matrix_and_diagonal_are_those_of_jvp) {
         open(&body, axial);
         memset(body.v, 0, VALUES * sizeof *body.v);
         ck_assert_int_eq(cs_linear_init(&linear, body.system, &arena, &error), CS_OK);
-        cs_linear_setup(&linear, body.x, cm, cd, ck, false);
+        cs_linear_setup(&linear, &(struct cs_matrix){
+                                     .x = body.x, .cm = cm, .cd = cd, .ck = ck, .psd = false});
         for (size_t i = 0; i < VALUES; i++)
             p[i] = body.system->inv_mass[i % N] > 0 ? sin(0.9 * (double)i) : 0;
         cs_linear_mul(&linear, p, found);
-        cs_terms_jvp(body.system, 0, body.x, body.v, CS_PART_LINEARISED, p, NULL, dk);
-        cs_terms_jvp(body.system, 0, body.x, body.v, CS_PART_LINEARISED, NULL, p, dd);
+        cs_terms_jvp(
+            body.system,
+            &(struct cs_eval){.x = body.x, .v = body.v, .parts = CS_PART_LINEARISED, .dx = p},
+            dk);
+        cs_terms_jvp(
+            body.system,
+            &(struct cs_eval){.x = body.x, .v = body.v, .parts = CS_PART_LINEARISED, .dv = p},
+            dd);
         for (size_t i = 0; i < VALUES; i++)
             ck_assert_double_eq_tol(
                 found[i], cm * body.system->mass[i % N] * p[i] + cd * dd[i] + ck * dk[i],
                 1e-11);
-        cs_terms_diagonal(body.system, body.x, kxx, dvv);
+        cs_terms_diagonal(
+            body.system, &(struct cs_eval){.x = body.x, .parts = CS_PART_LINEARISED}, kxx, dvv);
         for (size_t i = 0; i < N; i++)
             for (int e = 0; e < 6 && body.system->inv_mass[i] > 0; e++) {
                 double unit[VALUES] = {0};
                 unit[column[e] * N + i] = 1;
-                cs_terms_jvp(body.system, 0, body.x, body.v, CS_PART_LINEARISED, unit, NULL,
-                             dk);
+                cs_terms_jvp(
+                    body.system,
+                    &(struct cs_eval){
+                        .x = body.x, .v = body.v, .parts = CS_PART_LINEARISED, .dx = unit},
+                    dk);
                 ck_assert_double_eq_tol(kxx[e * N + i], dk[row[e] * N + i], 1e-8);
             }
         cs_arena_finish(&arena);

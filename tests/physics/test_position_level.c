@@ -67,7 +67,7 @@ static double miss(const struct fixture *cloth, double h, const double *x, doubl
     double squared = 0;
     for (size_t k = 0; k < VALUES; k++)
         v[k] = (x[k] - x0[k]) / h;
-    cs_terms_force(cloth->system, 0, x, v, CS_PART_ALL, g);
+    cs_terms_force(cloth->system, &(struct cs_eval){.x = x, .v = v, .parts = CS_PART_ALL}, g);
     for (size_t k = 0; k < VALUES; k++) {
         g[k] = cloth->system->inv_mass[k % N] > 0 ? h * g[k] - (v[k] - v0[k]) : 0;
         squared += g[k] * g[k];
@@ -89,7 +89,10 @@ static void newton(const struct fixture *cloth, double h, double *x) {
             const bool free = cloth->system->inv_mass[j % N] > 0;
             unit[j] = free;
             rate[j] = free / h;
-            cs_terms_jvp(cloth->system, 0, x, v, CS_PART_ALL, unit, rate, column);
+            cs_terms_jvp(
+                cloth->system,
+                &(struct cs_eval){.x = x, .v = v, .parts = CS_PART_ALL, .dx = unit, .dv = rate},
+                column);
             for (size_t k = 0; k < VALUES; k++)
                 a[k][j] = k == j ? (free ? 1 / h : 1) - h * column[k] : -h * column[k];
             unit[j] = rate[j] = 0;

@@ -104,14 +104,25 @@ static double *kernels(uint32_t n, size_t *length) {
     ck_assert_ptr_nonnull(found);
     cs_normals_update(all.system, all.x);
     for (size_t p = 0; p < sizeof parts / sizeof *parts; p++, to += 3 * all.n)
-        cs_terms_force(all.system, 0, all.x, all.v, parts[p], to);
-    cs_terms_jvp(all.system, 0, all.x, all.v, CS_PART_ALL, all.v, all.x, to);
-    cs_terms_jvp(all.system, 0, all.x, all.v, CS_PART_ALL, all.v, NULL, to += 3 * all.n);
-    cs_terms_jvp(all.system, 0, all.x, all.v, CS_PART_DAMPING, NULL, all.x, to += 3 * all.n);
+        cs_terms_force(all.system, &(struct cs_eval){.x = all.x, .v = all.v, .parts = parts[p]},
+                       to);
+    cs_terms_jvp(all.system,
+                 &(struct cs_eval){
+                     .x = all.x, .v = all.v, .parts = CS_PART_ALL, .dx = all.v, .dv = all.x},
+                 to);
+    cs_terms_jvp(all.system,
+                 &(struct cs_eval){.x = all.x, .v = all.v, .parts = CS_PART_ALL, .dx = all.v},
+                 to += 3 * all.n);
+    cs_terms_jvp(
+        all.system,
+        &(struct cs_eval){.x = all.x, .v = all.v, .parts = CS_PART_DAMPING, .dv = all.x},
+        to += 3 * all.n);
     memcpy(to += 3 * all.n, all.system->normals, 3 * all.n * sizeof *to);
     ck_assert(!cs_linear_init(&linear, all.system, &arena, &error));
     for (int psd = 0; psd < 2; psd++) {
-        cs_linear_setup(&linear, all.x, 1, -0.01, -0.0001, psd);
+        cs_linear_setup(
+            &linear,
+            &(struct cs_matrix){.x = all.x, .cm = 1, .cd = -0.01, .ck = -0.0001, .psd = psd});
         cs_linear_mul(&linear, all.v, to += 3 * all.n);
     }
     ck_assert_ptr_eq(to + 3 * all.n, found + *length);

@@ -66,7 +66,10 @@ static inline void crumple_shut(struct crumple *crumple) {
 /* backward Euler's matrix of a step of 1/60 s */
 static inline bool crumple_setup(struct crumple *crumple, bool psd) {
     const double h = CRUMPLE_H_STEP;
-    return cs_linear_setup(&crumple->linear, crumple->sheet.x, 1, -h, -h * h, psd);
+    return cs_linear_setup(
+        &crumple->linear,
+        &(struct cs_matrix){
+            .x = crumple->sheet.x, .cm = 1, .cd = -h, .ck = -h * h, .psd = psd});
 }
 
 /* from the start 0 */

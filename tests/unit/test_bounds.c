@@ -58,8 +58,13 @@ static double largest_of(const struct sheet *sheet, bool velocity) {
         p[i] = sin(1.3 * (double)i + (double)(i % 5));
     for (int k = 0; k < 300; k++) {
         double norm = 0;
-        cs_terms_jvp(&sheet->system, 0, sheet->x, sheet->v, CS_PART_LINEARISED,
-                     velocity ? NULL : p, velocity ? p : NULL, df);
+        cs_terms_jvp(&sheet->system,
+                     &(struct cs_eval){.x = sheet->x,
+                                       .v = sheet->v,
+                                       .parts = CS_PART_LINEARISED,
+                                       .dx = velocity ? NULL : p,
+                                       .dv = velocity ? p : NULL},
+                     df);
         for (size_t i = 0; i < 3 * N; i++) {
             df[i] *= -sheet->system.inv_mass[i % N];
             norm += df[i] * df[i];

@@ -97,7 +97,10 @@ START_TEST(matrix_is_symmetric_and_blind_to_pins) {
         static double a[ROWS][ROWS];
         start(&solver, models[k]);
         sheet_stir(&solver.sheet, 0.1, 0);
-        cs_linear_setup(&solver.linear, solver.sheet.x, 1, -H, -H * H, false);
+        cs_linear_setup(
+            &solver.linear,
+            &(struct cs_matrix){
+                .x = solver.sheet.x, .cm = 1, .cd = -H, .ck = -H * H, .psd = false});
         dense_of(&solver, a);
         for (size_t i = 0; i < ROWS; i++)
             for (size_t j = 0; j < ROWS; j++) {
@@ -117,7 +120,10 @@ START_TEST(solution_is_that_of_a_dense_factor) {
     double b[ROWS], expected[ROWS];
     start(&solver, "axial");
     sheet_stir(&solver.sheet, 0.1, 0);
-    ck_assert(cs_linear_setup(&solver.linear, solver.sheet.x, 1, -H, -H * H, true));
+    ck_assert(cs_linear_setup(
+        &solver.linear,
+        &(struct cs_matrix){
+            .x = solver.sheet.x, .cm = 1, .cd = -H, .ck = -H * H, .psd = true}));
     dense_of(&solver, a);
     fill_right(&solver, b);
     memcpy(expected, b, sizeof b);
@@ -151,7 +157,9 @@ START_TEST(good_start_needs_no_iteration) {
     double b[ROWS], u[ROWS] = {0}, residual;
     uint64_t iterations;
     start(&solver, "axial");
-    cs_linear_setup(&solver.linear, solver.sheet.x, 1, -H, -H * H, true);
+    cs_linear_setup(
+        &solver.linear,
+        &(struct cs_matrix){.x = solver.sheet.x, .cm = 1, .cd = -H, .ck = -H * H, .psd = true});
     fill_right(&solver, b);
     cs_linear_solve(&solver.linear, b, 1e-12, u, &iterations, &residual);
     cs_linear_solve(&solver.linear, b, 1e-10, u, &iterations, &residual);
@@ -181,7 +189,9 @@ START_TEST(diagonal_matrix_takes_one_iteration) {
                " \"forces\": {\"drag\": 0.3, \"drag_unit\": \"Pa s/m\"}}");
     cs_linear_init(&linear, &sheet.system, &arena, &error);
     UNIT_ASSERT_OK(&error);
-    ck_assert(cs_linear_setup(&linear, sheet.x, 2, -0.5, -9, false));
+    ck_assert(cs_linear_setup(
+        &linear,
+        &(struct cs_matrix){.x = sheet.x, .cm = 2, .cd = -0.5, .ck = -9, .psd = false}));
     double b[ROWS], u[ROWS] = {0}, residual;
     uint64_t iterations;
     for (size_t i = 0; i < ROWS; i++)
@@ -205,10 +215,15 @@ START_TEST(clamped_matrix_is_definite) {
     start(&solver, "axial");
     for (size_t i = 0; i < ROWS; i++)
         solver.sheet.x[i] /= 3;
-    cs_linear_setup(&solver.linear, solver.sheet.x, 1, -H, -H * H, false);
+    cs_linear_setup(&solver.linear,
+                    &(struct cs_matrix){
+                        .x = solver.sheet.x, .cm = 1, .cd = -H, .ck = -H * H, .psd = false});
     dense_of(&solver, a);
     ck_assert(!factor(a));
-    ck_assert(cs_linear_setup(&solver.linear, solver.sheet.x, 1, -H, -H * H, true));
+    ck_assert(cs_linear_setup(
+        &solver.linear,
+        &(struct cs_matrix){
+            .x = solver.sheet.x, .cm = 1, .cd = -H, .ck = -H * H, .psd = true}));
     dense_of(&solver, a);
     ck_assert(factor(a));
     shut(&solver);
@@ -235,7 +250,8 @@ START_TEST(indefinite_matrix_is_found_out) {
     uint64_t iterations;
 
     // blocks of 0.2: the set-up is fine and the iteration finds out
-    ck_assert(cs_linear_setup(&linear, pair.x, 1, 0, -0.3, false));
+    ck_assert(cs_linear_setup(
+        &linear, &(struct cs_matrix){.x = pair.x, .cm = 1, .cd = 0, .ck = -0.3, .psd = false}));
     ck_assert_int_eq(cs_linear_solve(&linear, together, 1e-12, u, &iterations, &residual),
                      CS_LINEAR_DONE);
     SHEET_ASSERT_AT(&pair, u, 0, 0, 2, 0, 1e-14);
@@ -244,10 +260,12 @@ START_TEST(indefinite_matrix_is_found_out) {
                      CS_LINEAR_INDEFINITE);
 
     // blocks of -0.1: the set-up finds out
-    ck_assert(!cs_linear_setup(&linear, pair.x, 1, 0, -0.6, false));
+    ck_assert(!cs_linear_setup(
+        &linear, &(struct cs_matrix){.x = pair.x, .cm = 1, .cd = 0, .ck = -0.6, .psd = false}));
 
     // clamped there is no stiffness across, and k along
-    ck_assert(cs_linear_setup(&linear, pair.x, 1, 0, -0.6, true));
+    ck_assert(cs_linear_setup(
+        &linear, &(struct cs_matrix){.x = pair.x, .cm = 1, .cd = 0, .ck = -0.6, .psd = true}));
     memset(u, 0, sizeof u);
     ck_assert_int_eq(cs_linear_solve(&linear, apart, 1e-12, u, &iterations, &residual),
                      CS_LINEAR_DONE);

@@ -189,7 +189,7 @@ START_TEST(plan_knows_the_memory) {
         open_kind(&crumple, kind, 1e3);
         cs_multigrid_init(&multigrid, &crumple.sheet.system, &arena, &error);
         UNIT_ASSERT_OK(&error);
-        const double said = (double)cs_multigrid_bytes(&crumple.sheet.scene);
+        const double said = (double)cs_multigrid_bytes(&crumple.sheet.scene, false);
         ck_assert_double_le(fabs(said - (double)arena.used), kind ? 0.4 * said : 0);
         cs_arena_finish(&arena);
         crumple_shut(&crumple);

@@ -167,8 +167,11 @@ START_TEST(force_is_the_sum_of_single_springs) {
             double *expected = found + 3 * sheet.n;
             for (size_t p = 0; p < sizeof parts / sizeof *parts; p++) {
                 memset(found, 0, 6 * sheet.n * sizeof *found);
-                cs_springs_add_force(springs, (uint32_t)sheet.n, sheet.x, sheet.v, parts[p],
-                                     &all, found);
+                cs_springs_add_force(
+                    springs, (uint32_t)sheet.n,
+                    &(struct cs_eval){
+                        .x = sheet.x, .v = sheet.v, .parts = parts[p], .block = &all},
+                    found);
                 for (uint32_t r = 0; r < springs->n_runs; r++)
                     for (uint32_t i = 0; i < springs->runs[r].count; i++)
                         add_spring(&sheet, springs->runs + r, i, parts[p], expected);
@@ -240,7 +243,9 @@ START_TEST(own_blocks_of_the_factors_are_those_of_the_product) {
         double *blocks = calloc(12 * n + 4 * (size_t)springs->n, sizeof *blocks);
         ck_assert_ptr_nonnull(blocks);
         double *unit = blocks + 6 * n, *y = unit + 3 * n, *factors = y + 3 * n;
-        cs_springs_factor(springs, (uint32_t)n, sheet.x, -0.02, -4e-4, false, factors);
+        cs_springs_factor(
+            springs, (uint32_t)n,
+            &(struct cs_matrix){.x = sheet.x, .cd = -0.02, .ck = -4e-4, .psd = false}, factors);
         cs_springs_factor_diagonal(springs, (uint32_t)n, factors, blocks);
         for (size_t i = 0; i < n; i++)
             for (size_t e = 0; e < 6; e++) {
@@ -262,7 +267,9 @@ START_TEST(force_is_added_to_what_is_there) {
     sheet_open(&pair, 0, SCENE, 2, 1, "0");
     const struct cs_block all = cs_springs_block(&pair.system.springs, 2, 0);
     sheet_put(&pair, 1, pair.x[0], pair.x[2] + 3.5, pair.x[4], 0, 0, 0);
-    cs_springs_add_force(&pair.system.springs, 2, pair.x, pair.v, CS_PART_ALL, &all, f);
+    cs_springs_add_force(
+        &pair.system.springs, 2,
+        &(struct cs_eval){.x = pair.x, .v = pair.v, .parts = CS_PART_ALL, .block = &all}, f);
     SHEET_ASSERT_AT(&pair, f, 0, 1, 3 + 200 * 0.5, 5, 1e-12);
     SHEET_ASSERT_AT(&pair, f, 1, 2, 4 - 200 * 0.5, 6, 1e-12);
     sheet_close(&pair);
@@ -277,9 +284,14 @@ START_TEST(particles_in_one_place_feel_no_spring) {
     const struct cs_block all = cs_springs_block(&pair.system.springs, 2, 0);
     sheet_put(&pair, 0, 1, 2, 3, 1, 0, 0);
     sheet_put(&pair, 1, 1, 2, 3, -1, 0, 0);
-    cs_springs_add_force(&pair.system.springs, 2, pair.x, pair.v, CS_PART_ALL, &all, f);
-    cs_springs_add_jvp(&pair.system.springs, 2, pair.x, pair.v, CS_PART_DAMPING, NULL, pair.v,
-                       &all, df);
+    cs_springs_add_force(
+        &pair.system.springs, 2,
+        &(struct cs_eval){.x = pair.x, .v = pair.v, .parts = CS_PART_ALL, .block = &all}, f);
+    cs_springs_add_jvp(
+        &pair.system.springs, 2,
+        &(struct cs_eval){
+            .x = pair.x, .v = pair.v, .parts = CS_PART_DAMPING, .dv = pair.v, .block = &all},
+        df);
     for (size_t i = 0; i < 6; i++) {
         ck_assert_double_eq(f[i], 0);
         ck_assert_double_finite(df[i]);

@@ -16,7 +16,8 @@ static void force(const struct sheet *sheet, uint32_t parts, double f[VALUES]) {
         cs_normals_update(&sheet->system, sheet->x);
     for (size_t i = 0; i < VALUES; i++)
         f[i] = 1e9; // the sum overwrites
-    cs_terms_force(&sheet->system, 0, sheet->x, sheet->v, parts, f);
+    cs_terms_force(&sheet->system,
+                   &(struct cs_eval){.x = sheet->x, .v = sheet->v, .parts = parts}, f);
 }
 
 /* share of the area: a cell of 1 m2 inside, halves and quarters at the border */
@@ -37,7 +38,8 @@ START_TEST(gravity_is_mass_times_g) {
     double energy = 0;
     for (size_t i = 0; i < N; i++)
         energy -= 0.5 * area_of(i) * (sheet.x[i] - 2 * sheet.x[N + i] + 3 * sheet.x[2 * N + i]);
-    ck_assert_double_eq_tol(cs_term_gravity.energy(&sheet.system, sheet.x), energy, 1e-14);
+    ck_assert_double_eq_tol(
+        cs_term_gravity.energy(&sheet.system, &(struct cs_eval){.x = sheet.x}), energy, 1e-14);
     sheet_close(&sheet);
 }
 END_TEST
@@ -162,7 +164,10 @@ START_TEST(derivative_is_zero_on_pins) {
     for (size_t i = 0; i < VALUES; i++)
         d[i] = 1 + (double)(i % 7);
     cs_normals_update(&sheet.system, sheet.x);
-    cs_terms_jvp(&sheet.system, 0, sheet.x, sheet.v, CS_PART_ALL, d, d, df);
+    cs_terms_jvp(
+        &sheet.system,
+        &(struct cs_eval){.x = sheet.x, .v = sheet.v, .parts = CS_PART_ALL, .dx = d, .dv = d},
+        df);
     SHEET_ASSERT_AT(&sheet, df, 5, 0, 0, 0, 0);
     ck_assert_double_ne(df[6], 0);
     sheet_close(&sheet);

@@ -1,12 +1,17 @@
-/* bounds.h - how stiff a system is at rest, for automatic steps. */
+/* bounds.h - how stiff a system is, for automatic steps. */
 #ifndef CS_BOUNDS_H
 #define CS_BOUNDS_H
 
 #include "model/system/system.h"
 
-/* Sets view.omega and view.delta by row sums (Gershgorin): omega^2 = max over free particles of
- * 2 sum k / m, valid while no spring is shorter than half its rest length; delta = max of
- * (sum d + drag / 2) / m, for half the largest damping rate. work has 2n doubles. */
+/* Bounds from the forces' absolute row sums (Gershgorin): omega^2 is the largest sum of df/dx
+ * over the mass of a free particle, delta half the largest of df/dv. at: at that state; NULL:
+ * what holds for the whole run, as far as forces can say: springs that are not shorter than
+ * half their rest length, dampers, drag. work has 2n doubles. */
+void cs_bounds_at(const struct cs_system *system, const struct cs_eval *at, double *work,
+                  double *omega, double *delta);
+
+/* Sets view.omega and view.delta to those of the whole run. */
 void cs_bounds_set(struct cs_system *system, double *work);
 
 #endif

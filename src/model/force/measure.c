@@ -5,17 +5,20 @@
 
 #include <math.h>
 
-struct cs_energy cs_measure_energy(const struct cs_system *system, const double *x,
+struct cs_energy cs_measure_energy(const struct cs_system *system, double t, const double *x,
                                    const double *v) {
     const size_t n = system->view.n;
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     struct cs_energy energy = {0};
+    double *const kinds[CS_ENERGIES] = {[CS_ENERGY_ELASTIC] = &energy.elastic,
+                                        [CS_ENERGY_GRAVITY] = &energy.gravity,
+                                        [CS_ENERGY_OTHER] = &energy.other};
     for (size_t i = 0; i < n; i++)
         energy.kinetic += 0.5 * system->mass[i] *
                           (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->energy)
-            *(system->terms[k] == &cs_term_gravity ? &energy.gravity : &energy.elastic) +=
-                system->terms[k]->energy(system, x);
+            *kinds[system->terms[k]->energy_kind] += system->terms[k]->energy(system, &at);
     return energy;
 }
 
@@ -58,7 +61,8 @@ void cs_measure_particle_force(const struct cs_system *system, double t, const d
     const size_t n = system->view.n;
     if (cs_terms_need_normals(system, CS_PART_ALL))
         cs_normals_update(system, x);
-    cs_terms_force(system, t, x, v, CS_PART_ALL, work);
+    cs_terms_force(system, &(struct cs_eval){.t = t, .x = x, .v = v, .parts = CS_PART_ALL},
+                   work);
     for (size_t i = 0; i < n; i++)
         out[i] = sqrt(work[i] * work[i] + work[n + i] * work[n + i] +
                       work[2 * n + i] * work[2 * n + i]);

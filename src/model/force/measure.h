@@ -6,9 +6,18 @@
 
 struct cs_energy {
     double kinetic, elastic, gravity; /* J; gravity's potential is 0 at the origin */
+    double other;                     /* J, potential of all other forces that have one */
 };
-struct cs_energy cs_measure_energy(const struct cs_system *system, const double *x,
+struct cs_energy cs_measure_energy(const struct cs_system *system, double t, const double *x,
                                    const double *v);
+
+/* All of it, and all but gravity's: what motion and forces between things hold. */
+static inline double cs_energy_whole(const struct cs_energy *energy) {
+    return energy->kinetic + energy->elastic + energy->gravity + energy->other;
+}
+static inline double cs_energy_held(const struct cs_energy *energy) {
+    return energy->kinetic + energy->elastic + energy->other;
+}
 
 /* Largest |length / rest length - 1| over all springs; 0 without springs. */
 double cs_measure_strain(const struct cs_system *system, const double *x);

@@ -3,104 +3,154 @@
  * particle's share of the area. */
 #include "model/force/normals.h"
 #include "model/force/terms.h"
+#include "scene/event_key.h"
 
 #include <math.h>
 
-static double share_of(const struct cs_system *system, bool by_area, uint32_t i) {
+static double share_of(const struct cs_system *system, bool by_area, size_t i) {
     return by_area ? system->area[i] : 1;
 }
 
-static void drag_force(const struct cs_system *system, double t, const double *x,
-                       const double *v, uint32_t parts, const struct cs_block *block,
-                       double *f) {
-    (void)t, (void)x, (void)parts;
-    const uint32_t n = system->view.n;
+/* c of particle i in N s/m */
+static double drag_of(const struct cs_system *system, size_t i) {
     const struct cs_forces *forces = &system->scene->forces;
+    return forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i);
+}
+
+static struct cs_plan_row drag_plan(const struct cs_scene *scene) {
+    const bool acts = cs_event_key_acts(scene, scene->forces.drag, "forces.drag");
+    return (struct cs_plan_row){.built = acts,
+                                .why = acts ? "forces.drag is above 0" : "forces.drag is 0"};
+}
+
+static uint32_t drag_uses(const struct cs_scene *scene) {
+    return scene->forces.drag_unit == CS_DRAG_AREA ? CS_USE_AREA : 0;
+}
+
+/* f -= c v, which is linear: v may be a direction */
+static void add_drag(const struct cs_system *system, const double *v,
+                     const struct cs_block *block, double *f) {
+    const uint32_t n = system->view.n;
     for (uint32_t c = 0; c < 3; c++, f += n, v += n)
         for (uint32_t i = block->begin; i < block->end; i++)
-            f[i] -=
-                forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i) * v[i];
+            f[i] -= drag_of(system, i) * v[i];
 }
 
-static void drag_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                     uint32_t parts, const double *dx, const double *dv,
-                     const struct cs_block *block, double *df) {
-    (void)dx, (void)v;
-    if (dv)
-        drag_force(system, t, x, dv, parts, block, df);
+static void drag_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    add_drag(system, at->v, at->block, f);
 }
 
-static void drag_diagonal(const struct cs_system *system, const double *x, double *kxx,
-                          double *dvv) {
-    (void)x, (void)kxx;
-    const uint32_t n = system->view.n;
-    const struct cs_forces *forces = &system->scene->forces;
-    for (uint32_t i = 0; i < n; i++) {
-        const double c = forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i);
-        dvv[i] -= c;
-        dvv[3 * (size_t)n + i] -= c;
-        dvv[5 * (size_t)n + i] -= c;
-    }
+static void drag_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    if (at->dv)
+        add_drag(system, at->dv, at->block, df);
 }
+
+static void drag_scalar(const struct cs_system *system, const struct cs_matrix *matrix,
+                        size_t begin, size_t end, double *diagonal) {
+    for (size_t i = begin; i < end; i++)
+        diagonal[i] -= matrix->cd * drag_of(system, i);
+}
+
+static void drag_bound(const struct cs_system *system, const struct cs_row_sums *sums) {
+    for (size_t i = 0; i < system->view.n; i++)
+        sums->damping[i] += drag_of(system, i);
+}
+
+static const char *const drag_ramps[] = {"forces.drag", NULL};
 
 const struct cs_term cs_term_drag = {
+    .name = "drag",
     .parts = CS_PART_DRAG,
-    .feature = CS_FEATURE_DRAG,
+    .plan = drag_plan,
+    .uses = drag_uses,
+    .ramps = drag_ramps,
     .add_force = drag_force,
     .add_jvp = drag_jvp,
-    .add_diagonal = drag_diagonal,
+    .add_scalar = drag_scalar,
+    .add_bound = drag_bound,
 };
 
-static void wind_force(const struct cs_system *system, double t, const double *x,
-                       const double *v, uint32_t parts, const struct cs_block *block,
-                       double *f) {
-    (void)t, (void)x, (void)v, (void)parts;
-    const uint32_t n = system->view.n;
+static bool has_gust(const struct cs_scene *scene) {
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (cs_scene_events(scene)[e].wind.present)
+            return true;
+    return false;
+}
+
+static struct cs_plan_row wind_plan(const struct cs_scene *scene) {
+    const struct cs_wind *wind = &scene->forces.wind;
+    const double strength = wind->present ? wind->strength : 0;
+    const bool acts =
+        has_gust(scene) || cs_event_key_acts(scene, strength, "forces.wind.strength");
+    return (struct cs_plan_row){.built = acts,
+                                .why = acts            ? "forces.wind blows; it needs normals"
+                                       : wind->present ? "forces.wind.strength is 0"
+                                                       : "no forces.wind"};
+}
+
+static uint32_t wind_uses(const struct cs_scene *scene) {
+    const bool by_area = scene->forces.wind.strength_unit == CS_WIND_PA;
+    return CS_USE_NORMALS | (by_area ? CS_USE_AREA : 0);
+}
+
+/* s of particle i in N, which is also the greatest force */
+static double strength_of(const struct cs_system *system, size_t i) {
     const struct cs_wind *wind = &system->scene->forces.wind;
-    const double *w = wind->direction;
+    return wind->strength * share_of(system, wind->strength_unit == CS_WIND_PA, i);
+}
+
+static void wind_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    const size_t n = system->view.n;
+    const double *w = system->scene->forces.wind.direction;
     const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
-    for (uint32_t i = block->begin; i < block->end; i++) {
-        const double push = wind->strength *
-                            share_of(system, wind->strength_unit == CS_WIND_PA, i) *
-                            fabs(w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i]);
+    for (size_t i = at->block->begin; i < at->block->end; i++) {
+        const double push =
+            strength_of(system, i) * fabs(w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i]);
         f[i] += push * w[0];
-        f[n + (size_t)i] += push * w[1];
-        f[2 * (size_t)n + i] += push * w[2];
+        f[n + i] += push * w[1];
+        f[2 * n + i] += push * w[2];
     }
 }
 
-/* d|w.n| = sign(w.n) w.dn */
-static void wind_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                     uint32_t parts, const double *dx, const double *dv,
-                     const struct cs_block *block, double *df) {
-    (void)t, (void)v, (void)parts, (void)dv;
-    if (!dx)
-        return;
-    const uint32_t n = system->view.n;
-    const struct cs_wind *wind = &system->scene->forces.wind;
-    const double *w = wind->direction;
+/* d|w.n| = sign(w.n) w.dn, of the particles [begin, end) of a body */
+static void add_turned(const struct cs_system *system, const struct cs_eval *at,
+                       const struct cs_body_range *body, uint32_t begin, uint32_t end,
+                       double *df) {
+    const size_t n = system->view.n;
+    const double *w = system->scene->forces.wind.direction;
     const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
-    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+    for (uint32_t i = begin; i < end; i++) {
+        double dn[3];
+        cs_normal_derivative(system, body, i, at->x, at->dx, dn);
+        const double facing = w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i];
+        const double turn = w[0] * dn[0] + w[1] * dn[1] + w[2] * dn[2];
+        const double strength = strength_of(system, i);
+        const double push = (facing < 0 ? -strength : strength) * turn;
+        df[i] += push * w[0];
+        df[n + i] += push * w[1];
+        df[2 * n + i] += push * w[2];
+    }
+}
+
+static void wind_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    for (uint32_t b = 0; at->dx && b < system->scene->bodies.n; b++) {
         const struct cs_body_range *body = system->bodies + b;
         const uint32_t end = body->first + body->count;
-        for (uint32_t i = block->begin > body->first ? block->begin : body->first;
-             i < end && i < block->end; i++) {
-            double dn[3];
-            cs_normal_derivative(system, body, i, x, dx, dn);
-            const double facing = w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i];
-            const double turn = w[0] * dn[0] + w[1] * dn[1] + w[2] * dn[2];
-            const double push = (facing < 0 ? -wind->strength : wind->strength) *
-                                share_of(system, wind->strength_unit == CS_WIND_PA, i) * turn;
-            df[i] += push * w[0];
-            df[n + (size_t)i] += push * w[1];
-            df[2 * (size_t)n + i] += push * w[2];
-        }
+        add_turned(system, at, body,
+                   at->block->begin > body->first ? at->block->begin : body->first,
+                   end < at->block->end ? end : at->block->end, df);
     }
 }
 
+static const char *const wind_ramps[] = {"forces.wind.strength", NULL};
+
 const struct cs_term cs_term_wind = {
+    .name = "wind",
     .parts = CS_PART_WIND,
-    .feature = CS_FEATURE_WIND,
+    .plan = wind_plan,
+    .uses = wind_uses,
+    .ramps = wind_ramps,
     .add_force = wind_force,
     .add_jvp = wind_jvp,
+    .strongest = strength_of,
 };

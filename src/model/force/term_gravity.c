@@ -1,21 +1,29 @@
 /* Gravity: f = m g; its potential -m g.x is 0 at the origin. */
 #include "model/force/terms.h"
+#include "scene/event_key.h"
 
-static void add_force(const struct cs_system *system, double t, const double *x,
-                      const double *v, uint32_t parts, const struct cs_block *block,
-                      double *f) {
-    (void)t, (void)x, (void)v, (void)parts;
+#include <math.h>
+
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    const double *g = scene->forces.gravity;
+    const double size = fabs(g[0]) + fabs(g[1]) + fabs(g[2]);
+    const bool acts = cs_event_key_acts(scene, size, "forces.gravity");
+    return (struct cs_plan_row){.built = acts,
+                                .why = acts ? "forces.gravity" : "forces.gravity is 0"};
+}
+
+static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
     for (size_t c = 0; c < 3; c++) {
         const double g = system->scene->forces.gravity[c];
-        for (size_t i = block->begin; i < block->end && g != 0; i++)
+        for (size_t i = at->block->begin; i < at->block->end && g != 0; i++)
             f[c * n + i] += system->mass[i] * g;
     }
 }
 
-static double energy(const struct cs_system *system, const double *x) {
+static double energy(const struct cs_system *system, const struct cs_eval *at) {
     const uint32_t n = system->view.n;
-    const double *g = system->scene->forces.gravity;
+    const double *g = system->scene->forces.gravity, *x = at->x;
     double sum = 0;
     for (uint32_t i = 0; i < n; i++)
         sum -= system->mass[i] *
@@ -23,9 +31,20 @@ static double energy(const struct cs_system *system, const double *x) {
     return sum;
 }
 
+static double strongest(const struct cs_system *system, size_t i) {
+    const double *g = system->scene->forces.gravity;
+    return system->mass[i] * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+}
+
+static const char *const ramps[] = {"forces.gravity", NULL};
+
 const struct cs_term cs_term_gravity = {
+    .name = "gravity",
     .parts = CS_PART_GRAVITY,
-    .feature = CS_FEATURE_GRAVITY,
+    .plan = plan,
+    .ramps = ramps,
     .add_force = add_force,
     .energy = energy,
+    .energy_kind = CS_ENERGY_GRAVITY,
+    .strongest = strongest,
 };

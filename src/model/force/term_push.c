@@ -1,21 +1,38 @@
-/* Impacts and prods over an interval: f = m a, the same a for all particles of an impact, the
- * same f for all that a prod sees. To a method they are gravity: what leaves springs out, or
- * takes what is outside apart, has them with it. */
+/* Impacts and viewpoint forces over an interval: f = m a, the same a for all particles of an
+ * impact, the same f for all that a viewpoint force sees. Both are constant between two calls
+ * of cs_events_apply. */
 #include "model/force/terms.h"
 
-static void add_force(const struct cs_system *system, double t, const double *x,
-                      const double *v, uint32_t parts, const struct cs_block *block,
-                      double *f) {
-    (void)t, (void)x, (void)v, (void)parts;
+#include <math.h>
+
+/* the plan has a line for events as such */
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    const struct cs_event *events = cs_scene_events(scene);
+    struct cs_plan_row row = {0};
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        row.built |=
+            (events[e].impact.present || events[e].prod.present) && isnan(events[e].at);
+    return row;
+}
+
+static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
     const double *push = system->push;
-    for (size_t c = 0; push && c < 3; c++)
-        for (size_t i = block->begin; i < block->end; i++)
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = at->block->begin; i < at->block->end; i++)
             f[c * n + i] += system->mass[i] * push[c * n + i];
 }
 
+static double strongest(const struct cs_system *system, size_t i) {
+    const size_t n = system->view.n;
+    const double *a = system->push + i;
+    return system->mass[i] * sqrt(a[0] * a[0] + a[n] * a[n] + a[2 * n] * a[2 * n]);
+}
+
 const struct cs_term cs_term_push = {
+    .name = "pushes",
     .parts = CS_PART_EXTERNAL,
-    .feature = CS_FEATURE_EVENTS,
+    .plan = plan,
     .add_force = add_force,
+    .strongest = strongest,
 };

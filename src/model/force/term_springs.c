@@ -1,22 +1,31 @@
 /* Springs with dampers: the kernels of springs.h as a term. */
 #include "model/force/terms.h"
 
-static void add_force(const struct cs_system *system, double t, const double *x,
-                      const double *v, uint32_t parts, const struct cs_block *block,
-                      double *f) {
-    (void)t;
-    cs_springs_add_force(&system->springs, system->view.n, x, v, parts, block, f);
+/* the plan has a line for springs, with the bytes of their arrays */
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    uint32_t n_springs = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        cs_springs_of_body(cs_scene_bodies(scene) + b, b, 0, NULL, NULL, &n_springs);
+    return (struct cs_plan_row){.built = n_springs > 0};
 }
 
-static double energy(const struct cs_system *system, const double *x) {
-    return cs_springs_energy(&system->springs, system->view.n, x, CS_PART_SPRINGS);
+static void prepare(const struct cs_system *system, const struct cs_eval *at) {
+    if (at->dx || at->dv)
+        cs_springs_wait_jvp(&system->springs, system->view.n, at);
+    else
+        cs_springs_wait_force(&system->springs, system->view.n, at);
 }
 
-static void add_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                    uint32_t parts, const double *dx, const double *dv,
-                    const struct cs_block *block, double *df) {
-    (void)t;
-    cs_springs_add_jvp(&system->springs, system->view.n, x, v, parts, dx, dv, block, df);
+static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    cs_springs_add_force(&system->springs, system->view.n, at, f);
+}
+
+static void add_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    cs_springs_add_jvp(&system->springs, system->view.n, at, df);
+}
+
+static double energy(const struct cs_system *system, const struct cs_eval *at) {
+    return cs_springs_energy(&system->springs, system->view.n, at->x, CS_PART_SPRINGS);
 }
 
 static void add_diagonal(const struct cs_system *system, const double *x, double *kxx,
@@ -24,11 +33,34 @@ static void add_diagonal(const struct cs_system *system, const double *x, double
     cs_springs_add_diagonal(&system->springs, system->view.n, x, kxx, dvv);
 }
 
+/* A row has k u u^T of each spring at the particle, and the same again at its other ends; while
+ * no spring is shorter than half its rest length neither part of it is above k. */
+static void add_bound(const struct cs_system *system, const struct cs_row_sums *sums) {
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const uint32_t ends[2] = {cs_spring_a(run, i), cs_spring_b(run, i)};
+            for (int e = 0; e < 2; e++) {
+                sums->stiffness[ends[e]] += 2 * cs_spring_stiffness(run, i);
+                sums->damping[ends[e]] += 2 * run->damping;
+            }
+        }
+    }
+}
+
+static const char *const ramps[] = {"bodies.springs.stretch", "bodies.springs.shear",
+                                    "bodies.springs.bend", "bodies.springs.damping", NULL};
+
 const struct cs_term cs_term_springs = {
-    .parts = CS_PART_SPRINGS | CS_PART_DAMPING,
-    .feature = CS_FEATURE_SPRINGS,
+    .name = "springs",
+    .parts = CS_PART_DAMPED_SPRINGS,
+    .plan = plan,
+    .ramps = ramps,
+    .prepare = prepare,
     .add_force = add_force,
-    .energy = energy,
     .add_jvp = add_jvp,
+    .energy = energy,
+    .energy_kind = CS_ENERGY_ELASTIC,
     .add_diagonal = add_diagonal,
+    .add_bound = add_bound,
 };

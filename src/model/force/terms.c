@@ -1,19 +1,21 @@
+/* The list of forces, and sums over those that a scene has: block by block, in one order. */
 #include "model/force/terms.h"
 
 #include "base/pool.h"
 
 #include <string.h>
 
-const struct cs_term *const cs_terms[CS_TERMS] = {&cs_term_springs, &cs_term_gravity,
-                                                  &cs_term_drag, &cs_term_wind, &cs_term_push};
+#define X(name) &cs_term_##name,
+const struct cs_term *const cs_terms[] = {CS_TERM_LIST(X)};
+#undef X
+const uint32_t cs_n_terms = sizeof cs_terms / sizeof *cs_terms;
+_Static_assert(sizeof cs_terms / sizeof *cs_terms <= CS_TERMS_MOST,
+               "a plan has a row for each");
 
-/* what blocks are done with; dx and dv are of a product alone */
+/* what blocks are done with */
 struct job {
     const struct cs_system *system;
-    double t;
-    const double *x, *v;
-    uint32_t parts;
-    const double *dx, *dv;
+    struct cs_eval at;
     double *to;
 };
 
@@ -45,22 +47,34 @@ static void clear_pinned(const struct cs_system *system, const struct cs_block *
             f[c * system->view.n + system->pinned[p]] = 0;
 }
 
+static bool is_asked(const struct cs_term *term, const struct cs_eval *at) {
+    return term->parts & at->parts;
+}
+
+static void prepare(const struct job *job) {
+    const struct cs_system *system = job->system;
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->prepare && is_asked(system->terms[k], &job->at))
+            system->terms[k]->prepare(system, &job->at);
+}
+
 static void force_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    struct cs_eval at = job->at;
+    at.block = &block;
     clear(system, &block, job->to);
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->parts & job->parts)
-            system->terms[k]->add_force(system, job->t, job->x, job->v, job->parts, &block,
-                                        job->to);
+        if (is_asked(system->terms[k], &at))
+            system->terms[k]->add_force(system, &at, job->to);
     clear_pinned(system, &block, job->to);
 }
 
-void cs_terms_force(const struct cs_system *system, double t, const double *x, const double *v,
-                    uint32_t parts, double *f) {
-    struct job job = {system, t, x, v, parts, NULL, NULL, f};
-    cs_springs_wait_force(&system->springs, system->view.n, x, v, parts);
+void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    struct job job = {system, *at, f};
+    job.at.dx = job.at.dv = NULL;
+    prepare(&job);
     cs_pool_run(system->springs.n_blocks, force_block, &job);
 }
 
@@ -68,30 +82,78 @@ static void jvp_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    struct cs_eval at = job->at;
+    at.block = &block;
     clear(system, &block, job->to);
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->parts & job->parts && system->terms[k]->add_jvp)
-            system->terms[k]->add_jvp(system, job->t, job->x, job->v, job->parts, job->dx,
-                                      job->dv, &block, job->to);
+        if (is_asked(system->terms[k], &at) && system->terms[k]->add_jvp)
+            system->terms[k]->add_jvp(system, &at, job->to);
     clear_pinned(system, &block, job->to);
 }
 
-void cs_terms_jvp(const struct cs_system *system, double t, const double *x, const double *v,
-                  uint32_t parts, const double *dx, const double *dv, double *df) {
-    struct job job = {system, t, x, v, parts, dx, dv, df};
-    cs_springs_wait_jvp(&system->springs, system->view.n, x, v, parts, dx, dv);
+void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
+    struct job job = {system, *at, df};
+    prepare(&job);
     cs_pool_run(system->springs.n_blocks, jvp_block, &job);
 }
 
-void cs_terms_diagonal(const struct cs_system *system, const double *x, double *kxx,
+/* a term's share of the matrix as blocks (6,n) */
+static void add_own(const struct cs_system *system, const struct cs_matrix *matrix,
+                    const struct cs_term *term, double *blocks) {
+    if (term->add_blocks)
+        term->add_blocks(system, matrix, 0, system->view.n, blocks);
+    for (size_t c = 0; c < 6 && term->add_scalar; c += c ? 2 : 3)
+        term->add_scalar(system, matrix, 0, system->view.n, blocks + c * system->view.n);
+}
+
+void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv) {
-    memset(kxx, 0, 6 * sizeof *kxx * system->view.n);
-    memset(dvv, 0, 6 * sizeof *dvv * system->view.n);
+    const size_t bytes = 6 * sizeof *kxx * system->view.n;
+    const struct cs_matrix k = {.t = at->t, .x = at->x, .v = at->v, .ck = 1};
+    const struct cs_matrix d = {.t = at->t, .x = at->x, .v = at->v, .cd = 1};
+    memset(kxx, 0, bytes);
+    memset(dvv, 0, bytes);
+    for (uint32_t term = 0; term < system->n_terms; term++) {
+        if (system->terms[term]->add_diagonal)
+            system->terms[term]->add_diagonal(system, at->x, kxx, dvv);
+        add_own(system, &k, system->terms[term], kxx);
+        add_own(system, &d, system->terms[term], dvv);
+    }
+}
+
+void cs_terms_add_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                         size_t begin, size_t end, double *diagonal, double *blocks) {
+    for (uint32_t k = 0; k < system->n_terms; k++) {
+        const struct cs_term *term = system->terms[k];
+        if (term->add_scalar)
+            term->add_scalar(system, matrix, begin, end, diagonal);
+        if (term->add_blocks)
+            term->add_blocks(system, matrix, begin, end, blocks);
+    }
+}
+
+bool cs_terms_have_blocks(const struct cs_system *system) {
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->add_diagonal)
-            system->terms[k]->add_diagonal(system, x, kxx, dvv);
+        if (system->terms[k]->add_blocks)
+            return true;
+    return false;
+}
+
+static uint32_t use_of(const struct cs_term *term, const struct cs_scene *scene) {
+    return term->uses ? term->uses(scene) : 0;
 }
 
 bool cs_terms_need_normals(const struct cs_system *system, uint32_t parts) {
-    return system->normals && parts & CS_PART_WIND;
+    for (uint32_t k = 0; system->normals && k < system->n_terms; k++)
+        if (system->terms[k]->parts & parts &&
+            use_of(system->terms[k], system->scene) & CS_USE_NORMALS)
+            return true;
+    return false;
+}
+
+uint32_t cs_terms_use(const struct cs_scene *scene, const struct cs_plan *plan) {
+    uint32_t uses = 0;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        uses |= plan->forces[k].built ? use_of(cs_terms[k], scene) : 0;
+    return uses;
 }

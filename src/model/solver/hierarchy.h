@@ -26,6 +26,7 @@ struct cs_hierarchy {
     uint32_t columns;                 /* of particles a row; rows are cells apart, see pitch */
     const struct cs_spring_run *runs; /* (n_runs) the body's, borrowed */
     uint32_t n_runs;
+    bool forced; /* the matrix has blocks at single particles, not numbers alone */
     const struct cs_hierarchy_kind *kind;
     uint32_t n_levels;
     struct cs_level levels[CS_HIERARCHY_MOST];
@@ -43,7 +44,7 @@ struct cs_hierarchy_kind {
     void (*prolong_x)(const struct cs_level *coarse, struct cs_level *fine);
 };
 
-/* Make the levels; first, count, columns and the runs are set. CS_ERR_MEMORY. */
+/* Make the levels; first, count, columns, runs and forced are set. CS_ERR_MEMORY. */
 enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
 enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
@@ -51,7 +52,7 @@ enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_ar
 
 /* Bytes of the numbers: of a grid with all six kinds of springs; of a mesh about, as what its
  * aggregates have is known only when they are made. */
-size_t cs_hierarchy_grid_bytes(uint32_t columns, uint32_t rows);
+size_t cs_hierarchy_grid_bytes(uint32_t columns, uint32_t rows, bool forced);
 size_t cs_hierarchy_mesh_bytes(uint32_t n, uint32_t n_springs);
 
 /* s and w of a spring from the solver's factors, whose rows have `count` numbers; root is

@@ -104,7 +104,7 @@ static uint32_t rows_end(const struct transfer *transfer, uint32_t block) {
 CS_INLINE void add_springs(const struct cs_level *fine, const struct cs_level *coarse,
                            size_t row, size_t right, uint32_t s) {
     const size_t n = fine->n, m = coarse->n, step = fine->steps[s];
-    const bool factored = fine->form == CS_LEVEL_FACTORED;
+    const bool factored = cs_level_is_factored(fine);
     const size_t from = cell(fine, row, right);
     const size_t down = (step + PADDING) / fine->pitch;
     const ptrdiff_t across = (ptrdiff_t)step - (ptrdiff_t)(down * fine->pitch);
@@ -165,12 +165,13 @@ CS_CLONES static void coarsen_rows(void *arg, uint32_t block) {
 static void add_tie(const struct cs_level *fine, struct cs_level *coarse, uint32_t s, size_t i,
                     size_t alive) {
     const size_t n = fine->n, k = alive - fine->begin;
+    const size_t rows = cs_level_is_factored(fine) ? 4 : 6;
     float numbers[6], block[6];
     if (!cs_level_is_alive(fine, alive))
         return;
-    for (size_t c = 0; c < (fine->form == CS_LEVEL_FACTORED ? 4 : 6); c++)
-        numbers[c] = fine->springs[((fine->form == CS_LEVEL_FACTORED ? 4 : 6) * s + c) * n + i];
-    if (fine->form == CS_LEVEL_FACTORED)
+    for (size_t c = 0; c < rows; c++)
+        numbers[c] = fine->springs[(rows * s + c) * n + i];
+    if (rows == 4)
         cs_hierarchy_block(numbers, block);
     else
         memcpy(block, numbers, sizeof block);
@@ -261,8 +262,8 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
                                     struct cs_error *error) {
     struct cs_level *level = hierarchy->levels;
     hierarchy->kind = &grid;
-    *level =
-        level_of(CS_LEVEL_FACTORED, hierarchy->columns, hierarchy->count / hierarchy->columns);
+    *level = level_of(hierarchy->forced ? CS_LEVEL_FORCED : CS_LEVEL_FACTORED,
+                      hierarchy->columns, hierarchy->count / hierarchy->columns);
     for (uint32_t r = 0; r < hierarchy->n_runs; r++)
         run_step(hierarchy, hierarchy->runs + r);
     cs_level_take(level, 4 * (size_t)level->n_steps * level->n, arena, error);
@@ -274,8 +275,9 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
     return error->status;
 }
 
-size_t cs_hierarchy_grid_bytes(uint32_t columns, uint32_t rows) {
-    struct cs_level level = level_of(CS_LEVEL_FACTORED, columns, rows);
+size_t cs_hierarchy_grid_bytes(uint32_t columns, uint32_t rows, bool forced) {
+    struct cs_level level =
+        level_of(forced ? CS_LEVEL_FORCED : CS_LEVEL_FACTORED, columns, rows);
     size_t bytes = cs_level_bytes(&level, 4 * (size_t)CS_LEVEL_STEPS * level.n);
     while (level.columns > 1 || level.rows > 1) {
         level = next_of(&level);

@@ -129,7 +129,7 @@ CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_lev
     }
     const struct vectors y = times(get6(level->own + i, level->n), here);
     return form == CS_LEVEL_LISTS ? add_lists(level, i, p, here, y)
-                                  : add_steps(level, false, i, p, here, y);
+                                  : add_steps(level, form == CS_LEVEL_FORCED, i, p, here, y);
 }
 
 /* r -= A d, and where that is not all: e = a d + b D^-1 r, x += e */
@@ -156,6 +156,8 @@ CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
     const enum cs_level_form form = loop->level->form;
     if (form == CS_LEVEL_FACTORED)
         sweep_form(loop, CS_LEVEL_FACTORED, begin, end);
+    else if (form == CS_LEVEL_FORCED)
+        sweep_form(loop, CS_LEVEL_FORCED, begin, end);
     else if (form == CS_LEVEL_BLOCKS)
         sweep_form(loop, CS_LEVEL_BLOCKS, begin, end);
     else
@@ -223,7 +225,7 @@ CS_INLINE struct blocks sum_springs(const struct cs_level *level, size_t i) {
             sum = plus6(sum, get6(level->springs + k * 6 * CS_LANES, CS_LANES));
         return sum;
     }
-    const bool factored = level->form == CS_LEVEL_FACTORED;
+    const bool factored = cs_level_is_factored(level);
     const float *spring = level->springs + i;
     for (uint32_t s = 0; s < level->n_steps; s++) {
         const float *back = spring - level->steps[s];

@@ -27,6 +27,7 @@ enum { CS_LEVEL_STEPS = 6 };
 
 enum cs_level_form {
     CS_LEVEL_FACTORED, /* a grid, 4 numbers a spring: s and w of B = s I + w w^T */
+    CS_LEVEL_FORCED,   /* the same with 3x3 blocks in own: of forces at single particles */
     CS_LEVEL_BLOCKS,   /* a grid, 6 numbers a spring */
     CS_LEVEL_LISTS     /* a mesh, 6 numbers for either end of a spring */
 };
@@ -62,6 +63,11 @@ struct cs_level {
 size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers);
 enum cs_status cs_level_take(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                              struct cs_error *error);
+
+/* A grid's springs have 4 numbers, not 6. */
+static inline bool cs_level_is_factored(const struct cs_level *level) {
+    return level->form == CS_LEVEL_FACTORED || level->form == CS_LEVEL_FORCED;
+}
 
 static inline bool cs_level_is_alive(const struct cs_level *level, size_t i) {
     return level->own[i] > 0;

@@ -1,6 +1,7 @@
 #include "model/solver/linear.h"
 
 #include "base/vector.h"
+#include "model/force/terms.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,6 +14,8 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
         cs_arena_take_n(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
     linear->mass = cs_arena_take_n(arena, n, sizeof(double), error);
     linear->inverse = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
+    if (cs_terms_have_blocks(system))
+        linear->blocks = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
     double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
     for (int k = 0; k < 4; k++)
         *vectors[k] = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
@@ -42,13 +45,11 @@ static bool invert(double *blocks, size_t n, size_t i) {
 static void set_mass(void *arg, size_t begin, size_t end) {
     struct cs_linear *linear = arg;
     const struct cs_system *system = linear->system;
-    const struct cs_forces *forces = &system->scene->forces;
-    for (size_t i = begin; i < end; i++) {
-        const double drag =
-            forces->drag *
-            (forces->drag_unit == CS_DRAG_AREA && system->area ? system->area[i] : 1);
-        linear->mass[i] = linear->cm * system->mass[i] - linear->cd * drag;
-    }
+    for (size_t i = begin; i < end; i++)
+        linear->mass[i] = linear->matrix.cm * system->mass[i];
+    for (size_t c = 0; linear->blocks && c < 6; c++)
+        memset(linear->blocks + c * system->view.n + begin, 0, (end - begin) * sizeof(double));
+    cs_terms_add_matrix(system, &linear->matrix, begin, end, linear->mass, linear->blocks);
 }
 
 /* how many blocks are not positive definite */
@@ -63,9 +64,13 @@ static double invert_part(const void *arg, size_t begin, size_t end) {
 /* false: a diagonal block is not positive definite */
 static bool invert_blocks(struct cs_linear *linear) {
     const size_t n = linear->system->view.n;
-    memset(linear->inverse, 0, 6 * n * sizeof(double));
+    if (linear->blocks)
+        memcpy(linear->inverse, linear->blocks, 6 * n * sizeof(double));
+    else
+        memset(linear->inverse, 0, 6 * n * sizeof(double));
     for (size_t c = 0; c < 6; c += c ? 2 : 3)
-        memcpy(linear->inverse + c * n, linear->mass, n * sizeof(double));
+        for (size_t i = 0; i < n; i++)
+            linear->inverse[c * n + i] += linear->mass[i];
     cs_springs_factor_diagonal(&linear->system->springs, (uint32_t)n, linear->factors,
                                linear->inverse);
     return cs_vector_sum(n, invert_part, linear) == 0;
@@ -78,20 +83,22 @@ static double mean_mass(const struct cs_system *system) {
     return sum / system->view.n;
 }
 
-bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
-                     bool psd) {
+bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     const struct cs_system *system = linear->system;
     const struct cs_view *view = &system->view;
-    const double stiffness = -ck * view->omega * view->omega - 2 * cd * view->delta;
-    linear->cm = cm, linear->cd = cd, linear->ck = ck;
-    linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * cm;
-    cs_springs_factor(&system->springs, view->n, x, cd, ck, psd, linear->factors);
+    const double stiffness =
+        -matrix->ck * view->omega * view->omega - 2 * matrix->cd * view->delta;
+    linear->matrix = *matrix;
+    linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * matrix->cm;
+    cs_springs_factor(&system->springs, view->n, matrix, linear->factors);
     cs_vector_share(view->n, set_mass, linear);
     if (linear->stiff)
-        cs_multigrid_setup(&linear->multigrid, linear->factors, linear->mass,
-                           mean_mass(system) * (cm + stiffness));
+        cs_multigrid_setup(
+            &linear->multigrid,
+            &(struct cs_multigrid_matrix){linear->factors, linear->mass, linear->blocks,
+                                          mean_mass(system) * (matrix->cm + stiffness)});
     /* an exact matrix shows in its blocks whether it is definite, mostly */
-    return (linear->stiff && psd) || invert_blocks(linear);
+    return (linear->stiff && matrix->psd) || invert_blocks(linear);
 }
 
 static void clear_pinned(const struct cs_system *system, double *p) {
@@ -107,6 +114,20 @@ struct product {
     double *to;
 };
 
+/* to += blocks times from, of symmetric blocks (6,n) */
+static void add_blocks(const struct product *product, const double *b, size_t begin,
+                       size_t end) {
+    const size_t n = product->linear->system->view.n;
+    const double *p = product->from;
+    double *restrict y = product->to;
+    for (size_t i = begin; i < end; i++) {
+        const double px = p[i], py = p[n + i], pz = p[2 * n + i];
+        y[i] += b[i] * px + b[n + i] * py + b[2 * n + i] * pz;
+        y[n + i] += b[n + i] * px + b[3 * n + i] * py + b[4 * n + i] * pz;
+        y[2 * n + i] += b[2 * n + i] * px + b[4 * n + i] * py + b[5 * n + i] * pz;
+    }
+}
+
 static void mul_mass(void *arg, size_t begin, size_t end) {
     const struct product *product = arg;
     const double *mass = product->linear->mass;
@@ -114,6 +135,8 @@ static void mul_mass(void *arg, size_t begin, size_t end) {
     for (size_t c = 0; c < 3; c++)
         for (size_t i = begin; i < end; i++)
             product->to[c * n + i] = mass[i] * product->from[c * n + i];
+    if (product->linear->blocks)
+        add_blocks(product, product->linear->blocks, begin, end);
 }
 
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {

@@ -1,5 +1,5 @@
-/* linear.h - the one linear solver: A u = b with A = cm M + cd df/dv + ck df/dx of springs,
- * dampers and drag, by conjugate gradients without assembling A.
+/* linear.h - the one linear solver: A u = b with A = cm M + cd df/dv + ck df/dx of the forces
+ * of CS_PART_LINEARISED, by conjugate gradients without assembling A.
  *
  * The preconditioner is multigrid (multigrid.h) where both hold, and else the inverses of the
  * 3x3 blocks of A's diagonal:
@@ -18,9 +18,10 @@ enum { CS_LINEAR_STIFF = 16, CS_LINEAR_PATIENCE = 500 };
 
 struct cs_linear {
     const struct cs_system *system; /* borrowed */
-    double cm, cd, ck;
-    double *factors;       /* 4 doubles a spring */
-    double *mass;          /* (n) diagonal part: cm m - cd drag */
+    struct cs_matrix matrix;        /* of the last setup; its arrays are the caller's */
+    double *factors;                /* 4 doubles a spring */
+    double *mass;                   /* (n) diagonal part: cm m and the forces' shares */
+    double *blocks;        /* (6,n) the forces' shares that are blocks; NULL: there are none */
     double *inverse;       /* (6,n) inverses of the diagonal blocks */
     double *r, *z, *p, *q; /* (3,n) each */
     struct cs_multigrid multigrid;
@@ -31,10 +32,9 @@ struct cs_linear {
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error);
 
-/* Prepares A at x. cm > 0, cd <= 0, ck <= 0. false: a diagonal block is not positive definite
- * (only without psd). */
-bool cs_linear_setup(struct cs_linear *linear, const double *x, double cm, double cd, double ck,
-                     bool psd);
+/* Prepares A. cm > 0, cd <= 0, ck <= 0. false: a diagonal block is not positive definite (only
+ * without psd). */
+bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix);
 
 /* y = A p for p that is 0 on pinned particles; y is 0 there too. */
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y);

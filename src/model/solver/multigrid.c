@@ -2,6 +2,7 @@
 
 #include "base/clones.h"
 #include "base/pool.h"
+#include "model/force/terms.h"
 #include "scene/shape.h"
 
 enum { ROW = 4096 }; /* particles of a mesh that are handled as a row; cells of a block */
@@ -26,7 +27,8 @@ static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t
                                  .count = range->count,
                                  .columns = range->mesh ? ROW : range->columns,
                                  .runs = springs->runs + begin,
-                                 .n_runs = end - begin};
+                                 .n_runs = end - begin,
+                                 .forced = cs_terms_have_blocks(system)};
 }
 
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
@@ -45,7 +47,7 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
     return error->status;
 }
 
-size_t cs_multigrid_bytes(const struct cs_scene *scene) {
+size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     size_t bytes = 0;
     for (uint32_t b = 0; b < scene->bodies.n && is_worth_it(scene); b++) {
@@ -55,7 +57,7 @@ size_t cs_multigrid_bytes(const struct cs_scene *scene) {
         bytes += bodies[b].mesh.present
                      ? cs_hierarchy_mesh_bytes((uint32_t)cs_shape_count(bodies + b), n_springs)
                      : cs_hierarchy_grid_bytes((uint32_t)bodies[b].cloth.grid[0],
-                                               (uint32_t)bodies[b].cloth.grid[1]);
+                                               (uint32_t)bodies[b].cloth.grid[1], forced);
     }
     return bytes;
 }
@@ -67,6 +69,11 @@ struct exchange {
     const double *from;
     double *to;
     double gain;
+};
+
+struct loading {
+    struct exchange exchange; /* first: loops take it for the whole */
+    const struct cs_multigrid_matrix *matrix;
 };
 
 static uint32_t rows_of_block(const struct cs_hierarchy *hierarchy) {
@@ -93,20 +100,25 @@ static struct row row_of(const struct cs_hierarchy *hierarchy, uint32_t block, u
                         left < hierarchy->columns ? left : hierarchy->columns};
 }
 
-/* a mesh has blocks already on its first level */
-CS_CLONES static void load_mass(void *arg, uint32_t block) {
-    const struct exchange *exchange = arg;
-    const struct cs_hierarchy *hierarchy = exchange->hierarchy;
+/* own of the first level from the matrix's mass and blocks, 0 where a particle is pinned */
+CS_CLONES static void load_own(void *arg, uint32_t block) {
+    static const bool on_diagonal[6] = {true, false, false, true, false, true};
+    const struct loading *loading = arg;
+    const struct cs_hierarchy *hierarchy = loading->exchange.hierarchy;
     const struct cs_level *level = hierarchy->levels;
-    const double *inv_mass = exchange->multigrid->system->inv_mass;
+    const double *mass = loading->matrix->mass, *blocks = loading->matrix->blocks;
+    const double *inv_mass = loading->exchange.multigrid->system->inv_mass;
+    const size_t n = loading->exchange.multigrid->system->view.n;
     for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
         const struct row row = row_of(hierarchy, block, k);
-        for (size_t i = 0; i < row.count; i++) {
-            const double mass = exchange->gain * exchange->from[row.particle + i];
-            float *own = level->own + row.cell + i;
-            own[0] = inv_mass[row.particle + i] > 0 ? (float)mass : 0;
-            if (level->form == CS_LEVEL_LISTS)
-                own[3 * (size_t)level->n] = own[5 * (size_t)level->n] = own[0];
+        for (size_t c = 0; c < (level->form == CS_LEVEL_FACTORED ? 1 : 6); c++) {
+            float *own = level->own + c * level->n + row.cell;
+            for (size_t i = 0, at = row.particle; i < row.count; i++, at++) {
+                double value = on_diagonal[c] ? mass[at] : 0;
+                if (blocks)
+                    value += blocks[c * n + at];
+                own[i] = inv_mass[at] > 0 ? (float)(loading->exchange.gain * value) : 0;
+            }
         }
     }
 }
@@ -141,15 +153,16 @@ CS_CLONES static void store_x(void *arg, uint32_t block) {
     }
 }
 
-void cs_multigrid_setup(struct cs_multigrid *multigrid, const double *factors,
-                        const double *mass, double scale) {
+void cs_multigrid_setup(struct cs_multigrid *multigrid,
+                        const struct cs_multigrid_matrix *matrix) {
+    const double scale = matrix->scale;
     multigrid->scale = scale;
     for (uint32_t k = 0; k < multigrid->n; k++) {
         struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
         struct cs_level *level = hierarchy->levels;
-        struct exchange masses = {multigrid, hierarchy, mass, NULL, 1 / scale};
-        run(&masses, load_mass);
-        hierarchy->kind->load(hierarchy, factors, scale);
+        struct loading loading = {{multigrid, hierarchy, NULL, NULL, 1 / scale}, matrix};
+        run(&loading.exchange, load_own);
+        hierarchy->kind->load(hierarchy, matrix->factors, scale);
         cs_level_invert(level);
         for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
             hierarchy->kind->coarsen(level, level + 1);

@@ -25,13 +25,21 @@ struct cs_multigrid {
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error);
 
-/* About how many bytes init takes for a scene; of a mesh an estimate. */
-size_t cs_multigrid_bytes(const struct cs_scene *scene);
+/* About how many bytes init takes for a scene, forced: with blocks at particles; of a mesh an
+ * estimate. */
+size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced);
 
-/* Makes the numbers from the springs' factors and the diagonal part mass (n) of the matrix;
- * scale is about its largest number. */
-void cs_multigrid_setup(struct cs_multigrid *multigrid, const double *factors,
-                        const double *mass, double scale);
+/* The matrix: springs' factors, and at each particle a mass and a block. */
+struct cs_multigrid_matrix {
+    const double *factors; /* (4 doubles a spring) */
+    const double *mass;    /* (n) */
+    const double *blocks;  /* (6,n) positive semidefinite; NULL: 0 */
+    double scale;          /* about its largest number */
+};
+
+/* Makes the numbers. */
+void cs_multigrid_setup(struct cs_multigrid *multigrid,
+                        const struct cs_multigrid_matrix *matrix);
 
 /* z = one V-cycle for r. size is about that of r, so that its parts fit single precision. z is
  * 0 where particles are pinned. */

@@ -12,13 +12,13 @@ enum { PIECE = 256 }; /* springs whose forces wait in a buffer on the stack */
 enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
 _Static_assert(CS_LOT_MOST % PIECE == 0, "a lot is of whole pieces");
 
-/* What a kernel works on; what it has no use for stays NULL. */
+/* What a kernel works on. */
 struct job {
     const struct cs_springs *springs;
     size_t n;
-    const double *x, *v, *dx, *dv, *factors;
-    double *to; /* what is added to */
-    uint32_t parts;
+    struct cs_eval at;     /* of a product with the matrix: x alone, what it is taken of */
+    const double *factors; /* of the matrix */
+    double *to;            /* what is added to */
 };
 
 /* one piece of a run: both ends' rows of an array of 3-vectors, or, of a mesh, the rows of the

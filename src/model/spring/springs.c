@@ -15,6 +15,15 @@ struct asked {
     double k, c;
 };
 
+/* Copies of the loops, so that a scene without damping never reads v. */
+enum how { LISTED = 1, DAMPED = 2, AXIAL = 4, MOVED = 8, TURNED = 16 };
+
+/* what a piece's loop reads: both ends of each array */
+struct inputs {
+    struct ends x, v, dx, dv;
+    struct asked asked;
+};
+
 CS_INLINE struct asked asked_of(const struct cs_spring_run *run, uint32_t parts) {
     return (struct asked){
         parts & (CS_PART_STRETCH << run->kind) ? run->ends ? 1 : run->stiffness : 0,
@@ -22,15 +31,16 @@ CS_INLINE struct asked asked_of(const struct cs_spring_run *run, uint32_t parts)
 }
 
 CS_INLINE bool asks_force(const struct job *job, const struct cs_spring_run *run) {
-    const struct asked asked = asked_of(run, job->parts);
+    const struct asked asked = asked_of(run, job->at.parts);
     return asked.k != 0 || asked.c != 0;
 }
 
-/* force of one piece; listed: length and stiffness are the spring's own, and times k */
-CS_INLINE void force_of(const struct piece *piece, struct ends x, struct ends v,
-                        struct asked asked, const bool listed, const bool damped,
-                        const bool axial, double *restrict fx, double *restrict fy,
-                        double *restrict fz) {
+/* force of one piece; LISTED: length and stiffness are the spring's own, and times k */
+CS_INLINE void force_of(const struct piece *piece, const struct inputs *in, const unsigned how,
+                        double *restrict fx, double *restrict fy, double *restrict fz) {
+    const bool listed = how & LISTED, damped = how & DAMPED, axial = how & AXIAL;
+    const struct ends x = in->x, v = in->v;
+    const struct asked asked = in->asked;
     const double c = asked.c, length = piece->run->length;
     const uint32_t count = piece->count;
     for (uint32_t i = 0; i < count; i++) {
@@ -58,46 +68,43 @@ CS_INLINE void force_of(const struct piece *piece, struct ends x, struct ends v,
     }
 }
 
-/* three copies of the loop, so that a scene without damping never reads v */
 CS_INLINE void force_listed_or_not(const struct job *job, const struct piece *piece,
-                                   const bool listed, double *restrict fx, double *restrict fy,
-                                   double *restrict fz) {
+                                   const unsigned listed, double *restrict fx,
+                                   double *restrict fy, double *restrict fz) {
     struct gathered places, speeds;
-    const struct asked asked = asked_of(piece->run, job->parts);
-    const bool damped = asked.c != 0;
-    const struct ends x = ends_of(piece, job->x, job->n, false, &places);
-    const struct ends v = damped ? ends_of(piece, job->v, job->n, false, &speeds) : x;
+    struct inputs in = {.asked = asked_of(piece->run, job->at.parts)};
+    const bool damped = in.asked.c != 0;
+    in.x = ends_of(piece, job->at.x, job->n, false, &places);
+    in.v = damped ? ends_of(piece, job->at.v, job->n, false, &speeds) : in.x;
     if (!damped)
-        force_of(piece, x, v, asked, listed, false, false, fx, fy, fz);
+        force_of(piece, &in, listed, fx, fy, fz);
     else if (piece->run->axial)
-        force_of(piece, x, v, asked, listed, true, true, fx, fy, fz);
+        force_of(piece, &in, listed | DAMPED | AXIAL, fx, fy, fz);
     else
-        force_of(piece, x, v, asked, listed, true, false, fx, fy, fz);
+        force_of(piece, &in, listed | DAMPED, fx, fy, fz);
 }
 
 CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
                            double *restrict fx, double *restrict fy, double *restrict fz) {
     if (piece->run->ends)
-        force_listed_or_not(job, piece, true, fx, fy, fz);
+        force_listed_or_not(job, piece, LISTED, fx, fy, fz);
     else
-        force_listed_or_not(job, piece, false, fx, fy, fz);
+        force_listed_or_not(job, piece, 0, fx, fy, fz);
 }
 
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
-                                    const double *x, const double *v, uint32_t parts,
-                                    const struct cs_block *block, double *f) {
-    const struct job job = {
-        .springs = springs, .n = n, .x = x, .v = v, .parts = parts, .to = f};
-    add_runs(&job, block, asks_force, force_piece);
+                                    const struct cs_eval *at, double *f) {
+    const struct job job = {.springs = springs, .n = n, .at = *at, .to = f};
+    add_runs(&job, at->block, asks_force, force_piece);
 }
 
 CS_CLONES static void wait_force_lot(void *job, uint32_t lot) {
     wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_force, force_piece);
 }
 
-void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n, const double *x,
-                           const double *v, uint32_t parts) {
-    struct job job = {.springs = springs, .n = n, .x = x, .v = v, .parts = parts};
+void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n,
+                           const struct cs_eval *at) {
+    struct job job = {.springs = springs, .n = n, .at = *at};
     cs_pool_run(springs->n_lots, wait_force_lot, &job);
 }
 
@@ -134,13 +141,13 @@ static void energy_of_runs(void *arg, uint32_t block) {
     const struct job *job = arg;
     const struct cs_springs *springs = job->springs;
     for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
-        if (has_energy(springs->runs + r, job->parts))
-            springs->energies[r] = run_energy(springs->runs + r, job->n, job->x);
+        if (has_energy(springs->runs + r, job->at.parts))
+            springs->energies[r] = run_energy(springs->runs + r, job->n, job->at.x);
 }
 
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts) {
-    struct job job = {.springs = springs, .n = n, .x = x, .parts = parts};
+    struct job job = {.springs = springs, .n = n, .at = {.x = x, .parts = parts}};
     double energy = 0;
     if (springs->energies)
         cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, energy_of_runs, &job);
@@ -166,11 +173,12 @@ double cs_springs_energy_at_twice(const struct cs_springs *springs) {
  *   elastic    k (1 - L/l) e + k L/l (u.e) u
  *   axial      d (g.u) u + d [(w.du) u + (w.u) du],  du = (e - (u.e) u) / l
  *   relative   d g
- * moved: dx is given; turned: dv is given. */
-CS_INLINE void jvp_of(const struct piece *piece, struct ends x, struct ends v, struct ends dx,
-                      struct ends dv, struct asked asked, const bool listed, const bool moved,
-                      const bool turned, double *restrict fx, double *restrict fy,
-                      double *restrict fz) {
+ * MOVED: dx is given; TURNED: dv is given. */
+CS_INLINE void jvp_of(const struct piece *piece, const struct inputs *in, const unsigned how,
+                      double *restrict fx, double *restrict fy, double *restrict fz) {
+    const bool listed = how & LISTED, moved = how & MOVED, turned = how & TURNED;
+    const struct ends x = in->x, v = in->v, dx = in->dx, dv = in->dv;
+    const struct asked asked = in->asked;
     const double axial = piece->run->axial ? asked.c : 0;
     const double relative = piece->run->axial ? 0 : asked.c;
     const double length = piece->run->length;
@@ -210,57 +218,49 @@ CS_INLINE void jvp_of(const struct piece *piece, struct ends x, struct ends v, s
 }
 
 CS_INLINE void jvp_listed_or_not(const struct job *job, const struct piece *piece,
-                                 const bool listed, double *restrict fx, double *restrict fy,
-                                 double *restrict fz) {
+                                 const unsigned listed, double *restrict fx,
+                                 double *restrict fy, double *restrict fz) {
     struct gathered places, speeds, moves, turns;
-    const struct asked asked = asked_of(piece->run, job->parts);
-    const double *dx = job->dx, *dv = job->dv;
-    const struct ends xs = ends_of(piece, job->x, job->n, false, &places);
-    const struct ends vs = ends_of(piece, job->v, job->n, false, &speeds);
+    const struct cs_eval *at = &job->at;
+    struct inputs in = {.asked = asked_of(piece->run, at->parts)};
+    in.x = ends_of(piece, at->x, job->n, false, &places);
+    in.v = ends_of(piece, at->v, job->n, false, &speeds);
     /* a direction that is not given stands for itself, and is not read */
-    const struct ends xd = dx ? ends_of(piece, dx, job->n, false, &moves) : xs;
-    const struct ends vd = dv ? ends_of(piece, dv, job->n, false, &turns) : xs;
-    if (dx && dv)
-        jvp_of(piece, xs, vs, xd, vd, asked, listed, true, true, fx, fy, fz);
-    else if (dx)
-        jvp_of(piece, xs, vs, xd, vd, asked, listed, true, false, fx, fy, fz);
+    in.dx = at->dx ? ends_of(piece, at->dx, job->n, false, &moves) : in.x;
+    in.dv = at->dv ? ends_of(piece, at->dv, job->n, false, &turns) : in.x;
+    if (at->dx && at->dv)
+        jvp_of(piece, &in, listed | MOVED | TURNED, fx, fy, fz);
+    else if (at->dx)
+        jvp_of(piece, &in, listed | MOVED, fx, fy, fz);
     else
-        jvp_of(piece, xs, vs, xd, vd, asked, listed, false, true, fx, fy, fz);
+        jvp_of(piece, &in, listed | TURNED, fx, fy, fz);
 }
 
 CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, double *restrict fx,
                          double *restrict fy, double *restrict fz) {
     if (piece->run->ends)
-        jvp_listed_or_not(job, piece, true, fx, fy, fz);
+        jvp_listed_or_not(job, piece, LISTED, fx, fy, fz);
     else
-        jvp_listed_or_not(job, piece, false, fx, fy, fz);
+        jvp_listed_or_not(job, piece, 0, fx, fy, fz);
 }
 
 CS_INLINE bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
-    return asks_force(job, run) && (job->dx || asked_of(run, job->parts).c != 0);
+    return job->at.dx ? asks_force(job, run)
+                      : job->at.dv && asked_of(run, job->at.parts).c != 0;
 }
 
-CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
-                                  const double *v, uint32_t parts, const double *dx,
-                                  const double *dv, const struct cs_block *block, double *df) {
-    const struct job job = {.springs = springs,
-                            .n = n,
-                            .x = x,
-                            .v = v,
-                            .dx = dx,
-                            .dv = dv,
-                            .parts = parts,
-                            .to = df};
-    add_runs(&job, block, asks_jvp, jvp_piece);
+CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n,
+                                  const struct cs_eval *at, double *df) {
+    const struct job job = {.springs = springs, .n = n, .at = *at, .to = df};
+    add_runs(&job, at->block, asks_jvp, jvp_piece);
 }
 
 CS_CLONES static void wait_jvp_lot(void *job, uint32_t lot) {
     wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_jvp, jvp_piece);
 }
 
-void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
-                         const double *v, uint32_t parts, const double *dx, const double *dv) {
-    struct job job = {
-        .springs = springs, .n = n, .x = x, .v = v, .dx = dx, .dv = dv, .parts = parts};
+void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
+                         const struct cs_eval *at) {
+    struct job job = {.springs = springs, .n = n, .at = *at};
     cs_pool_run(springs->n_lots, wait_jvp_lot, &job);
 }

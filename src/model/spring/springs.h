@@ -53,6 +53,24 @@ struct cs_block {
     uint32_t begin, end, first_run, end_run;
 };
 
+/* One evaluation of the forces, or with dx or dv of their derivative along it. */
+struct cs_eval {
+    double t;
+    const double *x, *v;          /* (3,n) in m and m/s */
+    uint32_t parts;               /* set of enum cs_part */
+    const double *dx, *dv;        /* (3,n) directions; NULL: 0 */
+    const struct cs_block *block; /* where to add; NULL: not said yet */
+};
+
+/* What a linear solver works with: A = cm M + cd df/dv + ck df/dx at a state, cd and ck at most
+ * 0 as in implicit methods. */
+struct cs_matrix {
+    double t;
+    const double *x, *v; /* (3,n) in m and m/s */
+    double cm, cd, ck;
+    bool psd; /* each force's part is made positive semidefinite */
+};
+
 /* Springs [begin, end) of a mesh's run whose forces one thread computes. As their ends lie
  * anywhere, each force waits in its place, and a thread adds to a particle of its block what
  * waits for it, in the order of the springs. */
@@ -109,12 +127,11 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
  * damping; flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis,
  * eq. 5.10). The smallest normal double is added to the squared length before the root, so that
  * two particles in one place feel no spring force instead of dividing by zero. */
-void cs_springs_add_force(const struct cs_springs *springs, uint32_t n, const double *x,
-                          const double *v, uint32_t parts, const struct cs_block *block,
-                          double *f);
+void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
+                          const struct cs_eval *at, double *f);
 /* By all threads, before any block; does nothing where they do not share meshes. */
-void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n, const double *x,
-                           const double *v, uint32_t parts);
+void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n,
+                           const struct cs_eval *at);
 
 /* Smallest rest length in m; 0 without springs. */
 double cs_springs_shortest(const struct cs_springs *springs);
@@ -128,24 +145,22 @@ double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
 /* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df at the particles of a block; dx or dv
  * may be NULL. After cs_springs_wait_jvp, as above. */
-void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
-                        const double *v, uint32_t parts, const double *dx, const double *dv,
-                        const struct cs_block *block, double *df);
-void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n, const double *x,
-                         const double *v, uint32_t parts, const double *dx, const double *dv);
+void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const struct cs_eval *at,
+                        double *df);
+void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
+                         const struct cs_eval *at);
 
 /* Adds every particle's own blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
  * The position derivative of axial damping is left out, as in the solver's matrix. */
 void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const double *x,
                              double *kxx, double *dvv);
 
-/* The springs' part of the matrix cd df/dv + ck df/dx in factored form, for cd and ck at most 0
- * as in implicit methods: A p = sum over springs of (s I + w w^T)(p_a - p_b), added at a and
- * taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz, each (count).
- * With psd the transverse part of a compressed spring is dropped (Teran et al. 2005); else s
- * may be negative. The position derivative of axial damping is left out. */
-void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
-                       double ck, bool psd, double *factors);
+/* The springs' part of the matrix in factored form: A p = sum over springs of (s I + w w^T)(p_a
+ * - p_b), added at a and taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz,
+ * each (count). With psd the transverse part of a compressed spring is dropped (Teran et al.
+ * 2005); else s may be negative. The position derivative of axial damping is left out. */
+void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
+                       const struct cs_matrix *matrix, double *factors);
 /* By all threads. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y);

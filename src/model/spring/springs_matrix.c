@@ -106,9 +106,11 @@ CS_CLONES void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_
 }
 
 /* factors of one piece, where they lie in the run's */
-CS_INLINE void factor_of(const struct piece *piece, struct ends e, double cd, double ck,
-                         bool psd, const bool listed, double *base) {
+CS_INLINE void factor_of(const struct piece *piece, struct ends e,
+                         const struct cs_matrix *matrix, const bool listed, double *base) {
     const struct cs_spring_run *run = piece->run;
+    const double cd = matrix->cd, ck = matrix->ck;
+    const bool psd = matrix->psd;
     const double gamma = run->axial ? 0 : -cd * run->damping;
     const double eta = run->axial ? -cd * run->damping : 0;
     double *restrict s = base + piece->start;
@@ -135,9 +137,7 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e, double cd, do
 struct factoring {
     const struct cs_springs *springs;
     size_t n;
-    const double *x;
-    double cd, ck;
-    bool psd;
+    const struct cs_matrix *matrix;
     double *factors;
 };
 
@@ -148,11 +148,11 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
     double *base = made->factors + 4 * (size_t)run->first;
     for (uint32_t start = begin; start < end; start += PIECE) {
         const struct piece piece = piece_of(run, start);
-        const struct ends e = ends_of(&piece, made->x, made->n, false, &places);
+        const struct ends e = ends_of(&piece, made->matrix->x, made->n, false, &places);
         if (run->ends)
-            factor_of(&piece, e, made->cd, made->ck, made->psd, true, base);
+            factor_of(&piece, e, made->matrix, true, base);
         else
-            factor_of(&piece, e, made->cd, made->ck, made->psd, false, base);
+            factor_of(&piece, e, made->matrix, false, base);
     }
 }
 
@@ -170,9 +170,9 @@ CS_CLONES static void factor_lot(void *arg, uint32_t number) {
     factor_springs(made, made->springs->runs + lot->run, lot->begin, lot->end);
 }
 
-void cs_springs_factor(const struct cs_springs *springs, uint32_t n, const double *x, double cd,
-                       double ck, bool psd, double *factors) {
-    struct factoring made = {springs, n, x, cd, ck, psd, factors};
+void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
+                       const struct cs_matrix *matrix, double *factors) {
+    struct factoring made = {springs, n, matrix, factors};
     cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, factor_runs, &made);
     cs_pool_run(springs->n_lots, factor_lot, &made);
 }
@@ -184,7 +184,7 @@ CS_INLINE void mul_listed_or_not(const struct job *job, const struct piece *piec
     const struct cs_spring_run *run = piece->run;
     const double *s = job->factors + 4 * (size_t)run->first + piece->start;
     const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
-    const struct ends e = ends_of(piece, job->x, job->n, true, &places);
+    const struct ends e = ends_of(piece, job->at.x, job->n, true, &places);
     for (size_t i = 0; i < piece->count; i++) {
         const struct difference d = across(e, i, listed);
         /* w.(p_a - p_b), left to right: the sum order is part of the state hash */
@@ -220,7 +220,7 @@ CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
 
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y) {
-    struct job job = {.springs = springs, .n = n, .x = p, .factors = factors, .to = y};
+    struct job job = {.springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};
     cs_pool_run(springs->n_lots, wait_mul_lot, &job);
     cs_pool_run(springs->n_blocks, mul_add_block, &job);
 }

@@ -6,14 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* X(name, what is printed) in the order of printing; each is a feature that may be absent */
+/* X(name, what is printed) in the order of printing; each is a feature that may be absent. The
+ * forces of terms.h have rows of their own, printed before AREA. */
 #define CS_FEATURE_LIST(X)                                                                     \
     X(MESHES, "meshes")                                                                        \
     X(SPRINGS, "springs")                                                                      \
     X(DAMPING, "spring damping")                                                               \
-    X(GRAVITY, "gravity")                                                                      \
-    X(DRAG, "drag")                                                                            \
-    X(WIND, "wind")                                                                            \
     X(AREA, "area shares")                                                                     \
     X(VELOCITY_LOSS, "velocity loss")                                                          \
     X(CONTACT, "contact")                                                                      \
@@ -39,11 +37,15 @@ struct cs_plan_row {
     const char *why; /* why it is built, or why it is left out */
 };
 
+enum { CS_TERMS_MOST = 16 };
+
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
     uint32_t n_surface, n_inner; /* springs on the surfaces of meshes, of networks in them */
     size_t state_bytes;          /* state, masses, start and ranges of bodies */
     struct cs_plan_row rows[CS_FEATURES];
+    struct cs_plan_row
+        forces[CS_TERMS_MOST]; /* of the list in terms.h; why NULL: not printed */
 };
 
 #endif

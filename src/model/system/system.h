@@ -32,10 +32,10 @@ struct cs_system {
     double *start;           /* (3,n) places at time 0 */
     double *state;           /* 6n: x (3,n), v (3,n) at time 0 */
     double *area;            /* (n) share of the area in m2; NULL unless a law asks for it */
-    double *normals;         /* (3,n) work of the wind; NULL without wind */
+    double *normals;         /* (3,n) of the last places asked for; NULL: no force uses them */
     double *push; /* (3,n) m/s2, of events over an interval; NULL where none can push */
-    uint32_t *pinned, n_pinned;     /* (n_pinned) particles, ascending */
-    const struct cs_term *terms[8]; /* the forces that this scene has */
+    uint32_t *pinned, n_pinned;                 /* (n_pinned) particles, ascending */
+    const struct cs_term *terms[CS_TERMS_MOST]; /* the forces that this scene has */
     uint32_t n_terms;
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */

@@ -51,7 +51,8 @@ static void measure_motion(struct cs_yardstick *yardstick, const struct cs_syste
     const struct cs_track *track = &yardstick->track;
     for (uint32_t k = 0; k <= track->frames; k++) {
         const double *x = cs_track_state(track, k);
-        const struct cs_energy energy = cs_measure_energy(system, x, x + 3 * (size_t)track->n);
+        const struct cs_energy energy =
+            cs_measure_energy(system, k / system->scene->time.fps, x, x + 3 * (size_t)track->n);
         yardstick->kinetic = fmax(yardstick->kinetic, energy.kinetic);
         yardstick->strain = fmax(yardstick->strain, cs_measure_strain(system, x));
         yardstick->scale =

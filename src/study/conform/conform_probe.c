@@ -214,8 +214,9 @@ bool cs_probe_run(struct cs_probe *probe, uint32_t frames) {
 }
 
 double cs_probe_energy(const struct cs_probe *probe) {
-    const struct cs_energy energy = cs_measure_energy(&probe->system, probe->x, probe->v);
-    return energy.kinetic + energy.elastic + energy.gravity;
+    const struct cs_energy energy =
+        cs_measure_energy(&probe->system, probe->run.t, probe->x, probe->v);
+    return cs_energy_whole(&energy);
 }
 
 double cs_probe_rms(const double *a, const double *b, size_t n) {

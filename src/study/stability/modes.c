@@ -64,8 +64,12 @@ static void apply(struct cs_modes *modes, const double *x, double a, double b, c
         dv[i] = b * dx[i];
         dx[i] *= a;
     }
-    cs_terms_jvp(system, 0, x, modes->zero, CS_PART_LINEARISED, a != 0 ? dx : NULL,
-                 b != 0 ? dv : NULL, y);
+    const struct cs_eval at = {.x = x,
+                               .v = modes->zero,
+                               .parts = CS_PART_LINEARISED,
+                               .dx = a != 0 ? dx : NULL,
+                               .dv = b != 0 ? dv : NULL};
+    cs_terms_jvp(system, &at, y);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             y[c * n + i] *= modes->root[i];
