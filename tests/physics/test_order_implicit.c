@@ -8,7 +8,7 @@
 
 /* Without damping the fast modes of a fine grid ring on, and only far smaller steps would show
  * the order: the grid is coarser there. */
-enum { SIDE = 16, SIDE_UNDAMPED = 6, VALUES_MAX = 6 * SIDE * SIDE };
+enum { SIDE = 8, SIDE_UNDAMPED = 6, VALUES_MAX = 6 * SIDE * SIDE };
 
 /* x and v after 0.2 s; returns the order that the method states. */
 static uint32_t end_state(const char *integrator, double damping, double state[VALUES_MAX],
