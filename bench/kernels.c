@@ -164,7 +164,7 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
         return error->status;
     struct cs_system *system = &bed->session.system;
     const size_t n = system->view.n;
-    bench_sheet_stir(system);
+    bench_sheet_perturb(system);
     bed->x = system->state;
     bed->v = bed->x + 3 * n;
     bed->out = take(bed, 3 * n, error);

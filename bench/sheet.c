@@ -1,9 +1,8 @@
 #include "sheet.h"
 
 #include "base/file.h"
-#include "model/plan.h"
 #include "model/spring/springs.h"
-#include "model/system_build.h"
+#include "study/perturb.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -80,42 +79,28 @@ enum cs_status bench_sheet_open(struct cs_session *session,
     struct cs_text json = {0}, path = {0};
     print(settings, model, &json);
     cs_text_add(&path, "%s/scene.json", settings->scratch);
-    const struct cs_session_settings asked = {.scene = cs_text_get(&path),
-                                              .integrator = integrator};
+    const struct cs_session_settings asked = {
+        .scene = cs_text_get(&path), .integrator = integrator, .needs = needs};
     *session = (struct cs_session){0};
     if (json.failed || path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a scene");
-    if (!error->status && !cs_file_write(path.bytes, json.bytes, json.length, error) &&
-        !cs_session_open_plan(session, &asked, error)) {
-        cs_plan_make(&session->plan, &session->scene, session->integrator->needs | needs,
-                     false);
-        if (cs_system_build(&session->system, &session->scene, &session->plan, error))
-            cs_session_close(session);
-    }
+    else if (!cs_file_write(path.bytes, json.bytes, json.length, error))
+        cs_session_open_system(session, &asked, error);
     cs_text_finish(&json);
     cs_text_finish(&path);
     return error->status;
 }
 
-/* -1..1 from a state of its own (Lehmer 1951) */
-static double draw(uint64_t *state) {
-    *state = *state * 48271 % 2147483647;
-    return (double)*state / 1073741823.5 - 1;
-}
-
-void bench_sheet_stir(struct cs_system *system) {
+void bench_sheet_perturb(struct cs_system *system) {
     const size_t n = system->view.n;
-    const double jitter = 0.02 * cs_springs_shortest(&system->springs);
-    double *x = system->state, *v = x + 3 * n;
+    double *x = system->state;
     /* nothing moves in the first row, where the pins are: no spring is torn there */
     const double first = x[2 * n];
-    uint64_t random = 1;
-    for (size_t i = 0; i < n; i++) {
-        const double free = system->inv_mass[i] > 0;
-        const double move[3] = {0.05 * (x[2 * n + i] - first), 0.02 * sin(18.85 * x[i]), 0};
-        for (size_t c = 0; c < 3; c++) {
-            x[c * n + i] += free * (move[c] + jitter * draw(&random));
-            v[c * n + i] += free * 0.1 * draw(&random);
+    for (size_t i = 0; i < n; i++)
+        if (system->inv_mass[i] > 0) {
+            const double z = x[2 * n + i];
+            x[n + i] += 0.02 * sin(18.85 * x[i]);
+            x[i] += 0.05 * (z - first);
         }
-    }
+    cs_perturb_random(system, 0.02 * cs_springs_shortest(&system->springs), 0.1);
 }

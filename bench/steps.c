@@ -3,8 +3,6 @@
 #include "limits.h"
 #include "sheet.h"
 
-#include "sim/host.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,20 +16,16 @@ struct stepping {
     struct cs_session session;
     double *kept; /* 6n: the state that each call starts from; owned */
     double time;  /* s that a call advances by */
-    enum cs_step result;
+    struct cs_error error;
 };
 
 /* The state is set back, which the method is told of as the contract asks. */
 static void advance(void *object) {
     struct stepping *stepping = object;
     struct cs_run *run = &stepping->session.run;
-    const struct cs_integrator *method = run->integrator;
     memcpy(run->x, stepping->kept, 6 * sizeof *run->x * run->system->view.n);
-    enum cs_step result = method->restart(run->host->self, 0, run->x, run->v);
-    if (result == CS_STEP_OK)
-        result = method->advance(run->host->self, 0, stepping->time, run->x, run->v);
-    if (result != CS_STEP_OK)
-        stepping->result = result;
+    if (!cs_run_restart(run, 0, &stepping->error))
+        cs_run_advance(run, 0, stepping->time, &stepping->error);
 }
 
 struct method_case {
@@ -88,14 +82,13 @@ static enum cs_status open_case(struct stepping *stepping, const struct method_c
     if (bench_sheet_open(session, settings, &model, method, 0, error))
         return error->status;
     const size_t bytes = 6 * sizeof *stepping->kept * session->system.view.n;
-    bench_sheet_stir(&session->system);
+    bench_sheet_perturb(&session->system);
     stepping->kept = malloc(bytes);
     if (!stepping->kept)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a state of %zu bytes", bytes);
     memcpy(stepping->kept, session->system.state, bytes);
     stepping->time = h * steps_of(one);
-    return cs_run_begin(&session->run, &session->system, session->integrator, session->options,
-                        false, NULL, error);
+    return cs_session_begin(session, NULL, error);
 }
 
 static void close_case(struct stepping *stepping) {
@@ -145,11 +138,11 @@ static enum cs_status measure(const struct bench_settings *settings,
         bench_measure(settings, tasks, n + 1);
     for (uint32_t k = 0; k < n && !error->status; k++) {
         const struct stepping *stepping = steppings + k;
-        const struct cs_run *run = &stepping->session.run;
-        if (stepping->result != CS_STEP_OK)
+        const enum cs_outcome outcome = stepping->session.run.outcome;
+        if (stepping->error.status || outcome != CS_RUNNING)
             cs_fail(error, CS_ERR_MODULE, "%s on sheet %u: %s", first[k].method, first[k].r,
-                    run->host->error.status ? run->host->error.message
-                                            : cs_outcome_text(run->outcome));
+                    stepping->error.status ? stepping->error.message
+                                           : cs_outcome_text(outcome));
         else
             add_row(first + k, stepping, tasks + k, bench_loop_ns(tasks + n), table);
     }

@@ -56,7 +56,7 @@ static enum cs_status open_scene(struct cs_session *session,
     snprintf(method, sizeof method, "%s:dt=%.17g", methods[m].method,
              1.0 / (FPS * methods[m].steps));
     const struct cs_session_settings asked = {
-        .scene = cs_text_get(&path), .integrator = method, .timed = true};
+        .scene = cs_text_get(&path), .integrator = method, .run = {.timed = true}};
     *session = (struct cs_session){0};
     if (json.failed || path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a scene");

@@ -52,7 +52,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         .progress = show_progress,
         .ctx = &progress,
     };
-    study.session.stop = study.stop = cs_interrupt_catch();
+    study.session.run.stop = study.stop = cs_interrupt_catch();
     if (cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
         cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||
         cs_args_whole(args, ADVISE_JOBS, 1, CS_WORKERS_MOST, &study.workers, error) ||

@@ -157,7 +157,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     };
     settings->cache = cache ? cache : settings->folder;
     session->scene = args->operands[0];
-    session->stop = cs_interrupt_catch();
+    session->run.stop = cs_interrupt_catch();
     if (cs_args_whole(args, COMPARE_RUNS, 1, 100, &settings->runs, error) ||
         cs_args_real(args, COMPARE_BUDGET, &settings->budget, error) ||
         cs_args_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||

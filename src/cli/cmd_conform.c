@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/print.h"
-#include "sim/registry.h"
+#include "sim/method.h"
 #include "study/conform/conform.h"
 #include "study/conform/conform_cache.h"
 
@@ -28,6 +28,7 @@ static const struct cs_arg rows[CONFORM_ROWS] = {
 struct output {
     const struct cs_args *args;
     const struct cs_conform *card; /* that is being made */
+    const char *settings;          /* what was typed behind its method's name */
     bool text, quiet, first;       /* first: no row is in the JSON yet */
     struct cs_text json;
     struct cs_conform_cache cache; /* shared by all cards */
@@ -80,25 +81,25 @@ static const char *fidelity_text(uint32_t fidelity) {
     return fidelity < sizeof texts / sizeof *texts ? texts[fidelity] : "unknown";
 }
 
-static void print_head(const struct cs_conform *card) {
-    const struct cs_integrator *method = card->method;
+static void print_head(const struct output *output) {
+    const struct cs_integrator *method = output->card->method;
     printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
-           card->settings ? ":" : "", card->settings ? card->settings : "", method->order,
-           method->order_damped, fidelity_text(method->fidelity));
+           *output->settings ? ":" : "", output->settings, method->order, method->order_damped,
+           fidelity_text(method->fidelity));
 }
 
 static void report(void *ctx, const struct cs_conform_row *row) {
     struct output *output = ctx;
     if (output->text && output->first)
-        print_head(output->card);
+        print_head(output);
     if (output->text && (!output->quiet || is_bad(row)))
         print_row(row);
     add_json(output, row);
 }
 
-/* The card of one method; settings: what stands behind its name. */
+/* The card of one method, by options or its defaults. */
 static enum cs_status print_card(struct output *output, struct cs_registry *registry,
-                                 const struct cs_integrator *method, const char *settings,
+                                 const struct cs_integrator *method, const void *options,
                                  struct cs_error *error) {
     const struct cs_registered *euler = NULL;
     struct cs_error ignored = {0};
@@ -106,7 +107,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         cs_registry_find(registry, "backward-euler", &euler, &ignored);
     struct cs_conform card = {
         .method = method,
-        .settings = settings,
+        .options = options,
         .implicit_euler = euler ? euler->integrator : NULL,
         .only = cs_args_get(output->args, CONFORM_ONLY),
         .cache = &output->cache,
@@ -116,7 +117,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
     output->card = &card;
     cs_text_add(&output->json, "%s\n  {\"integrator\": \"%s\", \"settings\": ",
                 output->json.length > 1 ? "," : "", method->name);
-    cs_text_add_json(&output->json, settings ? settings : "");
+    cs_text_add_json(&output->json, output->settings);
     cs_text_add(&output->json, ", \"checks\": [");
     output->first = true;
     cs_conform_check(&card, error);
@@ -143,6 +144,7 @@ static enum cs_status print_file(struct output *output, struct cs_registry *regi
     uint32_t n = 0;
     for (uint32_t k = before; k < registry->n && n < METHODS_MAX; k++)
         methods[n++] = registry->entries[k].integrator;
+    output->settings = "";
     for (uint32_t k = 0; k < n && !error->status; k++)
         print_card(output, registry, methods[k], NULL, error);
     return error->status;
@@ -151,14 +153,15 @@ static enum cs_status print_file(struct output *output, struct cs_registry *regi
 /* NAME or NAME:key=value,... */
 static enum cs_status print_named(struct output *output, struct cs_registry *registry,
                                   const char *operand, struct cs_error *error) {
-    char name[64];
-    const size_t length = strcspn(operand, ":");
-    const struct cs_registered *found;
-    snprintf(name, sizeof name, "%.*s", (int)length, operand);
-    if (cs_registry_find(registry, name, &found, error))
-        return error->status;
-    return print_card(output, registry, found->integrator,
-                      operand[length] ? operand + length + 1 : NULL, error);
+    struct cs_method method;
+    const char *pairs;
+    if (!cs_method_find(&method, registry, operand, &pairs, error) &&
+        !cs_method_set_pairs(&method, pairs, error)) {
+        output->settings = pairs ? pairs : "";
+        print_card(output, registry, method.integrator, method.options, error);
+    }
+    cs_method_finish(&method);
+    return error->status;
 }
 
 static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *registry,

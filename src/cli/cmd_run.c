@@ -77,9 +77,9 @@ static enum cs_status read_session(struct cs_args *args, struct cs_session_setti
     session->scene = args->operands[0];
     session->integrator = cs_args_get(args, RUN_INTEGRATOR);
     session->render = !cs_args_get(args, RUN_NO_RENDER);
-    session->timed = cs_args_get(args, RUN_TIMING);
+    session->run.timed = cs_args_get(args, RUN_TIMING);
     session->threads = CS_THREADS_AUTO;
-    session->stop = cs_interrupt_catch();
+    session->run.stop = cs_interrupt_catch();
     if (cs_args_whole(args, RUN_THREADS, 1, CS_POOL_MOST, &session->threads, error) ||
         cs_args_overrides(args, RUN_SET, &session->overrides, &session->n_overrides, error))
         return error->status;

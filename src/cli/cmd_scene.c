@@ -49,7 +49,7 @@ static void add_verdict(const struct cs_session *session, struct cs_text *out) {
     add_count(out, "", plan->n, "particle");
     add_count(out, ", ", plan->n_springs, "spring");
     add_count(out, ", ", scene->colliders.n, "collider");
-    cs_text_add(out, ", %s\n", session->integrator->name);
+    cs_text_add(out, ", %s\n", session->method.integrator->name);
 }
 
 /* What was decided, and what it came to once the method had taken its own. */
@@ -57,7 +57,7 @@ static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
     cs_plan_print(&session->plan, out);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", "method", "built",
-                session->run.method_bytes, session->integrator->name);
+                session->run.method_bytes, session->method.integrator->name);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f a particle\n", "in all", "", bytes,
                 (double)bytes / session->plan.n);
 }
@@ -68,7 +68,8 @@ static enum cs_status print_scene(struct cs_args *args, const struct cs_session 
     if (cs_args_get(args, SCENE_PLAN))
         add_plan(session, &out);
     else if (cs_args_get(args, SCENE_RESOLVED)) {
-        cs_scene_print(&session->scene, &session->option_table, session->options, 0, &out);
+        cs_scene_print(&session->scene, &session->method.table, session->method.options, 0,
+                       &out);
         cs_text_add(&out, "\n");
     } else
         add_verdict(session, &out);

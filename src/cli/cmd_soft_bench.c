@@ -93,7 +93,7 @@ static enum cs_status soft_bench(struct cs_args *args, struct cs_error *error) {
     struct cs_soft soft = {.seconds = 0.5, .draw = !cs_args_get(args, SOFT_DRAW)};
     struct cs_text out = {0};
     soft.session.scene = args->operands[0];
-    soft.session.stop = cs_interrupt_catch();
+    soft.session.run.stop = cs_interrupt_catch();
     if (cs_args_real(args, SOFT_TIME, &soft.seconds, error) ||
         cs_args_overrides(args, SOFT_SET, &soft.session.overrides, &soft.session.n_overrides,
                           error) ||

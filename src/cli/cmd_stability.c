@@ -32,7 +32,7 @@ static enum cs_status run_extreme(struct cs_args *args,
         .n_plugins = settings->session.n_plugins,
         .budget = settings->budget,
         .n_workers = settings->workers,
-        .stop = settings->session.stop,
+        .stop = settings->session.run.stop,
         .report = print_extreme,
         .ctx = args,
     };

@@ -19,18 +19,18 @@ bool cs_job_wants_json(const struct cs_job_settings *settings) {
 
 /* "NAME:key=value,..." with every option that has a value */
 static void describe_method(const struct cs_session *session, struct cs_text *out) {
-    cs_text_add(out, "%s", session->integrator->name);
+    cs_text_add(out, "%s", session->method.integrator->name);
     char mark = ':';
-    for (uint32_t r = 0; r < session->option_table.n; r++) {
-        const struct cs_option *row = session->option_table.rows + r;
-        if (cs_option_is_optional(row) && !cs_option_is_given(row, session->options))
+    for (uint32_t r = 0; r < session->method.table.n; r++) {
+        const struct cs_option *row = session->method.table.rows + r;
+        if (cs_option_is_optional(row) && !cs_option_is_given(row, session->method.options))
             continue;
         cs_text_add(out, "%c%s=", mark, row->name);
         if (row->type == CS_CHOICE) {
-            const char *field = (const char *)session->options + row->offset;
+            const char *field = (const char *)session->method.options + row->offset;
             cs_text_add(out, "%s", row->choices[*(const int32_t *)(const void *)field]);
         } else
-            cs_option_print(row, session->options, out);
+            cs_option_print(row, session->method.options, out);
         mark = ',';
     }
 }
@@ -39,7 +39,8 @@ static void describe_method(const struct cs_session *session, struct cs_text *ou
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     const struct cs_session *session = &job->session;
     struct cs_text hashed = {0};
-    cs_scene_print(&session->scene, &session->option_table, session->options, 2, &job->scene);
+    cs_scene_print(&session->scene, &session->method.table, session->method.options, 2,
+                   &job->scene);
     describe_method(session, &job->method);
     cs_text_add(&hashed, "%s", cs_text_get(&job->scene));
     cs_scene_print_files(&session->scene, &hashed);

@@ -106,11 +106,11 @@ static void add_seconds(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     add_real(out, "  \"seconds\": {\"wall\": ", job->wall_seconds);
     add_real(out, ", \"method\": ", run->advance_seconds);
-    for (uint32_t s = 0; job->settings->session.timed && s < CS_STAGES; s++) {
+    for (uint32_t s = 0; job->settings->session.run.timed && s < CS_STAGES; s++) {
         cs_text_add(out, ", \"%s\": ", cs_stage_names[s]);
         cs_text_add_real(out, run->stage_seconds[s]);
     }
-    if (job->settings->session.timed && job->settings->session.render) {
+    if (job->settings->session.run.timed && job->settings->session.render) {
         add_real(out, ", \"draw\": ", job->picture.seconds);
         add_real(out, ", \"encode\": ", job->encode_seconds);
         add_real(out, ", \"wait\": ", job->wait_seconds);

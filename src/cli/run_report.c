@@ -126,7 +126,7 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     add_watch(job, out);
     add_counts(job, out);
     add_measures(job, out);
-    if (job->settings->session.timed) {
+    if (job->settings->session.run.timed) {
         add_row(out, "threads", "%u", cs_pool_threads());
         add_stages(job, out);
     }

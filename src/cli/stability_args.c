@@ -98,7 +98,7 @@ enum cs_status cs_stability_read(struct cs_args *args, struct cs_stability_setti
                                                .seconds = 0.5,
                                                .budget = 5,
                                                .workers = cs_pool_processors(CS_WORKERS_MOST)};
-    settings->session.stop = cs_interrupt_catch();
+    settings->session.run.stop = cs_interrupt_catch();
     settings->session.scene = args->n_operands ? args->operands[0] : NULL;
     if (cs_args_whole(args, STABILITY_COLUMNS, 1, CS_MAP_MOST, &settings->columns, error) ||
         cs_args_whole(args, STABILITY_STEPS, 1, CS_MAP_MOST, &settings->rows, error) ||

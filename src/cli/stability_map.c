@@ -102,7 +102,7 @@ enum cs_status cs_stability_map_all(const struct cs_args *args,
         if (!integrator)
             continue;
         const bool other = integrator->fidelity == CS_FIDELITY_OTHER;
-        if (cs_trial_takes_dt(integrator) && !other) {
+        if (cs_method_takes_dt(integrator) && !other) {
             settings->session.integrator = integrator->name;
             cs_stability_map_one(args, settings, folder, error);
         } else if (!cs_args_get(args, STABILITY_QUIET))

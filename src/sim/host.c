@@ -14,11 +14,11 @@
 #include <string.h>
 
 static double stage_begin(const struct cs_run_host *host) {
-    return host->timed ? cs_clock_wall() : 0;
+    return host->settings.timed ? cs_clock_wall() : 0;
 }
 
 static void stage_end(struct cs_run_host *host, enum cs_stage stage, double begin) {
-    if (host->timed)
+    if (host->settings.timed)
         host->run->stage_seconds[stage] += cs_clock_wall() - begin;
 }
 
@@ -221,10 +221,28 @@ static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
     *changed = true;
 }
 
+/* whether the run goes on from here */
+static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
+                          const double *v) {
+    const volatile sig_atomic_t *stop = host->settings.stop;
+    if (cs_bound_is_passed(&host->bound, host->run, t, x, v))
+        return CS_STEP_HALT;
+    if (stop && *stop) {
+        host->run->outcome = CS_INTERRUPTED;
+        return CS_STEP_HALT;
+    }
+    if (cs_budget_is_over(&host->budget)) {
+        host->run->outcome = CS_OVER_BUDGET;
+        return CS_STEP_HALT;
+    }
+    return CS_STEP_OK;
+}
+
 static enum cs_step host_commit(void *ctx, double t, double dt, double *x, double *v,
                                 bool *changed) {
     struct cs_run_host *host = ctx;
     const struct cs_plan_row *rows = host->run->system->plan.rows;
+    const struct cs_run_settings *settings = &host->settings;
     *changed = false;
     host->run->counts.steps++;
     move_values(host, t);
@@ -236,17 +254,10 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
         lose_velocity(host, v, changed);
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
-    if (cs_bound_is_passed(&host->bound, host->run, t, x, v))
-        return CS_STEP_HALT;
-    if (host->stop && *host->stop) {
-        host->run->outcome = CS_INTERRUPTED;
-        return CS_STEP_HALT;
-    }
-    if (cs_budget_is_over(&host->budget)) {
-        host->run->outcome = CS_OVER_BUDGET;
-        return CS_STEP_HALT;
-    }
-    return CS_STEP_OK;
+    const enum cs_step step = judge(host, t, x, v);
+    if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))
+        *changed = true;
+    return step;
 }
 
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
@@ -278,6 +289,15 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     if (cs_terms_have_blocks(system))
         host->kept_v = cs_arena_take_n(&host->arena, n3, sizeof(double), error);
     return cs_linear_init(&host->linear, system, &host->arena, error);
+}
+
+static enum cs_step failing_solve(void *ctx, const double *b, double rtol, double *u) {
+    (void)b, (void)rtol, (void)u;
+    return host_fail(ctx, "the linear solver was told to fail");
+}
+
+void cs_run_host_fail_solves(struct cs_run_host *host) {
+    host->calls.solve = failing_solve;
 }
 
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {

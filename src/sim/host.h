@@ -17,8 +17,7 @@ struct cs_run_host {
     double *kept_v; /* (3,n) its velocity; NULL: no force's share of the matrix depends on it */
     bool clamped;   /* the matrix in use is positive definite by construction */
     bool creating;  /* the method may take memory */
-    bool timed;
-    const volatile sig_atomic_t *stop;
+    struct cs_run_settings settings;
     struct cs_budget budget;
     void *self;            /* the method's own */
     struct cs_error error; /* the method's first message */
@@ -29,6 +28,9 @@ struct cs_run_host {
 /* Fills the calls for a run over system. CS_ERR_MEMORY. */
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error);
+
+/* Replaces the call solve by one that fails. */
+void cs_run_host_fail_solves(struct cs_run_host *host);
 
 /* What happens at time t: the state, the pins and the values change, and so does the bound of
  * the kinetic energy. true: the method must be restarted; false: nothing changed. */

@@ -39,17 +39,27 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_gua
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
     const size_t before = host->arena.used;
-    struct cs_guard guard = cs_guard_take();
+    const struct cs_guard guard = cs_guard_take();
     host->creating = true;
     cs_crash_watch(run->integrator->name);
-    enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
+    const enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
     cs_crash_forget();
     host->creating = false;
     run->method_bytes = host->arena.used - before;
-    if (judge(run, step, guard, error))
-        return error->status;
-    guard = cs_guard_take();
-    step = run->integrator->restart(host->self, 0, run->x, run->v);
+    return judge(run, step, guard, error) ? error->status : cs_run_restart(run, 0, error);
+}
+
+enum cs_status cs_run_restart(struct cs_run *run, double t, struct cs_error *error) {
+    const struct cs_guard guard = cs_guard_take();
+    const enum cs_step step = run->integrator->restart(run->host->self, t, run->x, run->v);
+    return judge(run, step, guard, error);
+}
+
+enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
+                              struct cs_error *error) {
+    const struct cs_guard guard = cs_guard_take();
+    const enum cs_step step =
+        run->integrator->advance(run->host->self, from, to, run->x, run->v);
     return judge(run, step, guard, error);
 }
 
@@ -70,23 +80,19 @@ static enum cs_step advance(struct cs_run *run, double end) {
 
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
-                            bool timed, const volatile sig_atomic_t *stop,
-                            struct cs_error *error) {
+                            const struct cs_run_settings *settings, struct cs_error *error) {
     *run = (struct cs_run){.system = system, .integrator = integrator};
     run->host = calloc(1, sizeof *run->host);
     if (!run->host)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    run->host->timed = timed;
-    run->host->stop = stop;
+    run->host->settings = *settings;
     run->x = system->state;
     run->v = run->x + 3 * (size_t)system->view.n;
     if (cs_run_host_init(run->host, run, error) || start(run, options, error))
         cs_run_finish(run);
+    else if (settings->budget > 0)
+        cs_budget_start(&run->host->budget, settings->budget);
     return error->status;
-}
-
-void cs_run_set_budget(struct cs_run *run, double cpu_seconds) {
-    cs_budget_start(&run->host->budget, cpu_seconds);
 }
 
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
@@ -106,6 +112,14 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
         run->frame++;
     }
     return CS_OK;
+}
+
+const struct cs_host *cs_run_calls(const struct cs_run *run) {
+    return &run->host->calls;
+}
+
+void cs_run_fail_solves(struct cs_run *run) {
+    cs_run_host_fail_solves(run->host);
 }
 
 bool cs_run_has_goals(const struct cs_integrator *integrator) {

@@ -72,22 +72,41 @@ struct cs_run {
     struct cs_run_host *host; /* owned */
 };
 
+/* How a run is begun. Zeroed: as the system stands, without clock, limit or observer. */
+struct cs_run_settings {
+    bool timed;                        /* stage times too */
+    const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
+    /* s of processor time from the first step on, after which the run ends as CS_OVER_BUDGET;
+     * 0: no limit. The clock is read between steps and never reaches the state. */
+    double budget;
+    /* Called at the end of every commit, and may move the state: returns whether it did. May be
+     * NULL. */
+    bool (*observe)(void *ctx, double t, double dt, double *x, double *v);
+    void *ctx; /* of observe */
+};
+
 /* Makes the method over the system with filled options (integrator->options_size bytes), and
- * restarts it at time 0. timed: stage times too. stop: set by a signal handler, may be NULL.
- * On failure *run is empty; CS_ERR_MODULE with the method's message, or CS_ERR_MEMORY. */
+ * restarts it at time 0. On failure *run is empty; CS_ERR_MODULE with the method's message, or
+ * CS_ERR_MEMORY. */
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
-                            bool timed, const volatile sig_atomic_t *stop,
-                            struct cs_error *error);
-
-/* Ends the run as CS_OVER_BUDGET once the process has used that much more processor time; the
- * clock is read between steps and never reaches the state. */
-void cs_run_set_budget(struct cs_run *run, double cpu_seconds);
+                            const struct cs_run_settings *settings, struct cs_error *error);
 
 /* Steps to the next frame, t = (frame + 1) / fps. A blow-up, an interrupt or an end of the
  * budget sets run->outcome and returns CS_OK with run->frame as it was. CS_ERR_MODULE: the
  * method failed; the message says where and why. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error);
+
+/* The two calls of the method that a frame is made of, alone: no events, no clock. The state
+ * may have been moved before restart. CS_ERR_MODULE as above. */
+enum cs_status cs_run_restart(struct cs_run *run, double t, struct cs_error *error);
+enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
+                              struct cs_error *error);
+
+/* The calls as the method sees them. */
+const struct cs_host *cs_run_calls(const struct cs_run *run);
+/* From now on every linear solve of the host fails: for checks of what a method then does. */
+void cs_run_fail_solves(struct cs_run *run);
 
 /* Whether a method can say where it draws particles to; g (3,n) in m: where, as the run
  * stands. Nothing of the run changes. */

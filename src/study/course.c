@@ -1,8 +1,6 @@
 #include "study/course.h"
 
 #include "base/clock.h"
-#include "model/plan.h"
-#include "model/system_build.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,13 +26,6 @@ void cs_course_describe_changes(const struct cs_scene *scene, struct cs_text *ou
         }
 }
 
-static void make_smooth(struct cs_scene *scene) {
-    scene->colliders.n = 0;
-    scene->forces.velocity_loss = 0;
-    for (uint32_t b = 0; b < scene->bodies.n; b++)
-        cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
-}
-
 static enum cs_status keep_start(struct cs_course *course, struct cs_error *error) {
     const size_t values = 6 * (size_t)course->session.system.view.n;
     course->start = malloc(values * sizeof *course->start);
@@ -48,15 +39,10 @@ enum cs_status cs_course_open(struct cs_course *course,
                               const struct cs_course_settings *settings, const char *integrator,
                               struct cs_error *error) {
     struct cs_session_settings asked = settings->session;
-    struct cs_session *session = &course->session;
-    *course = (struct cs_course){.frames = settings->frames, .stop = settings->session.stop};
+    *course = (struct cs_course){.frames = settings->frames};
     asked.integrator = integrator;
-    if (cs_session_open_plan(session, &asked, error))
-        return error->status;
-    make_smooth(&session->scene);
-    cs_plan_make(&session->plan, &session->scene, session->integrator->needs, asked.render);
-    if (cs_system_build(&session->system, &session->scene, &session->plan, error) ||
-        keep_start(course, error))
+    asked.smooth = true;
+    if (!cs_session_open_system(&course->session, &asked, error) && keep_start(course, error))
         cs_course_close(course);
     return error->status;
 }
@@ -96,11 +82,7 @@ static enum cs_status step_frames(struct cs_course *course, struct cs_track *tra
 /* A run with events leaves pins, values and times as they were at its end: the next one, and
  * who measures, get the system as at the start. */
 static enum cs_status renew(struct cs_course *course, struct cs_error *error) {
-    struct cs_session *session = &course->session;
-    if (!session->system.events)
-        return CS_OK;
-    cs_system_finish(&session->system);
-    return cs_system_build(&session->system, &session->scene, &session->plan, error);
+    return course->session.system.events ? cs_session_build(&course->session, error) : CS_OK;
 }
 
 static void keep_notes(struct cs_course_end *end, const struct cs_run *run) {
@@ -131,12 +113,8 @@ enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_
     struct cs_session *session = &course->session;
     struct cs_error failure = {0};
     *end = (struct cs_course_end){0};
-    memcpy(session->system.state, course->start,
-           6 * (size_t)session->system.view.n * sizeof *course->start);
-    if (!cs_run_begin(&session->run, &session->system, session->integrator, session->options,
-                      false, course->stop, &failure)) {
-        if (budget > 0)
-            cs_run_set_budget(&session->run, budget);
+    session->settings.run.budget = budget;
+    if (!cs_session_begin(session, course->start, &failure)) {
         step_frames(course, track, end, &failure);
         end->outcome = session->run.outcome;
         const bool blew_up = end->outcome == CS_NOT_FINITE || end->outcome == CS_UNBOUNDED;

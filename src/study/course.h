@@ -19,7 +19,6 @@ struct cs_course {
     struct cs_session session; /* system built; the run is not begun */
     double *start;             /* (6n) the state at time 0, owned */
     uint32_t frames;
-    const volatile sig_atomic_t *stop; /* borrowed */
 };
 
 /* States of the frames 0..frames of one run. */
@@ -49,7 +48,7 @@ enum cs_status cs_course_open(struct cs_course *course,
  * nothing is. The scene is one that was not opened by cs_course_open. */
 void cs_course_describe_changes(const struct cs_scene *scene, struct cs_text *out);
 
-/* Runs from the start to the last frame within a budget in s (<= 0: none). Only stepping is
+/* Runs from the start to the last frame within a budget in s (0: none). Only stepping is
  * timed; track may be NULL: then nothing is kept. A method that gives up is a result.
  * CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_track *track,

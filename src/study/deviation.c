@@ -13,6 +13,13 @@ static double squared(size_t n, const double *a, const double *b, size_t i) {
     return sum;
 }
 
+double cs_rms_difference(const double *a, const double *b, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum / (double)n);
+}
+
 double cs_distance_rms(const struct cs_system *system, const double *a, const double *b) {
     const size_t n = system->view.n;
     double sum = 0, mass = 0;

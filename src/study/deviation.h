@@ -19,6 +19,9 @@ void cs_deviation_take(struct cs_deviation *deviation, const struct cs_system *s
                        const struct cs_track *track, const struct cs_track *reference,
                        uint32_t frames, uint32_t pointwise_frames);
 
+/* Root of the mean square of a - b over n values. */
+double cs_rms_difference(const double *a, const double *b, size_t n);
+
 /* sqrt(sum m |a - b|^2 / sum m) of two (3,n), over the particles that can move. */
 double cs_distance_rms(const struct cs_system *system, const double *a, const double *b);
 double cs_distance_max(const struct cs_system *system, const double *a, const double *b);

@@ -1,107 +1,78 @@
 #include "study/session.h"
 
-#include "base/options.h"
 #include "base/pool.h"
 #include "model/plan.h"
 #include "model/system_build.h"
 #include "scene/shape.h"
+#include "study/perturb.h"
 
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* one "key=value"; where names the place for messages */
-static enum cs_status set_option(struct cs_session *session, const char *name,
-                                 const char *value, const char *prefix, enum cs_status status,
-                                 struct cs_error *error) {
-    const struct cs_option *row = cs_option_find(&session->option_table, name);
-    char where[160];
-    snprintf(where, sizeof where, "%s%.60s", prefix, name);
-    if (row)
-        return cs_option_set(row, session->options, value, where, status, error);
-    const char *nearest = cs_option_nearest(&session->option_table, name);
-    return cs_fail(
-        error, status,
-        "%s: integrator \"%s\" has no such option%s%s%s (see: clothsim integrators %s)", where,
-        session->integrator->name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-        nearest ? "\"?" : "", session->integrator->name);
+static enum cs_status read_scene(struct cs_session *session, struct cs_error *error) {
+    const struct cs_session_settings *settings = &session->settings;
+    if (!settings->text)
+        return cs_scene_read(&session->scene, settings->scene, settings->overrides,
+                             settings->n_overrides, error);
+    return cs_scene_read_text(&session->scene, settings->scene, settings->text,
+                              strlen(settings->text), settings->overrides,
+                              settings->n_overrides, error);
 }
 
-/* "key=value,key=value" of --integrator */
-static enum cs_status set_options_text(struct cs_session *session, const char *text,
-                                       struct cs_error *error) {
-    while (*text) {
-        char pair[256];
-        const size_t length = strcspn(text, ",");
-        if (length >= sizeof pair)
-            return cs_fail(error, CS_ERR_USAGE, "--integrator: \"%.60s...\" is too long", text);
-        memcpy(pair, text, length);
-        pair[length] = 0;
-        char *equals = strchr(pair, '=');
-        if (!equals)
-            return cs_fail(error, CS_ERR_USAGE,
-                           "--integrator: found \"%s\", expected key=value", pair);
-        *equals = 0;
-        if (set_option(session, pair, equals + 1, "--integrator ", CS_ERR_USAGE, error))
+static enum cs_status set_options_of_scene(struct cs_session *session, struct cs_error *error) {
+    const struct cs_setting *options = session->scene.integrator_settings.items;
+    char place[512];
+    snprintf(place, sizeof place, "%s: integrator.", session->scene.path);
+    for (uint32_t k = 0; k < session->scene.integrator_settings.n; k++)
+        if (cs_method_set(&session->method, options[k].name, options[k].value, place,
+                          CS_ERR_SCENE, error))
             return error->status;
-        text += length + (text[length] == ',');
-    }
     return CS_OK;
 }
 
-static enum cs_status set_options_scene(struct cs_session *session, struct cs_error *error) {
-    const struct cs_setting *settings = session->scene.integrator_settings.items;
-    for (uint32_t k = 0; k < session->scene.integrator_settings.n; k++) {
-        char prefix[512];
-        snprintf(prefix, sizeof prefix, "%s: integrator.", session->scene.path);
-        if (set_option(session, settings[k].name, settings[k].value, prefix, CS_ERR_SCENE,
-                       error))
-            return error->status;
-    }
-    return CS_OK;
-}
-
-/* finds the method and fills its options: the scene's own only where the scene names it */
-static enum cs_status choose_integrator(struct cs_session *session, const char *asked,
-                                        struct cs_error *error) {
-    char name[64];
-    const size_t length = asked ? strcspn(asked, ":") : strlen(session->scene.integrator);
-    if (length == 0 || length >= sizeof name)
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--integrator: found \"%.60s\", expected NAME or NAME:key=value,...",
-                       asked ? asked : "");
-    memcpy(name, asked ? asked : session->scene.integrator, length);
-    name[length] = 0;
-
-    const struct cs_registered *found;
+/* the scene's own method, or the one that is asked for; the scene's options are those of the
+ * method that it names */
+static enum cs_status read_method(struct cs_session *session, struct cs_error *error) {
+    const struct cs_scene *scene = &session->scene;
+    const char *asked = session->settings.integrator, *pairs = NULL;
+    struct cs_method *method = &session->method;
     struct cs_error missing = {0};
-    if (cs_registry_find(&session->registry, name, &found, &missing)) {
+    if (cs_method_find(method, &session->registry, asked ? asked : scene->integrator, &pairs,
+                       &missing)) {
         const bool by_scene = !asked && missing.status == CS_ERR_USAGE;
         return cs_fail(error, by_scene ? CS_ERR_SCENE : missing.status, "%s%s%s",
-                       by_scene ? session->scene.path : "", by_scene ? ": integrator: " : "",
+                       by_scene ? scene->path : "", by_scene ? ": integrator: " : "",
                        missing.message);
     }
-    session->integrator = found->integrator;
-    session->option_table = (struct cs_table){.rows = found->integrator->options,
-                                              .n = found->integrator->n_options,
-                                              .size = found->integrator->options_size};
-    session->options = calloc(1, session->option_table.size + 1);
-    if (!session->options)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    cs_options_default(&session->option_table, session->options);
-    if (!strcmp(name, session->scene.integrator) && set_options_scene(session, error))
+    if (!strcmp(method->integrator->name, scene->integrator) &&
+        set_options_of_scene(session, error))
         return error->status;
-    if (asked && asked[length] == ':')
-        return set_options_text(session, asked + length + 1, error);
-    return CS_OK;
+    return cs_method_set_pairs(method, pairs, error);
+}
+
+static enum cs_status choose_method(struct cs_session *session, struct cs_error *error) {
+    const struct cs_session_settings *settings = &session->settings;
+    for (uint32_t k = 0; k < settings->n_plugins; k++)
+        if (cs_registry_add_file(&session->registry, settings->plugins[k], error))
+            return error->status;
+    if (settings->method)
+        cs_method_init(&session->method, settings->method, settings->options, error);
+    else
+        read_method(session, error);
+    if (!error->status && settings->dt > 0 && !cs_method_set_dt(&session->method, settings->dt))
+        cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" takes no dt of %g s",
+                session->method.integrator->name, settings->dt);
+    return error->status;
 }
 
 /* what the scene asks of a method, and only some can do */
-static enum cs_status check_method(const struct cs_session *session, bool render,
-                                   struct cs_error *error) {
-    const struct cs_integrator *method = session->integrator;
+static enum cs_status check_method(const struct cs_session *session, struct cs_error *error) {
+    const struct cs_integrator *method = session->method.integrator;
+    const bool render = session->settings.render;
     struct cs_error said = {0};
-    if (cs_plan_check(&session->scene, method->name, method->needs, &said))
+    if (!session->settings.method &&
+        cs_plan_check(&session->scene, method->name, method->needs, &said))
         return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
@@ -111,8 +82,8 @@ static enum cs_status check_method(const struct cs_session *session, bool render
 }
 
 /* before the plan, which says what they take */
-static enum cs_status start_threads(struct cs_session *session, uint32_t threads,
-                                    struct cs_error *error) {
+static enum cs_status start_threads(struct cs_session *session, struct cs_error *error) {
+    uint32_t threads = session->settings.threads;
     size_t n = 0;
     if (!threads)
         return CS_OK;
@@ -128,22 +99,55 @@ static enum cs_status start_threads(struct cs_session *session, uint32_t threads
                                      : cs_fail(error, refused.status, "%s", refused.message);
 }
 
+/* Contact, strain limit and velocity loss are no part of the equation of motion. */
+static void make_smooth(struct cs_scene *scene) {
+    scene->colliders.n = 0;
+    scene->forces.velocity_loss = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
+}
+
+static void change_scene(struct cs_session *session) {
+    const struct cs_session_settings *settings = &session->settings;
+    if (settings->smooth)
+        make_smooth(&session->scene);
+    if (settings->fps > 0)
+        session->scene.time.fps = settings->fps;
+    if (settings->change)
+        settings->change(&session->scene, settings->ctx);
+}
+
 static enum cs_status open_plan(struct cs_session *session,
                                 const struct cs_session_settings *settings,
                                 struct cs_error *error) {
-    *session = (struct cs_session){0};
-    if (cs_scene_read(&session->scene, settings->scene, settings->overrides,
-                      settings->n_overrides, error))
+    *session = (struct cs_session){.settings = *settings};
+    if (read_scene(session, error) || choose_method(session, error) ||
+        check_method(session, error) || start_threads(session, error))
         return error->status;
-    for (uint32_t k = 0; k < settings->n_plugins; k++)
-        if (cs_registry_add_file(&session->registry, settings->plugins[k], error))
-            return error->status;
-    if (choose_integrator(session, settings->integrator, error) ||
-        check_method(session, settings->render, error) ||
-        start_threads(session, settings->threads, error))
-        return error->status;
-    cs_plan_make(&session->plan, &session->scene, session->integrator->needs, settings->render);
+    change_scene(session);
+    cs_plan_make(&session->plan, &session->scene,
+                 session->method.integrator->needs | settings->needs, settings->render);
     return CS_OK;
+}
+
+enum cs_status cs_session_build(struct cs_session *session, struct cs_error *error) {
+    cs_run_finish(&session->run);
+    cs_system_finish(&session->system);
+    if (cs_system_build(&session->system, &session->scene, &session->plan, error))
+        return error->status;
+    if (session->settings.perturbation > 0)
+        cs_perturb_random(&session->system, session->settings.perturbation, 0);
+    return CS_OK;
+}
+
+enum cs_status cs_session_begin(struct cs_session *session, const double *start,
+                                struct cs_error *error) {
+    struct cs_system *system = &session->system;
+    cs_run_finish(&session->run);
+    if (start)
+        memcpy(system->state, start, 6 * (size_t)system->view.n * sizeof *start);
+    return cs_run_begin(&session->run, system, session->method.integrator,
+                        session->method.options, &session->settings.run, error);
 }
 
 enum cs_status cs_session_open_plan(struct cs_session *session,
@@ -154,13 +158,19 @@ enum cs_status cs_session_open_plan(struct cs_session *session,
     return error->status;
 }
 
+enum cs_status cs_session_open_system(struct cs_session *session,
+                                      const struct cs_session_settings *settings,
+                                      struct cs_error *error) {
+    if (open_plan(session, settings, error) || cs_session_build(session, error))
+        cs_session_close(session);
+    return error->status;
+}
+
 enum cs_status cs_session_open(struct cs_session *session,
                                const struct cs_session_settings *settings,
                                struct cs_error *error) {
-    if (open_plan(session, settings, error) ||
-        cs_system_build(&session->system, &session->scene, &session->plan, error) ||
-        cs_run_begin(&session->run, &session->system, session->integrator, session->options,
-                     settings->timed, settings->stop, error))
+    if (!cs_session_open_system(session, settings, error) &&
+        cs_session_begin(session, NULL, error))
         cs_session_close(session);
     return error->status;
 }
@@ -170,7 +180,7 @@ void cs_session_close(struct cs_session *session) {
     cs_system_finish(&session->system);
     cs_registry_finish(&session->registry);
     cs_scene_finish(&session->scene);
-    free(session->options);
+    cs_method_finish(&session->method);
     if (session->pooled)
         cs_pool_stop();
     *session = (struct cs_session){0};

@@ -1,26 +1,42 @@
-/* session.h - the way from a scene file to a running method; every command and study takes it.
+/* session.h - the one way from a scene to a running method; every command and study takes it.
  *
- *   scene file -> cs_scene_read -> registry -> integrator options -> plan -> system -> run
+ *   scene file -> cs_scene_read -> registry -> method -> plan -> system -> run
  */
 #ifndef CS_SESSION_H
 #define CS_SESSION_H
 
 #include "io/scene_read.h"
-#include "sim/registry.h"
+#include "sim/method.h"
 #include "sim/run.h"
 
+/* What is run. Zeroed but for the scene: the scene as it stands, by its own method. */
 struct cs_session_settings {
-    const char *scene;                   /* path */
+    const char *scene; /* path; with a text: its name in messages */
+    const char *text;  /* the scene itself, in memory; NULL: read from the path */
     const struct cs_override *overrides; /* (n_overrides) */
     uint32_t n_overrides;
+    /* changes the scene once it was checked; may be NULL */
+    void (*change)(struct cs_scene *scene, void *ctx);
+    void *ctx;   /* of change */
+    bool smooth; /* leaves out what acts after steps: contact, strain limit, velocity loss */
+    double fps;  /* frames a second; 0: the scene's */
+
     const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */
     const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
-    bool render, timed;
+    /* instead of these: an integrator at hand with a copy of options (NULL: its defaults); it
+     * is not asked whether it suits the scene */
+    const struct cs_integrator *method;
+    const void *options;
+    double dt;      /* s, of the method's option; 0: as it stands */
+    uint32_t needs; /* enum cs_need, beside those of the method */
+
+    double perturbation; /* m, of the start: see cs_perturb_random */
+    bool render;
     /* 0: those of the pool, left as they are; else the session starts them and ends them, with
      * CS_THREADS_AUTO as many as suit the scene, or one where there are no more to be had */
     uint32_t threads;
-    const volatile sig_atomic_t *stop; /* may be NULL */
+    struct cs_run_settings run;
 };
 
 /* One thread for a scene that is done before others have woken up; else one a processor, up to
@@ -29,11 +45,10 @@ enum { CS_THREADS_AUTO = UINT16_MAX, CS_THREADS_AUTO_MOST = 16, CS_THREADS_AUTO_
 
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_session {
+    struct cs_session_settings settings; /* their texts are looked at while opening only */
     struct cs_scene scene;
     struct cs_registry registry;
-    const struct cs_integrator *integrator;
-    struct cs_table option_table; /* of the integrator's rows */
-    void *options;                /* filled, owned */
+    struct cs_method method;
     struct cs_plan plan;
     struct cs_system system;
     struct cs_run run;
@@ -44,10 +59,24 @@ struct cs_session {
 enum cs_status cs_session_open(struct cs_session *session,
                                const struct cs_session_settings *settings,
                                struct cs_error *error);
-/* The way up to the plan only: no system, no run. */
+/* The way up to the plan only: no system, no run. The method's options may then be changed. */
 enum cs_status cs_session_open_plan(struct cs_session *session,
                                     const struct cs_session_settings *settings,
                                     struct cs_error *error);
+/* The way up to the system: no run. The state may then be changed. */
+enum cs_status cs_session_open_system(struct cs_session *session,
+                                      const struct cs_session_settings *settings,
+                                      struct cs_error *error);
+
+/* The steps between these; what failed is still to be closed. */
+
+/* From the plan to a system at its start; one that was there before is built anew. */
+enum cs_status cs_session_build(struct cs_session *session, struct cs_error *error);
+/* From the system to a run, as settings.run says, which may be changed until then; one that was
+ * there before is ended. start: (6n) x and v to run from, NULL: the state as it stands. */
+enum cs_status cs_session_begin(struct cs_session *session, const double *start,
+                                struct cs_error *error);
+
 void cs_session_close(struct cs_session *session);
 
 #endif

@@ -1,45 +1,8 @@
 #include "study/trial.h"
-#include "model/system_build.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const struct cs_option *find_dt(const struct cs_integrator *integrator) {
-    for (uint32_t r = 0; r < integrator->n_options; r++)
-        if (!strcmp(integrator->options[r].name, "dt") &&
-            integrator->options[r].type == CS_REAL)
-            return integrator->options + r;
-    return NULL;
-}
-
-bool cs_trial_takes_dt(const struct cs_integrator *integrator) {
-    return !(integrator->traits & CS_ADAPTIVE) && find_dt(integrator);
-}
-
-bool cs_trial_set_dt(const struct cs_integrator *integrator, void *options, double dt) {
-    const struct cs_option *row = find_dt(integrator);
-    if (!cs_trial_takes_dt(integrator) || !(dt >= row->min && dt <= row->max))
-        return false;
-    memcpy((char *)options + row->offset, &dt, sizeof dt);
-    return true;
-}
-
-/* -1..1 out of an index, by multiplication and shifts */
-static double noise_of(uint64_t index) {
-    uint64_t bits = (index + 1) * 0x9e3779b97f4a7c15u;
-    bits = (bits ^ bits >> 31) * 0xbf58476d1ce4e5b9u;
-    bits ^= bits >> 29;
-    return (double)(bits >> 11) * 0x1p-52 - 1;
-}
-
-void cs_trial_shake(struct cs_system *system, double shake) {
-    const size_t n = system->view.n;
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < n; i++)
-            if (system->inv_mass[i] > 0)
-                system->state[c * n + i] += shake * noise_of(3 * i + c);
-}
 
 /* particles above the speed limit; *fastest the fastest of all */
 static uint32_t count_fast(const struct cs_run *run, double limit, uint32_t *fastest,
@@ -102,17 +65,15 @@ static void take_sample(struct cs_trial *trial, const struct cs_trial_settings *
 /* Whole steps between two samples, so that dt is not shortened to meet them. */
 static double choose_fps(const struct cs_trial_settings *settings) {
     const double space = settings->seconds / settings->samples;
-    if (settings->dt <= 0)
+    if (settings->session.dt <= 0)
         return 1 / space;
-    const double steps = fmax(1, floor(space / settings->dt));
-    return 1 / (steps * settings->dt);
+    const double steps = fmax(1, floor(space / settings->session.dt));
+    return 1 / (steps * settings->session.dt);
 }
 
 static void run_samples(struct cs_trial *trial, const struct cs_trial_settings *settings,
                         struct cs_run *run, struct cs_error *error) {
     const double frames = ceil(settings->seconds * run->system->scene->time.fps * (1 - 1e-9));
-    if (settings->budget > 0)
-        cs_run_set_budget(run, settings->budget);
     take_sample(trial, settings, run);
     while (run->frame < frames && run->outcome == CS_RUNNING && !error->status &&
            !(settings->stop_early && trial->beyond)) {
@@ -124,7 +85,8 @@ static void run_samples(struct cs_trial *trial, const struct cs_trial_settings *
     trial->blow_up = run->blow_up;
     trial->end = run->t;
     trial->steps = run->counts.steps;
-    trial->step = run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->dt;
+    trial->step =
+        run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->session.dt;
     trial->seconds = run->advance_seconds;
     trial->mean_kinetic /= run->frame + 1;
 }
@@ -143,25 +105,15 @@ static enum cs_status judge(struct cs_trial *trial, struct cs_error *error) {
 
 enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settings *settings,
                             struct cs_error *error) {
+    struct cs_session_settings asked = settings->session;
     struct cs_session session;
     *trial = (struct cs_trial){0};
-    if (cs_session_open_plan(&session, &settings->session, error))
+    asked.fps = choose_fps(settings);
+    if (cs_session_open_system(&session, &asked, error))
         return error->status;
-    if (settings->dt > 0 &&
-        !cs_trial_set_dt(session.integrator, session.options, settings->dt)) {
-        cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" takes no dt of %g s",
-                session.integrator->name, settings->dt);
-        goto done;
-    }
-    session.scene.time.fps = choose_fps(settings);
-    if (cs_system_build(&session.system, &session.scene, &session.plan, error))
-        goto done;
-    cs_trial_shake(&session.system, settings->shake);
-    if (!cs_run_begin(&session.run, &session.system, session.integrator, session.options, false,
-                      settings->session.stop, error))
+    if (!cs_session_begin(&session, NULL, error))
         run_samples(trial, settings, &session.run, error);
     judge(trial, error);
-done:
     cs_session_close(&session);
     return error->status;
 }

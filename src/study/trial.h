@@ -1,6 +1,6 @@
 /* trial.h - one run of a scene for a study: no pictures, only how it behaved.
  *
- * The method's `dt` is set from outside and the state is sampled at equal spaces of time, so
+ * The state is sampled at equal spaces of time, so
  * that runs with different steps can be held against each other.
  */
 #ifndef CS_TRIAL_H
@@ -17,12 +17,9 @@ struct cs_trial_limits {
 };
 
 struct cs_trial_settings {
-    struct cs_session_settings session; /* integrator with its options; render is not used */
-    double dt;                          /* s, the method's step; 0: leave the options alone */
+    struct cs_session_settings session; /* fps is not used */
     double seconds;                     /* to simulate */
     uint32_t samples;                   /* about so many; at least 1 */
-    double shake;                       /* m, largest move of a free particle at the start */
-    double budget;                      /* s of processor time; 0: none */
     struct cs_trial_limits limits;
     bool stop_early; /* once the energy is beyond its limit */
     /* called at the start and at each sample; may be NULL */
@@ -63,12 +60,5 @@ struct cs_trial {
  * one of the scene, the command or memory, or CS_ERR_INTERRUPT. */
 enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settings *settings,
                             struct cs_error *error);
-
-/* Sets the method's `dt`; false if it has none or is adaptive. */
-bool cs_trial_set_dt(const struct cs_integrator *integrator, void *options, double dt);
-bool cs_trial_takes_dt(const struct cs_integrator *integrator);
-
-/* Moves the free particles by up to `shake` m in each direction, the same on every machine. */
-void cs_trial_shake(struct cs_system *system, double shake);
 
 #endif

@@ -2,7 +2,6 @@
  * watch for a blow-up, and the clocks, against the force itself. Prints shares in percent. */
 #include "base/clock.h"
 #include "model/force/terms.h"
-#include "sim/host.h"
 #include "study/course.h"
 
 #include <stdio.h>
@@ -28,13 +27,15 @@ static void call_force(const struct bench *bench) {
 
 static void call_table(const struct bench *bench) {
     const struct cs_run *run = &bench->session->run;
-    run->host->calls.force(run->host, 0, run->x, run->v, CS_PART_ALL, bench->f);
+    const struct cs_host *host = cs_run_calls(run);
+    host->force(host->ctx, 0, run->x, run->v, CS_PART_ALL, bench->f);
 }
 
 static void call_commit(const struct bench *bench) {
     const struct cs_run *run = &bench->session->run;
     bool changed;
-    run->host->calls.commit(run->host, 0, 1e-4, run->x, run->v, &changed);
+    const struct cs_host *host = cs_run_calls(run);
+    host->commit(host->ctx, 0, 1e-4, run->x, run->v, &changed);
 }
 
 /* s of one call, median of rounds */
@@ -56,15 +57,14 @@ int main(int argc, char **argv) {
     const struct cs_course_settings settings = {
         .session = {.scene = argc > 1 ? argv[1] : "scenes/drum.json"}, .frames = 1};
     struct cs_session *session = &course.session;
-    if (cs_course_open(&course, &settings, "velocity-verlet", &error) ||
-        cs_run_begin(&session->run, &session->system, session->integrator, session->options,
-                     false, NULL, &error)) {
+    if (!cs_course_open(&course, &settings, "velocity-verlet", &error))
+        session->settings.run.budget = 1e6;
+    if (error.status || cs_session_begin(session, NULL, &error)) {
         fprintf(stderr, "%s\n", error.message);
         return EXIT_FAILURE;
     }
     const struct bench bench = {session,
                                 calloc(3 * (size_t)session->system.view.n, sizeof(double))};
-    cs_run_set_budget(&session->run, 1e6);
     const double force = measure(&bench, call_force), table = measure(&bench, call_table),
                  commit = measure(&bench, call_commit);
     const double begin = cs_clock_cpu();

@@ -43,7 +43,7 @@ static inline enum cs_status run_for(struct cs_compare *compare,
                                      struct watch *watch, double budget) {
     struct cs_error error = {0};
     *settings = (struct cs_compare_settings){
-        .course = {.session = {.scene = place->scene, .stop = &stop}, .frames = 6},
+        .course = {.session = {.scene = place->scene, .run = {.stop = &stop}}, .frames = 6},
         .methods = methods,
         .reference = {"rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12"},
         .accuracy = 1e-6,

@@ -50,11 +50,12 @@ END_TEST
 
 START_TEST(twin_is_tighter) {
     char twin[256];
-    cs_yardstick_tighten("a:order=8,rtol=1e-12,atol=1e-10", twin, sizeof twin);
+    struct cs_error error = {0};
+    cs_yardstick_tighten("a:order=8,rtol=1e-12,atol=1e-10", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "a:order=8,rtol=1e-13,atol=1e-11");
-    cs_yardstick_tighten("b:dt=0.5", twin, sizeof twin);
+    cs_yardstick_tighten("b:dt=0.5", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "b:dt=0.25");
-    cs_yardstick_tighten("c", twin, sizeof twin);
+    cs_yardstick_tighten("c", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "c");
 }
 END_TEST

@@ -1,38 +1,25 @@
 #include "fixture.h"
 
 #include "model/force/measure.h"
-#include "model/system_build.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
-
-/* writes the scene to a file of its own; the session reads files only */
-static void write_scene(char *path, const char *format, va_list args) {
-    const int descriptor = mkstemp(path);
-    ck_assert_msg(descriptor >= 0, "cannot make %s", path);
-    FILE *file = fdopen(descriptor, "w");
-    ck_assert_ptr_nonnull(file);
-    vfprintf(file, format, args);
-    ck_assert_int_eq(fclose(file), 0);
-}
 
 void fixture_open(struct fixture *fixture, const char *integrator, const char *format, ...) {
-    char path[] = "/tmp/clothsim-physics-XXXXXX";
+    char *text;
     va_list args;
     va_start(args, format);
-    write_scene(path, format, args);
+    ck_assert_int_ge(vasprintf(&text, format, args), 0);
     va_end(args);
 
     struct cs_error error = {0};
     struct cs_session *session = &fixture->session;
-    const struct cs_session_settings settings = {.scene = path, .integrator = integrator};
-    cs_session_open_plan(session, &settings, &error);
-    unlink(path);
-    ck_assert_msg(!error.status, "%s", error.message);
-    cs_system_build(&session->system, &session->scene, &session->plan, &error);
+    const struct cs_session_settings settings = {
+        .scene = "fixture", .text = text, .integrator = integrator};
+    cs_session_open_system(session, &settings, &error);
+    free(text);
     ck_assert_msg(!error.status, "%s", error.message);
     fixture->system = &session->system;
     fixture->n = session->system.view.n;
@@ -42,9 +29,7 @@ void fixture_open(struct fixture *fixture, const char *integrator, const char *f
 
 void fixture_start(struct fixture *fixture) {
     struct cs_error error = {0};
-    struct cs_session *session = &fixture->session;
-    cs_run_begin(&session->run, &session->system, session->integrator, session->options, false,
-                 NULL, &error);
+    cs_session_begin(&fixture->session, NULL, &error);
     ck_assert_msg(!error.status, "%s", error.message);
 }
 
@@ -62,16 +47,6 @@ void fixture_close(struct fixture *fixture) {
     cs_session_close(&fixture->session);
 }
 
-void fixture_stir(struct fixture *fixture, double place, double speed) {
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < fixture->n; i++) {
-            const double free = fixture->system->inv_mass[i] > 0;
-            const double phase = 1.7 * (double)i + 2.3 * (double)c;
-            fixture->x[c * fixture->n + i] += free * place * sin(phase);
-            fixture->v[c * fixture->n + i] += free * speed * cos(2.1 * phase);
-        }
-}
-
 void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]) {
     const size_t n = fixture->n;
     for (size_t c = 0; c < 3; c++) {
@@ -84,13 +59,6 @@ void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]) {
                          fixture->x[e * n + i] * fixture->v[d * n + i]);
         }
     }
-}
-
-double fixture_rms(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum / (double)n);
 }
 
 double fixture_energy(const struct fixture *fixture) {

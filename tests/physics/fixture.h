@@ -2,6 +2,8 @@
 #ifndef FIXTURE_H
 #define FIXTURE_H
 
+#include "study/deviation.h"
+#include "study/perturb.h"
 #include "study/session.h"
 
 #include <check.h>
@@ -23,15 +25,8 @@ void fixture_start(struct fixture *fixture);
 void fixture_frames(struct fixture *fixture, uint32_t frames);
 void fixture_close(struct fixture *fixture);
 
-/* Adds smooth moves to the free particles: up to `place` m and `speed` m/s, the same for every
- * call, so that no spring is at its rest length. */
-void fixture_stir(struct fixture *fixture, double place, double speed);
-
 /* Adds (p, l): momentum and angular momentum about the origin. */
 void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]);
-
-/* Root of the mean square of a - b over n values. */
-double fixture_rms(const double *a, const double *b, size_t n);
 
 /* Kinetic and potential energy in J. */
 double fixture_energy(const struct fixture *fixture);

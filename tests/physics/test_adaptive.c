@@ -47,8 +47,8 @@ static struct error error_of(const char *integrator) {
         end_state("dopri5:rtol=1e-13", DRUM, FRAMES, reference);
     known = true;
     const size_t half = end_state(integrator, DRUM, FRAMES, state) / 2;
-    return (struct error){fixture_rms(state, reference, half),
-                          fixture_rms(state + half, reference + half, half)};
+    return (struct error){cs_rms_difference(state, reference, half),
+                          cs_rms_difference(state + half, reference + half, half)};
 }
 
 /* Tolerances are those of a step, so that an error may be some times larger; and 10^4 in the
@@ -128,8 +128,8 @@ START_TEST(families_agree) {
     end_state("ark-erk:order=8,rtol=1e-12", HANG, 15, reference);
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         const size_t half = end_state(methods[k], HANG, 15, state) / 2;
-        const double place = fixture_rms(state, reference, half);
-        const double speed = fixture_rms(state + half, reference + half, half);
+        const double place = cs_rms_difference(state, reference, half);
+        const double speed = cs_rms_difference(state + half, reference + half, half);
         ck_assert_msg(place < 1e-8 && speed < 1e-6, "%s: %.3g m, %.3g m/s apart", methods[k],
                       place, speed);
     }
@@ -155,7 +155,7 @@ START_TEST(frames_do_not_disturb) {
         memcpy(state[k], cloth.x, sizeof state[k]);
         fixture_close(&cloth);
     }
-    ck_assert_double_lt(fixture_rms(state[0], state[1], 6), 1e-7);
+    ck_assert_double_lt(cs_rms_difference(state[0], state[1], 6), 1e-7);
 }
 END_TEST
 

@@ -22,7 +22,7 @@ static uint32_t end_state(const char *integrator, double state[VALUES]) {
     fixture_start(&drum);
     fixture_frames(&drum, 1);
     memcpy(state, drum.x, VALUES * sizeof *state);
-    const uint32_t order = drum.session.integrator->order_damped;
+    const uint32_t order = drum.session.method.integrator->order_damped;
     fixture_close(&drum);
     return order;
 }
@@ -77,7 +77,7 @@ static const struct {
 };
 
 static double distance(const double *a, const double *b) {
-    return fixture_rms(a, b, VALUES / 2);
+    return cs_rms_difference(a, b, VALUES / 2);
 }
 
 START_TEST(all_converge_to_one_solution) {

@@ -37,7 +37,7 @@ static double imbalance(const char *integrator, double damping, const char *mode
                         const char *wind, int fps, double *work) {
     struct fixture cloth;
     fixture_open(&cloth, integrator, SCENE, damping, model, drag, wind, fps);
-    fixture_stir(&cloth, 0.01, 0.5);
+    cs_perturb_smooth(cloth.system, 0.01, 0.5);
     fixture_start(&cloth);
     const double before = fixture_energy(&cloth);
     double done = 0, last = power(&cloth);

@@ -28,7 +28,7 @@ static void open(struct fixture *cloth, bool axial) {
     fixture_open(cloth, "implicit-linearised", SCENE, axial ? "axial" : "relative",
                  axial ? "N s/m" : "Pa s/m", axial ? "Pa" : "N");
     ck_assert_uint_eq(cloth->n, N);
-    fixture_stir(cloth, 0.06, 2);
+    cs_perturb_smooth(cloth->system, 0.06, 2);
 }
 
 static void force(const struct fixture *cloth, const double *x, const double *v, uint32_t parts,

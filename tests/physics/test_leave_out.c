@@ -68,7 +68,7 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         run(&cloth, methods[k], "", "");
-        const uint32_t needs = cloth.session.integrator->needs;
+        const uint32_t needs = cloth.session.method.integrator->needs;
         const struct cs_run_host *host = cloth.session.run.host;
         const struct cs_plan_row *rows = cloth.system->plan.rows;
         ck_assert((needs & CS_NEED_SOLVE) == 0 ? !host->linear.factors

@@ -31,7 +31,7 @@ static void open(struct fixture *body, bool axial) {
     fixture_open(body, "implicit-linearised", SCENE, axial ? "axial" : "relative",
                  axial ? "N" : "N/m");
     ck_assert_uint_eq(body->n, N);
-    fixture_stir(body, 0.03, 2);
+    cs_perturb_smooth(body->system, 0.03, 2);
 }
 
 static void force(const struct fixture *body, const double *x, const double *v, uint32_t parts,

@@ -16,7 +16,7 @@ static void drift(const char *integrator, const char *model, double out[2]) {
     struct fixture cloth;
     double before[2][3], after[2][3];
     fixture_open(&cloth, integrator, SCENE, model);
-    fixture_stir(&cloth, 0.02, 0.5);
+    cs_perturb_smooth(cloth.system, 0.02, 0.5);
     for (size_t i = 0; i < cloth.n; i++)
         cloth.v[i] += 1;
     fixture_start(&cloth);

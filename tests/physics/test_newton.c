@@ -156,7 +156,7 @@ START_TEST(failure_is_told) {
             &chain, integrator,
             "{\"bodies\": [{\"cloth\": {\"grid\": [4, 1]}, \"mass\": {\"particle\": 0.5},"
             " \"springs\": {\"stretch\": 25}, \"pins\": [\"left\"]}], \"time\": {\"fps\": 1}}");
-        fixture_stir(&chain, 0.1, 20);
+        cs_perturb_smooth(chain.system, 0.1, 20);
         fixture_start(&chain);
         cs_run_frame(&chain.session.run, &error);
         ck_assert_msg(error.status == CS_ERR_MODULE, "%s: found %d", methods[i], error.status);

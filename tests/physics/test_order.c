@@ -28,11 +28,11 @@ static uint32_t end_state(const char *integrator, const struct damping *damping,
                           double state[VALUES]) {
     struct fixture cloth;
     fixture_open(&cloth, integrator, SCENE, damping->spring, damping->model, damping->drag);
-    fixture_stir(&cloth, 0.01, 0.2);
+    cs_perturb_smooth(cloth.system, 0.01, 0.2);
     fixture_start(&cloth);
     fixture_frames(&cloth, FRAMES);
     memcpy(state, cloth.x, VALUES * sizeof *state);
-    const struct cs_integrator *method = cloth.session.integrator;
+    const struct cs_integrator *method = cloth.session.method.integrator;
     const uint32_t order = damping == &none ? method->order : method->order_damped;
     fixture_close(&cloth);
     return order;
@@ -48,8 +48,8 @@ static void check_order(const char *name, double h, const struct damping *dampin
         snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name,
                  strchr(name, ':') ? ',' : ':', k ? h / 2 : h);
         order = end_state(integrator, damping, state);
-        error[0][k] = fixture_rms(state, reference, VALUES / 2);
-        error[1][k] = fixture_rms(state + VALUES / 2, reference + VALUES / 2, VALUES / 2);
+        error[0][k] = cs_rms_difference(state, reference, VALUES / 2);
+        error[1][k] = cs_rms_difference(state + VALUES / 2, reference + VALUES / 2, VALUES / 2);
     }
     for (int part = 0; part < 2; part++) {
         const double slope = log2(error[part][0] / error[part][1]);

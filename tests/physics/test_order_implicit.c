@@ -20,7 +20,7 @@ static uint32_t end_state(const char *integrator, double damping, double state[V
     fixture_frames(&drum, 1);
     *values = 6 * drum.n;
     memcpy(state, drum.x, *values * sizeof *state);
-    const struct cs_integrator *method = drum.session.integrator;
+    const struct cs_integrator *method = drum.session.method.integrator;
     const uint32_t order = damping > 0 ? method->order_damped : method->order;
     fixture_close(&drum);
     return order;
@@ -36,8 +36,8 @@ static void check_order(const char *name, double h, double damping,
         char integrator[128];
         snprintf(integrator, sizeof integrator, "%s,dt=%.17g", name, k ? h / 2 : h);
         order = end_state(integrator, damping, state, &values);
-        error[0][k] = fixture_rms(state, reference, values / 2);
-        error[1][k] = fixture_rms(state + values / 2, reference + values / 2, values / 2);
+        error[0][k] = cs_rms_difference(state, reference, values / 2);
+        error[1][k] = cs_rms_difference(state + values / 2, reference + values / 2, values / 2);
     }
     for (int part = 0; part < 2; part++) {
         const double slope = log2(error[part][0] / error[part][1]);

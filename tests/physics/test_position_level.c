@@ -120,7 +120,7 @@ struct start {
 
 static void open(struct fixture *cloth, const char *integrator, const struct start *from) {
     fixture_open(cloth, integrator, SCENE, from->damping, from->drag, 1 / from->h);
-    fixture_stir(cloth, 0.01, from->speed);
+    cs_perturb_smooth(cloth->system, 0.01, from->speed);
 }
 
 /* Distance in m (root of the mean square) of one step of a method from implicit Euler. */
@@ -131,7 +131,7 @@ static double distance(const char *integrator, const struct start *from) {
     newton(&cloth, from->h, expected);
     fixture_start(&cloth);
     fixture_frames(&cloth, 1);
-    const double found = fixture_rms(cloth.x, expected, VALUES) * sqrt(3);
+    const double found = cs_rms_difference(cloth.x, expected, VALUES) * sqrt(3);
     fixture_close(&cloth);
     return found;
 }
@@ -272,7 +272,7 @@ START_TEST(momentum_is_kept) {
                 "0.1, \"damping_model\": \"%s\"}}], \"forces\": {\"gravity\": [0, 0, "
                 "0]}}",
                 models[k]);
-            fixture_stir(&cloth, 0.02, 1);
+            cs_perturb_smooth(cloth.system, 0.02, 1);
             fixture_start(&cloth);
             fixture_momentum(&cloth, before, turning);
             fixture_frames(&cloth, 60);

@@ -27,7 +27,7 @@ START_TEST(automatic_step_is_stable) {
         for (size_t k = 0; k < sizeof damping / sizeof *damping; k++) {
             struct fixture cloth;
             fixture_open(&cloth, methods[i], SCENE, damping[k], 0.001);
-            fixture_stir(&cloth, 0.01, 0.5);
+            cs_perturb_smooth(cloth.system, 0.01, 0.5);
             fixture_start(&cloth);
             const double before = fixture_energy(&cloth);
             fixture_frames(&cloth, 180);
@@ -45,7 +45,7 @@ START_TEST(hopeless_step_is_told) {
     struct fixture cloth;
     struct cs_error error = {0};
     fixture_open(&cloth, "explicit-euler", SCENE, 0.0, 0.0);
-    fixture_stir(&cloth, 0.01, 0.5);
+    cs_perturb_smooth(cloth.system, 0.01, 0.5);
     fixture_start(&cloth);
     ck_assert(was_told(&cloth, "no step is stable without damping"));
     struct cs_run *run = &cloth.session.run;
@@ -95,7 +95,7 @@ START_TEST(step_budget_is_kept) {
     struct fixture cloth;
     struct cs_error error = {0};
     fixture_open(&cloth, "cvode-bdf:rtol=1e-10,max_steps=3", SCENE, 0.1, 0.0);
-    fixture_stir(&cloth, 0.01, 0.5);
+    cs_perturb_smooth(cloth.system, 0.01, 0.5);
     fixture_start(&cloth);
     ck_assert_int_eq(cs_run_frame(&cloth.session.run, &error), CS_ERR_MODULE);
     ck_assert_msg(strstr(error.message, "more than 3 steps"), "%s", error.message);

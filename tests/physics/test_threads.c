@@ -98,7 +98,7 @@ static double *kernels(uint32_t n, size_t *length) {
     struct cs_linear linear;
     threads(n);
     fixture_open(&all, "implicit-linearised", SCENE);
-    fixture_stir(&all, 0.01, 1);
+    cs_perturb_smooth(all.system, 0.01, 1);
     *length = KERNELS * 3 * all.n;
     double *found = calloc(*length, sizeof *found), *to = found;
     ck_assert_ptr_nonnull(found);

@@ -20,10 +20,10 @@ static double border_of(const struct row *row, struct cs_reference *reference) {
     const struct cs_trial_settings trial = {.session = {.scene = path,
                                                         .integrator = row->method,
                                                         .overrides = &grid,
-                                                        .n_overrides = 1},
+                                                        .n_overrides = 1,
+                                                        .perturbation = 1e-6},
                                             .seconds = row->seconds,
-                                            .samples = 32,
-                                            .shake = 1e-6};
+                                            .samples = 32};
     ck_assert_msg(!cs_reference_run(reference, &trial, &error), "%s", error.message);
     ck_assert_msg(reference->found, "%s", reference->message);
     cs_stability_border(&trial, reference, reference->worst.dt / 3, reference->worst.dt * 2,

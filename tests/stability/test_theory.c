@@ -16,7 +16,8 @@ static double limit_of(const char *method, double square, double rate) {
     struct cs_error error = {0};
     double limit = (double)NAN;
     fixture_open(&pair, method, PAIR);
-    const struct cs_amplify amplify = {pair.session.integrator, pair.session.options, 0};
+    const struct cs_amplify amplify = {pair.session.method.integrator,
+                                       pair.session.method.options, 0};
     cs_amplify_limit(&amplify, square, rate, &limit, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     fixture_close(&pair);

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/options.h"
-#include "sim/registry.h"
+#include "sim/method.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,9 +18,8 @@ enum { DEFAULT_STEPS = 8, MOST_POINTS = 64, MODULE_BYTES_MAX = 1 << 28 };
 
 /* One method of the list on its way to cells. */
 struct entry {
-    const struct cs_integrator *integrator;
-    struct cs_table table;
-    char fixed[192]; /* options without the swept one */
+    struct cs_method method;
+    char fixed[128]; /* options without the swept one */
     const char *control;
     double low, high; /* NAN: the default sweep */
     bool atol_is_fixed;
@@ -55,17 +54,17 @@ static void add_option(char *options, size_t size, const char *name, double valu
 static enum cs_status add_point(struct cs_sweep *sweep, const struct entry *entry, double value,
                                 struct cs_error *error) {
     struct cs_cell cell;
-    cs_cell_init(&cell, entry->integrator->name);
-    snprintf(cell.family, sizeof cell.family, "%s", cs_family_of(entry->integrator));
+    cs_cell_init(&cell, entry->method.integrator->name);
+    snprintf(cell.family, sizeof cell.family, "%s", cs_family_of(entry->method.integrator));
     snprintf(cell.key, sizeof cell.key, "%s", entry->module);
-    cell.adaptive = entry->integrator->traits & CS_ADAPTIVE;
+    cell.adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
     snprintf(cell.options, sizeof cell.options, "%s", entry->fixed);
     snprintf(cell.control, sizeof cell.control, "%s", entry->control);
     if (*entry->control) {
         cell.value = value;
         add_option(cell.options, sizeof cell.options, entry->control, value);
     }
-    const struct cs_option *atol = cs_option_find(&entry->table, "atol");
+    const struct cs_option *atol = cs_option_find(&entry->method.table, "atol");
     if (cell.adaptive && *entry->control && atol && !entry->atol_is_fixed)
         add_option(cell.options, sizeof cell.options, "atol",
                    fmin(fmax(value, atol->min), atol->max));
@@ -84,14 +83,14 @@ static enum cs_status refuse(struct cs_sweep *sweep, const char *name, const cha
 /* what the default sweep goes over, largest first */
 static void default_range(const struct entry *entry, const struct cs_sweep_settings *settings,
                           double *high, double *low) {
-    const struct cs_option *row = cs_option_find(&entry->table, entry->control);
-    if (entry->integrator->traits & CS_ADAPTIVE) {
+    const struct cs_option *row = cs_option_find(&entry->method.table, entry->control);
+    if (entry->method.integrator->traits & CS_ADAPTIVE) {
         *high = fmin(1e-2, row->max);
         *low = fmax(1e-9, row->min);
         return;
     }
     *high = 1 / settings->fps;
-    if (!(entry->integrator->traits & CS_IMPLICIT))
+    if (!(entry->method.integrator->traits & CS_IMPLICIT))
         while (*high > 2 * BEYOND_LIMIT * 2 / settings->omega)
             *high /= 2;
     *low = fmax(*high / (1 << (DEFAULT_STEPS - 1)), row->min);
@@ -100,8 +99,8 @@ static void default_range(const struct entry *entry, const struct cs_sweep_setti
 static enum cs_status expand(struct cs_sweep *sweep, const struct entry *entry,
                              const struct cs_sweep_settings *settings, struct cs_error *error) {
     double high = entry->high, low = entry->low;
-    if (entry->integrator->fidelity == CS_FIDELITY_OTHER)
-        return refuse(sweep, entry->integrator->name,
+    if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER)
+        return refuse(sweep, entry->method.integrator->name,
                       "another model than the equation of motion: an error against it has no "
                       "meaning",
                       error);
@@ -109,7 +108,7 @@ static enum cs_status expand(struct cs_sweep *sweep, const struct entry *entry,
         return add_point(sweep, entry, (double)NAN, error);
     if (isnan(high))
         default_range(entry, settings, &high, &low);
-    const bool adaptive = entry->integrator->traits & CS_ADAPTIVE;
+    const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
     for (int k = 0; k < MOST_POINTS; k++) {
         // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
         const double value =
@@ -120,40 +119,44 @@ static enum cs_status expand(struct cs_sweep *sweep, const struct entry *entry,
     return error->status;
 }
 
-/* "low..high" or one number */
-static bool read_range(const char *text, double *low, double *high) {
-    char first[64];
-    const char *dots = strstr(text, "..");
-    if (!dots)
-        return cs_parse_real(text, low) && (*high = *low, true);
-    if (dots - text >= (long)sizeof first)
-        return false;
-    memcpy(first, text, dots - text);
-    first[dots - text] = 0;
-    return cs_parse_real(first, low) && cs_parse_real(dots + 2, high) && *low > 0 &&
-           *low <= *high;
+static enum cs_status set_fixed(struct entry *entry, const char *key, const char *value,
+                                struct cs_error *error) {
+    const size_t used = strlen(entry->fixed);
+    if (cs_method_set(&entry->method, key, value, NULL, CS_ERR_USAGE, error))
+        return error->status;
+    if (used + strlen(key) + strlen(value) + 2 >= sizeof entry->fixed)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "integrator \"%s\": options of more than %zu characters in one method",
+                       entry->method.integrator->name, sizeof entry->fixed - 1);
+    entry->atol_is_fixed |= !strcmp(key, "atol");
+    snprintf(entry->fixed + used, sizeof entry->fixed - used, "%s%s=%s", used ? "," : "", key,
+             value);
+    return CS_OK;
 }
 
-static enum cs_status read_option(struct entry *entry, char *pair, struct cs_error *error) {
-    const char *name = entry->integrator->name;
-    char *equals = strchr(pair, '=');
-    if (!equals)
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--integrators: %s: found \"%.60s\", expected key=value", name, pair);
-    const size_t used = strlen(entry->fixed);
-    *equals = 0;
-    if (!strcmp(pair, entry->control)) {
-        if (!read_range(equals + 1, &entry->low, &entry->high))
-            return cs_fail(error, CS_ERR_USAGE,
-                           "--integrators: %s: %s: found \"%.60s\", expected a number or "
-                           "LOW..HIGH",
-                           name, pair, equals + 1);
-        return CS_OK;
-    }
-    entry->atol_is_fixed |= !strcmp(pair, "atol");
-    snprintf(entry->fixed + used, sizeof entry->fixed - used, "%s%s=%s", used ? "," : "", pair,
-             equals + 1);
-    return CS_OK;
+/* "low..high" or one number: both ends are checked as one number is */
+static enum cs_status set_range(struct entry *entry, const char *key, const char *value,
+                                struct cs_error *error) {
+    const char *dots = strstr(value, "..");
+    char *low = strndup(value, dots ? (size_t)(dots - value) : strlen(value));
+    const char *high = dots ? dots + 2 : low;
+    if (!low)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a range");
+    const bool numbers = cs_parse_real(low, &entry->low) && cs_parse_real(high, &entry->high);
+    if (dots && !(numbers && 0 < entry->low && entry->low <= entry->high))
+        cs_fail(error, CS_ERR_USAGE,
+                "integrator \"%s\": %s: expected a number or LOW..HIGH, found \"%.60s\"",
+                entry->method.integrator->name, key, value);
+    else if (!cs_method_set(&entry->method, key, low, NULL, CS_ERR_USAGE, error))
+        cs_method_set(&entry->method, key, high, NULL, CS_ERR_USAGE, error);
+    free(low);
+    return error->status;
+}
+
+static enum cs_status set_option(struct entry *entry, const char *key, const char *value,
+                                 struct cs_error *error) {
+    return strcmp(key, entry->control) ? set_fixed(entry, key, value, error)
+                                       : set_range(entry, key, value, error);
 }
 
 static void hash_module(const char *file, char digits[CS_HASH_DIGITS]) {
@@ -165,52 +168,40 @@ static void hash_module(const char *file, char digits[CS_HASH_DIGITS]) {
     free(bytes);
 }
 
-static void begin_entry(struct entry *entry, const struct cs_registered *registered) {
-    const struct cs_integrator *integrator = registered->integrator;
+/* Takes the method over. */
+static enum cs_status begin_entry(struct entry *entry, struct cs_registry *registry,
+                                  const struct cs_method *method, struct cs_error *error) {
+    const struct cs_registered *registered;
+    const struct cs_integrator *integrator = method->integrator;
     *entry = (struct entry){
-        .integrator = integrator, .low = (double)NAN, .high = (double)NAN, .control = ""};
-    entry->table = (struct cs_table){.rows = integrator->options,
-                                     .n = integrator->n_options,
-                                     .size = integrator->options_size};
+        .method = *method, .low = (double)NAN, .high = (double)NAN, .control = ""};
+    if (cs_registry_find(registry, integrator->name, &registered, error))
+        return error->status;
     hash_module(registered->file, entry->module);
     const char *control = integrator->traits & CS_ADAPTIVE ? "rtol" : "dt";
-    if (cs_option_find(&entry->table, control))
+    if (cs_option_find(&method->table, control))
         entry->control = control;
+    return CS_OK;
 }
 
-/* A comma stands between methods, and between options: what holds no ':' before its '=' is
- * an option of the method before. */
-static bool is_option(const char *token) {
-    const char *equals = strchr(token, '='), *colon = strchr(token, ':');
-    return equals && (!colon || colon > equals);
-}
-
-static enum cs_status read_list(struct cs_sweep *sweep, struct cs_registry *registry,
-                                const struct cs_sweep_settings *settings, char *list,
-                                struct cs_error *error) {
+/* One method of the list, with its options. */
+static enum cs_status read_method(struct cs_sweep *sweep, struct cs_registry *registry,
+                                  const struct cs_sweep_settings *settings, char *text,
+                                  struct cs_error *error) {
+    struct cs_method method;
     struct entry entry = {0};
-    for (char *token; (token = strsep(&list, ","));) {
-        if (is_option(token)) {
-            if (!entry.integrator)
-                return cs_fail(error, CS_ERR_USAGE,
-                               "--integrators: found \"%.60s\", expected a method first",
-                               token);
-            if (read_option(&entry, token, error))
-                return error->status;
-            continue;
-        }
-        char *options = token;
-        const char *name = strsep(&options, ":");
-        const struct cs_registered *found;
-        if (entry.integrator && expand(sweep, &entry, settings, error))
-            return error->status;
-        if (cs_registry_find(registry, name, &found, error))
-            return error->status;
-        begin_entry(&entry, found);
-        if (options && read_option(&entry, options, error))
-            return error->status;
+    const char *pairs, *key, *value;
+    if (!cs_method_find(&method, registry, text, &pairs, error)) {
+        char *rest = pairs ? text + (pairs - text) : NULL; // of the writable list
+        begin_entry(&entry, registry, &method, error);
+        while (!error->status && rest &&
+               !cs_method_take_pair(method.integrator->name, &rest, &key, &value, error))
+            set_option(&entry, key, value, error);
+        if (!error->status)
+            expand(sweep, &entry, settings, error);
     }
-    return entry.integrator ? expand(sweep, &entry, settings, error) : error->status;
+    cs_method_finish(&method);
+    return error->status;
 }
 
 static enum cs_status take_all(struct cs_sweep *sweep, struct cs_registry *registry,
@@ -218,15 +209,17 @@ static enum cs_status take_all(struct cs_sweep *sweep, struct cs_registry *regis
                                struct cs_error *error) {
     if (cs_registry_open_all(registry, error))
         return error->status;
-    for (uint32_t k = 0; k < registry->n; k++) {
+    for (uint32_t k = 0; k < registry->n && !error->status; k++) {
+        struct cs_method method;
         struct entry entry;
         if (!registry->entries[k].integrator)
             continue;
-        begin_entry(&entry, registry->entries + k);
-        if (expand(sweep, &entry, settings, error))
-            return error->status;
+        if (!cs_method_init(&method, registry->entries[k].integrator, NULL, error) &&
+            !begin_entry(&entry, registry, &method, error))
+            expand(sweep, &entry, settings, error);
+        cs_method_finish(&method);
     }
-    return CS_OK;
+    return error->status;
 }
 
 enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_settings *settings,
@@ -238,9 +231,9 @@ enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_setti
         cs_registry_add_file(&registry, settings->plugins[k], error);
     if (settings->list && !list)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
-    if (!error->status && list)
-        read_list(sweep, &registry, settings, list, error);
-    else if (!error->status)
+    for (char *rest = list; rest && !error->status;)
+        read_method(sweep, &registry, settings, cs_method_split(&rest), error);
+    if (!settings->list && !error->status)
         take_all(sweep, &registry, settings, error);
     free(list);
     cs_registry_finish(&registry);

@@ -138,7 +138,9 @@ enum cs_status cs_yardstick_plan(struct cs_yardstick *yardstick,
         return error->status;
     for (int k = 0; k < 2; k++) {
         memcpy(yardstick->methods[2 * k], chosen[k], sizeof chosen[k]);
-        cs_yardstick_tighten(chosen[k], yardstick->methods[2 * k + 1], sizeof chosen[k]);
+        if (cs_yardstick_tighten(chosen[k], yardstick->methods[2 * k + 1], sizeof chosen[k],
+                                 error))
+            return error->status;
     }
     if (!cs_course_open(&probe, settings->course, chosen[0], error))
         cs_yardstick_key(yardstick, &probe, settings, key);

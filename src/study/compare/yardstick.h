@@ -61,8 +61,9 @@ uint32_t cs_yardstick_pointwise_frames(const struct cs_yardstick *yardstick);
 /* Below: parts of yardstick.c. */
 
 /* Writes the next tighter settings of "NAME:key=value,...": rtol and atol divided by 10, dt by
- * 2. */
-void cs_yardstick_tighten(const char *integrator, char *out, size_t size);
+ * 2. CS_ERR_USAGE where they cannot be read or do not fit. */
+enum cs_status cs_yardstick_tighten(const char *integrator, char *out, size_t size,
+                                    struct cs_error *error);
 
 /* Chooses two families of the methods that are there, best first, with their settings. */
 enum cs_status cs_yardstick_choose(const struct cs_yardstick_settings *settings,

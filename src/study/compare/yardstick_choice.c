@@ -54,7 +54,11 @@ enum cs_status cs_yardstick_choose(const struct cs_yardstick_settings *settings,
     double omega = 1;
     if (settings->methods[0] && settings->methods[1]) {
         for (int k = 0; k < 2; k++)
-            snprintf(chosen[k], sizeof chosen[k], "%s", settings->methods[k]);
+            if (snprintf(chosen[k], sizeof chosen[k], "%s", settings->methods[k]) >=
+                (int)sizeof chosen[k])
+                return cs_fail(error, CS_ERR_USAGE,
+                               "--reference: \"%.60s...\" is longer than %zu characters",
+                               settings->methods[k], sizeof chosen[k] - 1);
         return CS_OK;
     }
     if (measure_omega(settings, &omega, error))
@@ -75,35 +79,40 @@ enum cs_status cs_yardstick_choose(const struct cs_yardstick_settings *settings,
     return CS_OK;
 }
 
-static bool is_tightened(const char *option) {
-    return !strncmp(option, "rtol=", 5) || !strncmp(option, "atol=", 5) ||
-           !strncmp(option, "dt=", 3);
+static bool is_tightened(const char *key) {
+    return !strcmp(key, "rtol") || !strcmp(key, "atol") || !strcmp(key, "dt");
 }
 
-/* one "key=value" */
-static void tighten(const char *option, struct cs_text *out) {
-    const char *equals = strchr(option, '=');
+static void tighten(const char *key, const char *text, struct cs_text *out) {
     double value;
-    if (!equals || !is_tightened(option) || !cs_parse_real(equals + 1, &value)) {
-        cs_text_add(out, "%s", option);
-        return;
-    }
-    cs_text_add(out, "%.*s", (int)(equals + 1 - option), option);
-    if (*option == 'd')
+    cs_text_add(out, "%s=", key);
+    if (!is_tightened(key) || !cs_parse_real(text, &value))
+        cs_text_add(out, "%s", text);
+    else if (!strcmp(key, "dt"))
         cs_text_add_real(out, value / 2);
     else // 1e-12 / 10 is to read 1e-13
         cs_text_add(out, "%.6g", value / 10);
 }
 
-void cs_yardstick_tighten(const char *integrator, char *out, size_t size) {
-    char copy[256], *rest = copy, *token;
+enum cs_status cs_yardstick_tighten(const char *integrator, char *out, size_t size,
+                                    struct cs_error *error) {
+    char *copy = strdup(integrator), *rest = copy;
+    const char *name = copy ? strsep(&rest, ":") : "", *key, *value;
     struct cs_text text = {0};
-    snprintf(copy, sizeof copy, "%s", integrator);
-    cs_text_add(&text, "%s", strsep(&rest, ":"));
-    for (int k = 0; (token = strsep(&rest, ",")); k++) {
-        cs_text_add(&text, k ? "," : ":");
-        tighten(token, &text);
+    cs_text_add(&text, "%s", name);
+    for (char mark = ':'; rest && !cs_method_take_pair(name, &rest, &key, &value, error);
+         mark = ',') {
+        cs_text_add(&text, "%c", mark);
+        tighten(key, value, &text);
     }
-    snprintf(out, size, "%s", cs_text_get(&text));
+    if (!copy || text.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a reference");
+    else if (text.length >= size)
+        cs_fail(error, CS_ERR_USAGE, "--reference: \"%.60s...\" is longer than %zu characters",
+                integrator, size - 1);
+    else
+        memcpy(out, cs_text_get(&text), text.length + 1);
     cs_text_finish(&text);
+    free(copy);
+    return error->status;
 }

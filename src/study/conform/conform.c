@@ -92,8 +92,6 @@ static void weigh(const struct cs_integrator *method, struct cs_conform_row *row
 enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error) {
     const char *names[CHECKS + 1] = {NULL};
     bool found = false;
-    if (cs_probe_check_settings(card, error))
-        return error->status;
     memset(card->counts, 0, sizeof card->counts);
     for (uint32_t k = 0; k < CHECKS; k++) {
         names[k] = checks[k].name;

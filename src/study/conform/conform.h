@@ -36,7 +36,7 @@ struct cs_conform_cache;
 
 struct cs_conform {
     const struct cs_integrator *method;
-    const char *settings; /* "key=value,..." before the checks' own, NULL: the defaults */
+    const void *options; /* filled, before the checks' own; NULL: the defaults */
     /* the method that CS_FIDELITY_IMPLICIT_EULER is held against; NULL: there is none */
     const struct cs_integrator *implicit_euler;
     const char *only; /* one check by its name; NULL: all */
@@ -50,7 +50,7 @@ struct cs_conform {
 
 /* Runs the checks in their order. Verdicts are counted; whether a claim failed is in
  * counts[CS_VERDICT_FAIL] and [CS_VERDICT_STALE]. CS_ERR_USAGE where `only` names no
- * check or the settings are no options of the method. */
+ * check. */
 enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error);
 
 /* Adds every check's name and what it shows, one a line: for --list. */

@@ -66,8 +66,8 @@ static bool run_reference(const struct cs_conform *card, const struct cs_drum *d
         return false;
     const bool opened = cs_drum_open(&start, card, &cs_conform_reference, drum);
     if (opened) {
-        scale[0] = cs_probe_rms(state, start.x, CS_DRUM_VALUES);
-        scale[1] = cs_probe_rms(state + CS_DRUM_VALUES, start.v, CS_DRUM_VALUES);
+        scale[0] = cs_rms_difference(state, start.x, CS_DRUM_VALUES);
+        scale[1] = cs_rms_difference(state + CS_DRUM_VALUES, start.v, CS_DRUM_VALUES);
     } else
         cs_row_fail(row, "%s", start.error.message);
     cs_probe_close(&start);

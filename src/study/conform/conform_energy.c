@@ -28,14 +28,14 @@ void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *r
         cs_probe_run(&there, CS_DRUM_FRAMES)) {
         double start[CS_DRUM_VALUES];
         memcpy(start, back.x, sizeof start);
-        const double move = cs_probe_rms(there.x, start, CS_DRUM_VALUES);
+        const double move = cs_rms_difference(there.x, start, CS_DRUM_VALUES);
         for (size_t i = 0; i < CS_DRUM_VALUES; i++) {
             back.x[i] = there.x[i];
             back.v[i] = -there.v[i];
         }
         cs_probe_set_level(&back, cs_drum_step(), CS_DRUM_OMEGA, 1, 0);
         if (cs_probe_run(&back, CS_DRUM_FRAMES))
-            cs_row_state(row, cs_probe_rms(back.x, start, CS_DRUM_VALUES) / move, 1e-9,
+            cs_row_state(row, cs_rms_difference(back.x, start, CS_DRUM_VALUES) / move, 1e-9,
                          "of the motion away from the start");
     }
     if (there.ended || back.ended)

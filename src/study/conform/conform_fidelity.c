@@ -31,7 +31,7 @@ static void meets_implicit_euler(const struct cs_conform *card, struct cs_confor
     double state[CS_DRUM_VALUES];
     if (!state_at(card, card->method, 1000, state, row))
         return;
-    cs_row_state(row, cs_probe_rms(state, target, CS_DRUM_VALUES) / motion, 1e-6,
+    cs_row_state(row, cs_rms_difference(state, target, CS_DRUM_VALUES) / motion, 1e-6,
                  "of the motion away from %s after 1000 iterations",
                  card->implicit_euler->name);
 }
@@ -43,8 +43,8 @@ static void has_plateau(const struct cs_conform *card, struct cs_conform_row *ro
     if (!state_at(card, card->method, 500, many, row) ||
         !state_at(card, card->method, 2000, more, row))
         return;
-    const double left = cs_probe_rms(more, target, CS_DRUM_VALUES);
-    cs_row_state(row, cs_probe_rms(more, many, CS_DRUM_VALUES) / left, 0.1,
+    const double left = cs_rms_difference(more, target, CS_DRUM_VALUES);
+    cs_row_state(row, cs_rms_difference(more, many, CS_DRUM_VALUES) / left, 0.1,
                  "of the distance to %s, %.3g of the motion, changed by four times the "
                  "iterations",
                  card->implicit_euler->name, left / motion);
@@ -76,7 +76,7 @@ void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row
     cs_probe_close(&probe);
     if (!state_at(card, card->implicit_euler, 1000, target, row))
         return;
-    const double motion = cs_probe_rms(target, start, CS_DRUM_VALUES);
+    const double motion = cs_rms_difference(target, start, CS_DRUM_VALUES);
     if (method->fidelity == CS_FIDELITY_IMPLICIT_EULER)
         meets_implicit_euler(card, row, target, motion);
     else

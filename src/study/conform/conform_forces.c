@@ -44,7 +44,7 @@ static bool run_reference(const struct cs_conform *card, const struct cs_force_s
     for (size_t k = 0; k < 2 && done; k++) {
         const size_t part = k * 3 * probe.n;
         memcpy(truth->state + part, probe.x + part, 3 * probe.n * sizeof *start);
-        truth->scale[k] = cs_probe_rms(probe.x + part, start + part, 3 * probe.n);
+        truth->scale[k] = cs_rms_difference(probe.x + part, start + part, 3 * probe.n);
     }
     cs_probe_close(&probe);
     return done;
@@ -95,7 +95,7 @@ static void follow(const struct cs_conform *card, struct cs_conform_row *row,
     for (size_t k = 0; k < 2 && !probe.ended; k++) {
         const size_t part = k * 3 * probe.n;
         const double off =
-            cs_probe_rms(probe.x + part, truth.state + part, 3 * probe.n) / truth.scale[k];
+            cs_rms_difference(probe.x + part, truth.state + part, 3 * probe.n) / truth.scale[k];
         cs_row_state(row, off, fmax(2 * share * fmax(scene->rate * DURATION, 1), FLOOR),
                      "of the motion off the reference in %s, %s: %s", parts[k],
                      accuracy->level ? "fine" : "coarse", scene->what);

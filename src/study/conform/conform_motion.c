@@ -38,14 +38,14 @@ static double deformation(const struct cs_probe *probe, const double shift[3]) {
     double most = 0;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = c * probe->n; i < (c + 1) * probe->n; i++)
-            most = fmax(most, fabs(probe->x[i] - probe->system.start[i] - shift[c]));
+            most = fmax(most, fabs(probe->x[i] - probe->session.system.start[i] - shift[c]));
     return most;
 }
 
 static double mean_shift(const struct cs_probe *probe, size_t component) {
     double sum = 0;
     for (size_t i = component * probe->n; i < (component + 1) * probe->n; i++)
-        sum += probe->x[i] - probe->system.start[i];
+        sum += probe->x[i] - probe->session.system.start[i];
     return sum / (double)probe->n;
 }
 
@@ -106,7 +106,7 @@ static void turn(const struct cs_conform *card, struct cs_conform_row *row, int 
     else {
         const double expected[6] = {-cos(w * time) * length / 2, cos(w * time) * length / 2,
                                     -sin(w * time) * length / 2, sin(w * time) * length / 2};
-        const double off = cs_probe_rms(pair.x, expected, 6) / length;
+        const double off = cs_rms_difference(pair.x, expected, 6) / length;
         cs_row_state(row, off, fmax(2 * share, 1e-11),
                      "of the length off its place after %.2f rad", w * time);
     }
@@ -123,7 +123,7 @@ void cs_check_rotation(const struct cs_conform *card, struct cs_conform_row *row
 /* p and l: momentum and angular momentum about the origin; scale: sums of magnitudes. */
 static void momenta(const struct cs_probe *probe, double p[3], double l[3], double scale[2]) {
     const size_t n = probe->n;
-    const double *x = probe->x, *v = probe->v, *mass = probe->system.mass;
+    const double *x = probe->x, *v = probe->v, *mass = probe->session.system.mass;
     memset(scale, 0, 2 * sizeof *scale);
     for (size_t c = 0; c < 3; c++) {
         const size_t d = (c + 1) % 3 * n, e = (c + 2) % 3 * n;
@@ -148,7 +148,7 @@ static double drift(const struct cs_conform *card, struct cs_conform_row *row, i
     double before[2][3], after[2][3], scale[2];
     struct cs_probe sheet;
     if (cs_probe_open(&sheet, card, card->method, FREE)) {
-        cs_probe_stir(&sheet, 0.01, 0.2);
+        cs_perturb_smooth(&sheet.session.system, 0.01, 0.2);
         momenta(&sheet, before[0], before[1], scale);
     }
     double share = cs_probe_set_level(&sheet, 0.1 / FREE_OMEGA, FREE_OMEGA,

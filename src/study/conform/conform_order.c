@@ -70,8 +70,8 @@ static void measure_order(const struct cs_conform *card, struct cs_conform_row *
             return;
         double found[2], now = 0;
         for (int part = 0; part < 2; part++)
-            found[part] = cs_probe_rms(state + part * CS_DRUM_VALUES,
-                                       reference + part * CS_DRUM_VALUES, CS_DRUM_VALUES) /
+            found[part] = cs_rms_difference(state + part * CS_DRUM_VALUES,
+                                            reference + part * CS_DRUM_VALUES, CS_DRUM_VALUES) /
                           scale[part];
         if (k > 0 && fmin(found[0], found[1]) < FLOOR)
             break;
@@ -105,7 +105,7 @@ static void measure_tolerance(const struct cs_conform *card, struct cs_conform_r
     for (int k = 0; k < 3; k++) {
         if (!cs_drum_state(card, card->method, drum, tolerances[k], state, row))
             return;
-        error[k] = cs_probe_rms(state, reference, CS_DRUM_VALUES) / scale[0];
+        error[k] = cs_rms_difference(state, reference, CS_DRUM_VALUES) / scale[0];
         cs_row_state(row, error[k] / tolerances[k], CS_TOLERANCE_FACTOR,
                      "times the tolerance: error %.3g of the motion at rtol %g", error[k],
                      tolerances[k]);
@@ -182,7 +182,8 @@ void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row
             return;
     if (!adaptive)
         extrapolate(states, method->order_damped);
-    cs_row_state(row, cs_probe_rms(states[LEVELS - 1], reference, CS_DRUM_VALUES) / scale[0],
+    cs_row_state(row,
+                 cs_rms_difference(states[LEVELS - 1], reference, CS_DRUM_VALUES) / scale[0],
                  1e-8, "of the motion off the reference, %s",
                  adaptive ? "at rtol 1e-11" : "extrapolated from six steps to h = 0");
 }

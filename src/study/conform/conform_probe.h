@@ -2,42 +2,33 @@
 #ifndef CS_CONFORM_PROBE_H
 #define CS_CONFORM_PROBE_H
 
-#include "io/scene_read.h"
-#include "sim/run.h"
 #include "study/conform/conform.h"
+#include "study/deviation.h"
+#include "study/perturb.h"
+#include "study/session.h"
 
-/* Must stay where it is while open: the host's calls find the probe by its run. */
+/* Must stay where it is while open. */
 struct cs_probe {
-    const struct cs_integrator *method;
-    struct cs_scene scene;
-    struct cs_table table; /* of the method's options */
-    void *options;         /* owned */
-    struct cs_plan plan;
-    struct cs_system system;
-    struct cs_run run;
-    size_t n;      /* particles */
-    double *x, *v; /* (3,n): the state; to be moved before the first frame only */
-    double frame;  /* s */
-    bool ended;    /* blew up or failed: error says how */
+    struct cs_session session; /* opened up to the system, the run begun by cs_probe_run */
+    size_t n;                  /* particles */
+    double *x, *v;             /* (3,n): the state; to be moved before the first frame only */
+    double frame;              /* s */
+    bool ended;                /* blew up or failed: error says how */
     struct cs_error error;
 
     /* called within every commit once it has been done; may be NULL. Moves the state or only
      * looks; returns whether it moved. */
     bool (*watch)(struct cs_probe *probe, double t, double dt, double *x, double *v);
-    enum cs_step (*commit)(void *ctx, double t, double dt, double *x, double *v, bool *changed);
     void *watcher;
 };
 
-/* Reads the scene and builds it for the card's method (or another one), options at the card's
- * settings; the first body is matched (scene.h) where the method asks for clusters. On failure
+/* Reads the scene and builds it for the card's method (or another one), options as the card has
+ * them; the first body is matched (scene.h) where the method asks for clusters. On failure
  * the probe has ended, and error says why. close is to be called. */
 bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
                    const struct cs_integrator *method, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void cs_probe_close(struct cs_probe *probe);
-
-/* CS_ERR_USAGE where the card's settings are no options of its method. */
-enum cs_status cs_probe_check_settings(const struct cs_conform *card, struct cs_error *error);
 
 /* Whether the method has such an option of a number. */
 bool cs_method_has(const struct cs_integrator *method, const char *name);
@@ -71,11 +62,5 @@ bool cs_probe_run(struct cs_probe *probe, uint32_t frames);
 
 /* Kinetic and potential energy in J. */
 double cs_probe_energy(const struct cs_probe *probe);
-
-/* Root of the mean square of a - b. */
-double cs_probe_rms(const double *a, const double *b, size_t n);
-
-/* Adds smooth moves to the free particles, the same for every call. */
-void cs_probe_stir(struct cs_probe *probe, double place, double speed);
 
 #endif

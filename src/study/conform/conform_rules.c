@@ -1,5 +1,4 @@
 /* conform_rules.c - rules of the contract that hold for every method. */
-#include "sim/host.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -107,7 +106,7 @@ void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) 
     if (!cs_probe_run(&sheet, HANGING_FRAMES))
         cs_row_fail(row, "%s", sheet.error.message);
     else
-        cs_row_state(row, fmax(ledger.gap, fabs(sheet.run.t - ledger.t)), 1e-12,
+        cs_row_state(row, fmax(ledger.gap, fabs(sheet.session.run.t - ledger.t)), 1e-12,
                      "s of the time left out by the committed steps");
     cs_probe_close(&sheet);
 }
@@ -119,14 +118,15 @@ void cs_check_pins(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!cs_probe_run(&sheet, HANGING_FRAMES))
         cs_row_fail(row, "%s", sheet.error.message);
     else {
-        for (uint32_t k = 0; k < sheet.system.n_pinned; k++)
+        for (uint32_t k = 0; k < sheet.session.system.n_pinned; k++)
             for (size_t c = 0; c < 3; c++) {
-                const size_t i = c * sheet.n + sheet.system.pinned[k];
-                moved += memcmp(sheet.x + i, sheet.system.start + i, sizeof *sheet.x) != 0 ||
-                         sheet.v[i] != 0;
+                const size_t i = c * sheet.n + sheet.session.system.pinned[k];
+                moved +=
+                    memcmp(sheet.x + i, sheet.session.system.start + i, sizeof *sheet.x) != 0 ||
+                    sheet.v[i] != 0;
             }
         cs_row_state(row, moved, 0, "components of %u pinned particles moved",
-                     sheet.system.n_pinned);
+                     sheet.session.system.n_pinned);
     }
     cs_probe_close(&sheet);
 }
@@ -164,12 +164,6 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
     cs_row_state(row, hidden, 0, "absurd runs of 3 that ended as if all were well (%s)", which);
 }
 
-static enum cs_step failing_solve(void *ctx, const double *b, double rtol, double *u) {
-    (void)b, (void)rtol, (void)u;
-    const struct cs_run_host *host = ctx;
-    return host->calls.fail(ctx, "this solve fails on purpose");
-}
-
 void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe sheet;
     if (!(card->method->needs & CS_NEED_SOLVE)) {
@@ -180,7 +174,7 @@ void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row 
     if (!cs_probe_run(&sheet, 0))
         cs_row_fail(row, "%s", sheet.error.message);
     else {
-        sheet.run.host->calls.solve = failing_solve;
+        cs_run_fail_solves(&sheet.session.run);
         cs_row_state(row, cs_probe_run(&sheet, 1), 0,
                      "frames finished though no linear solve succeeded");
     }
@@ -202,7 +196,7 @@ void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *ro
     if (one.ended || two.ended)
         cs_row_fail(row, "%s", one.ended ? one.error.message : two.error.message);
     else
-        cs_row_state(row, differ, 0, "values differ after frame %u", one.run.frame);
+        cs_row_state(row, differ, 0, "values differ after frame %u", one.session.run.frame);
     cs_probe_close(&one);
     cs_probe_close(&two);
 }

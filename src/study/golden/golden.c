@@ -117,7 +117,7 @@ enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_go
         .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
         .render = render,
         .threads = golden->threads,
-        .stop = golden->stop,
+        .run = {.stop = golden->stop},
     };
     if (cs_session_open(session, &settings, error))
         return error->status;

@@ -1,6 +1,5 @@
 #include "study/stability/advise.h"
 
-#include "model/system_build.h"
 #include "study/workers.h"
 
 #include <math.h>
@@ -9,8 +8,8 @@
 #include <string.h>
 
 enum { SAMPLES = 32 };
-#define SHAKE  1e-4 /* of the shortest spring */
-#define MARGIN 0.9  /* of the limit that is advised */
+#define PERTURBATION 1e-4 /* of the shortest spring */
+#define MARGIN       0.9  /* of the limit that is advised */
 
 struct work {
     struct cs_advise *advise;
@@ -23,7 +22,7 @@ static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_sett
                                struct cs_error *error) {
     struct cs_trial_settings asked = *settings;
     struct cs_trial trial;
-    asked.dt = row->safe;
+    asked.session.dt = row->safe;
     asked.seconds = reference->seconds;
     asked.limits = cs_fate_limits(&reference->trial);
     if (cs_trial_run(&trial, &asked, error))
@@ -142,18 +141,17 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
     struct cs_advice *row = advise->rows + task;
     struct cs_session session;
     struct cs_trial_settings trial = {
-        .session = advise->session,
-        .seconds = advise->seconds,
-        .samples = SAMPLES,
-        .shake = SHAKE * cs_springs_shortest(&advise->opened.system.springs),
-        .budget = advise->budget};
+        .session = advise->session, .seconds = advise->seconds, .samples = SAMPLES};
     const double frame = 1 / advise->opened.scene.time.fps;
+    trial.session.perturbation =
+        PERTURBATION * cs_springs_shortest(&advise->opened.system.springs);
+    trial.session.run.budget = advise->budget;
     trial.session.integrator = row->method = advise->names[task];
     if (cs_session_open_plan(&session, &trial.session, error)) {
         cs_workers_tick(&work->workers, 1);
         return refuse(row, error);
     }
-    const bool fixed = cs_trial_takes_dt(session.integrator);
+    const bool fixed = cs_method_takes_dt(session.method.integrator);
     cs_session_close(&session);
     if (fixed)
         advise_fixed(row, &trial, frame, advise->check, error);
@@ -188,9 +186,7 @@ static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *er
 
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
     struct work work = {advise, {.task = advise_task, .progress = report}};
-    if (cs_session_open_plan(&advise->opened, &advise->session, error) ||
-        cs_system_build(&advise->opened.system, &advise->opened.scene, &advise->opened.plan,
-                        error) ||
+    if (cs_session_open_system(&advise->opened, &advise->session, error) ||
         list_methods(advise, error))
         return error->status;
     work.workers.ctx = &work;

@@ -1,14 +1,8 @@
 #include "study/stability/amplify.h"
 
-#include "io/scene_read.h"
-#include "model/plan.h"
-#include "model/system_build.h"
-#include "sim/run.h"
-#include "study/trial.h"
+#include "study/session.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* the free particle at 0, where its place is the stretch to the last bit; mass 1; frames of h
@@ -29,28 +23,24 @@ enum { STEPS_BEFORE = 8, STEPS_BETWEEN = 16 };
 #define SAME 1e-6
 
 /* one run from (s, h w) = start; looks[k] = (s, h w) after steps[k]; false: it blew up */
-static bool run_once(const struct cs_amplify *amplify, struct cs_system *system,
-                     const void *options, const double start[2], const uint32_t steps[2],
+static bool run_once(struct cs_session *session, const double start[2], const uint32_t steps[2],
                      double looks[2][2], struct cs_error *error) {
-    struct cs_run run;
+    struct cs_run *run = &session->run;
     struct cs_error refused = {0};
-    double *x = system->state, *v = x + 6;
-    memset(system->state, 0, 12 * sizeof(double));
-    x[0] = -1, x[1] = SMALL * start[0], v[1] = SMALL * start[1] / FRAME;
-    if (cs_run_begin(&run, system, amplify->integrator, options, false, NULL, &refused)) {
+    const double *x = session->system.state, *v = x + 6;
+    const double state[12] = {[0] = -1, [1] = SMALL * start[0], [7] = SMALL * start[1] / FRAME};
+    if (cs_session_begin(session, state, &refused)) {
         if (refused.status == CS_ERR_MEMORY)
             *error = refused;
         return false;
     }
     for (uint32_t k = 0; k < 2; k++) {
-        while (run.frame < steps[k] && !refused.status && run.outcome == CS_RUNNING)
-            cs_run_frame(&run, &refused);
+        while (run->frame < steps[k] && !refused.status && run->outcome == CS_RUNNING)
+            cs_run_frame(run, &refused);
         looks[k][0] = x[1] / SMALL;
         looks[k][1] = v[1] * FRAME / SMALL;
     }
-    const bool lives = !refused.status && run.outcome == CS_RUNNING;
-    cs_run_finish(&run);
-    return lives;
+    return !refused.status && run->outcome == CS_RUNNING;
 }
 
 /* Spectral radius of the 2x2 matrix of trace and determinant. */
@@ -87,13 +77,12 @@ static bool is_square(double one[2][2], double two[2][2], double same) {
 }
 
 /* runs from both unit vectors: looks[k] has their images as columns; false: it blew up */
-static bool look(const struct cs_amplify *amplify, struct cs_system *system,
-                 const void *options, const uint32_t steps[2], double looks[2][2][2],
+static bool look(struct cs_session *session, const uint32_t steps[2], double looks[2][2][2],
                  struct cs_error *error) {
     static const double starts[2][2] = {{1, 0}, {0, 1}};
     for (int c = 0; c < 2; c++) {
         double images[2][2];
-        if (!run_once(amplify, system, options, starts[c], steps, images, error))
+        if (!run_once(session, starts[c], steps, images, error))
             return false;
         memcpy(looks[0][c], images[0], sizeof images[0]);
         memcpy(looks[1][c], images[1], sizeof images[1]);
@@ -101,52 +90,54 @@ static bool look(const struct cs_amplify *amplify, struct cs_system *system,
     return true;
 }
 
-static void measure(const struct cs_amplify *amplify, struct cs_system *system,
-                    const void *options, double same, double *radius, struct cs_error *error) {
+static void measure(struct cs_session *session, double same, double *radius,
+                    struct cs_error *error) {
     static const uint32_t first[2] = {1, 2};
     static const uint32_t late[2] = {STEPS_BEFORE, STEPS_BEFORE + STEPS_BETWEEN};
     double looks[2][2][2], m[2][2];
     *radius = HUGE_VAL;
-    if (!look(amplify, system, options, first, looks, error))
+    if (!look(session, first, looks, error))
         return;
     if (is_square(looks[0], looks[1], same)) {
         *radius = radius_of_matrix(looks[0]);
         return;
     }
-    if (!look(amplify, system, options, late, looks, error))
+    if (!look(session, late, looks, error))
         return;
     *radius = matrix_between(looks[0], looks[1], m) ? radius_of_matrix(m) : 0;
     for (int k = 1; k < STEPS_BETWEEN; k *= 2)
         *radius = sqrt(*radius);
 }
 
+/* the spring of s'' + rate s' + square s = 0 */
+struct oscillator {
+    double square, rate;
+};
+
+static void set_spring(struct cs_scene *scene, void *ctx) {
+    const struct oscillator *oscillator = ctx;
+    struct cs_spring_law *law = &cs_scene_bodies(scene)->springs;
+    law->stretch = oscillator->square;
+    law->damping = oscillator->rate;
+    law->shear = law->bend = 0;
+}
+
 enum cs_status cs_amplify_measure(const struct cs_amplify *amplify, double h, double square,
                                   double rate, double *radius, struct cs_error *error) {
-    struct cs_scene scene = {0};
-    struct cs_system system = {0};
-    struct cs_plan plan;
-    void *options = malloc(amplify->integrator->options_size + 1);
-    if (!options)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    memcpy(options, amplify->options, amplify->integrator->options_size);
-    if (!cs_trial_set_dt(amplify->integrator, options, FRAME))
-        cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" has no fixed dt",
-                amplify->integrator->name);
-    else if (!cs_scene_read_text(&scene, "one-spring", SCENE, sizeof SCENE - 1, NULL, 0,
-                                 error)) {
-        /* only h^2 square and h rate decide: the frame keeps its length */
-        struct cs_spring_law *law = &cs_scene_bodies(&scene)->springs;
-        law->stretch = square * (h / FRAME) * (h / FRAME);
-        law->damping = rate * (h / FRAME);
-        law->shear = law->bend = 0;
-        cs_plan_make(&plan, &scene, amplify->integrator->needs, false);
-        if (!cs_system_build(&system, &scene, &plan, error))
-            measure(amplify, &system, options, SAME * fmin(1, h * h * square + h * rate),
-                    radius, error);
-    }
-    cs_system_finish(&system);
-    cs_scene_finish(&scene);
-    free(options);
+    /* only h^2 square and h rate decide: the frame keeps its length */
+    struct oscillator oscillator = {square * (h / FRAME) * (h / FRAME), rate * (h / FRAME)};
+    struct cs_session session;
+    const struct cs_session_settings settings = {.scene = "one-spring",
+                                                 .text = SCENE,
+                                                 .change = set_spring,
+                                                 .ctx = &oscillator,
+                                                 .method = amplify->integrator,
+                                                 .options = amplify->options,
+                                                 .dt = FRAME};
+    if (cs_session_open_system(&session, &settings, error))
+        return error->status;
+    measure(&session, SAME * fmin(1, h * h * square + h * rate), radius, error);
+    cs_session_close(&session);
     return error->status;
 }
 

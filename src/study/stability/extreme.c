@@ -1,7 +1,7 @@
 #include "study/stability/extreme.h"
 
 #include "base/clock.h"
-#include "model/system_build.h"
+#include "study/perturb.h"
 #include "study/stability/extreme_scene.h"
 #include "study/workers.h"
 
@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define PERTURBATION 1e-4 /* of the shortest spring */
 
 /* what a run is judged by when it has ended */
 struct ending {
@@ -22,14 +24,13 @@ static void say(struct cs_extreme_row *row, const char *text) {
 
 /* steps to the end, a verdict or the end of the budget */
 static void step(struct cs_extreme_row *row, struct cs_session *session, double seconds,
-                 double budget, struct ending *ending, struct cs_error *error) {
+                 struct ending *ending, struct cs_error *error) {
     struct cs_run *run = &session->run;
     struct cs_watch watch;
     struct cs_watch_row look;
     struct cs_error failure = {0};
     struct cs_text text = {0};
     const double frames = ceil(seconds * session->scene.time.fps * (1 - 1e-9));
-    cs_run_set_budget(run, budget);
     if (cs_watch_begin(&watch, run, error))
         return;
     while (run->frame < frames && run->outcome == CS_RUNNING && !cs_run_frame(run, &failure))
@@ -84,8 +85,8 @@ static enum cs_status find_theory(struct cs_session *session, double seconds, do
     struct cs_theory theory;
     struct cs_theory_limit found = {.dt = HUGE_VAL};
     /* what grows less than e^7 in the time of the run is not seen */
-    if (!cs_theory_init(&theory, &session->system, session->integrator, session->options,
-                        7 / seconds, error))
+    if (!cs_theory_init(&theory, &session->system, session->method.integrator,
+                        session->method.options, 7 / seconds, error))
         cs_theory_at(&theory, session->system.state, &found, error);
     cs_theory_finish(&theory);
     *limit = found.dt;
@@ -95,7 +96,8 @@ static enum cs_status find_theory(struct cs_session *session, double seconds, do
 /* A scene or a method that is refused before the first step is an outcome as well. */
 static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *ending,
                                    struct cs_error *error) {
-    if (error->status == CS_ERR_MEMORY || error->status == CS_ERR_INTERRUPT)
+    if (error->status == CS_ERR_MEMORY || error->status == CS_ERR_INTERRUPT ||
+        error->status == CS_ERR_USAGE)
         return error->status;
     ending->refused = true;
     row->verdict = CS_FATE_FAILED;
@@ -109,25 +111,26 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
                               struct cs_error *error) {
     struct cs_session session = {0};
     struct ending ending = {.theory = HUGE_VAL};
-    const struct cs_session_settings settings = {.scene = scene->path,
-                                                 .integrator = row->method,
-                                                 .plugins = extreme->plugins,
-                                                 .n_plugins = extreme->n_plugins,
-                                                 .stop = extreme->stop};
+    const struct cs_session_settings settings = {
+        .scene = scene->path,
+        .integrator = row->method,
+        .plugins = extreme->plugins,
+        .n_plugins = extreme->n_plugins,
+        .run = {.stop = extreme->stop, .budget = extreme->budget}};
     const double begin = cs_clock_wall();
     double dt = 0;
     if (cs_session_open_plan(&session, &settings, error))
         return take_refusal(row, &ending, error);
-    row->expected = cs_extreme_expected(scene, session.integrator);
-    if (scene->dt > 0 && cs_trial_set_dt(session.integrator, session.options, scene->dt))
+    row->expected = cs_extreme_expected(scene, session.method.integrator);
+    if (scene->dt > 0 && cs_method_set_dt(&session.method, scene->dt))
         dt = scene->dt;
-    if (!cs_system_build(&session.system, &session.scene, &session.plan, error)) {
-        cs_trial_shake(&session.system, 1e-4 * cs_springs_shortest(&session.system.springs));
+    if (!cs_session_build(&session, error)) {
+        cs_perturb_random(&session.system,
+                          PERTURBATION * cs_springs_shortest(&session.system.springs), 0);
         if (dt > 0 && cs_extreme_expects(row->expected, "theory"))
             find_theory(&session, scene->seconds, &ending.theory, error);
-        if (!error->status && !cs_run_begin(&session.run, &session.system, session.integrator,
-                                            session.options, false, extreme->stop, error))
-            step(row, &session, scene->seconds, extreme->budget, &ending, error);
+        if (!error->status && !cs_session_begin(&session, NULL, error))
+            step(row, &session, scene->seconds, &ending, error);
     }
     if (error->status)
         take_refusal(row, &ending, error);

@@ -1,5 +1,4 @@
 #include "study/stability/reference.h"
-#include "model/system_build.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +27,7 @@ static bool run_once(struct cs_reference *reference, const struct cs_trial_setti
                      double dt, struct way *way, struct cs_error *error) {
     struct cs_trial_settings asked = *settings;
     asked.session.integrator = "velocity-verlet";
-    asked.dt = dt;
+    asked.session.dt = dt;
     asked.limits = (struct cs_trial_limits){HUGE_VAL, HUGE_VAL, HUGE_VAL};
     asked.sampled = look;
     asked.ctx = way;
@@ -51,15 +50,16 @@ static void run_way(struct cs_reference *reference, const struct cs_trial_settin
                                          : cs_outcome_text(reference->trial.outcome));
 }
 
-/* Growth that a run cannot show: from the shake to the length of a spring in its time. */
+/* Growth that a run cannot show: from the perturbation to the length of a spring in its time.
+ */
 static double growth_of(const struct cs_system *system,
                         const struct cs_trial_settings *settings) {
     double length = 0;
     for (uint32_t r = 0; r < system->springs.n_runs; r++)
         for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
             length = fmax(length, cs_spring_length(system->springs.runs + r, i));
-    return settings->shake > 0 && length > settings->shake
-               ? log(length / settings->shake) / settings->seconds
+    return settings->session.perturbation > 0 && length > settings->session.perturbation
+               ? log(length / settings->session.perturbation) / settings->seconds
                : 0;
 }
 
@@ -76,10 +76,11 @@ static enum cs_status run_with(struct cs_reference *reference, struct cs_session
     struct cs_theory theory = {0};
     struct way way = {NULL, reference, error};
     reference->row_sums = reference->at_rest.dt = reference->worst.dt = HUGE_VAL;
-    if (cs_trial_takes_dt(session->integrator)) {
+    if (cs_method_takes_dt(session->method.integrator)) {
         way.theory = &theory;
-        if (cs_theory_init(&theory, &session->system, session->integrator, session->options,
-                           growth_of(&session->system, settings), error) ||
+        if (cs_theory_init(&theory, &session->system, session->method.integrator,
+                           session->method.options, growth_of(&session->system, settings),
+                           error) ||
             cs_theory_row_sums(&theory, &reference->row_sums, error) ||
             cs_theory_at(&theory, session->system.state, &reference->at_rest, error))
             goto done;
@@ -94,17 +95,17 @@ done:
 enum cs_status cs_reference_run(struct cs_reference *reference,
                                 const struct cs_trial_settings *settings,
                                 struct cs_error *error) {
+    struct cs_trial_settings asked = *settings;
     struct cs_session session;
     *reference = (struct cs_reference){0};
-    if (cs_session_open_plan(&session, &settings->session, error))
+    asked.session.dt = asked.session.perturbation = 0;
+    if (cs_session_open_system(&session, &asked.session, error))
         return error->status;
-    if (!cs_system_build(&session.system, &session.scene, &session.plan, error)) {
-        struct cs_trial_settings asked = *settings;
-        if (session.system.view.omega > 0)
-            asked.seconds = fmax(asked.seconds, STEPS * 2 / session.system.view.omega);
-        reference->seconds = asked.seconds;
-        run_with(reference, &session, &asked, error);
-    }
+    asked.session.perturbation = settings->session.perturbation;
+    if (session.system.view.omega > 0)
+        asked.seconds = fmax(asked.seconds, STEPS * 2 / session.system.view.omega);
+    reference->seconds = asked.seconds;
+    run_with(reference, &session, &asked, error);
     cs_session_close(&session);
     return error->status;
 }

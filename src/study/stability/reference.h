@@ -11,14 +11,14 @@ struct cs_reference {
     double seconds;                 /* simulated: enough for 200 steps at the limit */
     struct cs_trial trial;          /* velocity-verlet with a small step */
     double row_sums;                /* s, limit by row sums */
-    struct cs_theory_limit at_rest; /* before the start is shaken */
+    struct cs_theory_limit at_rest; /* before the start is perturbed */
     struct cs_theory_limit worst;   /* along the way */
 };
 
 /* Runs the scene of settings (its integrator and dt are the method's whose limits are asked
- * for; its seconds (at least), samples, shake and budget hold for the run) with velocity-verlet
- * at its own step, or a smaller one where that is not stable. Methods without a fixed dt have
- * no limits. */
+ * for; its seconds (at least), samples, perturbation and budget hold for the run) with
+ * velocity-verlet at its own step, or a smaller one where that is not stable. Methods without a
+ * fixed dt have no limits. */
 enum cs_status cs_reference_run(struct cs_reference *reference,
                                 const struct cs_trial_settings *settings,
                                 struct cs_error *error);

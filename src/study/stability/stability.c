@@ -2,7 +2,6 @@
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
-#include "model/system_build.h"
 #include "study/workers.h"
 
 #include <math.h>
@@ -11,7 +10,7 @@
 enum { SAMPLES = 32, TRIALS_OF_BORDER = 7 };
 /* largest move at the start in lengths of the shortest spring: what an instability grows from
  */
-#define SHAKE 1e-4
+#define PERTURBATION 1e-4
 
 /* A map in the making. */
 struct work {
@@ -43,14 +42,14 @@ static enum cs_status find_border(struct cs_stability_column *column, uint32_t n
 static enum cs_status make_column(struct work *work, struct cs_stability_column *column,
                                   struct cs_arena *arena, struct cs_error *error) {
     const struct cs_stability *map = work->map;
-    struct cs_trial_settings trial = {
-        .session = map->settings->session,
-        .seconds = map->settings->seconds,
-        .samples = SAMPLES,
-        .shake = SHAKE * cs_springs_shortest(&map->session.system.springs),
-        .budget = map->settings->budget};
+    struct cs_trial_settings trial = {.session = map->settings->session,
+                                      .seconds = map->settings->seconds,
+                                      .samples = SAMPLES};
+    trial.session.perturbation =
+        PERTURBATION * cs_springs_shortest(&map->session.system.springs);
+    trial.session.run.budget = map->settings->budget;
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
-        trial.shake *= map->own / column->value;
+        trial.session.perturbation *= map->own / column->value;
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
                           trial.session.overrides, trial.session.n_overrides,
                           &trial.session.overrides, &trial.session.n_overrides, error) ||
@@ -95,7 +94,7 @@ static enum cs_status share_out(struct cs_stability *map, struct cs_error *error
                          .task = make_task,
                          .progress = report,
                          .progress_ctx = map,
-                         .stop = map->settings->session.stop}};
+                         .stop = map->settings->session.run.stop}};
     work.workers.ctx = &work;
     work.workers.ticks = cs_workers_take(sizeof *work.workers.ticks, error);
     if (work.workers.ticks)
@@ -165,14 +164,13 @@ enum cs_status cs_stability_run(struct cs_stability *map,
     *map = (struct cs_stability){.settings = settings};
     if (cs_session_open_plan(&map->session, &settings->session, error))
         return error->status;
-    map->integrator = map->session.integrator;
-    if (!cs_trial_takes_dt(map->integrator))
+    map->integrator = map->session.method.integrator;
+    if (!cs_method_takes_dt(map->integrator))
         return cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" %s: it has no map of dt",
                        map->integrator->name,
                        map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                              : "has no option dt");
-    if (cs_system_build(&map->session.system, &map->session.scene, &map->session.plan, error) ||
-        lay_out(map, error) || share_out(map, error))
+    if (cs_session_build(&map->session, error) || lay_out(map, error) || share_out(map, error))
         return error->status;
     map->wall = cs_clock_wall() - begin;
     return CS_OK;

@@ -14,7 +14,7 @@ static enum cs_status try_step(const struct cs_trial_settings *settings,
                                struct cs_error *error) {
     struct cs_trial_settings asked = *settings;
     struct cs_trial trial;
-    asked.dt = dt;
+    asked.session.dt = dt;
     asked.seconds = fmin(reference->seconds, most_seconds);
     asked.limits = cs_fate_limits(&reference->trial);
     if (cs_trial_run(&trial, &asked, error))
