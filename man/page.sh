@@ -1,6 +1,6 @@
 #!/bin/sh
 # page.sh SCDOC SOURCE [PROGRAM] - one man page to standard output; a line @KEYS@ of the source
-# stands for the program's own list of scene keys. No page where the program or scdoc fails: a
+# stands for the program's own list of scene keys, @COMMANDS@ for that of its commands. No page where the program or scdoc fails: a
 # pipe tells only how its last command ended.
 set -eu
 
@@ -8,11 +8,25 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' INT TERM
 
-sed '/^@KEYS@$/,$d' "$2" >"$work/source"
-if [ $# -gt 2 ]; then
-    "$3" scene --manual >>"$work/source"
-    sed '1,/^@KEYS@$/d' "$2" >>"$work/source"
-fi
+commands() {
+    "$1" help >"$work/help" && awk '
+        /^  help / { exit }
+        /^  [a-z]/ { name = $1; sub(/^  [a-z-]+ +/, ""); text[++n] = $0; names[n] = name; next }
+        n && /^ +/ { sub(/^ +/, " "); text[n] = text[n] $0 }
+        END {
+            for (i = 1; i <= n; i++)
+                printf "%s*%s*\n\t%s%s. See *clothsim-%s*(1).\n", (i > 1 ? "\n" : ""), names[i],
+                    toupper(substr(text[i], 1, 1)), substr(text[i], 2), names[i]
+        }' "$work/help"
+}
+
+sed '/^@[A-Z]*@$/,$d' "$2" >"$work/source"
+case $(grep '^@[A-Z]*@$' "$2") in
+@KEYS@) "$3" scene --manual >>"$work/source" ;;
+@COMMANDS@) commands "$3" >>"$work/source" ;;
+esac
+sed '1,/^@[A-Z]*@$/d' "$2" >"$work/rest"
+cat "$work/rest" >>"$work/source"
 "$1" <"$work/source" >"$work/page" || {
     echo "page.sh: scdoc fails on $2 (a line number above is that of the page with its keys)" >&2
     exit 1

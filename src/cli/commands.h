@@ -4,15 +4,11 @@
 
 #include "cli/args.h"
 
-extern const struct cs_command cs_command_run;
-extern const struct cs_command cs_command_integrators;
-extern const struct cs_command cs_command_scene;
-extern const struct cs_command cs_command_golden;
-extern const struct cs_command cs_command_conform;
-extern const struct cs_command cs_command_stability;
-extern const struct cs_command cs_command_advise;
-extern const struct cs_command cs_command_compare;
-extern const struct cs_command cs_command_plot;
-extern const struct cs_command cs_command_soft_bench;
+/* CS_COMMAND_LIST(X): X(name) of each, made by the build from its list in meson.build. */
+#include "cli/command_list.h"
+
+#define X(name) extern const struct cs_command cs_command_##name;
+CS_COMMAND_LIST(X)
+#undef X
 
 #endif

@@ -5,17 +5,12 @@
 #include <signal.h>
 #include <string.h>
 
-static const struct cs_command *const commands[] = {&cs_command_run,
-                                                    &cs_command_integrators,
-                                                    &cs_command_scene,
-                                                    &cs_command_golden,
-                                                    &cs_command_conform,
-                                                    &cs_command_compare,
-                                                    &cs_command_plot,
-                                                    &cs_command_stability,
-                                                    &cs_command_advise,
-                                                    &cs_command_soft_bench,
-                                                    NULL};
+static const struct cs_command *const commands[] = {
+#define X(name) &cs_command_##name,
+    CS_COMMAND_LIST(X)
+#undef X
+        NULL};
+enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static const struct cs_command *find_command(const char *name) {
     for (uint32_t i = 0; commands[i]; i++)
@@ -25,7 +20,7 @@ static const struct cs_command *find_command(const char *name) {
 }
 
 static enum cs_status unknown_command(const char *word, struct cs_error *error) {
-    const char *names[16];
+    const char *names[COMMANDS + 1]; // help as well
     uint32_t n = 0;
     for (; commands[n]; n++)
         names[n] = commands[n]->name;

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Who may include whom: the own folder, and folders on lower floors; modules: include only.
 # A folder of src that is not in the list below is an error, and so is one with more than 25
-# units (a unit: NAME.c, NAME.h or both).
+# units (a unit: NAME.c, NAME.h or both). The host is known to sim alone, and only a session begins
+# a run.
 cd "$1" || exit 1
 awk '
     BEGIN {
@@ -29,7 +30,11 @@ awk '
             else if (from != to && floor[from] <= floor[to])
                 wrong(FILENAME " includes " quoted[2] ": not on a lower floor")
         }
+        if (quoted[2] == "sim/host.h" && from != "sim") wrong(FILENAME " includes sim/host.h: see the doors in sim/run.h")
         count++
+    }
+    /cs_run_begin\(/ && from != "sim" && FILENAME != "src/study/session.c" {
+        wrong(FILENAME " begins a run: see cs_session_begin")
     }
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {
         wrong(FILENAME ": " $0 ": only the standard library and clothsim")
