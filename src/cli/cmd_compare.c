@@ -3,6 +3,7 @@
 #include "cli/interrupt.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "study/compare/compare.h"
 #include "study/compare/compare_report.h"
 #include "study/compare/compare_sheet.h"
 

@@ -1,6 +1,9 @@
 /* The reference: its own error, a planted bug, the horizon, the cache. */
 #include "scene.h"
 
+#include "study/compare/yardstick.h"
+#include "study/compare/yardstick_choice.h"
+
 #include <math.h>
 #include <string.h>
 

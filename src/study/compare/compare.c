@@ -2,6 +2,9 @@
 
 #include "base/hash.h"
 #include "model/event/events.h"
+#include "study/compare/compare_ledger.h"
+#include "study/compare/compare_measure.h"
+#include "study/compare/yardstick.h"
 
 #include <math.h>
 #include <stdio.h>

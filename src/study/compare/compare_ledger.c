@@ -1,6 +1,7 @@
-/* compare_ledger.c - compare.csv while it grows, so that an interrupted comparison goes on. */
+/* compare_ledger.c - takes over, appends and rewrites the rows of compare.csv. */
+#include "study/compare/compare_ledger.h"
+
 #include "base/file.h"
-#include "study/compare/compare.h"
 #include "study/compare/compare_csv.h"
 
 #include <errno.h>

@@ -1,5 +1,8 @@
-/* compare_measure.c - one cell: a run that is recorded, then runs that are timed. */
-#include "study/compare/compare.h"
+/* compare_measure.c - one cell: a run that is recorded, then runs that are timed; and observed
+ * orders, the slopes of error against step. */
+#include "study/compare/compare_measure.h"
+
+#include "study/compare/yardstick.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +17,9 @@ enum { MOST_RUNS = 101 };
 /* Times further from the median than that many median deviations are outliers; 1.4826 makes
  * the deviation of a normal distribution of it. */
 #define OUTLIER (3 * 1.4826)
+
+/* Two successive slopes within that are steady. */
+#define STEADY 0.1
 
 static int by_size(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -123,4 +129,30 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
     cs_track_finish(&track);
     cs_course_close(&course);
     return error->status;
+}
+
+static bool is_usable(const struct cs_cell *cell, double bar, double scale) {
+    // near the bar the reference's own error is measured, near the motion everything is lost
+    return cs_cell_is_finished(cell) && cell->error > 10 * bar && cell->error < 0.1 * scale;
+}
+
+/* NAN where there is none */
+static double slope(const struct cs_cell *a, const struct cs_cell *b, double bar,
+                    double scale) {
+    if (a->adaptive || b->adaptive || strcmp(a->method, b->method) ||
+        !is_usable(a, bar, scale) || !is_usable(b, bar, scale) || !(b->step < a->step))
+        return (double)NAN;
+    return log(a->error / b->error) / log(a->step / b->step);
+}
+
+void cs_compare_find_orders(struct cs_cell *cells, uint32_t n, double bar, double scale) {
+    for (uint32_t k = 0; k < n; k++) {
+        const double here = k > 0 ? slope(cells + k - 1, cells + k, bar, scale) : (double)NAN;
+        const double before =
+            k > 1 ? slope(cells + k - 2, cells + k - 1, bar, scale) : (double)NAN;
+        const double after =
+            k + 1 < n ? slope(cells + k, cells + k + 1, bar, scale) : (double)NAN;
+        const bool steady = fabs(here - before) < STEADY || fabs(here - after) < STEADY;
+        cells[k].order = steady ? here : (double)NAN;
+    }
 }

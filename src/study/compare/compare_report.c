@@ -1,10 +1,219 @@
+/* compare_report.c - compare.json with everything, for programs; compare.md, one report for
+ * people; the diagrams. */
 #include "study/compare/compare_report.h"
 
 #include "base/file.h"
 #include "study/compare/compare_plot.h"
+#include "study/machine.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- compare.json --- */
+
+static void add_json_text(struct cs_text *out, const char *key, const char *value) {
+    cs_text_add(out, "\"%s\": ", key);
+    cs_text_add_json(out, value);
+}
+
+static void add_json_real(struct cs_text *out, const char *key, double value) {
+    cs_text_add(out, "\"%s\": ", key);
+    cs_text_add_real(out, value);
+}
+
+static void add_machine(struct cs_text *out) {
+    struct cs_machine machine;
+    cs_machine_look(&machine);
+    cs_text_add(out, "  \"machine\": {");
+    add_json_text(out, "processor", machine.processor);
+    cs_text_add(out, ", \"processors\": %ld, ", machine.processors);
+    add_json_real(out, "load", machine.load);
+    cs_text_add(out, ", ");
+    add_json_text(out, "version", machine.version);
+    cs_text_add(out, ", ");
+    add_json_text(out, "compiler", machine.compiler);
+    cs_text_add(out, ", ");
+    add_json_text(out, "flags", machine.flags);
+    cs_text_add(out, "},\n");
+}
+
+static void add_reference(const struct cs_yardstick *yardstick, struct cs_text *out) {
+    const struct {
+        const char *key;
+        double value;
+    } numbers[] = {{"bar", yardstick->bar},
+                   {"bar_max", yardstick->bar_max},
+                   {"motion", yardstick->scale},
+                   {"kinetic_energy", yardstick->kinetic},
+                   {"strain", yardstick->strain},
+                   {"accuracy", yardstick->accuracy},
+                   {"amplification", yardstick->horizon.amplification},
+                   {"horizon", yardstick->horizon.time}};
+    cs_text_add(out, "  \"reference\": {\"methods\": [");
+    for (int k = 0; k < CS_YARDSTICK_RUNS; k++) {
+        cs_text_add(out, "%s", k ? ", " : "");
+        cs_text_add_json(out, yardstick->methods[k]);
+    }
+    cs_text_add(out, "], \"agree\": %s, \"pointwise\": %s, ",
+                yardstick->agree ? "true" : "false", yardstick->pointwise ? "true" : "false");
+    add_json_text(out, "reason", yardstick->reason);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        cs_text_add(out, ", ");
+        add_json_real(out, numbers[k].key, numbers[k].value);
+    }
+    cs_text_add(out, "},\n");
+}
+
+static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
+                     struct cs_text *out) {
+    cs_text_add(out, "{\"best\": %td", rank->best - cells);
+    if (rank->next) {
+        cs_text_add(out, ", \"next\": %td, ", rank->next - cells);
+        add_json_real(out, "factor", rank->factor);
+        cs_text_add(out, ", \"interval\": [");
+        cs_text_add_real(out, rank->low);
+        cs_text_add(out, ", ");
+        cs_text_add_real(out, rank->high);
+        cs_text_add(out, "]");
+    }
+}
+
+/* best and next are indices of cells */
+static void add_verdict(const struct cs_ranking *ranking, const struct cs_compare *compare,
+                        struct cs_text *out) {
+    const struct cs_cell *cells = compare->sweep.cells;
+    cs_text_add(out, "  \"verdict\": [");
+    for (uint32_t k = 0; k < ranking->n; k++) {
+        cs_text_add(out, "%s\n    ", k ? "," : "");
+        add_rank(ranking->ranks + k, cells, out);
+        cs_text_add(out, ", \"error\": 1e%d}", ranking->ranks[k].exponent);
+    }
+    cs_text_add(out, "],\n  \"stable_at_frame_step\": ");
+    if (ranking->frame.best) {
+        add_rank(&ranking->frame, cells, out);
+        cs_text_add(out, "},\n");
+    } else
+        cs_text_add(out, "null,\n");
+}
+
+static void add_json_cell(const struct cs_cell *cell, bool front, struct cs_text *out) {
+    cs_text_add(out, "{\"front\": %s", front ? "true" : "false");
+    for (uint32_t c = 0; c < cs_n_columns; c++) {
+        const struct cs_column *column = cs_columns + c;
+        const char *field = (const char *)cell + column->offset;
+        cs_text_add(out, ", ");
+        if (column->type == CS_CELL_TEXT)
+            add_json_text(out, column->name, field);
+        else if (column->type == CS_CELL_FLAG)
+            cs_text_add(out, "\"%s\": %s", column->name,
+                        *(const bool *)field ? "true" : "false");
+        else
+            add_json_real(out, column->name, cs_cell_number(cell, column));
+    }
+    cs_text_add(out, "}");
+}
+
+static void print_json(const struct cs_compare *compare, const struct cs_ranking *ranking,
+                       struct cs_text *out) {
+    cs_text_add(out, "{\n  \"schema\": 1,\n  ");
+    add_json_text(out, "scene", compare->scene);
+    cs_text_add(out, ",\n  \"particles\": %u, \"springs\": %u, ", compare->particles,
+                compare->springs);
+    add_json_real(out, "time", compare->time);
+    cs_text_add(out, ", ");
+    add_json_real(out, "fps", compare->fps);
+    cs_text_add(out, ",\n  ");
+    add_json_text(out, "switched_off", cs_text_get(&compare->changes));
+    cs_text_add(out, ",\n");
+    add_machine(out);
+    add_reference(&compare->yardstick, out);
+    add_verdict(ranking, compare, out);
+    cs_text_add(out, "  \"cells\": [");
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        cs_text_add(out, "%s\n    ", k ? "," : "");
+        add_json_cell(compare->sweep.cells + k, ranking->front[k], out);
+    }
+    cs_text_add(out, "\n  ]\n}\n");
+}
+
+/* --- compare.md --- */
+
+static void add_setting(const struct cs_compare *compare, struct cs_text *out) {
+    struct cs_machine machine;
+    cs_machine_look(&machine);
+    cs_text_add(out, "# Error against run time: %s\n\n```\n", compare->scene);
+    cs_table_add_reference(compare, out);
+    cs_text_add(
+        out,
+        "```\n\nMachine: %s, %ld processors, load %.1f. clothsim %s, %s, %s. Cells were "
+        "timed one\nafter the other: processor time of stepping only, a run before "
+        "that is not timed,\nmedians of at least %u runs.\n\n",
+        *machine.processor ? machine.processor : "unknown", machine.processors, machine.load,
+        machine.version, machine.compiler, machine.flags, compare->settings->runs);
+}
+
+static void add_lines(const char *title, struct cs_text *lines, struct cs_text *out) {
+    cs_text_add(out, "## %s\n\n%s\n", title, cs_text_get(lines));
+    cs_text_finish(lines);
+}
+
+static void add_field(struct cs_text *out, const char *format, double value) {
+    cs_text_add(out, " | ");
+    if (isfinite(value))
+        cs_text_add(out, format[1] == 'f' ? "%.0f" : format[1] == 'o' ? "%.2f" : "%.2e", value);
+}
+
+static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out) {
+    cs_text_add(out, "| %s%s%s | %s", front ? "**" : "", cell->method, front ? "**" : "",
+                cell->options);
+    add_field(out, "%e", cell->error);
+    add_field(out, "%e", cell->max_path_error);
+    add_field(out, "%e", cell->velocity_error);
+    add_field(out, "%e", cell->energy_error);
+    add_field(out, "%o", cell->order);
+    add_field(out, "%e", cell->achieved);
+    add_field(out, "%f", cell->evals);
+    add_field(out, "%f", cell->solves);
+    add_field(out, "%f", cell->iterations);
+    add_field(out, "%e", cell->cpu);
+    cs_text_add(out, " | %s |\n", cell->outcome);
+}
+
+static void add_table(const struct cs_compare *compare, const struct cs_ranking *ranking,
+                      struct cs_text *out) {
+    cs_text_add(out,
+                "## All cells\n\nBold: nothing is both cheaper and more accurate. Errors in m "
+                "(RMS at the end; largest of all\nframes) and m/s; energy as a share of the "
+                "largest kinetic energy; time in s.\n\n"
+                "| method | options | error | largest | velocity | energy | order | error / "
+                "rtol | force evaluations | solves | iterations | time | |\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    for (uint32_t k = 0; k < compare->sweep.n; k++)
+        add_line(compare->sweep.cells + k, ranking->front[k], out);
+}
+
+static void print_markdown(const struct cs_compare *compare, const struct cs_ranking *ranking,
+                           bool drawn, struct cs_text *out) {
+    struct cs_text verdict = {0}, warnings = {0}, methods = {0};
+    add_setting(compare, out);
+    cs_ranking_print(ranking, "- ", compare, &verdict);
+    add_lines("Verdict", &verdict, out);
+    cs_compare_warn(compare, "- ", &warnings);
+    if (*cs_text_get(&warnings))
+        add_lines("Warnings", &warnings, out);
+    cs_text_finish(&warnings);
+    if (drawn)
+        cs_text_add(out, "## Diagrams\n\n![error against time](error_time.png)\n\n"
+                         "![error against work](error_work.png)\n\n");
+    cs_text_add(&methods, "```\n");
+    cs_table_add_methods(compare, &methods);
+    cs_text_add(&methods, "```\n");
+    add_lines("Methods", &methods, out);
+    add_table(compare, ranking, out);
+}
+
+/* --- the files --- */
 
 static enum cs_status draw(const struct cs_compare *compare, const char *name, const char *x,
                            bool *drawn, struct cs_error *error) {
@@ -44,8 +253,8 @@ enum cs_status cs_compare_write_report(const struct cs_compare *compare,
     // two families that disagree leave nothing to draw errors against
     if (compare->yardstick.agree && !draw(compare, "error_time", "cpu", &drawn, error))
         draw(compare, "error_work", "work", &drawn, error);
-    cs_compare_print_json(compare, &ranking, &json);
-    cs_compare_print_markdown(compare, &ranking, drawn, &markdown);
+    print_json(compare, &ranking, &json);
+    print_markdown(compare, &ranking, drawn, &markdown);
     if (!error->status && !write_text(compare, "compare.json", &json, error))
         write_text(compare, "compare.md", &markdown, error);
     cs_text_finish(&json);

@@ -9,11 +9,4 @@
 enum cs_status cs_compare_write_report(const struct cs_compare *compare,
                                        struct cs_error *error);
 
-/* Below: parts of compare_report.c. */
-void cs_compare_print_json(const struct cs_compare *compare, const struct cs_ranking *ranking,
-                           struct cs_text *out);
-void cs_compare_print_markdown(const struct cs_compare *compare,
-                               const struct cs_ranking *ranking, bool drawn,
-                               struct cs_text *out);
-
 #endif

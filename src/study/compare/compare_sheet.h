@@ -4,7 +4,7 @@
 #define CS_COMPARE_SHEET_H
 
 #include "draw/render.h"
-#include "study/compare/compare.h"
+#include "study/compare/compare_state.h"
 
 /* Writes FOLDER/pictures/KIND_METHOD.png and, where gnuplot is found, FOLDER/KIND.png with all
  * of them, for the kinds equal_step (the step that most methods got through with) and

@@ -2,7 +2,7 @@
 #ifndef CS_RANKING_H
 #define CS_RANKING_H
 
-#include "study/compare/compare.h"
+#include "study/compare/compare_state.h"
 
 enum { CS_RANKS_MAX = 24 };
 

@@ -1,7 +1,10 @@
+/* yardstick.c - the four runs, their differences, and whether they make a reference. */
 #include "study/compare/yardstick.h"
 
 #include "base/hash.h"
 #include "model/force/measure.h"
+#include "study/compare/yardstick_cache.h"
+#include "study/compare/yardstick_choice.h"
 
 #include <math.h>
 #include <stdio.h>

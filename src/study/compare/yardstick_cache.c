@@ -1,8 +1,9 @@
-/* yardstick_cache.c - a reference in a file, for the next comparison of the same scene. */
+/* yardstick_cache.c - the key, the header and the states of a reference's file. */
+#include "study/compare/yardstick_cache.h"
+
 #include "base/file.h"
 #include "base/hash.h"
 #include "io/scene_write.h"
-#include "study/compare/yardstick.h"
 
 #include <stdio.h>
 #include <stdlib.h>

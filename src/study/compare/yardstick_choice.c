@@ -1,5 +1,5 @@
-/* yardstick_choice.c - which two families of methods make the reference. */
-#include "study/compare/yardstick.h"
+/* yardstick_choice.c - the list of families, best first, and their tighter twins. */
+#include "study/compare/yardstick_choice.h"
 
 #include <math.h>
 #include <stdio.h>

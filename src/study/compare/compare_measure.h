@@ -1,0 +1,14 @@
+/* compare_measure.h - what one cell costs, how wrong it is, and the order of a method. */
+#ifndef CS_COMPARE_MEASURE_H
+#define CS_COMPARE_MEASURE_H
+
+#include "study/compare/compare_state.h"
+
+/* Runs, measures and times one cell. */
+enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
+                                  struct cs_error *error);
+
+/* Fills the orders of a method's successive cells where the slope is steady. */
+void cs_compare_find_orders(struct cs_cell *cells, uint32_t n, double bar, double scale);
+
+#endif

@@ -1,0 +1,17 @@
+/* yardstick_cache.h - a reference in a file, for the next comparison of the same scene. */
+#ifndef CS_YARDSTICK_CACHE_H
+#define CS_YARDSTICK_CACHE_H
+
+#include "study/compare/yardstick_state.h"
+
+/* Hash of all that it depends on: CS_HASH_DIGITS characters. */
+void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_course *course,
+                      const struct cs_yardstick_settings *settings, char *key);
+
+/* Reads or writes DIR/reference-KEY.state; a file that does not fit counts as none. */
+bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const char *key,
+                       const struct cs_course *course);
+enum cs_status cs_yardstick_write(const struct cs_yardstick *yardstick, const char *folder,
+                                  const char *key, struct cs_error *error);
+
+#endif

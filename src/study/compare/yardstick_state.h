@@ -1,0 +1,38 @@
+/* yardstick_state.h - what a reference is asked for, and what it came to. */
+#ifndef CS_YARDSTICK_STATE_H
+#define CS_YARDSTICK_STATE_H
+
+#include "study/compare/horizon.h"
+#include "study/deviation.h"
+
+enum { CS_YARDSTICK_RUNS = 4 };
+
+struct cs_yardstick_settings {
+    const struct cs_course_settings *course;
+    const char *methods[2]; /* "NAME:options" of the two families; NULL: the best there are */
+    double accuracy;        /* m to which pointwise errors are wanted: bounds the horizon */
+    const char *cache;      /* folder, or NULL */
+    /* called before each run and at the end; may be NULL */
+    void (*progress)(void *ctx, uint32_t done, uint32_t total, const char *what);
+    void *ctx;
+};
+
+/* Zeroed: none. */
+struct cs_yardstick {
+    struct cs_track track;
+    char methods[CS_YARDSTICK_RUNS][256]; /* family 1, its twin, family 2, its twin */
+    double differences[3]; /* m: 1 against its twin, 2 against its twin, 1 against 2 */
+    double bar;            /* m, largest of them at any frame (RMS of particles) */
+    double bar_max;        /* m, largest distance of a particle */
+    double scale;          /* m, largest RMS displacement from the start */
+    double kinetic;        /* J, largest */
+    double strain;         /* largest */
+    double accuracy;       /* m, as asked for */
+    struct cs_horizon horizon;
+    bool agree;
+    bool pointwise;   /* errors at the end of the time mean something */
+    bool cached;      /* read from the cache */
+    char reason[320]; /* why they do not agree, or why there are no pointwise errors */
+};
+
+#endif
