@@ -138,9 +138,10 @@ START_TEST(kernels_are_the_same_to_the_bit) {
     for (size_t k = 0; k < COUNTS; k++) {
         double *several = kernels(counts[k], &length);
         for (size_t i = 0; i < length; i++)
-            ck_assert_msg(!memcmp(one + i, several + i, sizeof *one),
-                          "%u threads, kernel %zu, value %zu: %.17g, not %.17g", counts[k],
-                          i / (length / KERNELS), i % (length / KERNELS), several[i], one[i]);
+            if (memcmp(one + i, several + i, sizeof *one)) // Check's own is slow in such loops
+                ck_abort_msg("%u threads, kernel %zu, value %zu: %.17g, not %.17g", counts[k],
+                             i / (length / KERNELS), i % (length / KERNELS), several[i],
+                             one[i]);
         free(several);
     }
     for (size_t k = 0; k < KERNELS; k++) {

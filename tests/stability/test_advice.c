@@ -104,25 +104,15 @@ START_TEST(advice_holds_on_two_scenes) {
 }
 END_TEST
 
-/* in two parts, each with a time limit of its own */
-static void check_every_second(int first) {
-    for (int i = first; i < ALL; i += 2)
+START_TEST(advice_holds_on_all_scenes) {
+    for (int i = 0; i < ALL; i++)
         check_scene(rows + i);
-}
-
-START_TEST(advice_holds_on_even_scenes) {
-    check_every_second(0);
-}
-END_TEST
-
-START_TEST(advice_holds_on_odd_scenes) {
-    check_every_second(1);
 }
 END_TEST
 
 int main(int argc, char **argv) {
     const TTest *const few[] = {advice_holds_on_two_scenes};
-    const TTest *const many[] = {advice_holds_on_even_scenes, advice_holds_on_odd_scenes};
+    const TTest *const many[] = {advice_holds_on_all_scenes};
     all = argc > 1 && !strcmp(argv[1], "all");
-    return all ? fixture_run("advice", many, 2) : fixture_run("advice", few, 1);
+    return all ? fixture_run("advice", many, 1) : fixture_run("advice", few, 1);
 }

@@ -17,7 +17,7 @@ static void assert_frame(const char *path, uint32_t number) {
     cs_png_read(path, &image, &error);
     UNIT_ASSERT_OK(&error);
     for (uint32_t i = 0; i < 3 * WIDTH * HEIGHT; i++)
-        ck_assert_uint_eq(image.rgb[i], (uint8_t)(i * number + number));
+        UNIT_ASSERT_OFTEN(image.rgb[i] == (uint8_t)(i * number + number));
     free(image.rgb);
 }
 

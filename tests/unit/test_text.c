@@ -45,8 +45,8 @@ START_TEST(reals_read_back_the_same) {
             continue;
         struct cs_text text = {0};
         cs_text_add_real(&text, value);
-        ck_assert_msg(cs_parse_real(cs_text_get(&text), &back), "%s", cs_text_get(&text));
-        ck_assert_int_eq(memcmp(&back, &value, sizeof value), 0);
+        if (!cs_parse_real(cs_text_get(&text), &back) || memcmp(&back, &value, sizeof value))
+            ck_abort_msg("%.17g became %s", value, cs_text_get(&text));
         cs_text_finish(&text);
     }
 }
@@ -75,7 +75,8 @@ START_TEST(text_grows) {
     ck_assert_uint_eq(text.length, 10000);
     ck_assert_uint_eq(strlen(cs_text_get(&text)), 10000);
     for (size_t i = 0; i < 5000; i++)
-        ck_assert(text.bytes[2 * i] == (char)('0' + i % 10) && text.bytes[2 * i + 1] == ',');
+        UNIT_ASSERT_OFTEN(text.bytes[2 * i] == (char)('0' + i % 10) &&
+                          text.bytes[2 * i + 1] == ',');
     ck_assert(!text.failed);
     cs_text_finish(&text);
     ck_assert_str_eq(cs_text_get(&text), "");

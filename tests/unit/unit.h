@@ -25,6 +25,13 @@ static inline void unit_remove(const char *folder) {
     closedir(entries);
 }
 
+/* For loops of very many rounds: Check writes to a file at every assertion that holds. */
+#define UNIT_ASSERT_OFTEN(condition)                                                           \
+    do {                                                                                       \
+        if (!(condition))                                                                      \
+            ck_abort_msg("%s", #condition);                                                    \
+    } while (0)
+
 /* Runs each test in a process of its own, in a folder that is removed at the end; returns the
  * program's exit code. */
 static inline int unit_run(const char *name, const TTest *const *tests, size_t n_tests) {
