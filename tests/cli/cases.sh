@@ -8,6 +8,7 @@
 #   !  the exit code where it is not 0
 # and every other line is expected output, standard error among standard output as it comes.
 # "..." stands for any text within a line, and alone on a line for any number of lines.
+# Of a command that fails the lines that differ are printed, and no others.
 # Each case has an own empty folder, with the project's scenes/ and golden/ in it.
 set -eu
 
@@ -40,13 +41,15 @@ for file; do
             step=${command%.command}
             code=0
             (cd "$case/folder" && sh "$command") >"$step.output" 2>&1 </dev/null || code=$?
-            if [ "$code" != "$(cat "$step.code")" ] ||
-                ! awk -f "$here/match.awk" "$step.expected" "$step.output"; then
+            fits=yes
+            awk -f "$here/match.awk" "$step.expected" "$step.output" >"$step.difference" || fits=no
+            if [ "$code" != "$(cat "$step.code")" ] || [ $fits = no ]; then
                 verdict="not ok" failed=1
                 {
-                    echo "\$ $(cat "$command")"
-                    echo "! expected $(cat "$step.code"), found $code"
-                    diff "$step.expected" "$step.output" || true
+                    printf '$ %s\n' "$(cat "$command")"
+                    [ "$code" = "$(cat "$step.code")" ] ||
+                        echo "exit code $code, expected $(cat "$step.code")"
+                    cat "$step.difference"
                 } >>"$case/log"
             fi
         done
