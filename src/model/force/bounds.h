@@ -4,7 +4,7 @@
 
 #include "model/system/system.h"
 
-/* Bounds from the forces' absolute row sums (Gershgorin): omega^2 is the largest sum of df/dx
+/* Bounds from the forces' row sums of 3x3 blocks (Gershgorin): omega^2 is the largest sum of df/dx
  * over the mass of a free particle, delta half the largest of df/dv. at: at that state; NULL:
  * what holds for the whole run, as far as forces can say: springs that are not shorter than
  * half their rest length, dampers, drag. work has 2n doubles. */

@@ -23,7 +23,8 @@ enum cs_term_use {
     CS_USE_AREA = 1u << 1     /* area (n) */
 };
 
-/* Absolute row sums of the forces' derivatives at each particle (Gershgorin), for bounds.h. */
+/* For bounds.h, at each particle: the sum of the norms of the 3x3 blocks in its row of a force's
+ * derivative, its own block and those of its neighbours (Gershgorin). */
 struct cs_row_sums {
     double *stiffness, *damping; /* (n) of df/dx in N/m and of df/dv in N s/m */
 };

@@ -1,0 +1,370 @@
+/* Every force of the list keeps what its bits and calls promise, whatever it is.
+ *
+ * The list is walked: a new force is tested here without a word more, if its number is a key of
+ * `forces` that it names in its `ramps`; else the scene below must make it act. Each force is
+ * put into a system alone, on a cloth that is pulled, sheared and stirred. Central differences
+ * with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the largest entry. */
+#include "fixture.h"
+#include "model/force/bounds.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+#include "model/solver/linear.h"
+#include "planted_terms.h"
+#include "scene/event_key.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define FORCES                                                                                 \
+    "\"drag\": 0.3, \"drag_unit\": \"Pa s/m\","                                                \
+    " \"wind\": {\"direction\": [0.3, 0.2, 1], \"strength\": 4}"
+#define SCENE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 4]}, \"mass\": {\"areal_density\": 0.4},"        \
+    " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": 0.7},"         \
+    " \"pins\": [\"top-left\", 7]}],"                                                          \
+    " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, 2, 3]}}],"           \
+    " \"forces\": {" FORCES "%s}}"
+
+enum { N = 20, VALUES = 3 * N };
+#define STEP 1e-6
+
+#define STATE_OF(cloth, p)                                                                     \
+    { .x = (cloth)->x, .v = (cloth)->v, .parts = (p) }
+
+/* keys of `forces` that the scene does not have yet get a value */
+static void add_keys(char *text, size_t size) {
+    *text = 0;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        for (const char *const *key = cs_terms[k]->ramps; key && *key; key++) {
+            char quoted[80];
+            const char *name = strncmp(*key, "forces.", 7) ? NULL : *key + 7;
+            snprintf(quoted, sizeof quoted, "\"%s\"", name ? name : "");
+            if (name && !strchr(name, '.') && strcmp(name, "gravity") &&
+                !strstr(FORCES, quoted))
+                snprintf(text + strlen(text), size - strlen(text), ", %s: 0.7", quoted);
+        }
+}
+
+/* all forces act */
+static void open(struct fixture *cloth) {
+    char keys[800];
+    planted = (struct planted){.resist = 2, .trap = 300, .trap_damping = 5, .swing = 1};
+    add_keys(keys, sizeof keys);
+    fixture_open(cloth, "implicit-linearised", SCENE, keys);
+    ck_assert_uint_eq(cloth->n, N);
+    fixture_start(cloth);
+    fixture_stir(cloth, 0.06, 2);
+}
+
+static void leave_alone(struct fixture *cloth, const struct cs_term *term) {
+    cloth->system->terms[0] = term;
+    cloth->system->n_terms = 1;
+    // the solver knows springs by their factors, not by the list
+    if (!term->add_diagonal)
+        cloth->system->springs.n_runs = cloth->system->springs.n = 0;
+}
+
+START_TEST(bits_and_calls_agree) {
+    uint32_t own_bits = 0;
+    const uint32_t shared = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE | CS_PART_EXTERNAL;
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const struct cs_term *term = cs_terms[k];
+        const bool linearised = term->parts & CS_PART_LINEARISED;
+        const int shares = !!term->add_scalar + !!term->add_blocks + !!term->add_diagonal;
+        const bool passive = !(term->parts & ~(CS_PART_LINEARISED | CS_PART_WITH_ENERGY));
+        ck_assert_msg(term->name && term->plan && term->add_force, "force %u is half made", k);
+        ck_assert_msg(term->parts && !(term->parts & own_bits & ~shared),
+                      "%s: its bit is another's", term->name);
+        ck_assert_msg(!linearised || term->add_jvp, "%s: in the matrix, no jvp", term->name);
+        ck_assert_msg(shares == linearised, "%s: %d shares of the matrix", term->name, shares);
+        ck_assert_msg(!linearised || term->add_bound || term->add_bound_at,
+                      "%s: in the matrix, no bound", term->name);
+        ck_assert_msg(!(term->parts & CS_PART_WITH_ENERGY) == !term->energy,
+                      "%s: energy and bits differ", term->name);
+        ck_assert_msg(passive || term->strongest, "%s: neither an energy nor a greatest force",
+                      term->name);
+        own_bits |= term->parts & ~shared;
+        for (uint32_t j = 0; j < k; j++)
+            ck_assert_str_ne(term->name, cs_terms[j]->name);
+    }
+}
+END_TEST
+
+START_TEST(every_force_acts_here) {
+    struct fixture cloth;
+    open(&cloth);
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        uint32_t t = 0;
+        while (t < cloth.system->n_terms && cloth.system->terms[t] != cs_terms[k])
+            t++;
+        ck_assert_msg(t < cloth.system->n_terms, "%s is not in this test's scene",
+                      cs_terms[k]->name);
+    }
+    fixture_close(&cloth);
+}
+END_TEST
+
+START_TEST(events_can_change_the_keys) {
+    struct fixture cloth;
+    open(&cloth);
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        for (const char *const *key = cs_terms[k]->ramps; key && *key; key++) {
+            char path[96];
+            struct cs_event_key found;
+            struct cs_error error = {0};
+            const bool of_body = !strncmp(*key, "bodies.", 7);
+            const bool vector = !strcmp(*key, "forces.gravity");
+            snprintf(path, sizeof path, "%s%s%s", of_body ? "bodies[0]" : *key,
+                     of_body ? *key + 6 : "", vector ? "[1]" : "");
+            cs_event_key_find(&cloth.session.scene, path, &found, &error);
+            ck_assert_msg(!error.status, "%s: %s", cs_terms[k]->name, error.message);
+        }
+    fixture_close(&cloth);
+}
+END_TEST
+
+static void force(const struct fixture *cloth, struct cs_eval at, double f[VALUES]) {
+    cs_normals_update(cloth->system, at.x);
+    cs_terms_force(cloth->system, &at, f);
+}
+
+/* (f(x + e dx, v + e dv) - f(x - e dx, v - e dv)) / 2 e */
+static void difference(const struct fixture *cloth, uint32_t parts, const double *dx,
+                       const double *dv, double slope[VALUES]) {
+    double x[VALUES], v[VALUES], forward[VALUES];
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        for (size_t i = 0; i < VALUES; i++) {
+            x[i] = cloth->x[i] + sign * STEP * dx[i];
+            v[i] = cloth->v[i] + sign * STEP * dv[i];
+        }
+        force(cloth, (struct cs_eval){.x = x, .v = v, .parts = parts},
+              sign > 0 ? forward : slope);
+    }
+    for (size_t i = 0; i < VALUES; i++)
+        slope[i] = (forward[i] - slope[i]) / (2 * STEP);
+}
+
+static double largest(const double *a) {
+    double found = 0;
+    for (size_t i = 0; i < VALUES; i++)
+        found = fmax(found, fabs(a[i]));
+    return found;
+}
+
+/* one bit of one force, all columns of df/dx and df/dv */
+static void check_jvp(const struct fixture *cloth, const char *name, uint32_t part) {
+    double zero[VALUES] = {0}, unit[VALUES] = {0}, slope[VALUES], df[VALUES];
+    double size = 0, error = 0;
+    for (size_t column = 0; column < 2 * VALUES; column++) {
+        const bool place = column < VALUES;
+        if (cloth->system->inv_mass[column % N] <= 0)
+            continue; // a pinned particle does not move
+        unit[column % VALUES] = 1;
+        difference(cloth, part, place ? unit : zero, place ? zero : unit, slope);
+        struct cs_eval at = STATE_OF(cloth, part);
+        *(place ? &at.dx : &at.dv) = unit;
+        cs_normals_update(cloth->system, cloth->x);
+        cs_terms_jvp(cloth->system, &at, df);
+        unit[column % VALUES] = 0;
+        size = fmax(size, largest(slope));
+        for (size_t i = 0; i < VALUES; i++)
+            error = fmax(error, fabs(df[i] - slope[i]));
+    }
+    ck_assert_msg(!(part & CS_PART_LINEARISED) || size > 1e-3,
+                  "%s, part %x: the largest derivative is only %g", name, part, size);
+    ck_assert_msg(error <= 1e-7 * size + 1e-9, "%s, part %x: off by %g of %g", name, part,
+                  error, size);
+}
+
+START_TEST(jvp_is_the_derivative) {
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        struct fixture cloth;
+        open(&cloth);
+        leave_alone(&cloth, cs_terms[k]);
+        for (uint32_t part = 1; part && part <= cs_terms[k]->parts; part *= 2)
+            if (part & cs_terms[k]->parts)
+                check_jvp(&cloth, cs_terms[k]->name, part);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* without the force that an energy has, the energy is level: f = -dE/dx of those bits */
+START_TEST(force_is_the_slope_of_its_energy) {
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        struct fixture cloth;
+        double f[VALUES];
+        open(&cloth);
+        leave_alone(&cloth, cs_terms[k]);
+        const struct cs_eval at = STATE_OF(&cloth, CS_PART_WITH_ENERGY);
+        force(&cloth, at, f);
+        for (size_t i = 0; i < VALUES && cs_terms[k]->energy; i++) {
+            const double place = cloth.x[i];
+            if (cloth.system->inv_mass[i % N] <= 0)
+                continue;
+            cloth.x[i] = place + STEP;
+            const double above = cs_terms[k]->energy(cloth.system, &at);
+            cloth.x[i] = place - STEP;
+            const double below = cs_terms[k]->energy(cloth.system, &at);
+            cloth.x[i] = place;
+            ck_assert_msg(fabs(f[i] - (below - above) / (2 * STEP)) < 1e-7, "%s",
+                          cs_terms[k]->name);
+        }
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* A p - M p of a force's share of the matrix with cm = 1 */
+static void share_of(const struct fixture *cloth, struct cs_matrix matrix, const double *p,
+                     double *out) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    struct cs_linear linear;
+    matrix.x = cloth->x;
+    matrix.v = cloth->v;
+    matrix.cm = 1;
+    ck_assert_int_eq(cs_linear_init(&linear, cloth->system, &arena, &error), CS_OK);
+    cs_linear_setup(&linear, &matrix);
+    cs_linear_mul(&linear, p, out);
+    for (size_t i = 0; i < VALUES; i++)
+        out[i] -= cloth->system->mass[i % N] * p[i];
+    cs_arena_finish(&arena);
+}
+
+/* Derivatives of damping by places are left out, so that the share is symmetric: at rest they
+ * are 0. The same of the particles' own blocks, by which it must agree with the diagonal. */
+START_TEST(share_of_the_matrix_is_that_of_jvp) {
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        struct fixture cloth;
+        double p[VALUES], found[VALUES], dk[VALUES], dd[VALUES], kxx[6 * N], dvv[6 * N];
+        open(&cloth);
+        leave_alone(&cloth, cs_terms[k]);
+        memset(cloth.v, 0, VALUES * sizeof *cloth.v);
+        struct cs_eval at = STATE_OF(&cloth, CS_PART_LINEARISED);
+        cs_terms_diagonal(cloth.system, &at, kxx, dvv);
+        for (size_t i = 0; i < VALUES; i++)
+            p[i] = cloth.system->inv_mass[i % N] > 0 ? sin(0.9 * (double)i) : 0;
+        share_of(&cloth, (struct cs_matrix){.cd = -0.02, .ck = -4e-4}, p, found);
+        at.dx = p;
+        cs_terms_jvp(cloth.system, &at, dk);
+        at.dx = NULL, at.dv = p;
+        cs_terms_jvp(cloth.system, &at, dd);
+        for (size_t i = 0; i < VALUES; i++)
+            ck_assert_msg(fabs(found[i] + 0.02 * dd[i] + 4e-4 * dk[i]) < 1e-12, "%s",
+                          cs_terms[k]->name);
+        for (size_t i = 0; i < VALUES; i++) {
+            static const int at_row[3] = {0, 3, 5};
+            double unit[VALUES] = {0};
+            if (cloth.system->inv_mass[i % N] <= 0)
+                continue;
+            unit[i] = 1;
+            at.dx = unit, at.dv = unit;
+            cs_terms_jvp(cloth.system, &at, dk);
+            const size_t own = at_row[i / N] * (size_t)N + i % N;
+            ck_assert_msg(fabs(kxx[own] + dvv[own] - dk[i]) < 1e-9, "%s: own blocks",
+                          cs_terms[k]->name);
+        }
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* p.A p >= 0 where the matrix is asked to be so, in any state */
+START_TEST(share_is_positive_on_demand) {
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        struct fixture cloth;
+        open(&cloth);
+        leave_alone(&cloth, cs_terms[k]);
+        for (int state = 0; state < 8; state++) {
+            double p[VALUES], found[VALUES], curvature = 0;
+            fixture_stir(&cloth, 0.05 * state, state);
+            for (size_t i = 0; i < VALUES; i++)
+                p[i] = cloth.system->inv_mass[i % N] > 0 ? sin((1.3 + state) * (double)i) : 0;
+            share_of(&cloth, (struct cs_matrix){.cd = -0.02, .ck = -4e-4, .psd = true}, p,
+                     found);
+            for (size_t i = 0; i < VALUES; i++)
+                curvature += p[i] * found[i];
+            ck_assert_msg(curvature > -1e-12, "%s: p.A p = %g", cs_terms[k]->name, curvature);
+        }
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* largest eigenvalue in size of M^-1 df/dx or M^-1 df/dv, by power iteration */
+static double largest_value(const struct fixture *cloth, bool velocity) {
+    double p[VALUES], df[VALUES], value = 0;
+    for (size_t i = 0; i < VALUES; i++)
+        p[i] = sin(1.3 * (double)i + (double)(i % 5));
+    for (int k = 0; k < 200; k++) {
+        struct cs_eval at = STATE_OF(cloth, CS_PART_LINEARISED);
+        double norm = 0;
+        *(velocity ? &at.dv : &at.dx) = p;
+        cs_terms_jvp(cloth->system, &at, df);
+        for (size_t i = 0; i < VALUES; i++) {
+            df[i] *= cloth->system->inv_mass[i % N];
+            norm += df[i] * df[i];
+        }
+        value = sqrt(norm);
+        for (size_t i = 0; i < VALUES && value > 0; i++)
+            p[i] = df[i] / value;
+    }
+    return value;
+}
+
+START_TEST(bounds_are_above_the_truth) {
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        struct fixture cloth;
+        double work[2 * N], omega, delta;
+        open(&cloth);
+        leave_alone(&cloth, cs_terms[k]);
+        memset(cloth.v, 0, VALUES * sizeof *cloth.v);
+        const struct cs_eval at = STATE_OF(&cloth, CS_PART_ALL);
+        cs_bounds_at(cloth.system, &at, work, &omega, &delta);
+        const double square = largest_value(&cloth, false), rate = largest_value(&cloth, true);
+        ck_assert_msg(square <= 1.000001 * omega * omega, "%s: omega^2 %g, bound %g",
+                      cs_terms[k]->name, square, omega * omega);
+        ck_assert_msg(rate <= 1.000001 * 2 * delta, "%s: rate %g, bound %g", cs_terms[k]->name,
+                      rate, 2 * delta);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+START_TEST(no_force_is_above_its_greatest) {
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        struct fixture cloth;
+        double f[VALUES];
+        open(&cloth);
+        leave_alone(&cloth, cs_terms[k]);
+        for (int state = 0; state < 8 && cs_terms[k]->strongest; state++) {
+            fixture_stir(&cloth, 0.05 * state, state);
+            struct cs_eval at = STATE_OF(&cloth, CS_PART_ALL);
+            at.t = 0.3 * state;
+            force(&cloth, at, f);
+            for (size_t i = 0; i < N; i++) {
+                const double size =
+                    sqrt(f[i] * f[i] + f[N + i] * f[N + i] + f[2 * N + i] * f[2 * N + i]);
+                ck_assert_msg(size <= 1.000001 * cs_terms[k]->strongest(cloth.system, i),
+                              "%s: %g N", cs_terms[k]->name, size);
+            }
+        }
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {bits_and_calls_agree,
+                                  every_force_acts_here,
+                                  events_can_change_the_keys,
+                                  jvp_is_the_derivative,
+                                  force_is_the_slope_of_its_energy,
+                                  share_of_the_matrix_is_that_of_jvp,
+                                  share_is_positive_on_demand,
+                                  bounds_are_above_the_truth,
+                                  no_force_is_above_its_greatest};
+    return fixture_run("contract", tests, sizeof tests / sizeof *tests);
+}

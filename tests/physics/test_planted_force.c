@@ -1,0 +1,229 @@
+/* A force that the program does not know reaches every method, by what it says of itself.
+ *
+ * The planted forces (planted_terms.h) act on a free sheet that moves as a whole, so that each
+ * has a closed form or an ODE in one number:
+ *   resistance  v' = -2 v                      v(1) = exp(-2)
+ *   trap        q'' = -k q^3/m                 Runge-Kutta in steps of 1e-4
+ *   swing       v' = cos(3 t)                  v(1) = sin(3)/3, x(1) = (1 - cos 3)/9
+ * Methods with a step are run at two and must fall by their order; those with error control
+ * must meet 1e-4. Methods of another model are left out. */
+#include "fixture.h"
+#include "model/force/bounds.h"
+#include "model/force/terms.h"
+#include "model/solver/linear.h"
+#include "planted_terms.h"
+#include "sim/registry.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3], \"velocity\": [1, 0, 0.5]}, \"mass\": "      \
+    "{\"particle\": 0.1}, \"springs\": {\"stretch\": 0.2, \"shear\": 0.1, \"bend\": 0.05}}],"  \
+    " \"forces\": {\"gravity\": [0, 0, 0]}}"
+
+#define MASS 0.1
+
+/* what a particle's state is at t = 1 s: place since the start and velocity along one line */
+struct motion {
+    double q, v;
+};
+
+static struct motion end_of(const struct fixture *cloth, const double *direction) {
+    struct motion end = {0};
+    const size_t n = cloth->n;
+    for (size_t c = 0; c < 3; c++) {
+        end.q += direction[c] * (cloth->x[c * n] - cloth->system->start[c * n]);
+        end.v += direction[c] * cloth->v[c * n];
+    }
+    return end;
+}
+
+/* q'' = -k q^3/m from q = 0, q' = v */
+static struct motion trapped(double v) {
+    const int steps = 10000;
+    const double h = 1.0 / steps, k = planted.trap / MASS;
+    double q = 0;
+    for (int i = 0; i < steps; i++) {
+        const double q1 = v, v1 = -k * pow(q, 3);
+        const double q2 = v + h / 2 * v1, v2 = -k * pow(q + h / 2 * q1, 3);
+        const double q3 = v + h / 2 * v2, v3 = -k * pow(q + h / 2 * q2, 3);
+        const double q4 = v + h * v3, v4 = -k * pow(q + h * q3, 3);
+        q += h / 6 * (q1 + 2 * q2 + 2 * q3 + q4);
+        v += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
+    }
+    return (struct motion){q, v};
+}
+
+static bool has_step(const struct cs_integrator *integrator) {
+    for (uint32_t k = 0; k < integrator->n_options; k++)
+        if (!strcmp(integrator->options[k].name, "dt"))
+            return true;
+    return false;
+}
+
+/* largest error of place and velocity after a second */
+static double error_of(const struct cs_integrator *integrator, double dt,
+                       const double *direction, struct motion expected) {
+    struct fixture cloth;
+    char name[80];
+    if (has_step(integrator))
+        snprintf(name, sizeof name, "%s:dt=%.17g", integrator->name, dt);
+    else
+        snprintf(name, sizeof name, "%s:rtol=1e-7", integrator->name);
+    fixture_open(&cloth, name, SHEET);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, 60);
+    const struct motion end = end_of(&cloth, direction);
+    fixture_close(&cloth);
+    return fmax(fabs(end.q - expected.q), fabs(end.v - expected.v));
+}
+
+static void check_method(const struct cs_integrator *integrator, const char *force,
+                         const double *direction, struct motion expected) {
+    const double h = 1 / 240.0;
+    const double coarse = error_of(integrator, h, direction, expected);
+    if (!has_step(integrator)) {
+        ck_assert_msg(coarse < 1e-4, "%s, %s: off by %g", integrator->name, force, coarse);
+        return;
+    }
+    const double fine = error_of(integrator, h / 2, direction, expected);
+    const double order = log2(coarse / fine), least = integrator->order_damped - 0.25;
+    // below the first, rounding and the tolerances of solvers are all there is
+    ck_assert_msg(fine < 1e-6 || (order > least && fine < 0.05),
+                  "%s, %s: off by %g, at half the step %g: order %.2f", integrator->name, force,
+                  coarse, fine, order);
+}
+
+static void check_all(const char *force, const double *direction, struct motion expected) {
+    struct cs_registry registry = {0};
+    struct cs_error error = {0};
+    uint32_t methods = 0;
+    cs_registry_open_all(&registry, &error);
+    for (uint32_t k = 0; k < registry.n; k++) {
+        const struct cs_integrator *integrator = registry.entries[k].integrator;
+        if (!integrator || integrator->fidelity == CS_FIDELITY_OTHER)
+            continue;
+        check_method(integrator, force, direction, expected);
+        methods++;
+    }
+    ck_assert_uint_ge(methods, 15);
+    cs_registry_finish(&registry);
+}
+
+static const double x_axis[3] = {1, 0, 0};
+
+START_TEST(resistance_reaches_every_method) {
+    planted = (struct planted){.resist = 2};
+    check_all("resistance", x_axis, (struct motion){(1 - exp(-2)) / 2, exp(-2)});
+}
+END_TEST
+
+START_TEST(trap_reaches_every_method) {
+    planted = (struct planted){.trap = 0.4};
+    check_all("trap", planted_direction, trapped(1));
+}
+END_TEST
+
+START_TEST(swing_reaches_every_method) {
+    planted = (struct planted){.swing = 1};
+    check_all("swing", x_axis, (struct motion){1 + (1 - cos(3)) / 9, 1 + sin(3) / 3});
+}
+END_TEST
+
+/* 40 x 40 particles, stiff enough for the multigrid's levels; half of them in a trap that is
+ * stiffer still, of which the solver sees 3x3 blocks. */
+START_TEST(solver_takes_blocks) {
+    for (int trap = 0; trap < 2; trap++) {
+        struct fixture cloth;
+        struct cs_arena arena = {0};
+        struct cs_error error = {0};
+        struct cs_linear linear;
+        uint64_t iterations;
+        double residual;
+        planted = (struct planted){.trap = trap ? 1e5 : 0, .trap_damping = trap ? 1e4 : 0};
+        fixture_open(&cloth, "implicit-linearised",
+                     "{\"bodies\": [{\"cloth\": {\"grid\": [40, 40]}, \"mass\": "
+                     "{\"areal_density\": 0.3}, \"springs\": {\"stretch\": 200, \"shear\": 75,"
+                     " \"bend\": 25}, \"pins\": [0, 77]}]}");
+        const size_t n = cloth.n;
+        double *b = calloc(9 * n, sizeof *b), *u = b + 3 * n, *au = u + 3 * n;
+        for (size_t i = 0; i < n; i++)
+            for (size_t c = 0; c < 3; c++) {
+                const bool free = cloth.system->inv_mass[i] > 0;
+                cloth.x[c * n + i] *= free ? 1.5 : 1;
+                // off their start in a corner only
+                cloth.x[c * n + i] += free && i % 40 < 20 ? 0.01 * planted_direction[c] : 0;
+                b[c * n + i] = free ? sin(1.7 * (double)i + (double)c) : 0;
+            }
+        const double h = 0.01;
+        const struct cs_matrix matrix = {
+            .x = cloth.x, .v = cloth.v, .cm = 1, .cd = -h, .ck = -h * h, .psd = true};
+        ck_assert_int_eq(cs_linear_init(&linear, cloth.system, &arena, &error), CS_OK);
+        cs_linear_setup(&linear, &matrix);
+        ck_assert(linear.stiff);
+        ck_assert(!linear.blocks == !trap);
+        ck_assert_int_eq(cs_linear_solve(&linear, b, 1e-8, u, &iterations, &residual),
+                         CS_LINEAR_DONE);
+        ck_assert_uint_lt(iterations, 60);
+
+        // A u by the products of the forces, which no solver made; stretched, so psd drops
+        // nothing
+        for (size_t i = 0; i < 3 * n; i++)
+            u[i] = -u[i];
+        cs_terms_jvp(
+            cloth.system,
+            &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_LINEARISED, .dx = u},
+            au);
+        double off = 0, size = 0;
+        for (size_t i = 0; i < 3 * n; i++)
+            au[i] *= h * h;
+        double *damped = calloc(3 * n, sizeof *damped);
+        cs_terms_jvp(
+            cloth.system,
+            &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_LINEARISED, .dv = u},
+            damped);
+        for (size_t i = 0; i < 3 * n; i++) {
+            const bool free = cloth.system->inv_mass[i % n] > 0;
+            const double found = au[i] + h * damped[i] - cloth.system->mass[i % n] * u[i];
+            off += free ? (found - b[i]) * (found - b[i]) : 0;
+            size += b[i] * b[i];
+        }
+        ck_assert_double_le(sqrt(off / size), 2e-8);
+        free(damped);
+        free(b);
+        cs_arena_finish(&arena);
+        fixture_close(&cloth);
+    }
+}
+END_TEST
+
+/* the bounds of the trap are those of its block; those of the run leave it out */
+START_TEST(bounds_follow_the_state) {
+    struct fixture cloth;
+    double work[24], omega, delta;
+    planted = (struct planted){.trap = 50, .trap_damping = 3, .resist = 2};
+    fixture_open(&cloth, "rk4", SHEET);
+    const double q = 0.3, rest = cloth.system->view.omega;
+    for (size_t c = 0; c < 3; c++)
+        cloth.x[c * 12 + 5] += q * planted_direction[c];
+    const struct cs_eval at = {.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL};
+    cs_bounds_at(cloth.system, &at, work, &omega, &delta);
+    const double springs = 2 * (4 * 0.2 + 4 * 0.1 + 2 * 0.05 + 0.05 * (12 > 4)) / MASS;
+    ck_assert_double_le(omega * omega, 3 * 50 * q * q / MASS + springs);
+    ck_assert_double_ge(omega * omega, 3 * 50 * q * q / MASS);
+    ck_assert_double_eq_tol(delta, 0.5 * (2 * MASS + 3 * q * q) / MASS, 1e-12);
+    ck_assert_double_lt(rest * rest, springs);
+    ck_assert_double_eq_tol(cloth.system->view.delta, 1, 1e-14);
+    fixture_close(&cloth);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {resistance_reaches_every_method, trap_reaches_every_method,
+                                  swing_reaches_every_method, solver_takes_blocks,
+                                  bounds_follow_the_state};
+    return fixture_run("planted_force", tests, sizeof tests / sizeof *tests);
+}
