@@ -2,8 +2,9 @@
  *
  * The list is walked: a new force is tested here without a word more, if its number is a key of
  * `forces` that it names in its `ramps`; else the scene below must make it act. Each force is
- * put into a system alone, on a cloth that is pulled, sheared and stirred. Central differences
- * with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the largest entry. */
+ * put into a system alone, on a cloth that is pulled, sheared and perturbed. Central
+ * differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the
+ * largest entry. */
 #include "fixture.h"
 #include "model/force/bounds.h"
 #include "model/force/normals.h"
@@ -23,7 +24,8 @@
     "{\"bodies\": [{\"cloth\": {\"grid\": [5, 4]}, \"mass\": {\"areal_density\": 0.4},"        \
     " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": 0.7},"         \
     " \"pins\": [\"top-left\", 7]}],"                                                          \
-    " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, 2, 3]}}],"           \
+    " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \
+    "2, 3]}}],"                                                                                \
     " \"forces\": {" FORCES "%s}}"
 
 enum { N = 20, VALUES = 3 * N };
@@ -54,7 +56,7 @@ static void open(struct fixture *cloth) {
     fixture_open(cloth, "implicit-linearised", SCENE, keys);
     ck_assert_uint_eq(cloth->n, N);
     fixture_start(cloth);
-    fixture_stir(cloth, 0.06, 2);
+    cs_perturb_smooth(cloth->system, 0.06, 2);
 }
 
 static void leave_alone(struct fixture *cloth, const struct cs_term *term) {
@@ -279,7 +281,7 @@ START_TEST(share_is_positive_on_demand) {
         leave_alone(&cloth, cs_terms[k]);
         for (int state = 0; state < 8; state++) {
             double p[VALUES], found[VALUES], curvature = 0;
-            fixture_stir(&cloth, 0.05 * state, state);
+            cs_perturb_smooth(cloth.system, 0.05 * state, state);
             for (size_t i = 0; i < VALUES; i++)
                 p[i] = cloth.system->inv_mass[i % N] > 0 ? sin((1.3 + state) * (double)i) : 0;
             share_of(&cloth, (struct cs_matrix){.cd = -0.02, .ck = -4e-4, .psd = true}, p,
@@ -340,7 +342,7 @@ START_TEST(no_force_is_above_its_greatest) {
         open(&cloth);
         leave_alone(&cloth, cs_terms[k]);
         for (int state = 0; state < 8 && cs_terms[k]->strongest; state++) {
-            fixture_stir(&cloth, 0.05 * state, state);
+            cs_perturb_smooth(cloth.system, 0.05 * state, state);
             struct cs_eval at = STATE_OF(&cloth, CS_PART_ALL);
             at.t = 0.3 * state;
             force(&cloth, at, f);
