@@ -168,6 +168,8 @@ void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row
     static const struct cs_drum drum = {.damping = 0.05};
     const struct cs_integrator *method = card->method;
     const bool adaptive = method->traits & CS_ADAPTIVE;
+    // a hundred thousand steps of order 2 are within the bound at a looser tolerance already
+    const double rtol = cs_probe_order(card, true) > 2 ? 1e-11 : 1e-10;
     double reference[2 * CS_DRUM_VALUES], states[LEVELS][2 * CS_DRUM_VALUES], scale[2];
     if (method->fidelity != CS_FIDELITY_ODE) {
         cs_row_skip(row, "its fidelity is another");
@@ -177,7 +179,7 @@ void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row
         !cs_drum_reference(card, &drum, reference, scale, row))
         return;
     for (int k = adaptive ? LEVELS - 1 : 0; k < LEVELS; k++)
-        if (!cs_drum_state(card, method, &drum, adaptive ? 1e-11 : ldexp(cs_drum_step(), -k),
+        if (!cs_drum_state(card, method, &drum, adaptive ? rtol : ldexp(cs_drum_step(), -k),
                            states[k], row))
             return;
     if (!adaptive)
@@ -185,5 +187,7 @@ void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row
     cs_row_state(row,
                  cs_rms_difference(states[LEVELS - 1], reference, CS_DRUM_VALUES) / scale[0],
                  1e-8, "of the motion off the reference, %s",
-                 adaptive ? "at rtol 1e-11" : "extrapolated from six steps to h = 0");
+                 !adaptive      ? "extrapolated from six steps to h = 0"
+                 : rtol > 5e-11 ? "at rtol 1e-10"
+                                : "at rtol 1e-11");
 }

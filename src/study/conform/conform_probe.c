@@ -14,7 +14,7 @@
 
 /* tight enough that what is measured is the method, loose enough to be reached in doubles */
 #define INNER_RTOL 1e-12
-#define ITERATIONS 200
+#define ITERATIONS 50
 
 bool cs_method_has(const struct cs_integrator *method, const char *name) {
     const struct cs_table table = {.rows = method->options, .n = method->n_options};
