@@ -1,11 +1,22 @@
+/* constant_matrix.c - the matrix as a list of entries, and when it is factored anew. */
 #include "constant_matrix.h"
 
 #include <math.h>
+#include <string.h>
+
+static bool take_arrays(struct constant_matrix *matrix) {
+    const struct cs_host *host = matrix->host;
+    const size_t vector = sizeof(double) * (size_t)host->view->n;
+    return (matrix->drag = host->alloc(host->ctx, vector)) &&
+           (matrix->first = host->alloc(host->ctx, vector)) &&
+           (matrix->last = host->alloc(host->ctx, vector)) &&
+           (matrix->springs =
+                host->alloc(host->ctx, 2 * sizeof(double) * (size_t)host->view->n_springs));
+}
 
 enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct cs_host *host) {
     matrix->host = host;
-    matrix->drag = host->alloc(host->ctx, sizeof(double) * (size_t)host->view->n);
-    if (!matrix->drag)
+    if (!take_arrays(matrix))
         return CS_STEP_FAIL;
     if (!cholmod_start(&matrix->common))
         return host->fail(host->ctx, "CHOLMOD does not start");
@@ -18,16 +29,52 @@ enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct c
     return CS_STEP_OK;
 }
 
-void constant_matrix_read_drag(struct constant_matrix *matrix, double t, const double *x,
-                               double *ones, double *f) {
+void constant_matrix_restart(struct constant_matrix *matrix) {
+    matrix->h = 0;
+}
+
+static void read_drag(const struct constant_matrix *matrix, double t, const double *x,
+                      const double *ones, double *f, double *drag) {
     const struct cs_host *host = matrix->host;
-    const size_t n = host->view->n;
+    host->force(host->ctx, t, x, ones, CS_PART_DRAG, f);
+    for (size_t i = 0; i < host->view->n; i++)
+        drag[i] = -f[i];
+}
+
+void constant_matrix_read_drag(struct constant_matrix *matrix, double t0, double t1,
+                               const double *x, double *ones, double *f) {
+    const size_t n = matrix->host->view->n;
     for (size_t i = 0; i < 3 * n; i++)
         ones[i] = 1;
-    host->force(host->ctx, t, x, ones, CS_PART_DRAG, f);
-    for (size_t i = 0; i < n; i++)
-        matrix->drag[i] = -f[i];
-    matrix->h = 0;
+    // the end first: the scene's values are then those of the begin, from where steps go on
+    read_drag(matrix, t1, x, ones, f, matrix->last);
+    read_drag(matrix, t0, x, ones, f, matrix->first);
+    matrix->begin = t0;
+    matrix->end = t1;
+    // from one advance to the next drag can change by an event, and a restart follows
+    matrix->drag_changes = memcmp(matrix->first, matrix->last, n * sizeof *matrix->first) != 0;
+    memcpy(matrix->drag, matrix->first, n * sizeof *matrix->drag);
+}
+
+/* Drag at the end of the step, as it is implicit. */
+static void follow_drag(struct constant_matrix *matrix, double t) {
+    const double share = (t - matrix->begin) / (matrix->end - matrix->begin);
+    for (size_t i = 0; i < matrix->host->view->n; i++)
+        matrix->drag[i] = matrix->first[i] + (matrix->last[i] - matrix->first[i]) * share;
+}
+
+/* Takes over the springs as they are; whether the factor has others. */
+static bool follow_springs(struct constant_matrix *matrix) {
+    const struct cs_view *view = matrix->host->view;
+    const size_t bytes = view->n_springs * sizeof(double);
+    double *stiffness = matrix->springs, *damping = stiffness + view->n_springs;
+    if (bytes == 0)
+        return false;
+    if (!memcmp(stiffness, view->stiffness, bytes) && !memcmp(damping, view->damping, bytes))
+        return false;
+    memcpy(stiffness, view->stiffness, bytes);
+    memcpy(damping, view->damping, bytes);
+    return true;
 }
 
 static void add_entry(cholmod_triplet *list, size_t row, size_t column, double value) {
@@ -68,10 +115,13 @@ static cholmod_sparse *assemble(struct constant_matrix *matrix, double h) {
     return sparse;
 }
 
-enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double h) {
+enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h) {
     const struct cs_host *host = matrix->host;
+    const bool others = follow_springs(matrix);
+    if (matrix->drag_changes)
+        follow_drag(matrix, t + h);
     // frames differ in length by rounding
-    if (fabs(h - matrix->h) <= 1e-9 * h)
+    if (!others && !matrix->drag_changes && fabs(h - matrix->h) <= 1e-9 * h)
         return CS_STEP_OK;
     matrix->h = 0;
     cholmod_sparse *sparse = assemble(matrix, h);

@@ -1,4 +1,5 @@
-/* constant_matrix.h - the matrix of local/global methods, factored once for each step length:
+/* constant_matrix.h - the matrix of local/global methods, factored once for each step length,
+ * and anew in each step while ramps change it:
  *
  *   A = M + h D + h^2 L,   L = sum of k (e_a - e_b)(e_a - e_b)^T over springs,
  *
@@ -15,6 +16,10 @@
 struct constant_matrix {
     const struct cs_host *host; /* borrowed */
     double *drag;               /* (n) in N s/m */
+    double *first, *last;       /* (n) in N s/m: drag at the ends of the advance */
+    double begin, end;          /* s, of the advance */
+    bool drag_changes;          /* within the advance */
+    double *springs;            /* (2,n_springs): stiffness and damping in the factor */
     double h;                   /* the step that the factor belongs to; 0: none */
     cholmod_common common;
     bool started;
@@ -22,16 +27,21 @@ struct constant_matrix {
     cholmod_dense *u, *y, *e; /* result and work of the solve, kept between calls */
 };
 
-/* Zeroed memory in, takes `drag` from the host. */
+/* Zeroed memory in, takes its arrays from the host. */
 enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct cs_host *host);
 
-/* Reads the drag of the scene from the force on unit velocities; ones, f: work (3,n). */
-void constant_matrix_read_drag(struct constant_matrix *matrix, double t, const double *x,
-                               double *ones, double *f);
+/* Forgets the factor: masses, pins or springs were changed. */
+void constant_matrix_restart(struct constant_matrix *matrix);
 
-/* Factors A for steps of h, unless the factor at hand is for the same step up to rounding: it
- * is then kept, and matrix->h is the step to use. */
-enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double h);
+/* Reads the drag of the scene at both ends of an advance, from the force on unit velocities;
+ * in between it is linear in time. ones, f: work (3,n). */
+void constant_matrix_read_drag(struct constant_matrix *matrix, double t0, double t1,
+                               const double *x, double *ones, double *f);
+
+/* Factors A for the step of h from t on, with the springs as they are, unless the factor at
+ * hand is for the same ones and, up to rounding, the same step: it is then kept, and matrix->h
+ * is the step to use. */
+enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h);
 
 /* Solves A u = b for three columns. b (4,n): the last row of it is 0, as CHOLMOD works on four
  * columns at once, and for three it would take memory in every call. *u (3,n) is valid until

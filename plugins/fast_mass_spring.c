@@ -13,7 +13,7 @@
  * Dampers and drag are implicit too. Relative dampers and drag are in the matrix. An axial
  * damper is there as if it were relative, and its part across the spring is given back from the
  * last x: h c (I - n n^T)((x_b - x_a) - (x_b - x_a)_old), which is the same kind of projection.
- * All other forces are those at the start of the step.
+ * All other forces are those that the state at the start of the step has at its end.
  */
 #include "constant_matrix.h"
 #include "fixed_step.h"
@@ -105,11 +105,12 @@ static enum cs_step step(struct fixed_step *loop, double t, double step_length, 
     struct local_global *self = (struct local_global *)loop;
     const struct cs_host *host = loop->host;
     const size_t n = host->view->n;
-    enum cs_step status = constant_matrix_prepare(&self->matrix, step_length);
+    // implicit in time: what ramps change, springs too, is as at the end of the step
+    host->force(host->ctx, t + step_length, x, v, EXPLICIT_PARTS, self->f);
+    enum cs_step status = constant_matrix_prepare(&self->matrix, t, step_length);
     if (status != CS_STEP_OK)
         return status;
     const double h = self->matrix.h;
-    host->force(host->ctx, t, x, v, EXPLICIT_PARTS, self->f);
     memcpy(self->old, x, 3 * n * sizeof *x);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {
@@ -133,9 +134,14 @@ static enum cs_step step(struct fixed_step *loop, double t, double step_length, 
 }
 
 static enum cs_step restart(void *object, double t, const double *x, const double *v) {
-    struct local_global *self = object;
-    constant_matrix_read_drag(&self->matrix, t, x, self->b, self->f);
+    constant_matrix_restart(&((struct local_global *)object)->matrix);
     return fixed_step_restart(object, t, x, v);
+}
+
+static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
+    struct local_global *self = object;
+    constant_matrix_read_drag(&self->matrix, t0, t1, x, self->b, self->f);
+    return fixed_step_advance(object, t0, t1, x, v);
 }
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
@@ -178,7 +184,7 @@ static const struct cs_integrator fast_mass_spring = {
     .options_size = sizeof(struct local_global_options),
     .create = create,
     .restart = restart,
-    .advance = fixed_step_advance,
+    .advance = advance,
     .stats = stats,
     .destroy = destroy,
 };
