@@ -6,7 +6,7 @@
 #include "cli/progress.h"
 #include "cli/run_output.h"
 #include "io/gnuplot.h"
-#include "study/soft/soft.h"
+#include "study/soft/soft_report.h"
 
 #include <stdio.h>
 

@@ -5,6 +5,7 @@
 #include "cli/progress.h"
 #include "cli/run_output.h"
 #include "io/gnuplot.h"
+#include "study/stability/stability_report.h"
 
 #include <stdio.h>
 

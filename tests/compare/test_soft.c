@@ -1,5 +1,5 @@
 /* The rows of soft-bench: growth and rates of rows whose law is known, and what is written. */
-#include "study/soft/soft.h"
+#include "study/soft/soft_report.h"
 
 #include <check.h>
 #include <math.h>

@@ -1,6 +1,8 @@
+/* golden.c - the tables of golden values, row by row. */
 #include "study/golden/golden.h"
 
 #include "base/file.h"
+#include "study/golden/golden_image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,45 +92,25 @@ static void free_table(struct table *table) {
     free(table->text);
 }
 
-/* splits "path=value;path=value" in place; returns the number of overrides */
-static uint32_t split_overrides(char *text, struct cs_override *overrides, uint32_t most) {
-    uint32_t n = 0;
-    char *pair;
-    while (n < most && (pair = strsep(&text, ";"))) {
-        char *equals = strchr(pair, '=');
-        if (!equals)
-            continue;
-        *equals = 0;
-        overrides[n++] = (struct cs_override){pair, equals + 1};
+/* one state hash against its golden value */
+static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row *row,
+                                 struct cs_error *error) {
+    struct cs_session session;
+    struct cs_error failed = {0};
+    if (cs_golden_step(golden, &row->run, false, &session, &failed)) {
+        /* only a build without SUNDIALS may lack an integrator, and only where the row says so
+         */
+        row->skipped = failed.status == CS_ERR_USAGE && !strcmp(row->note, "sundials");
+        if (row->skipped)
+            return CS_OK;
+        return cs_fail(error, failed.status, "%s", failed.message);
     }
-    return n;
-}
-
-enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
-                              bool render, struct cs_session *session, struct cs_error *error) {
-    char scene[1280], text[1024];
-    struct cs_override overrides[16];
-    snprintf(scene, sizeof scene, "%s/../%s", golden->folder, run->scene);
-    snprintf(text, sizeof text, "%s", run->overrides);
-    const struct cs_session_settings settings = {
-        .scene = scene,
-        .overrides = overrides,
-        .n_overrides = split_overrides(text, overrides, 16),
-        .integrator = strcmp(run->integrator, "-") ? run->integrator : NULL,
-        .render = render,
-        .threads = golden->threads,
-        .run = {.stop = golden->stop},
-    };
-    if (cs_session_open(session, &settings, error))
-        return error->status;
-    while (session->run.frame < run->frames && session->run.outcome == CS_RUNNING)
-        if (cs_run_frame(&session->run, error))
-            break;
-    if (session->run.outcome == CS_INTERRUPTED)
-        cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
-    if (error->status)
-        cs_session_close(session);
-    return error->status;
+    cs_hash_doubles(session.run.x, 6 * (size_t)session.system.view.n, row->found);
+    if (strcmp(row->found, row->hash))
+        cs_text_add(&row->message, "hash %s, expected %s (%s after frame %u)", row->found,
+                    row->hash, cs_outcome_text(session.run.outcome), session.run.frame);
+    cs_session_close(&session);
+    return CS_OK;
 }
 
 static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row *row) {
@@ -175,7 +157,7 @@ check_table(struct cs_golden *golden, const char *name, const char *head, int n_
 enum cs_status cs_golden_check(struct cs_golden *golden, struct cs_error *error) {
     if (golden->hashes &&
         check_table(golden, "hash.tsv", "scene\tintegrator\toverrides\tframes\thash\tbuilds",
-                    HASH_FIELDS, cs_golden_check_hash, error))
+                    HASH_FIELDS, check_hash, error))
         return error->status;
     if (golden->images)
         check_table(golden, "image.tsv",

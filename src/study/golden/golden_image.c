@@ -1,8 +1,9 @@
-/* One picture through the two-level gate: pixel for pixel where the renderer is the golden's
- * own, else within the calibrated tolerance. */
+/* golden_image.c - one picture through the two-level gate: pixel for pixel where the renderer
+ * is the golden's own, else within the calibrated tolerance. */
+#include "study/golden/golden_image.h"
+
 #include "draw/compare.h"
 #include "io/png.h"
-#include "study/golden/golden.h"
 #include "study/picture.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
 
-#include "study/stability/stability.h"
+#include "study/stability/stability_border.h"
 
 enum cs_advice_kind {
     CS_ADVICE_THEORY,   /* the limit of linear theory along a trusted run */

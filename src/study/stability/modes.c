@@ -2,12 +2,11 @@
 #include "study/stability/modes.h"
 
 #include "model/force/terms.h"
-#include "study/stability/jacobi.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MOST_RESTARTS = 12 };
+enum { MOST_RESTARTS = 12, MOST_SWEEPS = 40 };
 #define TOLERANCE 1e-4
 
 enum cs_status cs_modes_init(struct cs_modes *modes, const struct cs_system *system,
@@ -129,11 +128,65 @@ static uint32_t build_basis(struct cs_modes *modes, const double *x, double a, d
     return count;
 }
 
+static double off_diagonal(uint32_t n, const double *a) {
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = 0; j < i; j++)
+            sum += a[i * n + j] * a[i * n + j];
+    return sum;
+}
+
+static double diagonal(uint32_t n, const double *a) {
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += a[i * n + i] * a[i * n + i];
+    return sum;
+}
+
+/* turns entries k and l of a pair of lines by the rotation (c, s) */
+static void turn(double *k, double *l, double c, double s) {
+    const double old = *k;
+    *k = c * old - s * *l;
+    *l = s * old + c * *l;
+}
+
+/* the rotation of rows and columns p and q that makes a[p][q] zero */
+static void rotate(uint32_t n, double *a, double *vectors, uint32_t p, uint32_t q) {
+    const double apq = a[p * n + q];
+    if (apq == 0)
+        return;
+    const double theta = (a[q * n + q] - a[p * n + p]) / (2 * apq);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (uint32_t i = 0; i < n; i++)
+        turn(a + i * n + p, a + i * n + q, c, s);
+    for (uint32_t i = 0; i < n; i++)
+        turn(a + p * n + i, a + q * n + i, c, s);
+    for (uint32_t i = 0; i < n; i++)
+        turn(vectors + i * n + p, vectors + i * n + q, c, s);
+}
+
+/* Diagonalises a (n,n), which is overwritten, by cyclic Jacobi rotations (Golub and Van Loan
+ * 2013, sec. 8.5): the eigenvalues stand on its diagonal, the eigenvectors in the columns of
+ * vectors (n,n). Row-major. */
+static void diagonalise(uint32_t n, double *a, double *vectors) {
+    memset(vectors, 0, sizeof *vectors * n * n);
+    for (uint32_t i = 0; i < n; i++)
+        vectors[i * n + i] = 1;
+    for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+        if (!(off_diagonal(n, a) > 1e-28 * diagonal(n, a)))
+            return;
+        for (uint32_t p = 0; p + 1 < n; p++)
+            for (uint32_t q = p + 1; q < n; q++)
+                rotate(n, a, vectors, p, q);
+    }
+}
+
 /* the combination of the basis with the largest value becomes modes->last */
 static double take_largest(struct cs_modes *modes, uint32_t count, double *h) {
     const size_t length = 3 * (size_t)modes->system->view.n;
     double vectors[CS_MODES_BASIS * CS_MODES_BASIS];
-    cs_jacobi(count, h, vectors);
+    diagonalise(count, h, vectors);
     uint32_t best = 0;
     for (uint32_t k = 1; k < count; k++)
         if (h[k * count + k] > h[best * count + best])

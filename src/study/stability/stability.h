@@ -3,16 +3,8 @@
 #ifndef CS_STABILITY_H
 #define CS_STABILITY_H
 
-#include "study/stability/reference.h"
-
-enum cs_axis { CS_AXIS_STIFFNESS, CS_AXIS_DAMPING, CS_AXIS_MASS, CS_AXIS_RESOLUTION, CS_AXES };
-extern const char *const cs_axis_names[]; /* closed by NULL */
-const char *cs_axis_unit(enum cs_axis axis);
-
-/* Values from..to; 0, 0: chosen by the scene. */
-struct cs_range {
-    double from, to;
-};
+#include "study/stability/stability_axis.h"
+#include "study/stability/stability_border.h"
 
 struct cs_stability_settings {
     struct cs_session_settings session; /* integrator: NAME or NAME:key=value,... */
@@ -26,15 +18,7 @@ struct cs_stability_settings {
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
 };
-enum { CS_CELL_STEPS = 20000, CS_MAP_MOST = 64 };
-
-struct cs_stability_cell {
-    double dt;
-    enum cs_fate verdict;
-    double drift;       /* see cs_fate_drift; NAN where the run did not come to its end */
-    double time;        /* s, where the verdict showed; the end of a stable one */
-    uint32_t particles; /* of a local instability: most at one time */
-};
+enum { CS_MAP_MOST = 64 };
 
 struct cs_stability_column {
     double value;                  /* of the axis */
@@ -61,39 +45,5 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                                 const struct cs_stability_settings *settings,
                                 struct cs_error *error);
 void cs_stability_finish(struct cs_stability *map);
-
-/* Overrides that give every body of the scene the value on the axis, in proportion to what the
- * scene has; cells of the grid for the resolution. Appended to the given ones. */
-enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
-                                 double value, struct cs_arena *arena,
-                                 const struct cs_override *given, uint32_t n_given,
-                                 const struct cs_override **out, uint32_t *n_out,
-                                 struct cs_error *error);
-/* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
- * particle, columns of the grid); 0 where it has none. */
-double cs_axis_own(const struct cs_system *system, enum cs_axis axis);
-/* Values that the axis covers where none are asked for. */
-struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
-
-/* One cell, judged by a reference; CS_FATE_SHORT where CS_CELL_STEPS ended a sound run. */
-enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
-                                const struct cs_reference *reference, double dt,
-                                struct cs_stability_cell *cell, struct cs_error *error);
-
-/* The largest stable step: from a step on that is stable (0: none is known) and one that is
- * not (HUGE_VAL: none is known), found and bisected to 1 % by runs over the whole time; NAN
- * where the budget of one ran out. */
-enum cs_status cs_stability_border(const struct cs_trial_settings *settings,
-                                   const struct cs_reference *reference, double stable,
-                                   double unstable, double *border, struct cs_error *error);
-
-/* How a map looks: as a table for people, one row a cell, and as JSON. */
-void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out);
-void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out);
-void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_text *out);
-void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out);
-/* A gnuplot script that draws NAME.png from NAME.csv and NAME_border.csv, all in one folder. */
-void cs_stability_print_plot(const struct cs_stability *map, const char *name,
-                             struct cs_text *out);
 
 #endif

@@ -1,4 +1,4 @@
-#include "study/stability/stability.h"
+#include "study/stability/stability_axis.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* stability_border.c - one cell, and the border between stable and unstable ones. */
-#include "study/stability/stability.h"
+/* stability_border.c - a run judged by the reference; bisection. */
+#include "study/stability/stability_border.h"
 
 #include <math.h>
 

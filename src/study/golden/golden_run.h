@@ -1,0 +1,46 @@
+/* golden_run.h - a golden row, what is asked of it, and its run. */
+#ifndef CS_GOLDEN_RUN_H
+#define CS_GOLDEN_RUN_H
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "draw/render.h"
+#include "study/session.h"
+
+struct cs_golden_run {
+    char *scene, *integrator, *overrides; /* "-": none */
+    uint32_t frames;
+};
+
+/* A line of a table: a run, and what belongs to it. Fields are owned by the row. */
+struct cs_golden_row {
+    struct cs_golden_run run;
+    char *line;  /* the fields above point into it */
+    char *hash;  /* of the state (hash.tsv) or of the pixels (image.tsv) */
+    char *note;  /* builds ("any", or the library that is needed) or the image's renderer */
+    char *image; /* name of the picture; NULL in hash.tsv */
+    char found[CS_HASH_DIGITS], renderer[256];
+    struct cs_text message; /* what differs; empty: nothing */
+    bool skipped;           /* the integrator's library is not in this build */
+};
+
+struct cs_golden {
+    const char *folder;  /* "golden" */
+    const char *only;    /* rows whose scene or integrator holds this text; NULL: all */
+    bool hashes, images; /* what to do */
+    bool accept;         /* write what was found instead of failing */
+    enum cs_gl gl;
+    uint32_t threads; /* as in struct cs_session_settings */
+    const volatile sig_atomic_t *stop;
+    /* called after each row; may be NULL */
+    void (*report)(void *ctx, const struct cs_golden_row *row);
+    void *ctx;
+    uint32_t passed, failed, skipped, accepted;
+};
+
+/* Steps a row's run to its last frame. The session is open on success, and closed by the
+ * caller. */
+enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
+                              bool render, struct cs_session *session, struct cs_error *error);
+
+#endif

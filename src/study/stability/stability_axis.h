@@ -1,0 +1,29 @@
+/* stability_axis.h - what a map of stability goes over: a value of the scene. */
+#ifndef CS_STABILITY_AXIS_H
+#define CS_STABILITY_AXIS_H
+
+#include "study/session.h"
+
+enum cs_axis { CS_AXIS_STIFFNESS, CS_AXIS_DAMPING, CS_AXIS_MASS, CS_AXIS_RESOLUTION, CS_AXES };
+extern const char *const cs_axis_names[]; /* closed by NULL */
+const char *cs_axis_unit(enum cs_axis axis);
+
+/* Values from..to; 0, 0: chosen by the scene. */
+struct cs_range {
+    double from, to;
+};
+
+/* Overrides that give every body of the scene the value on the axis, in proportion to what the
+ * scene has; cells of the grid for the resolution. Appended to the given ones. */
+enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
+                                 double value, struct cs_arena *arena,
+                                 const struct cs_override *given, uint32_t n_given,
+                                 const struct cs_override **out, uint32_t *n_out,
+                                 struct cs_error *error);
+/* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
+ * particle, columns of the grid); 0 where it has none. */
+double cs_axis_own(const struct cs_system *system, enum cs_axis axis);
+/* Values that the axis covers where none are asked for. */
+struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
+
+#endif

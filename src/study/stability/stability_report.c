@@ -1,0 +1,309 @@
+/* stability_report.c - a map as text (letters for verdicts, the border and theory below), as
+ * CSV and JSON, and as a gnuplot script (cells coloured by verdict, theory's curves over them).
+ */
+#include "study/stability/stability_report.h"
+
+#include <math.h>
+
+/* --- text --- */
+
+enum { NAME_WIDTH = 16, CELL_WIDTH = 10 };
+
+/* a step in seconds, or what stands for none */
+static void add_dt(struct cs_text *out, double dt) {
+    if (isnan(dt))
+        cs_text_add(out, "%*s", CELL_WIDTH, "?");
+    else if (dt == 0)
+        cs_text_add(out, "%*s", CELL_WIDTH, "none");
+    else if (dt > 1e100)
+        cs_text_add(out, "%*s", CELL_WIDTH, "no limit");
+    else
+        cs_text_add(out, "%*.4g", CELL_WIDTH, dt);
+}
+
+static void add_row(const struct cs_stability *map, uint32_t row, struct cs_text *out) {
+    cs_text_add(out, "%-*.4g", NAME_WIDTH, map->dt[row]);
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        cs_text_add(out, "%*c", CELL_WIDTH, cs_fate_letter(map->columns[c].cells[row].verdict));
+    cs_text_add(out, "\n");
+}
+
+enum line { LINE_BORDER, LINE_WORST, LINE_REST, LINE_ROW_SUMS, LINES };
+
+static double value_of(const struct cs_stability_column *column, enum line line) {
+    const struct cs_reference *reference = &column->reference;
+    switch (line) {
+    case LINE_BORDER:
+        return column->border;
+    case LINE_WORST:
+        return reference->worst.dt;
+    case LINE_REST:
+        return reference->at_rest.dt;
+    default:
+        return reference->row_sums;
+    }
+}
+
+static void add_lines(const struct cs_stability *map, struct cs_text *out) {
+    static const char *const names[LINES] = {"border", "worst on way", "at the start",
+                                             "row sums"};
+    for (enum line line = 0; line < LINES; line++) {
+        cs_text_add(out, "%-*s", NAME_WIDTH, names[line]);
+        for (uint32_t c = 0; c < map->n_columns; c++)
+            add_dt(out, value_of(map->columns + c, line));
+        cs_text_add(out, "\n");
+    }
+    cs_text_add(out, "%-*s", NAME_WIDTH, "border / worst");
+    for (uint32_t c = 0; c < map->n_columns; c++) {
+        const double ratio = map->columns[c].border / map->columns[c].reference.worst.dt;
+        if (isfinite(ratio) && ratio > 0)
+            cs_text_add(out, "%*.3f", CELL_WIDTH, ratio);
+        else
+            cs_text_add(out, "%*s", CELL_WIDTH, "-");
+    }
+    cs_text_add(out, "\n");
+}
+
+/* of the largest step that is stable with all below it */
+static double drift_of(const struct cs_stability *map, uint32_t c) {
+    double drift = (double)NAN;
+    for (uint32_t r = 0; r < map->n_rows; r++) {
+        const struct cs_stability_cell *cell = map->columns[c].cells + r;
+        if (!cs_fate_is_sound(cell->verdict))
+            break;
+        drift = isnan(cell->drift) ? drift : cell->drift;
+    }
+    return drift;
+}
+
+static void add_drift(const struct cs_stability *map, struct cs_text *out) {
+    cs_text_add(out, "%-*s", NAME_WIDTH, "energy drift");
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        if (isnan(drift_of(map, c)))
+            cs_text_add(out, "%*s", CELL_WIDTH, "-");
+        else
+            cs_text_add(out, "%*.1f%%", CELL_WIDTH - 1, 100 * drift_of(map, c));
+    cs_text_add(out, "\n");
+}
+
+static void add_legend(const struct cs_stability *map, struct cs_text *out) {
+    for (int v = 0; v < CS_FATES; v++) {
+        bool there = false;
+        for (uint32_t c = 0; c < map->n_columns; c++)
+            for (uint32_t r = 0; r < map->n_rows; r++)
+                there |= (int)map->columns[c].cells[r].verdict == v;
+        if (there)
+            cs_text_add(out, "  %c  %s: %s\n", cs_fate_letter((enum cs_fate)v),
+                        cs_fate_word((enum cs_fate)v), cs_fate_help((enum cs_fate)v));
+    }
+}
+
+void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
+    const struct cs_stability_settings *settings = map->settings;
+    cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]\n\n",
+                map->integrator->name, map->session.scene.path, settings->seconds,
+                cs_axis_names[settings->axis], cs_axis_unit(settings->axis));
+    cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].value);
+    cs_text_add(out, "\n");
+    for (uint32_t r = map->n_rows; r-- > 0;)
+        add_row(map, r, out);
+    cs_text_add(out, "\n");
+    add_lines(map, out);
+    add_drift(map, out);
+    cs_text_add(out, "\n");
+    add_legend(map, out);
+}
+
+/* --- CSV and JSON --- */
+
+/* a number; an empty field for one that is not there */
+static void add_field(struct cs_text *out, double value) {
+    cs_text_add(out, ",");
+    if (isfinite(value))
+        cs_text_add_real(out, value);
+}
+
+/* the middle between two neighbours on a logarithmic scale, and as far beyond the ends */
+static double edge(double before, double here, double after) {
+    if (before > 0)
+        return sqrt(before * here);
+    return after > 0 ? here * sqrt(here / after) : here / 1.3;
+}
+
+static double value_at(const struct cs_stability *map, uint32_t c) {
+    return c < map->n_columns ? map->columns[c].value : 0;
+}
+
+static double dt_at(const struct cs_stability *map, uint32_t r) {
+    return r < map->n_rows ? map->dt[r] : 0;
+}
+
+static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
+                     struct cs_text *out) {
+    const struct cs_stability_cell *cell = map->columns[c].cells + r;
+    const double value = value_at(map, c), left = c ? value_at(map, c - 1) : 0;
+    const double right = value_at(map, c + 1), below = r ? dt_at(map, r - 1) : 0;
+    const double above = dt_at(map, r + 1);
+    cs_text_add_real(out, value);
+    add_field(out, cell->dt);
+    cs_text_add(out, ",%s,%d", cs_fate_word(cell->verdict), (int)cell->verdict);
+    add_field(out, cell->drift);
+    add_field(out, cell->time);
+    cs_text_add(out, ",%u", cell->particles);
+    add_field(out, edge(left, value, right));
+    add_field(out, edge(right, value, left));
+    add_field(out, edge(below, cell->dt, above));
+    add_field(out, edge(above, cell->dt, below));
+    cs_text_add(out, "\n");
+}
+
+void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out) {
+    cs_text_add(out,
+                "%s,dt,verdict,verdict_number,energy_drift,time,particles,cell_left,cell_right,"
+                "cell_bottom,cell_top\n",
+                cs_axis_names[map->settings->axis]);
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        for (uint32_t r = 0; r < map->n_rows; r++)
+            add_cell(map, c, r, out);
+}
+
+void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_text *out) {
+    cs_text_add(out,
+                "%s,border,worst_on_way,at_start,row_sums,omega,damping_rate,particle,share\n",
+                cs_axis_names[map->settings->axis]);
+    for (uint32_t c = 0; c < map->n_columns; c++) {
+        const struct cs_stability_column *column = map->columns + c;
+        const struct cs_reference *reference = &column->reference;
+        const struct cs_mode *mode = &reference->worst.mode;
+        const double dts[] = {column->border, reference->worst.dt, reference->at_rest.dt,
+                              reference->row_sums};
+        cs_text_add_real(out, column->value);
+        /* 0 stands for no stable step, which no logarithmic scale shows */
+        for (int k = 0; k < 4; k++)
+            add_field(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
+        add_field(out, mode->square > 0 ? sqrt(mode->square) : 0);
+        add_field(out, mode->rate);
+        cs_text_add(out, ",%u", mode->particle);
+        add_field(out, mode->share);
+        cs_text_add(out, "\n");
+    }
+}
+
+static void add_member(struct cs_text *out, const char *before, double value) {
+    cs_text_add(out, "%s", before);
+    cs_text_add_real(out, value);
+}
+
+static void add_json_column(const struct cs_stability *map, uint32_t c, struct cs_text *out) {
+    const struct cs_stability_column *column = map->columns + c;
+    const struct cs_reference *reference = &column->reference;
+    add_member(out, "    {\"value\": ", column->value);
+    add_member(out, ", \"seconds\": ", reference->seconds);
+    add_member(out, ", \"border\": ", column->border);
+    add_member(out, ", \"worst_on_way\": ", reference->worst.dt);
+    add_member(out, ", \"at_start\": ", reference->at_rest.dt);
+    add_member(out, ", \"row_sums\": ", reference->row_sums);
+    add_member(out, ", \"reference_step\": ", reference->trial.step);
+    cs_text_add(out, ", \"cells\": [");
+    for (uint32_t r = 0; r < map->n_rows; r++) {
+        const struct cs_stability_cell *cell = column->cells + r;
+        add_member(out, r ? ",\n      {\"dt\": " : "\n      {\"dt\": ", cell->dt);
+        cs_text_add(out, ", \"verdict\": \"%s\"", cs_fate_word(cell->verdict));
+        add_member(out, ", \"energy_drift\": ", cell->drift);
+        add_member(out, ", \"time\": ", cell->time);
+        cs_text_add(out, ", \"particles\": %u}", cell->particles);
+    }
+    cs_text_add(out, "]}%s\n", c + 1 < map->n_columns ? "," : "");
+}
+
+void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out) {
+    const struct cs_stability_settings *settings = map->settings;
+    cs_text_add(out, "{\n  \"scene\": ");
+    cs_text_add_json(out, map->session.scene.path);
+    cs_text_add(out, ",\n  \"integrator\": \"%s\",\n  \"axis\": \"%s\",\n",
+                map->integrator->name, cs_axis_names[settings->axis]);
+    add_member(out, "  \"seconds\": ", settings->seconds);
+    cs_text_add(out, ",\n  \"columns\": [\n");
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        add_json_column(map, c, out);
+    cs_text_add(out, "  ]\n}\n");
+}
+
+/* --- the diagram --- */
+
+/* green to red for eyes of every kind, then violet and greys; by verdict */
+static const char *const colours[CS_FATES] = {
+    [CS_FATE_BOUNDED] = "#9fd3b5", [CS_FATE_DAMPED] = "#a9c9e8",
+    [CS_FATE_SHORT] = "#e3f1e8",   [CS_FATE_LOCAL] = "#f6d365",
+    [CS_FATE_GLOBAL] = "#e8825a",  [CS_FATE_NOT_FINITE] = "#8e5c86",
+    [CS_FATE_FAILED] = "#7f858d",  [CS_FATE_OVER_BUDGET] = "#dfe1e4"};
+
+static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
+    const enum cs_axis axis = map->settings->axis;
+    cs_text_add(out,
+                "# gnuplot %s.gp\n"
+                "set terminal pngcairo size 1280,760 font 'sans,13' background '#ffffff'\n"
+                "set output '%s.png'\nset datafile separator ','\n",
+                name, name);
+    cs_text_add(out,
+                "set title \"%s: which steps survive, %s\\n%g s of motion a cell\" "
+                "font 'sans,16' noenhanced\n",
+                map->integrator->name, map->session.scene.path, map->settings->seconds);
+    cs_text_add(out, "set xlabel '%s  [%s]'\nset ylabel 'dt  [s]' offset 1,0\n",
+                cs_axis_names[axis], cs_axis_unit(axis));
+    cs_text_add(out, "set logscale xy\nset format y '10^{%%T}'\nset format x '%s'\n",
+                axis == CS_AXIS_RESOLUTION ? "%g" : "10^{%T}");
+    cs_text_add(out,
+                "set tics out nomirror\nset mxtics 10\nset mytics 10\n"
+                "set border 3 lc rgb '#555555'\n"
+                "set key outside right top Left reverse spacing 1.35 samplen 2.2 width -2\n"
+                "set style fill solid 1.0 border lc rgb '#ffffff'\n");
+}
+
+static void add_ranges(const struct cs_stability *map, struct cs_text *out) {
+    const uint32_t nc = map->n_columns, nr = map->n_rows;
+    const double x0 = map->columns[0].value, x1 = map->columns[nc - 1].value;
+    const double y0 = map->dt[0], y1 = map->dt[nr - 1];
+    const double dx = nc > 1 ? pow(x1 / x0, 0.5 / (nc - 1)) : 1.3;
+    const double dy = nr > 1 ? pow(y1 / y0, 0.5 / (nr - 1)) : 1.3;
+    cs_text_add(out, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", x0 / dx, x1 * dx,
+                y0 / dy, y1 * dy);
+}
+
+static bool is_there(const struct cs_stability *map, int verdict) {
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        for (uint32_t r = 0; r < map->n_rows; r++)
+            if ((int)map->columns[c].cells[r].verdict == verdict)
+                return true;
+    return false;
+}
+
+void cs_stability_print_plot(const struct cs_stability *map, const char *name,
+                             struct cs_text *out) {
+    static const struct {
+        int column;
+        const char *style, *title;
+    } curves[] = {
+        {5, "lines lw 2 dt (4,4) lc rgb '#6b7078'", "theory: row sums"},
+        {4, "lines lw 2 dt (10,5) lc rgb '#23262b'", "theory: at the start"},
+        {3, "lines lw 3 lc rgb '#23262b'", "theory: worst on the way"},
+        {2, "points pt 7 ps 1.5 lc rgb '#23262b'", "border, bisected"},
+        {2, "points pt 7 ps 0.9 lc rgb '#ffffff'", ""},
+    };
+    add_head(map, name, out);
+    add_ranges(map, out);
+    cs_text_add(out, "plot \\\n");
+    for (int v = 0; v < CS_FATES; v++)
+        if (is_there(map, v))
+            cs_text_add(
+                out,
+                "  '%s.csv' using 1:($4==%d?$2:NaN):8:9:10:11 every ::1 with boxxyerror "
+                "fc rgb '%s' title '%s', \\\n",
+                name, v, colours[v], cs_fate_word((enum cs_fate)v));
+    for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)
+        cs_text_add(out, "  '%s_border.csv' using 1:%d every ::1 with %s %s'%s'%s\n", name,
+                    curves[k].column, curves[k].style, *curves[k].title ? "title " : "notitle ",
+                    curves[k].title, k + 1 < sizeof curves / sizeof *curves ? ", \\" : "");
+}
