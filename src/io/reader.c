@@ -1,4 +1,6 @@
-#include "io/table_read.h"
+/* reader.c - the path of the value at hand, and messages with file, line and column. */
+#include "io/reader.h"
+
 #include "io/utf8.h"
 
 #include <stdarg.h>

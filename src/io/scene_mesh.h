@@ -3,7 +3,7 @@
 #ifndef CS_SCENE_MESH_H
 #define CS_SCENE_MESH_H
 
-#include "io/table_read.h"
+#include "io/reader.h"
 #include "scene/scene.h"
 
 /* Fills the geometry of every mesh, and the parts of every matched body, of a scene whose

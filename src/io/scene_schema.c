@@ -1,6 +1,6 @@
 #include "base/options.h"
 #include "io/scene_write.h"
-#include "io/table_read.h"
+#include "io/table_complete.h"
 
 #include <stdio.h>
 

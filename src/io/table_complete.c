@@ -1,5 +1,7 @@
+/* table_complete.c - refuses tables in which something is missing, or named twice over. */
+#include "io/table_complete.h"
+
 #include "base/options.h"
-#include "io/table_read.h"
 
 void cs_table_add_expected(const struct cs_option *row, struct cs_text *out) {
     switch (row->type) {

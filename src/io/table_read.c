@@ -1,6 +1,7 @@
 #include "io/table_read.h"
 
 #include "base/options.h"
+#include "io/table_complete.h"
 
 #include <string.h>
 

@@ -137,28 +137,6 @@ static const struct cs_option spring_rows[] = {
 static const struct cs_table spring_table = {ROWS(spring_rows),
                                              .size = sizeof(struct cs_spring_law)};
 
-const char *const cs_pin_names[] = {"top-left", "top-right", "bottom-left", "bottom-right",
-                                    "top",      "bottom",    "left",        "right",
-                                    "edges",    NULL};
-static const struct cs_option box_rows[] = {
-    VECTOR(struct cs_box, min, 3, "m", NULL, -BIG, BIG, "corner with the smallest coordinates"),
-    VECTOR(struct cs_box, max, 3, "m", NULL, -BIG, BIG, "corner with the largest coordinates"),
-};
-static const struct cs_table box_table = {ROWS(box_rows), .size = sizeof(struct cs_box),
-                                          .optional = true};
-static const struct cs_option pin_rows[] = {
-    CHOICE(struct cs_pin, at, cs_pin_names, -1,
-           "a corner or an edge of the grid; a plain string means this"),
-    INT(struct cs_pin, index, "", -1, 0, 4294967295.0,
-        "a particle of the body, row * columns + column, or a vertex from 0; a plain number "
-        "means "
-        "this"),
-    TABLE(struct cs_pin, box, box_table, "every particle that starts inside"),
-};
-const struct cs_table cs_pin_table = {ROWS(pin_rows), .size = sizeof(struct cs_pin),
-                                      .one_of = true, .shorthand_text = "at",
-                                      .shorthand_number = "index"};
-
 static const char *const shading_names[] = {"smooth", "flat", NULL};
 static const double red_cloth[3] = {0.60, 0.06, 0.07};
 static const struct cs_option material_rows[] = {

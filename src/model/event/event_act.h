@@ -2,7 +2,7 @@
 #ifndef CS_EVENT_ACT_H
 #define CS_EVENT_ACT_H
 
-#include "model/event/events.h"
+#include "model/event/event_state.h"
 
 /* An event begins, at events->begin: to the state and the pins, or to a value. */
 void cs_event_start(struct cs_system *system, uint32_t event);

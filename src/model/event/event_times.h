@@ -2,7 +2,7 @@
 #ifndef CS_EVENT_TIMES_H
 #define CS_EVENT_TIMES_H
 
-#include "model/event/events.h"
+#include "model/event/event_state.h"
 
 enum { CS_EVENT_CHORDS = 16 }; /* in which a smooth path is followed from point to point */
 

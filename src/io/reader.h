@@ -1,0 +1,36 @@
+/* reader.h - where the reading of a scene stands, and messages that name the place. */
+#ifndef CS_READER_H
+#define CS_READER_H
+
+#include "base/arena.h"
+#include "io/json.h"
+
+/* Where the reading stands. All pointers are borrowed. */
+struct cs_reader {
+    const char *name, *text; /* of the file, for places */
+    struct cs_arena *arena;  /* of lists */
+    struct cs_error *error;
+    char path[384]; /* JSON path of the value at hand */
+    size_t path_length;
+    const char *apart; /* key of the root that is read elsewhere, or NULL */
+};
+
+/* true for the keys that are the user's own: "x-..." and "$...". */
+bool cs_key_is_free(const char *key);
+
+/* Appends a member's key or index to the path; leave gives what enter returned. */
+size_t cs_reader_enter(struct cs_reader *reader, const char *key);
+size_t cs_reader_enter_at(struct cs_reader *reader, uint32_t index);
+void cs_reader_leave(struct cs_reader *reader, size_t length);
+
+/* Fails with CS_ERR_SCENE, `file:line:column: path: ` (or `--set path: ` for a value from
+ * there) and the message. The place is that of value, or of its key. */
+enum cs_status cs_reader_fail(struct cs_reader *reader, const struct cs_json *value,
+                              bool of_key, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* The same as "found <value>, expected <expected>". */
+enum cs_status cs_reader_fail_type(struct cs_reader *reader, const struct cs_json *value,
+                                   const char *expected);
+
+#endif

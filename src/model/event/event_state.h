@@ -1,0 +1,36 @@
+/* event_state.h - where the events of a run stand: times, holders, values under way. */
+#ifndef CS_EVENT_STATE_H
+#define CS_EVENT_STATE_H
+
+#include "model/system/system.h"
+
+/* one event of the scene, in the scene's order */
+struct cs_event_state {
+    double begin, end;              /* s; the same for what happens at once */
+    bool active;                    /* between begin and end */
+    double *value, first, last;     /* of a ramp: the number, at begin and at end */
+    double winds[2][3];             /* of a gust: vectors at begin and at end */
+    uint32_t leg, chord;            /* of a grab: where it is on its path */
+    double since, until;            /* s, of that chord */
+    double from[3], to[3], rate[3]; /* m, m, m/s: its ends and its velocity */
+    double corner[3];               /* m, where the leg began */
+};
+
+struct cs_prods;
+
+struct cs_events {
+    struct cs_scene scene; /* the scene's values now; system->scene points to it */
+    double *times;         /* (n_times) ascending */
+    uint32_t n_times, next;
+    double begin, end;             /* s, of the segment; end HUGE_VAL behind the last time */
+    struct cs_event_state *states; /* (scene.events.n) */
+    uint32_t *holders;             /* (n) number of the event that holds a particle + 1, or 0 */
+    bool *marks;                   /* (n) work */
+    double *offsets;        /* (3,n) in m, from the point of the path; NULL without grabs */
+    struct cs_prods *prods; /* NULL without */
+    double look;            /* s, when a prod looks anew; HUGE_VAL: never */
+    double now;             /* s, of the ramps' values */
+    bool ramps, grabs;      /* some are under way in the segment */
+};
+
+#endif
