@@ -2,7 +2,7 @@
 #ifndef CS_BOUND_H
 #define CS_BOUND_H
 
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 /* Kinetic energy that no passive system of this kind can reach by time t: a hundred times what
  * the start holds, what every spring would hold at twice its length, and what the outer forces

@@ -7,7 +7,7 @@
 #include "sim/bound.h"
 #include "sim/budget.h"
 #include "sim/guard.h"
-#include "sim/run.h"
+#include "sim/run_state.h"
 
 struct cs_run_host {
     struct cs_host calls;    /* what the method sees */

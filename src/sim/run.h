@@ -3,87 +3,10 @@
 #define CS_RUN_H
 
 #include "model/force/measure.h"
-#include "model/system/system.h"
+#include "sim/run_state.h"
 
-#include <clothsim/integrator.h>
-#include <signal.h>
-
-/* How a run stands. All but the first end it; none of them is an error. */
-#define CS_OUTCOME_LIST(X)                                                                     \
-    X(CS_RUNNING, "finished")                                                                  \
-    X(CS_NOT_FINITE, "blew up: not finite")                                                    \
-    X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                        \
-    X(CS_INTERRUPTED, "interrupted")                                                           \
-    X(CS_OVER_BUDGET, "over budget")
-enum cs_outcome {
-#define X(name, text) name,
-    CS_OUTCOME_LIST(X)
-#undef X
-};
 const char *cs_outcome_text(enum cs_outcome outcome);
-
-/* Stages that the host times, when asked to. */
-enum cs_stage {
-    CS_STAGE_FORCE,
-    CS_STAGE_SOLVE,
-    CS_STAGE_CONTACT,
-    CS_STAGE_LIMIT,
-    CS_STAGE_NORMALS,
-    CS_STAGES
-};
-extern const char *const cs_stage_names[];
-
-/* Exact counts, the same on every machine. */
-struct cs_counts {
-    uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
-    uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD */
-    uint64_t contacts;      /* particles pushed out */
-    uint64_t contact_tests; /* particle-collider pairs tested */
-    uint64_t limit_moves;   /* springs shortened by the strain limit */
-    uint64_t normals;       /* times that normals were computed in a step */
-    struct cs_stats method; /* what the method counted itself */
-};
-
-struct cs_blow_up {
-    double time;          /* s */
-    uint32_t particle;    /* the first not finite, or the fastest */
-    double energy, bound; /* kinetic energy and its bound in J */
-};
-
-enum { CS_NOTES_MAX = 8 };
-
-struct cs_run_host;
-
-/* Must stay where it is between begin and finish. */
-struct cs_run {
-    struct cs_system *system; /* borrowed */
-    const struct cs_integrator *integrator;
-    double *x, *v;  /* the state: x (3,n), v = x + 3n */
-    double t;       /* s */
-    uint32_t frame; /* frames done */
-    enum cs_outcome outcome;
-    struct cs_blow_up blow_up; /* where outcome says so */
-    struct cs_counts counts;
-    double stage_seconds[CS_STAGES]; /* all 0 unless timed */
-    double advance_seconds;          /* wall time inside the method */
-    size_t method_bytes;             /* of arrays that the method took from the host */
-    char notes[CS_NOTES_MAX][160];   /* remarks of the method */
-    uint32_t n_notes;
-    struct cs_run_host *host; /* owned */
-};
-
-/* How a run is begun. Zeroed: as the system stands, without clock, limit or observer. */
-struct cs_run_settings {
-    bool timed;                        /* stage times too */
-    const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
-    /* s of processor time from the first step on, after which the run ends as CS_OVER_BUDGET;
-     * 0: no limit. The clock is read between steps and never reaches the state. */
-    double budget;
-    /* Called at the end of every commit, and may move the state: returns whether it did. May be
-     * NULL. */
-    bool (*observe)(void *ctx, double t, double dt, double *x, double *v);
-    void *ctx; /* of observe */
-};
+extern const char *const cs_stage_names[]; /* closed by NULL */
 
 /* Makes the method over the system with filled options (integrator->options_size bytes), and
  * restarts it at time 0. On failure *run is empty; CS_ERR_MODULE with the method's message, or
