@@ -2,7 +2,7 @@
  * particle's unit normal n (cloth thesis, eq. 5.34). Either is per particle, or times the
  * particle's share of the area. */
 #include "model/force/normals.h"
-#include "model/force/terms.h"
+#include "model/force/term.h"
 #include "scene/event_key.h"
 
 #include <math.h>

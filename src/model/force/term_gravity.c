@@ -1,5 +1,5 @@
 /* Gravity: f = m g; its potential -m g.x is 0 at the origin. */
-#include "model/force/terms.h"
+#include "model/force/term.h"
 #include "scene/event_key.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Impacts and viewpoint forces over an interval: f = m a, the same a for all particles of an
  * impact, the same f for all that a viewpoint force sees. Both are constant between two calls
  * of cs_events_apply. */
-#include "model/force/terms.h"
+#include "model/force/term.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* Springs with dampers: the kernels of springs.h as a term. */
-#include "model/force/terms.h"
+#include "model/force/term.h"
 
 /* the plan has a line for springs, with the bytes of their arrays */
 static struct cs_plan_row plan(const struct cs_scene *scene) {

@@ -6,7 +6,7 @@
 #define CS_ROWS_H
 
 #include "base/clones.h"
-#include "model/spring/springs.h"
+#include "model/spring/runs.h"
 
 enum { PIECE = 256 }; /* springs whose forces wait in a buffer on the stack */
 enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
