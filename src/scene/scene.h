@@ -147,10 +147,24 @@ struct cs_floor {
     double height; /* m: the plane y = height */
     double extent; /* m, as above */
 };
+/* a collider; the box that holds pins is struct cs_box */
+struct cs_cuboid {
+    bool present;
+    double centre[3], size[3]; /* m: whole sides, along its own axes */
+    double rotate[4];          /* quaternion x, y, z, w; normalised by cs_scene_check */
+    double radius; /* m, of its edges and corners; cs_scene_check fills an absent one */
+};
+struct cs_capsule {
+    bool present;
+    double from[3], to[3]; /* m, centres of the round ends */
+    double radius;         /* m */
+};
 struct cs_collider {
     struct cs_sphere sphere;
     struct cs_plane plane;
     struct cs_floor floor;
+    struct cs_cuboid box;
+    struct cs_capsule capsule;
     double friction;   /* Coulomb coefficient */
     double absorption; /* share of the inward normal velocity taken away; < 0: restitution */
     double thickness;  /* m, skin in front of the surface */

@@ -20,19 +20,21 @@ const double *cs_shape_velocity(const struct cs_body *body) {
     return body->mesh.present ? body->mesh.velocity : body->cloth.velocity;
 }
 
-/* rows of the rotation: the given matrix, or that of the unit quaternion */
-static void rotation_of(const struct cs_place *place, double r[9]) {
-    if (!isnan(place->matrix[0])) {
-        memcpy(r, place->matrix, 9 * sizeof *r);
-        return;
-    }
-    const double x = place->rotate[0], y = place->rotate[1], z = place->rotate[2];
-    const double w = place->rotate[3];
+void cs_quaternion_matrix(const double q[4], double r[9]) {
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
     const double turned[9] = {
         1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
         2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
         2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
     memcpy(r, turned, sizeof turned);
+}
+
+/* rows of the rotation: the given matrix, or that of the unit quaternion */
+static void rotation_of(const struct cs_place *place, double r[9]) {
+    if (isnan(place->matrix[0]))
+        cs_quaternion_matrix(place->rotate, r);
+    else
+        memcpy(r, place->matrix, 9 * sizeof *r);
 }
 
 /* place of particle i between the edges, 0 to 1; 0.5 for a single one */

@@ -9,6 +9,9 @@ int64_t cs_shape_count(const struct cs_body *body);
 const struct cs_place *cs_shape_placement(const struct cs_body *body);
 const double *cs_shape_velocity(const struct cs_body *body);
 
+/* Rows of the rotation by a unit quaternion x, y, z, w. */
+void cs_quaternion_matrix(const double q[4], double r[9]);
+
 /* Places of a body's particles, placed rigidly: written to x[first..] of x (3,n). */
 void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x);
 

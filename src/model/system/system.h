@@ -21,6 +21,7 @@ struct cs_body_range {
 };
 
 struct cs_events;
+struct cs_obstacle_motion;
 
 struct cs_system {
     struct cs_view view;          /* what integrators see */
@@ -37,6 +38,8 @@ struct cs_system {
     uint32_t *pinned, n_pinned;                 /* (n_pinned) particles, ascending */
     const struct cs_term *terms[CS_TERMS_MOST]; /* the forces that this scene has */
     uint32_t n_terms;
+    struct cs_obstacle_motion
+        *motions;             /* (scene->colliders.n); NULL where no event moves one */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */
 };

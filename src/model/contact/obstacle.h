@@ -1,0 +1,79 @@
+/* obstacle.h - colliders as geometry: where one is at a time, how far a point is from it, and
+ * how fast its surface moves there. Contact, visibility and pictures share this.
+ *
+ * Every obstacle but a plane is a core - a point, a segment or a box - and all points within
+ * `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane.
+ */
+#ifndef CS_OBSTACLE_H
+#define CS_OBSTACLE_H
+
+#include "model/system/system.h"
+
+enum cs_obstacle_kind {
+    CS_OBSTACLE_SPHERE,
+    CS_OBSTACLE_PLANE,
+    CS_OBSTACLE_BOX,
+    CS_OBSTACLE_CAPSULE
+};
+
+/* One collider as it is at one time. */
+struct cs_obstacle {
+    enum cs_obstacle_kind kind;
+    const struct cs_collider *collider; /* borrowed from the system's scene: friction, ... */
+    double centre[3];                   /* m; of a plane: a point on it */
+    double axes[3][3];  /* unit vectors of its own frame, right-handed; a plane's normal and a
+                           capsule's axis are axes[1] */
+    double core[3];     /* m, half sizes of the core along the axes: 0 of a sphere, core[1] of a
+                           capsule */
+    double radius;      /* m, of what lies about the core; 0 of a plane */
+    double velocity[3]; /* m/s, of the pivot */
+    double spin[3];     /* rad/s */
+    double pivot[3];    /* m, what it turns about: the centre */
+};
+
+/* How an event moves one collider until the next turn of its path: the shift is
+ * from + rate (t - since), and it turns at `spin` on from `turn`. Beyond `until` both go on, so
+ * that a stage of a method that lies there sees no bend. */
+struct cs_obstacle_motion {
+    double since, until;            /* s */
+    double from[3], to[3], rate[3]; /* m, m, m/s: the shift at both ends */
+    double turn[9];                 /* rows of the rotation reached at `since` */
+    double spin[3];                 /* rad/s */
+};
+
+/* Poses of the system's colliders at t, in the scene's order: out (scene->colliders.n), or only
+ * collider k. + - * / and sqrt only. */
+void cs_obstacles_at(const struct cs_system *system, double t, struct cs_obstacle *out);
+void cs_obstacle_at(const struct cs_system *system, uint32_t k, double t,
+                    struct cs_obstacle *out);
+
+/* The rotation that a motion has reached at t, by rows. */
+void cs_obstacle_turn(const struct cs_obstacle_motion *motion, double t, double turn[9]);
+
+/* Distance in m of p from the surface, without thickness, and the outward unit normal n of the
+ * surface point that is nearest. Negative inside, where it is exact too. In the centre of a
+ * sphere, or on the axis of a capsule, n points up. Not finite where p is not. */
+double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3], double n[3]);
+
+/* The distance as the force of contact takes it: never smaller than the distance outside, with
+ * three continuous derivatives there. Sphere, plane and the flat faces of a box: exact. At the
+ * ends of a capsule's axis and at the edges of a box the nearest point of the core moves over
+ * from one feature to the next within a band of half the radius to both sides, by a quintic
+ * (cs_soft_part); the distance is at most 0.005 of the radius too large on an edge and 0.01 on
+ * a corner.
+ * gradient  of that function; its length is 1 where the distance is exact, never 0
+ * hessian   1/m, of that function: xx, xy, xz, yy, yz, zz; 0 where n points up by default
+ * Inside the core of a box it goes on as the distance does, with the same bend where the
+ * nearest face changes. */
+double cs_obstacle_smooth(const struct cs_obstacle *obstacle, const double p[3],
+                          double gradient[3], double hessian[6]);
+
+/* The positive part of t made smooth over -e..e: 0 below, t above, else
+ * 2e z^4 (z^2 - 3z + 5/2) with z = (t + e)/2e; three continuous derivatives. out: value, first
+ * and second derivative. e may be 0. */
+void cs_soft_part(double t, double e, double out[3]);
+
+/* v = velocity in m/s of the obstacle's matter at p. */
+void cs_obstacle_velocity(const struct cs_obstacle *obstacle, const double p[3], double v[3]);
+
+#endif
