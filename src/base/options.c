@@ -96,6 +96,33 @@ bool cs_option_is_given(const struct cs_option *row, const void *object) {
     }
 }
 
+bool cs_option_is_default(const struct cs_option *row, const void *object) {
+    const void *field = const_field_of(row, object);
+    bool same = row->defs;
+    if (cs_option_is_optional(row))
+        return !cs_option_is_given(row, object);
+    switch (row->type) {
+    case CS_REAL:
+        return *(const double *)field == row->def;
+    case CS_INT:
+        return (double)*(const int64_t *)field == row->def;
+    case CS_BOOL:
+        return *(const bool *)field == (row->def != 0);
+    case CS_CHOICE:
+        return *(const int32_t *)field == (int32_t)row->def;
+    case CS_VECTOR:
+        for (uint32_t i = 0; i < row->count && same; i++)
+            same = ((const double *)field)[i] == row->defs[i];
+        return same;
+    case CS_COUNTS:
+        for (uint32_t i = 0; i < row->count && same; i++)
+            same = (double)((const int64_t *)field)[i] == row->defs[i];
+        return same;
+    default:
+        return false;
+    }
+}
+
 const struct cs_option *cs_option_find(const struct cs_table *table, const char *name) {
     for (uint32_t r = 0; r < table->n; r++)
         if (!strcmp(table->rows[r].name, name))

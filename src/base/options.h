@@ -17,6 +17,10 @@ bool cs_option_is_optional(const struct cs_option *row);
 /* true if the value of an optional row was given. */
 bool cs_option_is_given(const struct cs_option *row, const void *object);
 
+/* true if a value stands at its default, also where that is to be absent; a VECTOR or COUNTS
+ * that must be given never does. Not for TABLE and LIST. */
+bool cs_option_is_default(const struct cs_option *row, const void *object);
+
 const struct cs_option *cs_option_find(const struct cs_table *table, const char *name);
 
 /* The row's name nearest to a wrong one, or NULL. */

@@ -7,6 +7,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/run_output.h"
+#include "io/scene_hash.h"
 #include "io/scene_write.h"
 
 #include <math.h>
@@ -35,21 +36,16 @@ static void describe_method(const struct cs_session *session, struct cs_text *ou
     }
 }
 
-/* The scene with every value; the scene hash is of it and of the meshes that it names. */
+/* The scene with every value, its hash, and the method. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     const struct cs_session *session = &job->session;
-    struct cs_text hashed = {0};
     cs_scene_print(&session->scene, &session->method.table, session->method.options, 2,
                    &job->scene);
     describe_method(session, &job->method);
-    cs_text_add(&hashed, "%s", cs_text_get(&job->scene));
-    cs_scene_print_files(&session->scene, &hashed);
-    if (job->scene.failed || job->method.failed || hashed.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
-    else
-        cs_hash_bytes(hashed.bytes, hashed.length, job->scene_hash);
-    cs_text_finish(&hashed);
-    return error->status;
+    if (job->scene.failed || job->method.failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
+    return cs_scene_hash(&session->scene, &session->method.table, session->method.options,
+                         job->scene_hash, error);
 }
 
 static uint32_t frames_of_one_second(const struct cs_scene *scene) {

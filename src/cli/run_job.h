@@ -49,7 +49,7 @@ struct cs_job {
     struct cs_text scene;            /* the resolved scene, indented by two */
     struct cs_text method;           /* "NAME:key=value,..." with every option */
     struct cs_text renderer;         /* description; empty unless pictures are drawn */
-    char scene_hash[CS_HASH_DIGITS]; /* of the resolved scene and its mesh files */
+    char scene_hash[CS_HASH_DIGITS]; /* see io/scene_hash.h */
     char hash[CS_HASH_DIGITS];       /* of the last frame's state */
     struct cs_job_picture begun;     /* not yet written */
     uint32_t drawn;                  /* pictures written */

@@ -1,7 +1,6 @@
 #include "io/scene_write.h"
 
 #include "base/options.h"
-#include "mesh/trimesh.h"
 
 #include <string.h>
 
@@ -95,12 +94,4 @@ void cs_scene_print(const struct cs_scene *scene, const struct cs_table *integra
     cs_text_add(out, "\"integrator\": ");
     print_integrator(scene, integrator_table, integrator_options, indent + STEP, out);
     cs_text_add(out, "\n%*s}", indent, "");
-}
-
-void cs_scene_print_files(const struct cs_scene *scene, struct cs_text *out) {
-    const struct cs_body *bodies = cs_scene_bodies(scene);
-    for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (*bodies[b].mesh.file)
-            cs_text_add(out, "%s %s\n", bodies[b].mesh.geometry->file_hash,
-                        bodies[b].mesh.file);
 }

@@ -12,10 +12,6 @@
 void cs_scene_print(const struct cs_scene *scene, const struct cs_table *integrator_table,
                     const void *integrator_options, int indent, struct cs_text *out);
 
-/* Adds a line for each mesh file that the scene names, with the hash of its bytes: what the
- * states depend on and a scene's text does not say. Nothing without such files. */
-void cs_scene_print_files(const struct cs_scene *scene, struct cs_text *out);
-
 /* Adds the JSON schema (2020-12) of scene files. */
 void cs_scene_print_schema(struct cs_text *out);
 

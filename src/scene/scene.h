@@ -312,7 +312,7 @@ struct cs_scene {
 
     /* where it came from */
     const char *path, *folder; /* as given; the folder that textures are relative to */
-    const char *text;          /* the file's text, for the scene hash */
+    const char *text;          /* the file's text, for places in messages */
     size_t text_bytes;
     struct cs_arena arena; /* owns all of the above */
 };

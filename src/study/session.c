@@ -60,7 +60,13 @@ static enum cs_status choose_method(struct cs_session *session, struct cs_error 
         cs_method_init(&session->method, settings->method, settings->options, error);
     else
         read_method(session, error);
-    if (!error->status && settings->dt > 0 && !cs_method_set_dt(&session->method, settings->dt))
+    if (error->status)
+        return error->status;
+    // the scene is printed and hashed with the method that runs it
+    snprintf(session->scene.integrator, sizeof session->scene.integrator, "%s",
+             session->method.integrator->name);
+    session->scene.integrator_settings.n = 0;
+    if (settings->dt > 0 && !cs_method_set_dt(&session->method, settings->dt))
         cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" takes no dt of %g s",
                 session->method.integrator->name, settings->dt);
     return error->status;

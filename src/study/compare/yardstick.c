@@ -146,7 +146,7 @@ enum cs_status cs_yardstick_plan(struct cs_yardstick *yardstick,
             return error->status;
     }
     if (!cs_course_open(&probe, settings->course, chosen[0], error))
-        cs_yardstick_key(yardstick, &probe, settings, key);
+        cs_yardstick_key(yardstick, &probe, settings, key, error);
     cs_course_close(&probe);
     return error->status;
 }

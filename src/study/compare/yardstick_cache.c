@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "io/scene_write.h"
+#include "io/scene_hash.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,13 +22,18 @@ struct header {
     struct cs_yardstick yardstick; /* pointers in it mean nothing */
 };
 
-void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_course *course,
-                      const struct cs_yardstick_settings *settings, char *key) {
+enum cs_status cs_yardstick_key(const struct cs_yardstick *yardstick,
+                                const struct cs_course *course,
+                                const struct cs_yardstick_settings *settings, char *key,
+                                struct cs_error *error) {
     const struct cs_session_settings *session = &settings->course->session;
     const struct cs_scene *scene = &course->session.scene;
     const size_t values = 6 * (size_t)course->session.system.view.n;
-    char start[CS_HASH_DIGITS];
+    const struct cs_method *method = &course->session.method;
+    char start[CS_HASH_DIGITS], of_scene[CS_HASH_DIGITS];
     struct cs_text all = {0};
+    if (cs_scene_hash(scene, &method->table, method->options, of_scene, error))
+        return error->status;
     // meshes are files of their own or made here: the start is as they came out
     cs_hash_doubles(course->start, values, start);
     cs_text_add(&all, "%s|", start);
@@ -36,15 +41,16 @@ void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_cour
                 settings->course->frames, scene->time.fps, settings->accuracy);
     for (int k = 0; k < CS_YARDSTICK_RUNS; k++)
         cs_text_add(&all, "%s|", yardstick->methods[k]);
-    for (uint32_t k = 0; k < session->n_overrides; k++)
-        cs_text_add(&all, "%s=%s|", session->overrides[k].path, session->overrides[k].value);
     // where the methods are chosen here, a module that is added changes nothing
     for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
         cs_text_add(&all, "%s|", session->plugins[k]);
-    cs_scene_print_files(scene, &all);
-    cs_text_add(&all, "%s", scene->text);
-    cs_hash_bytes(cs_text_get(&all), all.length, key);
+    cs_text_add(&all, "%s", of_scene);
+    if (all.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the name of a reference");
+    else
+        cs_hash_bytes(cs_text_get(&all), all.length, key);
     cs_text_finish(&all);
+    return error->status;
 }
 
 static void file_path(const char *folder, const char *key, char *path, size_t size) {

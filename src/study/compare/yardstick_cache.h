@@ -4,9 +4,11 @@
 
 #include "study/compare/yardstick_state.h"
 
-/* Hash of all that it depends on: CS_HASH_DIGITS characters. */
-void cs_yardstick_key(const struct cs_yardstick *yardstick, const struct cs_course *course,
-                      const struct cs_yardstick_settings *settings, char *key);
+/* Hash of all that it depends on: CS_HASH_DIGITS characters. CS_ERR_MEMORY. */
+enum cs_status cs_yardstick_key(const struct cs_yardstick *yardstick,
+                                const struct cs_course *course,
+                                const struct cs_yardstick_settings *settings, char *key,
+                                struct cs_error *error);
 
 /* Reads or writes DIR/reference-KEY.state; a file that does not fit counts as none. */
 bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const char *key,
