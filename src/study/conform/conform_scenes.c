@@ -104,10 +104,12 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"time-dependence", "a gust",
      SHEETS_WITH(NO_GRAVITY ", " WIND("0.3", "N"), "\"from\": 0.05, \"to\": 0.45, \"wind\":"
                  " {\"direction\": [3, -1, 1], \"strength\": 1}"), 4, false, false},
-    {"time-dependence", "a ramp of stretch springs",
-     "{\"bodies\": [{" CLOTH ", \"springs\": {\"stretch\": 0.2, \"shear\": 0, \"bend\": 0}}],"
-     " \"forces\": {" NO_GRAVITY "}, \"events\": [{" RAMP("bodies[0].springs.stretch", "1")
-     "}], " FIVE_FRAMES "}", 9, false, true},
+    {"time-dependence", "ramps of springs and dampers",
+     "{\"bodies\": [{" CLOTH ", \"springs\": {\"stretch\": 0.2, \"shear\": 0.5, \"bend\": 0.1,"
+     " \"damping\": 0.03}}], \"forces\": {" NO_GRAVITY "}, \"events\": ["
+     "{" RAMP("bodies[0].springs.stretch", "1") "}, {" RAMP("bodies[0].springs.shear", "0.1") "},"
+     " {" RAMP("bodies[0].springs.bend", "0.4") "}, {" RAMP("bodies[0].springs.damping", "0") "}], "
+     FIVE_FRAMES "}", 9, true, true},
 };
 // clang-format on
 

@@ -1,0 +1,227 @@
+/* The scenes in which conform lets forces act: each force of the program's list has one to
+ * itself, each value that a ramp may change has a ramp, and the reference that methods are held
+ * against is the closed form where there is one. */
+#include "model/force/terms.h"
+#include "study/conform/conform_probe.h"
+#include "study/conform/conform_reference.h"
+#include "study/conform/conform_scenes.h"
+
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct cs_conform card = {.method = &cs_conform_reference};
+
+static void open_scene(struct cs_probe *probe, const struct cs_force_scene *scene) {
+    ck_assert_msg(cs_probe_open(probe, &card, &cs_conform_reference, "%s", scene->json),
+                  "%s: %s", scene->what, probe->error.message);
+}
+
+/* A new force needs a line in conform_scenes.c, of a check force-NAME, in which no other force
+ * acts. */
+START_TEST(every_force_has_a_scene_to_itself) {
+    for (uint32_t t = 0; t < cs_n_terms; t++) {
+        bool found = false;
+        for (uint32_t k = 0; k < cs_n_force_scenes && !found; k++) {
+            struct cs_probe probe;
+            if (strncmp(cs_force_scenes[k].check, "force-", 6) != 0)
+                continue;
+            open_scene(&probe, cs_force_scenes + k);
+            const struct cs_system *system = &probe.session.system;
+            found = system->n_terms == 1 && system->terms[0] == cs_terms[t];
+            cs_probe_close(&probe);
+        }
+        ck_assert_msg(found, "no scene of conform has the force \"%s\" and no other",
+                      cs_terms[t]->name);
+    }
+}
+END_TEST
+
+/* whether a scene has a ramp of the key: "bodies.springs.bend" for bodies[0].springs.bend */
+static bool has_ramp(const struct cs_scene *scene, const char *key) {
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        char plain[CS_TEXT_MAX];
+        size_t length = 0;
+        bool inside = false;
+        for (const char *at = event->ramp.present ? event->ramp.key : ""; *at; at++) {
+            inside |= *at == '[';
+            if (!inside)
+                plain[length++] = *at;
+            inside &= *at != ']';
+        }
+        plain[length] = 0;
+        if (!strcmp(plain, key))
+            return true;
+    }
+    return false;
+}
+
+START_TEST(every_ramp_has_a_scene) {
+    for (uint32_t t = 0; t < cs_n_terms; t++)
+        for (const char *const *key = cs_terms[t]->ramps; key && *key; key++) {
+            bool found = false;
+            for (uint32_t k = 0; k < cs_n_force_scenes && !found; k++) {
+                struct cs_probe probe;
+                if (strcmp(cs_force_scenes[k].check, "time-dependence") != 0)
+                    continue;
+                open_scene(&probe, cs_force_scenes + k);
+                found = has_ramp(&probe.session.scene, *key);
+                cs_probe_close(&probe);
+            }
+            ck_assert_msg(found, "no scene of time-dependence has a ramp of %s", *key);
+        }
+}
+END_TEST
+
+/* The scene of that name, run by the reference, and where it began. */
+static void run_scene(struct cs_probe *probe, const char *what, double *start) {
+    uint32_t k = 0;
+    while (k < cs_n_force_scenes && strcmp(cs_force_scenes[k].what, what) != 0)
+        k++;
+    ck_assert_msg(k < cs_n_force_scenes, "there is no scene \"%s\"", what);
+    open_scene(probe, cs_force_scenes + k);
+    ck_assert_uint_le(probe->n, CS_FORCE_PARTICLES);
+    memcpy(start, probe->x, 6 * probe->n * sizeof *start);
+    cs_probe_set_step(probe, CS_FORCE_FRAME / 1024);
+    ck_assert_msg(cs_probe_run(probe, CS_FORCE_FRAMES), "%s", probe->error.message);
+}
+
+static const double T = CS_FORCE_FRAMES * CS_FORCE_FRAME;
+
+/* v0 T + g T^2 / 2 */
+START_TEST(gravity_is_the_closed_form) {
+    static const double g[3] = {1, -9, 4};
+    double start[2 * CS_FORCE_VALUES];
+    struct cs_probe probe;
+    run_scene(&probe, "gravity", start);
+    for (size_t i = 0; i < 3 * probe.n; i++) {
+        const double v0 = start[3 * probe.n + i], a = g[i / probe.n];
+        ck_assert_double_eq_tol(probe.x[i], start[i] + v0 * T + a * T * T / 2, 1e-11);
+        ck_assert_double_eq_tol(probe.v[i], v0 + a * T, 1e-11);
+    }
+    cs_probe_close(&probe);
+}
+END_TEST
+
+/* v0 exp(-w T), by 0.4 N s/m on 0.1 kg; by area a quarter of a square metre has 1.6 Pa s/m */
+START_TEST(drag_is_the_closed_form) {
+    static const char *const scenes[] = {"drag of each particle", "drag by area"};
+    const double w = 0.4 / 0.1;
+    for (size_t k = 0; k < 2; k++) {
+        double start[2 * CS_FORCE_VALUES];
+        struct cs_probe probe;
+        run_scene(&probe, scenes[k], start);
+        for (size_t i = 0; i < 3 * probe.n; i++) {
+            const double v0 = start[3 * probe.n + i];
+            ck_assert_double_eq_tol(probe.v[i], v0 * exp(-w * T), 1e-11);
+            ck_assert_double_eq_tol(probe.x[i], start[i] + v0 * (1 - exp(-w * T)) / w, 1e-11);
+        }
+        cs_probe_close(&probe);
+    }
+}
+END_TEST
+
+/* The first sheet lies in the xy plane: f = s w |w_z| with w = (1, 2, 3) / |(1, 2, 3)|; 2 Pa on
+ * a quarter of a square metre are 0.5 N. */
+START_TEST(wind_is_the_closed_form) {
+    static const char *const scenes[] = {"wind on each particle", "wind by area"};
+    static const double w[3] = {1, 2, 3};
+    for (size_t k = 0; k < 2; k++) {
+        double start[2 * CS_FORCE_VALUES];
+        struct cs_probe probe;
+        run_scene(&probe, scenes[k], start);
+        for (size_t c = 0; c < 3; c++)
+            for (size_t i = c * probe.n; i < c * probe.n + 4; i++) {
+                const double v0 = start[3 * probe.n + i], a = 0.5 * w[c] * w[2] / 14 / 0.1;
+                ck_assert_double_eq_tol(probe.x[i], start[i] + v0 * T + a * T * T / 2, 1e-11);
+                ck_assert_double_eq_tol(probe.v[i], v0 + a * T, 1e-11);
+            }
+        cs_probe_close(&probe);
+    }
+}
+END_TEST
+
+/* An impulse of 1 kg m/s on one of two sheets of 0.4 kg: 2.5 m/s along its direction in the
+ * end, at a constant acceleration over the time s, or at once at the time s. */
+START_TEST(impacts_are_the_closed_form) {
+    static const double d[3] = {1, -2, 1};
+    for (size_t k = 0; k < 2; k++) {
+        const bool steady = k == 0;
+        const double s = steady ? 0.35 : 0.25;
+        double start[2 * CS_FORCE_VALUES];
+        struct cs_probe probe;
+        run_scene(&probe, steady ? "a steady impact" : "an impact at once", start);
+        for (size_t i = 0; i < 3 * probe.n; i++) {
+            const bool hit = (i % probe.n >= 4) == steady;
+            const double v0 = start[3 * probe.n + i];
+            const double gain = hit ? 2.5 * d[i / probe.n] / sqrt(6) : 0;
+            const double moved = gain * (steady ? T - s / 2 : T - s);
+            ck_assert_double_eq_tol(probe.v[i], v0 + gain, 1e-11);
+            ck_assert_double_eq_tol(probe.x[i], start[i] + v0 * T + moved, 1e-11);
+        }
+        cs_probe_close(&probe);
+    }
+}
+END_TEST
+
+/* Both sheets are seen whole: 0.8 N on 0.1 kg along -z, for 0.35 s, or for 0.2 s at once. */
+START_TEST(prods_are_the_closed_form) {
+    for (size_t k = 0; k < 2; k++) {
+        const bool steady = k == 0;
+        const double gain = -8 * (steady ? 0.35 : 0.2);
+        const double moved = gain * (steady ? T - 0.35 / 2 : T - 0.25);
+        double start[2 * CS_FORCE_VALUES];
+        struct cs_probe probe;
+        run_scene(&probe, steady ? "a steady prod" : "a prod at once", start);
+        for (size_t i = 0; i < 3 * probe.n; i++) {
+            const double v0 = start[3 * probe.n + i];
+            const bool along = i / probe.n == 2;
+            ck_assert_double_eq_tol(probe.v[i], v0 + (along ? gain : 0), 1e-11);
+            ck_assert_double_eq_tol(probe.x[i], start[i] + v0 * T + (along ? moved : 0), 1e-11);
+        }
+        cs_probe_close(&probe);
+    }
+}
+END_TEST
+
+/* From -2 to -9 m/s2 between 0.05 and 0.45 s: three parts, one after the other. */
+START_TEST(ramp_of_gravity_is_the_closed_form) {
+    const double g0 = -2, g1 = -9, s = 0.05, length = 0.4, rest = T - s - length;
+    double start[2 * CS_FORCE_VALUES];
+    struct cs_probe probe;
+    run_scene(&probe, "a ramp of gravity", start);
+    for (size_t i = probe.n; i < 2 * probe.n; i++) {
+        double v = start[3 * probe.n + i], x = start[i];
+        x += v * s + g0 * s * s / 2;
+        v += g0 * s;
+        x += v * length + g0 * length * length / 2 + (g1 - g0) * length * length / 6;
+        v += (g0 + g1) / 2 * length;
+        x += v * rest + g1 * rest * rest / 2;
+        v += g1 * rest;
+        ck_assert_double_eq_tol(probe.x[i], x, 1e-11);
+        ck_assert_double_eq_tol(probe.v[i], v, 1e-11);
+    }
+    cs_probe_close(&probe);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {
+        every_force_has_a_scene_to_itself, every_ramp_has_a_scene,
+        gravity_is_the_closed_form,        drag_is_the_closed_form,
+        wind_is_the_closed_form,           impacts_are_the_closed_form,
+        prods_are_the_closed_form,         ramp_of_gravity_is_the_closed_form};
+    TCase *group = tcase_create("conform scenes");
+    Suite *suite = suite_create("conform scenes");
+    tcase_set_timeout(group, 0);
+    for (size_t k = 0; k < sizeof tests / sizeof *tests; k++)
+        tcase_add_test(group, tests[k]);
+    suite_add_tcase(suite, group);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
