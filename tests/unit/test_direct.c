@@ -107,7 +107,7 @@ static void open_case(struct crumple *crumple, int kind, double m, double k) {
                    "{\"bodies\": [" MESH("\"sphere\", \"detail\": 9", "") "]}", m, k, k / 5);
     else if (kind == 3)
         sheet_open(sheet, CS_NEED_SOLVE,
-                   "{\"bodies\": [" MESH("\"limbs\", \"detail\": 24",
+                   "{\"bodies\": [" MESH("\"limbs\", \"detail\": 20",
                                          ", \"network\": {\"springs\": 2}") "]}",
                    m, k, k / 5);
     else
