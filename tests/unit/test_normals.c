@@ -107,7 +107,8 @@ START_TEST(derivative_is_that_of_the_normal) {
     }
     cs_normals_update(&sheet.system, sheet.x);
     for (uint32_t i = 0; i < N; i++) {
-        cs_normal_derivative(&sheet.system, sheet.system.bodies, i, sheet.x, dx, dn);
+        cs_normal_derivative(&sheet.system, sheet.system.bodies, i,
+                             &(struct cs_eval){.x = sheet.x, .dx = dx}, dn);
         SHEET_ASSERT_AT(&sheet, slope, i, dn[0], dn[1], dn[2], 1e-8);
     }
     sheet_close(&sheet);

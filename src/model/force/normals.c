@@ -1,3 +1,5 @@
+/* Normals of particles, from the neighbours in a grid or the triangles of a mesh, and how they
+ * turn. */
 #include "model/force/normals.h"
 
 #include "base/vector.h"
@@ -97,57 +99,63 @@ void cs_normals_update(const struct cs_system *system, const double *x) {
     cs_vector_share(system->view.n, update_part, &update);
 }
 
-/* product and its change; d(a x b) = da x b + a x db */
-static void add_product(const double a[3], const double b[3], const double da[3],
-                        const double db[3], double product[3], double change[3]) {
+/* a vector with its change along dx */
+struct change {
+    double of[3], by[3];
+};
+
+static struct change change_of(const struct cs_eval *at, uint32_t n, uint32_t from,
+                               uint32_t to) {
+    struct change edge;
+    difference(at->x, n, from, to, edge.of);
+    difference(at->dx, n, from, to, edge.by);
+    return edge;
+}
+
+/* sum += a x b; d(a x b) = da x b + a x db */
+static void add_product(const struct change *a, const struct change *b, struct change *sum) {
     double whole[3], first[3], second[3];
-    cross(a, b, whole);
-    cross(da, b, first);
-    cross(a, db, second);
+    cross(a->of, b->of, whole);
+    cross(a->by, b->of, first);
+    cross(a->of, b->by, second);
     for (int c = 0; c < 3; c++) {
-        product[c] += whole[c];
-        change[c] += first[c] + second[c];
+        sum->of[c] += whole[c];
+        sum->by[c] += first[c] + second[c];
     }
 }
 
 static void grid_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
-                        const double *x, const double *dx, double product[3],
-                        double change[3]) {
-    const struct neighbours at = neighbours_of(body, i);
-    double across[3], upwards[3], d_across[3], d_upwards[3];
-    difference(x, n, at.left, at.right, across);
-    difference(x, n, at.down, at.up, upwards);
-    difference(dx, n, at.left, at.right, d_across);
-    difference(dx, n, at.down, at.up, d_upwards);
-    add_product(across, upwards, d_across, d_upwards, product, change);
+                        const struct cs_eval *at, struct change *sum) {
+    const struct neighbours beside = neighbours_of(body, i);
+    const struct change across = change_of(at, n, beside.left, beside.right);
+    const struct change upwards = change_of(at, n, beside.down, beside.up);
+    add_product(&across, &upwards, sum);
 }
 
 static void mesh_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
-                        const double *x, const double *dx, double product[3],
-                        double change[3]) {
+                        const struct cs_eval *at, struct change *sum) {
     const struct cs_trimesh *mesh = body->mesh;
     const uint32_t end = mesh->around_end[i - body->first], first = body->first;
     for (uint32_t k = cs_trimesh_around_begin(mesh, i - first); k < end; k++) {
         const uint32_t *corner = mesh->triangles + 3 * (size_t)mesh->around[k];
-        double a[3], b[3], da[3], db[3];
-        difference(x, n, first + corner[0], first + corner[1], a);
-        difference(x, n, first + corner[0], first + corner[2], b);
-        difference(dx, n, first + corner[0], first + corner[1], da);
-        difference(dx, n, first + corner[0], first + corner[2], db);
-        add_product(a, b, da, db, product, change);
+        const struct change a = change_of(at, n, first + corner[0], first + corner[1]);
+        const struct change b = change_of(at, n, first + corner[0], first + corner[2]);
+        add_product(&a, &b, sum);
     }
 }
 
 void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
-                          uint32_t i, const double *x, const double *dx, double dn[3]) {
-    double product[3] = {0}, change[3] = {0}, normal[3], along = 0;
-    (body->mesh ? mesh_change : grid_change)(body, i, system->view.n, x, dx, product, change);
-    const double inverse = 1 / sqrt(product[0] * product[0] + product[1] * product[1] +
-                                    product[2] * product[2] + DBL_MIN);
+                          uint32_t i, const struct cs_eval *at, double dn[3]) {
+    struct change sum = {{0}, {0}};
+    double normal[3], along = 0;
+    (body->mesh ? mesh_change : grid_change)(body, i, system->view.n, at, &sum);
+    const double inverse = 1 / sqrt(sum.of[0] * sum.of[0] + sum.of[1] * sum.of[1] +
+                                    sum.of[2] * sum.of[2] + DBL_MIN);
     for (int c = 0; c < 3; c++) {
-        normal[c] = product[c] * inverse;
-        along += normal[c] * change[c];
+        normal[c] = sum.of[c] * inverse;
+        along += normal[c] * sum.by[c];
     }
+    // the unit normal turns: what goes along it is left out
     for (int c = 0; c < 3; c++)
-        dn[c] = (change[c] - along * normal[c]) * inverse;
+        dn[c] = (sum.by[c] - along * normal[c]) * inverse;
 }

@@ -10,8 +10,8 @@
  * as the triangle is large. Where that is 0 the normal is 0. */
 void cs_normals_update(const struct cs_system *system, const double *x);
 
-/* Change of the unit normal of particle i of a body when x changes along dx; normals fresh. */
+/* Change of the unit normal of particle i of a body when at->x changes along at->dx. */
 void cs_normal_derivative(const struct cs_system *system, const struct cs_body_range *body,
-                          uint32_t i, const double *x, const double *dx, double dn[3]);
+                          uint32_t i, const struct cs_eval *at, double dn[3]);
 
 #endif

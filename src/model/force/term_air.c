@@ -121,7 +121,7 @@ static void add_turned(const struct cs_system *system, const struct cs_eval *at,
     const double *nx = system->normals, *ny = nx + n, *nz = ny + n;
     for (uint32_t i = begin; i < end; i++) {
         double dn[3];
-        cs_normal_derivative(system, body, i, at->x, at->dx, dn);
+        cs_normal_derivative(system, body, i, at, dn);
         const double facing = w[0] * nx[i] + w[1] * ny[i] + w[2] * nz[i];
         const double turn = w[0] * dn[0] + w[1] * dn[1] + w[2] * dn[2];
         const double strength = strength_of(system, i);

@@ -97,10 +97,19 @@ CS_INLINE void take_row(size_t count, const double *restrict from, double *restr
         to[i] -= from[i];
 }
 
+/* where forces go: to an array (3,n), at the first ends, the second, or both */
+struct adding {
+    double *f;
+    size_t n;
+    bool at_a, at_b;
+};
+
 /* adds the buffered forces of a grid's piece at the first ends and takes them at the second */
 CS_INLINE void add_rows(const struct piece *piece, const double *fx, const double *fy,
-                        const double *fz, size_t n, bool at_a, bool at_b, double *f) {
-    double *a = f + piece->run->a + piece->start, *b = f + piece->run->b + piece->start;
+                        const double *fz, const struct adding *to) {
+    const bool at_a = to->at_a, at_b = to->at_b;
+    const size_t n = to->n;
+    double *a = to->f + piece->run->a + piece->start, *b = to->f + piece->run->b + piece->start;
     if (at_a) {
         add_row(piece->count, fx, a);
         add_row(piece->count, fy, a + n);
@@ -161,8 +170,8 @@ CS_INLINE bool is_in(const struct cs_block *block, uint32_t particle) {
 CS_INLINE void add_run(const struct job *job, const struct cs_block *block,
                        const struct cs_spring_run *run, piece_kernel *kernel) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
-    const bool at_a = is_in(block, run->a), at_b = is_in(block, run->b);
-    if (!at_a && !at_b)
+    const struct adding to = {job->to, job->n, is_in(block, run->a), is_in(block, run->b)};
+    if (!to.at_a && !to.at_b)
         return;
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
@@ -170,7 +179,7 @@ CS_INLINE void add_run(const struct job *job, const struct cs_block *block,
         if (run->ends)
             scatter(&piece, fx, fy, fz, job->n, job->to);
         else
-            add_rows(&piece, fx, fy, fz, job->n, at_a, at_b, job->to);
+            add_rows(&piece, fx, fy, fz, &to);
     }
 }
 

@@ -15,14 +15,14 @@ struct blocks {
 };
 
 /* a I + b u u^T */
-CS_INLINE void set_block(struct blocks *blocks, size_t i, double a, double b, double ux,
-                         double uy, double uz) {
-    blocks->rows[0][i] = a + b * ux * ux;
-    blocks->rows[1][i] = b * ux * uy;
-    blocks->rows[2][i] = b * ux * uz;
-    blocks->rows[3][i] = a + b * uy * uy;
-    blocks->rows[4][i] = b * uy * uz;
-    blocks->rows[5][i] = a + b * uz * uz;
+CS_INLINE void set_block(struct blocks *blocks, size_t i, double a, double b,
+                         const struct difference u) {
+    blocks->rows[0][i] = a + b * u.x * u.x;
+    blocks->rows[1][i] = b * u.x * u.y;
+    blocks->rows[2][i] = b * u.x * u.z;
+    blocks->rows[3][i] = a + b * u.y * u.y;
+    blocks->rows[4][i] = b * u.y * u.z;
+    blocks->rows[5][i] = a + b * u.z * u.z;
 }
 
 /* Adds the blocks of a piece to both ends, sums (6,n). The second ends come first: a particle
@@ -59,10 +59,10 @@ CS_INLINE void piece_diagonal(const struct piece *piece, struct ends e, const bo
         const struct difference d = across(e, i, listed);
         const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
         const double ratio = length * inverse;
-        const double ux = d.x * inverse, uy = d.y * inverse, uz = d.z * inverse;
-        set_block(stiff, i, -(stiffness * (1 - ratio)), -(stiffness * ratio), ux, uy, uz);
+        const struct difference u = {d.x * inverse, d.y * inverse, d.z * inverse};
+        set_block(stiff, i, -(stiffness * (1 - ratio)), -(stiffness * ratio), u);
         if (axial)
-            set_block(damp, i, 0, -damping, ux, uy, uz);
+            set_block(damp, i, 0, -damping, u);
     }
 }
 
@@ -235,7 +235,7 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
             const double *s = factors + 4 * (size_t)run->first + start;
             const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
             for (size_t i = 0; i < piece.count; i++)
-                set_block(&blocks, i, s[i], 1, wx[i], wy[i], wz[i]);
+                set_block(&blocks, i, s[i], 1, (struct difference){wx[i], wy[i], wz[i]});
             add_blocks(&piece, &blocks, n, sums);
         }
     }

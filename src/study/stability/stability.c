@@ -51,8 +51,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
         trial.session.perturbation *= map->own / column->value;
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
-                          trial.session.overrides, trial.session.n_overrides,
-                          &trial.session.overrides, &trial.session.n_overrides, error) ||
+                          &trial.session, error) ||
         cs_reference_run(&column->reference, &trial, error))
         return error->status;
     if (!column->reference.found)

@@ -38,38 +38,43 @@ struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis)
     return (struct cs_range){own / 100, own * 100};
 }
 
-static enum cs_status add(struct cs_override *list, uint32_t *n, struct cs_arena *arena,
-                          uint32_t body, const char *key, double value,
-                          struct cs_error *error) {
+/* the overrides of a session on their way into a longer list */
+struct growing {
+    struct cs_override *list; /* owned by the arena */
+    uint32_t n;
+    struct cs_arena *arena;
+    uint32_t body; /* whose keys are added now */
+    struct cs_error *error;
+};
+
+static void add(struct growing *to, const char *key, const char *value) {
     char path[64];
-    struct cs_text text = {0};
-    snprintf(path, sizeof path, "bodies[%u].%s", body, key);
-    cs_text_add_real(&text, value);
-    list[*n].path = cs_arena_take_text(arena, path, error);
-    list[*n].value = text.failed ? NULL : cs_arena_take_text(arena, cs_text_get(&text), error);
-    if (text.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    cs_text_finish(&text);
-    ++*n;
-    return error->status;
+    snprintf(path, sizeof path, "bodies[%u].%s", to->body, key);
+    to->list[to->n].path = cs_arena_take_text(to->arena, path, to->error);
+    to->list[to->n].value = cs_arena_take_text(to->arena, value, to->error);
+    to->n++;
 }
 
-static void add_grid(struct cs_override *list, uint32_t *n, struct cs_arena *arena,
-                     uint32_t body, const int64_t *grid, double factor,
-                     struct cs_error *error) {
-    char path[64], value[64];
-    snprintf(path, sizeof path, "bodies[%u].cloth.grid", body);
+static void add_real(struct growing *to, const char *key, double value) {
+    struct cs_text text = {0};
+    cs_text_add_real(&text, value);
+    if (text.failed)
+        cs_fail(to->error, CS_ERR_MEMORY, "out of memory");
+    else
+        add(to, key, cs_text_get(&text));
+    cs_text_finish(&text);
+}
+
+static void add_grid(struct growing *to, const int64_t *grid, double factor) {
+    char value[64];
     snprintf(value, sizeof value, "[%.0f, %.0f]",
              fmax(1, floor((double)grid[0] * factor + 0.5)),
              fmax(1, floor((double)grid[1] * factor + 0.5)));
-    list[*n].path = cs_arena_take_text(arena, path, error);
-    list[*n].value = cs_arena_take_text(arena, value, error);
-    ++*n;
+    add(to, "cloth.grid", value);
 }
 
-static void add_scaled(struct cs_override *list, uint32_t *n, struct cs_arena *arena,
-                       uint32_t b, const struct cs_body *body, enum cs_axis axis, double value,
-                       double factor, struct cs_error *error) {
+static void add_scaled(struct growing *to, const struct cs_body *body, enum cs_axis axis,
+                       double value, double factor) {
     const struct cs_spring_law *law = &body->springs;
     const struct cs_mass *mass = &body->mass;
     const struct {
@@ -89,30 +94,28 @@ static void add_scaled(struct cs_override *list, uint32_t *n, struct cs_arena *a
     };
     for (uint32_t k = 0; k < sizeof rows / sizeof *rows; k++)
         if (rows[k].axis == axis && !isnan(rows[k].value))
-            add(list, n, arena, b, rows[k].key, rows[k].value, error);
+            add_real(to, rows[k].key, rows[k].value);
     if (axis == CS_AXIS_RESOLUTION)
-        add_grid(list, n, arena, b, body->cloth.grid, factor, error);
+        add_grid(to, body->cloth.grid, factor);
 }
 
 enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
                                  double value, struct cs_arena *arena,
-                                 const struct cs_override *given, uint32_t n_given,
-                                 const struct cs_override **out, uint32_t *n_out,
-                                 struct cs_error *error) {
+                                 struct cs_session_settings *session, struct cs_error *error) {
     enum { MOST_A_BODY = 4 };
     const struct cs_scene *scene = system->scene;
     const double own = cs_axis_own(system, axis);
-    struct cs_override *list = cs_arena_take_n(
-        arena, n_given + (size_t)MOST_A_BODY * scene->bodies.n, sizeof *list, error);
-    uint32_t n = n_given;
-    if (!list)
+    const size_t most = session->n_overrides + (size_t)MOST_A_BODY * scene->bodies.n;
+    struct growing to = {.n = session->n_overrides, .arena = arena, .error = error};
+    to.list = cs_arena_take_n(arena, most, sizeof *to.list, error);
+    if (!to.list)
         return error->status;
-    if (n_given)
-        memcpy(list, given, n_given * sizeof *list);
-    for (uint32_t b = 0; b < scene->bodies.n && !error->status; b++)
-        add_scaled(list, &n, arena, b, cs_scene_bodies(scene) + b, axis, value,
-                   own > 0 ? value / own : 1, error);
-    *out = list;
-    *n_out = n;
+    if (to.n)
+        memcpy(to.list, session->overrides, to.n * sizeof *to.list);
+    for (; to.body < scene->bodies.n && !error->status; to.body++)
+        add_scaled(&to, cs_scene_bodies(scene) + to.body, axis, value,
+                   own > 0 ? value / own : 1);
+    session->overrides = to.list;
+    session->n_overrides = to.n;
     return error->status;
 }

@@ -13,13 +13,12 @@ struct cs_range {
     double from, to;
 };
 
-/* Overrides that give every body of the scene the value on the axis, in proportion to what the
- * scene has; cells of the grid for the resolution. Appended to the given ones. */
+/* Appends to the session's overrides those that give every body of the scene the value on the
+ * axis, in proportion to what the scene has; cells of the grid for the resolution. The longer
+ * list is the arena's. */
 enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis axis,
                                  double value, struct cs_arena *arena,
-                                 const struct cs_override *given, uint32_t n_given,
-                                 const struct cs_override **out, uint32_t *n_out,
-                                 struct cs_error *error);
+                                 struct cs_session_settings *session, struct cs_error *error);
 /* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
  * particle, columns of the grid); 0 where it has none. */
 double cs_axis_own(const struct cs_system *system, enum cs_axis axis);
