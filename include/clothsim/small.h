@@ -37,6 +37,43 @@ static inline void cs_sym3_mul(const double a[6], const double p[3], double out[
     out[2] = a[2] * p[0] + a[4] * p[1] + a[5] * p[2];
 }
 
+static inline void cs_sym3_write(size_t n, double *array, size_t i, const double a[6]) {
+    for (size_t c = 0; c < 6; c++)
+        array[c * n + i] = a[c];
+}
+
+/* Writes the cofactors of a (the inverse is them over the determinant) and returns the
+ * determinant. cofactors may not be a. This is the one formula of all inverses below. */
+static inline double cs_sym3_cofactors(const double a[6], double cofactors[6]) {
+    cofactors[0] = a[3] * a[5] - a[4] * a[4];
+    cofactors[1] = a[2] * a[4] - a[1] * a[5];
+    cofactors[2] = a[1] * a[4] - a[2] * a[3];
+    cofactors[3] = a[0] * a[5] - a[2] * a[2];
+    cofactors[4] = a[1] * a[2] - a[0] * a[4];
+    cofactors[5] = a[0] * a[3] - a[1] * a[1];
+    return a[0] * cofactors[0] + a[1] * cofactors[1] + a[2] * cofactors[2];
+}
+
+/* Whether a is positive definite: its leading minors are above 0 (Sylvester). Not a number is
+ * not. */
+static inline bool cs_sym3_is_definite(const double a[6], const double cofactors[6],
+                                       double determinant) {
+    return a[0] > 0 && cofactors[5] > 0 && determinant > 0;
+}
+
+/* The inverse of a positive definite block. false: a is not that, and inverse is not written.
+ * inverse may be a. */
+static inline bool cs_sym3_invert_definite(const double a[6], double inverse[6]) {
+    double cofactors[6];
+    const double determinant = cs_sym3_cofactors(a, cofactors);
+    if (!cs_sym3_is_definite(a, cofactors, determinant))
+        return false;
+    const double factor = 1 / determinant;
+    for (int c = 0; c < 6; c++)
+        inverse[c] = cofactors[c] * factor;
+    return true;
+}
+
 /* The inverse by cofactors, definite or not, without a branch, so that loops over many blocks
  * vectorise. Returns the determinant of a scaled to a largest entry of 1: where that is not
  * above 1e-30 in magnitude (cs_sym3_is_regular), a is singular to working precision or not
@@ -46,18 +83,13 @@ static inline double cs_sym3_invert_any(const double a[6], double inverse[6]) {
     for (int c = 0; c < 6; c++)
         largest = fabs(a[c]) > largest ? fabs(a[c]) : largest;
     // scaled, so that light particles do not underflow
-    const double xx = a[0] / largest, xy = a[1] / largest, xz = a[2] / largest;
-    const double yy = a[3] / largest, yz = a[4] / largest, zz = a[5] / largest;
-    const double cxx = yy * zz - yz * yz, cxy = xz * yz - xy * zz, cxz = xy * yz - xz * yy;
-    const double det = xx * cxx + xy * cxy + xz * cxz;
-    const double scale = det * largest;
-    inverse[0] = cxx / scale;
-    inverse[1] = cxy / scale;
-    inverse[2] = cxz / scale;
-    inverse[3] = (xx * zz - xz * xz) / scale;
-    inverse[4] = (xy * xz - xx * yz) / scale;
-    inverse[5] = (xx * yy - xy * xy) / scale;
-    return det;
+    double scaled[6], cofactors[6];
+    for (int c = 0; c < 6; c++)
+        scaled[c] = a[c] / largest;
+    const double determinant = cs_sym3_cofactors(scaled, cofactors);
+    for (int c = 0; c < 6; c++)
+        inverse[c] = cofactors[c] / (determinant * largest);
+    return determinant;
 }
 
 /* Not a number is not regular. */

@@ -4,6 +4,8 @@
 #include "model/solver/lanes.h"
 #include "model/solver/wave.h"
 
+#include <clothsim/small.h>
+
 enum {
     CELLS = 1024, /* of one block of a loop at least: a whole number of lanes */
     LOOPS = 4     /* of a smoother and what follows it at most */
@@ -240,18 +242,14 @@ CS_INLINE struct blocks sum_springs(const struct cs_level *level, size_t i) {
  * a small difference. 0 where a cell is dead */
 CS_INLINE void invert_blocks(float *m, size_t n, const float *own) {
     for (size_t l = 0; l < CS_LANES; l++) {
-        const double a = (double)m[l], b = (double)m[n + l], c = (double)m[2 * n + l];
-        const double d = (double)m[3 * n + l], e = (double)m[4 * n + l];
-        const double f = (double)m[5 * n + l];
-        const double p = d * f - e * e, q = c * e - b * f, r = b * e - c * d;
-        const double determinant = a * p + b * q + c * r;
-        const double factor = own[l] > 0 && determinant > 0 ? 1 / determinant : 0;
-        m[l] = (float)(p * factor);
-        m[n + l] = (float)(q * factor);
-        m[2 * n + l] = (float)(r * factor);
-        m[3 * n + l] = (float)((a * f - c * c) * factor);
-        m[4 * n + l] = (float)((b * c - a * e) * factor);
-        m[5 * n + l] = (float)((a * d - b * b) * factor);
+        double block[6], cofactors[6];
+        for (size_t c = 0; c < 6; c++)
+            block[c] = (double)m[c * n + l];
+        const double determinant = cs_sym3_cofactors(block, cofactors);
+        const bool regular = own[l] > 0 && cs_sym3_is_definite(block, cofactors, determinant);
+        const double factor = regular ? 1 / determinant : 0;
+        for (size_t c = 0; c < 6; c++)
+            m[c * n + l] = (float)(cofactors[c] * factor);
     }
 }
 

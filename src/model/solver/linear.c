@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "model/force/terms.h"
 
+#include <clothsim/small.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,22 +24,13 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                          : cs_multigrid_init(&linear->multigrid, system, arena, error);
 }
 
-/* inverts the symmetric 3x3 block of particle i in place; false if it is not positive definite
- */
+/* inverts the block of particle i in place; false if it is not positive definite */
 static bool invert(double *blocks, size_t n, size_t i) {
-    const double a = blocks[i], b = blocks[n + i], c = blocks[2 * n + i];
-    const double d = blocks[3 * n + i], e = blocks[4 * n + i], f = blocks[5 * n + i];
-    const double c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d;
-    const double minor = a * d - b * b, determinant = a * c00 + b * c01 + c * c02;
-    if (!(a > 0) || !(minor > 0) || !(determinant > 0))
+    double block[6];
+    cs_sym3_read(n, blocks, i, block);
+    if (!cs_sym3_invert_definite(block, block))
         return false;
-    const double inverse = 1 / determinant;
-    blocks[i] = c00 * inverse;
-    blocks[n + i] = c01 * inverse;
-    blocks[2 * n + i] = c02 * inverse;
-    blocks[3 * n + i] = (a * f - c * c) * inverse;
-    blocks[4 * n + i] = (b * c - a * e) * inverse;
-    blocks[5 * n + i] = minor * inverse;
+    cs_sym3_write(n, blocks, i, block);
     return true;
 }
 
