@@ -63,7 +63,7 @@ static void move_part(void *arg, size_t begin, size_t end) {
 static void share(struct move *move) {
     const struct cs_host *host = move->self->loop.host;
     const struct cs_vector_kernels *vector = host->vector;
-    if (vector->size > offsetof(struct cs_vector_kernels, share))
+    if (CS_HAS(vector, share))
         vector->share(host->view->n, move_part, move);
     else
         move_part(move, 0, host->view->n);

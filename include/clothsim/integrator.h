@@ -3,22 +3,25 @@
  * A module is a shared object that exports ONE symbol, `clothsim_module`. It links against
  * nothing of clothsim: all it may ask for comes through struct cs_host.
  *
- * Units are SI. State is one array of 6n doubles, component-major: x (3,n), then v (3,n), so
- * that v == x + 3n always holds and a solver may wrap x as a single vector of 6n.
- * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v. Pinned particles have inv_mass = 0 and
- * zero rows in f and df, so that no method needs a special case. Their v is 0, or that of the
- * path along which the scene moves them. It is constant from one restart to the next, and they
- * are at x + h v after a step h: commit puts them there to the last bit, which is no change to
- * speak of.
+ * Units are SI. The state is one array of 6n doubles, component-major: x (3,n), then v (3,n).
+ * v == x + 3n always holds, so that a solver may treat x as one vector of 6n numbers.
  *
- * A scene's events lie between two calls of advance. There x, v, view->mass, view->inv_mass
- * and the springs' constants may change, in place; restart follows. view->omega and view->delta
- * hold for all of the run. Within an advance forces may depend on t (ramps are linear in it),
- * and the list of springs is that of the t which the last call named; a matrix that a method
- * keeps is not.
+ * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v.
  *
- * Marks in brackets say when a call is allowed. Not on offer, on purpose: random numbers,
- * clock, files, threads of one's own: vector->share lends the host's for a loop.
+ * Pinned particles need no special case: their inv_mass is 0, and so are their rows of f and
+ * df. Their v is 0, or the velocity of the path along which the scene moves them. v is constant
+ * between restarts, so after a step h such a particle is at x + h v. commit enforces this
+ * exactly, and does not set *changed for it.
+ *
+ * The scene's events happen between two calls of advance. There x, v, view->mass,
+ * view->inv_mass and the springs' constants may change in place, and then restart is called.
+ * view->omega and view->delta hold for the whole run. Within an advance forces may depend on t
+ * (ramps are linear in it): pass the time of the stage. The list of springs always shows the
+ * constants at the t that the last call named. A matrix that a method has kept does not follow.
+ *
+ * Marks in brackets say during which calls of the module a call of the host is allowed, and in
+ * which order the calls of the module come. Not on offer, on purpose: random numbers, a clock,
+ * files, and threads of your own. vector->share lends the host's threads for a loop.
  */
 #ifndef CLOTHSIM_INTEGRATOR_H
 #define CLOTHSIM_INTEGRATOR_H
@@ -30,25 +33,36 @@
 extern "C" {
 #endif
 
-#define CS_ABI          1u /* raised whenever a struct changes other than by growing at its end */
+/* Raised whenever a struct changes other than by growing at its end. */
+#define CS_ABI          1u
 #define CS_EXPORT       __attribute__((visibility("default")))
 #define CS_PRINTF(a, b) __attribute__((format(printf, a, b)))
 
+/* How a call ended. */
 enum cs_step {
     CS_STEP_OK,
-    CS_STEP_HALT, /* commit said stop (blow-up, interrupt, budget): return it upwards at once */
-    CS_STEP_FAIL  /* the reason was given to host->fail */
+    /* commit said stop: a blow-up, an interrupt, or the budget is used up. Return it upwards at
+     * once. */
+    CS_STEP_HALT,
+    /* The reason was given to host->fail. */
+    CS_STEP_FAIL
 };
 
-/* What the host must build; what no one asks for costs nothing. A call without its need
- * is refused with CS_STEP_FAIL or leaves its output untouched. */
+/* What the host must build for the method. You pay only for what you ask for. A call whose need
+ * was not declared returns CS_STEP_FAIL, or leaves its output untouched. */
 enum cs_need {
+    /* jvp. */
     CS_NEED_JVP = 1u << 0,
+    /* diagonal. */
     CS_NEED_DIAGONAL = 1u << 1,
+    /* energy. */
     CS_NEED_ENERGY = 1u << 2,
+    /* The list of springs in the view. */
     CS_NEED_SPRINGS = 1u << 3,
+    /* solve_setup, solve and apply. */
     CS_NEED_SOLVE = 1u << 4,
-    CS_NEED_CLUSTERS = 1u << 5 /* and without groups that keep their shape there is no run */
+    /* Groups that keep their shape, in the view. The host refuses scenes without them. */
+    CS_NEED_CLUSTERS = 1u << 5
 };
 
 /* Parts of the force, so that a method can split it.
@@ -71,7 +85,8 @@ enum cs_part {
     /* All others, by what they are. */
     CS_PART_POTENTIAL = 1u << 7,   /* minus the slope of an energy; in the matrix */
     CS_PART_DISSIPATIVE = 1u << 8, /* against a velocity; no energy, in the matrix */
-    CS_PART_EXTERNAL = 1u << 9, /* neither energy nor in the matrix: impacts, viewpoint forces */
+    CS_PART_EXTERNAL =
+        1u << 9, /* neither energy nor in the matrix: impacts, viewpoint forces */
 
     /* The elastic springs, and those with their dampers. */
     CS_PART_SPRINGS = CS_PART_STRETCH | CS_PART_SHEAR | CS_PART_BEND,
@@ -98,122 +113,179 @@ enum cs_part {
     CS_PART_WITHOUT_ENERGY = CS_PART_ALL & ~CS_PART_WITH_ENERGY
 };
 
-/* What is true of the method: shown and tested, never guessed. */
+/* What is true of the method. The program shows it, and `clothsim conform` tests it. */
 enum cs_trait {
     CS_IMPLICIT = 1u << 0,
     CS_ADAPTIVE = 1u << 1,
     CS_MULTISTEP = 1u << 2,
     CS_SYMPLECTIC = 1u << 3,
-    CS_LIBRARY_BITS = 1u << 4, /* same bits only with the same build of a foreign library */
-    CS_NOT_GALILEAN = 1u << 5  /* a uniform velocity changes the internal forces */
+    /* The bits are the same only with the same build of a foreign library. */
+    CS_LIBRARY_BITS = 1u << 4,
+    /* A uniform velocity changes the internal forces. */
+    CS_NOT_GALILEAN = 1u << 5
 };
 
 /* What the method's result is, however small its own tolerances are. */
 enum cs_fidelity {
-    CS_FIDELITY_ODE,            /* converges to the equation of motion at its order */
-    CS_FIDELITY_IMPLICIT_EULER, /* one implicit Euler step as its iterations grow */
-    CS_FIDELITY_CONSISTENT,     /* meets the equation of motion only as the step goes to 0 */
-    CS_FIDELITY_OTHER           /* another model: no error against the equation of motion */
+    /* Converges to the equation of motion at the method's order. */
+    CS_FIDELITY_ODE,
+    /* Becomes one step of implicit Euler as the iterations grow. */
+    CS_FIDELITY_IMPLICIT_EULER,
+    /* Meets the equation of motion only as the step goes to 0. */
+    CS_FIDELITY_CONSISTENT,
+    /* Is another model: no error against the equation of motion is measured. */
+    CS_FIDELITY_OTHER
 };
 
 enum cs_solve_flag {
-    CS_SOLVE_PSD =
-        1u << 0 /* drop the transverse part of compressed springs (Teran et al. 2005) */
+    /* Make A positive definite for any state: drop the transverse part of compressed springs
+     * (Teran et al. 2005). */
+    CS_SOLVE_PSD = 1u << 0
 };
 
+/* What the host offers. Pass ctx as the first argument of every call. */
 struct cs_host {
-    uint32_t size;              /* sizeof at the host's build; test before a late field */
-    void *ctx;                  /* first argument of every call below */
-    const struct cs_view *view; /* valid until destroy returns */
+    /* sizeof at the host's build: see CS_HAS. */
+    uint32_t size;
+    void *ctx;
+    /* Both are valid until destroy returns. */
+    const struct cs_view *view;
     const struct cs_vector_kernels *vector;
 
-    /* [create] Zeroed, 64-byte aligned, freed by the host after destroy. NULL: already
-     * reported. */
+    /* [create] Memory for the whole run: zeroed, 64-byte aligned, freed by the host after
+     * destroy. NULL: out of memory, which the host has reported already. */
     void *(*alloc)(void *ctx, size_t bytes);
-    /* [create, restart, advance] Keeps the first message; returns CS_STEP_FAIL. */
+
+    /* [create, restart, advance] Says why the method cannot go on; the first message counts.
+     * Returns CS_STEP_FAIL, so that `return host->fail(...)` is all you need. */
     enum cs_step (*fail)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
-    /* [create, restart, advance] A remark for the report; a repeated one is kept once. */
+
+    /* [create, restart, advance] A remark for the report. A repeated one is kept once. */
     void (*note)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
 
-    /* [restart, advance] f (3,n) in N, the sum of the chosen parts: overwritten. */
+    /* [restart, advance] f (3,n) in N = the sum of the chosen parts. Overwrites f. */
     void (*force)(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                   double *f);
-    /* [restart, advance] Kinetic + potential energy in J. Needs CS_NEED_ENERGY. */
+
+    /* [restart, advance] Kinetic and potential energy in J, of CS_PART_WITH_ENERGY. Needs
+     * CS_NEED_ENERGY. */
     double (*energy)(void *ctx, double t, const double *x, const double *v);
-    /* [restart, advance] df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, exact. Either
-     * direction may be NULL. Needs CS_NEED_JVP. */
+
+    /* [restart, advance] df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, exact.
+     * Overwrites df. dx or dv may be NULL, which means 0. Needs CS_NEED_JVP. */
     void (*jvp)(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                 const double *dx, const double *dv, double *df);
-    /* [restart, advance] The own 3x3 blocks of the particles, kxx = df_i/dx_i and dvv =
-     * df_i/dv_i of CS_PART_LINEARISED, each (6,n) component-major: xx, xy, xz, yy, yz, zz.
-     * Needs CS_NEED_DIAGONAL. */
+
+    /* [restart, advance] The 3x3 diagonal blocks of the derivatives of CS_PART_LINEARISED:
+     * kxx = df_i/dx_i and dvv = df_i/dv_i of each particle i. Both are (6,n),
+     * component-major: xx, xy, xz, yy, yz, zz. Needs CS_NEED_DIAGONAL. */
     void (*diagonal)(void *ctx, double t, const double *x, const double *v, double *kxx,
                      double *dvv);
-    /* [advance] The host's own linear solver, so that methods are compared and not solvers:
-     * prepare A = cm M + cd df/dv + ck df/dx of CS_PART_LINEARISED at (t, x, v) (backward Euler
-     * is 1, -h, -h h), then solve A u = b for as many b as wanted to relative residual rtol.
-     * u (3,n) is the start of the iteration and its result; rows of pinned particles become 0.
-     * The position derivative of axial damping is left out of A (it is not symmetric).
-     * Needs CS_NEED_SOLVE. Without CS_SOLVE_PSD an indefinite A falls back to it, counted. */
+
+    /* [advance] The host's own linear solver, so that methods are compared and not solvers.
+     * Prepares A = cm M + cd df/dv + ck df/dx of CS_PART_LINEARISED at (t, x, v), with
+     * cm > 0, cd <= 0 and ck <= 0: backward Euler has 1, -h, -h h. flags: enum cs_solve_flag.
+     * A is symmetric: the derivative of dampers by places is left out. Without CS_SOLVE_PSD an
+     * A that turns out indefinite is made definite after all, and that is counted. Needs
+     * CS_NEED_SOLVE. */
     enum cs_step (*solve_setup)(void *ctx, double t, const double *x, const double *v,
                                 double cm, double cd, double ck, uint32_t flags);
+
+    /* [advance] Solves A u = b with the A of the last solve_setup, to |b - A u| <= rtol |b|, as
+     * often as you like. u (3,n) holds the start of the iteration, and then the result. Rows of
+     * pinned particles become 0. */
     enum cs_step (*solve)(void *ctx, const double *b, double rtol, double *u);
-    /* [advance] y (3,n) = A p with the A of the last solve_setup; rows of pinned particles
+
+    /* [advance] y (3,n) = A p with the A of the last solve_setup. Rows of pinned particles
      * become 0. Counted as a Jacobian product. */
     void (*apply)(void *ctx, const double *p, double *y);
 
-    /* [advance] MUST follow every accepted internal step of length dt that ended at time t:
-     * strain limit, contact, velocity loss, blow-up test, counting. May move x and v; then
-     * *changed is true and a method that keeps history starts anew. */
+    /* [advance] You MUST call it after every accepted internal step, of length dt, that ended
+     * at time t. It limits strains, resolves contact, takes the velocity loss, looks for a
+     * blow-up, and counts. It may move x and v; then *changed is true, and a method that keeps
+     * history starts anew. What is not CS_STEP_OK goes upwards at once. */
     enum cs_step (*commit)(void *ctx, double t, double dt, double *x, double *v, bool *changed);
 };
 
-/* What the host cannot count itself. */
+/* What only the method can count. */
 struct cs_stats {
     uint32_t size;
-    uint64_t rejected; /* steps thrown away */
-    uint64_t newton;   /* nonlinear iterations */
-    uint64_t setups;   /* linear solver set-ups asked for by a library */
+    /* Steps thrown away. */
+    uint64_t rejected;
+    /* Nonlinear iterations. */
+    uint64_t newton;
+    /* Set-ups of the linear solver that a library asked for. */
+    uint64_t setups;
 };
 
+/* A method: what it claims, and its calls. The host calls them in the order
+ *   create, then for each stretch of time restart and any number of advance, then destroy.
+ * Marks in brackets say when a call comes, and after which others. */
 struct cs_integrator {
+    /* sizeof(struct cs_integrator) at the module's build. */
     uint32_t size;
-    const char *name;      /* [a-z0-9-]+, e.g. "implicit-block" */
-    const char *summary;   /* one line for `clothsim integrators` */
-    const char *source;    /* where the method was published */
-    uint32_t order;        /* on smooth scenes without damping; measured by the tests */
-    uint32_t order_damped; /* on smooth scenes with velocity-dependent forces */
+    /* [a-z0-9-]+, e.g. "implicit-block". */
+    const char *name;
+    /* One line for `clothsim integrators`, and where the method was published. */
+    const char *summary;
+    const char *source;
+
+    /* Order of the error on smooth scenes, without damping and with forces that depend on the
+     * velocity. */
+    uint32_t order;
+    uint32_t order_damped;
+    /* Sets of enum cs_need and enum cs_trait. */
     uint32_t needs, traits;
-    uint32_t fidelity; /* enum cs_fidelity */
-    /* checks of `clothsim conform` that the method is known to fail, closed by NULL; or NULL */
+    /* enum cs_fidelity. */
+    uint32_t fidelity;
+    /* Checks of `clothsim conform` that the method is known to fail, closed by NULL; or NULL.
+     */
     const char *const *fails;
+
+    /* The options: rows over a plain struct, and the size of that struct. */
     const struct cs_option *options;
     uint32_t n_options;
-    uint32_t options_size; /* sizeof the struct that the table describes */
+    uint32_t options_size;
 
-    /* options: the filled, range-checked struct, valid only during the call: copy what you
-     * need. All memory is taken here. On failure *self may be set, and destroy is called with
-     * it. */
+    /* [once, first] Takes all memory, and sets *self. options is the filled and range-checked
+     * struct, valid only during the call: copy what you need. After a failure destroy is called
+     * if *self was set. */
     enum cs_step (*create)(const struct cs_host *host, const void *options, void **self);
-    /* The state, the pins or the forces were changed from outside (first frame, event): forget
-     * all history, and what was derived from the view. */
-    enum cs_step (*restart)(void *self, double t, const double *x, const double *v);
-    /* From t0 to exactly t1 in as many internal steps as the method likes. In place. */
-    enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);
-    void (*stats)(const void *self, struct cs_stats *out); /* may be NULL */
-    void (*destroy)(void *self); /* only foreign handles; may be NULL; self may be half made */
 
-    /* Later than ABI 1's first release: read only where `size` reaches behind it. May be NULL.
-     * Between two calls of advance: g (3,n) in m, the places that the method draws particles
-     * to when they are at x (3,n); x itself for those that it leaves alone. */
+    /* [after create; then between two calls of advance] The state, the pins or the forces were
+     * changed from outside: at the start, or by an event. Forget all history, and everything
+     * that was derived from the view. */
+    enum cs_step (*restart)(void *self, double t, const double *x, const double *v);
+
+    /* [after restart, any number of times; t0 is the t1 of the call before] Takes x and v, in
+     * place, from t0 to exactly t1, in as many internal steps as the method likes, each of them
+     * followed by host->commit. After anything but CS_STEP_OK only stats and destroy follow. */
+    enum cs_step (*advance)(void *self, double t0, double t1, double *x, double *v);
+
+    /* [any time after create, not during another call] May be NULL. Sets the counts; the fields
+     * are 0 before, and out->size is the host's. */
+    void (*stats)(const void *self, struct cs_stats *out);
+
+    /* [once, last] Gives back what is not from host->alloc: handles of foreign libraries. May
+     * be NULL. self may be half made. */
+    void (*destroy)(void *self);
+
+    /* [after restart, between two calls of advance] Where shape matching draws particles that
+     * are at x (3,n): g (3,n) in m, with x itself for particles that it leaves alone. It must
+     * not change what the method remembers. May be NULL. Later than the first release: the host
+     * asks CS_HAS(integrator, goals). */
     void (*goals)(const void *self, const double *x, double *g);
 };
 
+/* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */
 struct cs_module {
-    uint32_t abi;  /* CS_ABI */
-    uint32_t size; /* sizeof(struct cs_integrator) at the module's build */
+    /* CS_ABI. */
+    uint32_t abi;
+    /* sizeof(struct cs_integrator) at the module's build. */
+    uint32_t size;
+    /* The methods. */
     uint32_t n;
-    const struct cs_integrator *const *integrators; /* (n) */
+    const struct cs_integrator *const *integrators;
 };
 
 #ifdef __cplusplus

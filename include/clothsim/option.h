@@ -1,9 +1,9 @@
 /* option.h - one self-describing table for every struct that a user can fill.
  *
- * A row names a field of a plain struct and says its type, unit, default, range and meaning.
- * From such tables clothsim parses scenes and options, prints help and resolved values, and
+ * A row names a field of a plain struct and gives its type, unit, default, range and meaning.
+ * From such tables clothsim reads scenes and options, prints help and resolved values, and
  * writes the JSON schema. An integrator module describes its options with the first four
- * types; the others serve the scene.
+ * types of enum cs_type; the others serve the scene.
  */
 #ifndef CLOTHSIM_OPTION_H
 #define CLOTHSIM_OPTION_H
@@ -16,62 +16,97 @@
 extern "C" {
 #endif
 
+/* The type of a row, and with it the C type of the field. */
 enum cs_type {
-    CS_REAL,   /* double; a default of NAN means: absent unless given */
-    CS_INT,    /* int64_t */
-    CS_BOOL,   /* bool */
-    CS_CHOICE, /* int32_t, index into choices; a default of -1 means: absent unless given */
-    CS_VECTOR, /* double[count]; min and max hold for each component */
-    CS_COUNTS, /* int64_t[count] */
-    CS_TEXT,   /* char[CS_TEXT_MAX], zero-terminated; the default is "" = absent */
-    CS_TABLE,  /* a struct described by table */
-    CS_LIST    /* struct cs_list of such structs */
+    /* double; a default of NAN means: absent unless given. */
+    CS_REAL,
+    /* int64_t. */
+    CS_INT,
+    /* bool. */
+    CS_BOOL,
+    /* int32_t, an index into choices; a default of -1 means: absent unless given. */
+    CS_CHOICE,
+
+    /* double[count]; min and max hold for each component. */
+    CS_VECTOR,
+    /* int64_t[count]. */
+    CS_COUNTS,
+    /* char[CS_TEXT_MAX], closed by a zero; the default is "", which means absent. */
+    CS_TEXT,
+    /* A struct that a table of its own describes. */
+    CS_TABLE,
+    /* A struct cs_list of such structs. */
+    CS_LIST
 };
 
+/* Bytes of a text, with the zero at its end. */
 enum { CS_TEXT_MAX = 256 };
 
+/* A list of structs, as it was read. */
 struct cs_list {
-    void *items; /* owned by the arena it was read into; NULL if n is 0 */
+    /* Owned by the arena it was read into; NULL if n is 0. */
+    void *items;
     uint32_t n;
 };
 
 struct cs_table;
 
+/* One row: a field of a struct. */
 struct cs_option {
-    const char *name; /* [a-z_]+ */
-    const char *unit; /* SI, "" for a pure number */
-    const char *help; /* lower case, no full stop */
+    /* What the user writes: [a-z_]+. */
+    const char *name;
+    /* The SI unit; "" for a pure number. */
+    const char *unit;
+    /* One line for the help, in lower case, without a full stop. */
+    const char *help;
     enum cs_type type;
-    uint32_t count;               /* components of a VECTOR or COUNTS; else 1 */
-    size_t offset;                /* of the field in its struct */
-    double def, min, max;         /* REAL, INT, BOOL, CHOICE: default and range */
-    const double *defs;           /* VECTOR, COUNTS: defaults, or NULL: must be given */
-    const char *const *choices;   /* CHOICE: names, closed by NULL */
-    const struct cs_table *table; /* TABLE, LIST: rows of the struct */
+    /* Components of a VECTOR or COUNTS; else 1. */
+    uint32_t count;
+    /* Of the field in its struct. */
+    size_t offset;
+
+    /* Default and range, both ends included, of REAL, INT, BOOL and CHOICE; of VECTOR and
+     * COUNTS the range of each component. */
+    double def, min, max;
+    /* Defaults of VECTOR and COUNTS; NULL: the user must give them. */
+    const double *defs;
+    /* Names of a CHOICE, closed by NULL. */
+    const char *const *choices;
+    /* Rows of the struct of a TABLE or LIST. */
+    const struct cs_table *table;
 };
 
-/* Rows of one struct. An optional TABLE's struct starts with `bool present`: the reader sets
- * it, and leaves the defaults of an absent one. */
+/* The rows of one struct. The struct of an optional TABLE starts with `bool present`: the
+ * reader sets it, and where the table is absent the defaults stay in the other fields. */
 struct cs_table {
     const struct cs_option *rows;
     uint32_t n;
-    size_t size;                  /* of the struct */
-    bool optional;                /* the struct starts with `bool present` */
-    bool one_of;                  /* exactly one of the optional rows must be given */
-    uint32_t uncounted;           /* first rows that one_of leaves alone */
-    const char *shorthand_text;   /* row that a plain string stands for, or NULL */
-    const char *shorthand_number; /* row that a plain number stands for, or NULL */
+    /* Of the struct in bytes. */
+    size_t size;
+    /* The struct starts with `bool present`. */
+    bool optional;
+    /* Exactly one of the optional rows must be given, but for the first `uncounted` rows. */
+    bool one_of;
+    uint32_t uncounted;
+    /* The row that a plain text, or a plain number, in place of the object stands for; or
+     * NULL. */
+    const char *shorthand_text;
+    const char *shorthand_number;
 };
 
-/* The four rows that integrator modules use; the C type of the field picks the option type,
- * and a field of any other type does not compile. C only (C++ modules fill the struct). */
+/* The rows that integrator modules use. The option's type follows from the C type of the field,
+ * and a field of any other type does not compile. In C only: a C++ module fills the struct. */
 #define CS_TYPE_OF(struct_, field)                                                             \
     _Generic(((struct_ *)0)->field, double : CS_REAL, int64_t : CS_INT, bool : CS_BOOL)
+
+/* A number or a switch: its unit, default, least and largest value, and help. */
 #define CS_OPTION(struct_, field, unit_, def_, min_, max_, help_)                              \
     {                                                                                          \
         .name = #field, .unit = unit_, .help = help_, .type = CS_TYPE_OF(struct_, field),      \
         .count = 1, .offset = offsetof(struct_, field), .def = def_, .min = min_, .max = max_  \
     }
+
+/* One of several names: an int32_t that is the number of the name, the default likewise. */
 #define CS_OPTION_CHOICE(struct_, field, names_, def_, help_)                                  \
     {                                                                                          \
         .name = #field, .unit = "", .help = help_, .type = CS_CHOICE,                          \

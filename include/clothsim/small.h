@@ -1,6 +1,13 @@
 /* small.h - 3-vectors and symmetric 3x3 blocks out of component-major arrays.
  *
- * A symmetric block is six doubles: xx, xy, xz, yy, yz, zz. Sums run left to right.
+ * Arrays lie component by component: vector i of an array (3,n) is array[i], array[n + i],
+ * array[2 n + i]. A symmetric block is six doubles: xx, xy, xz, yy, yz, zz. All sums run from
+ * left to right, and no function calls the mathematics library, so that the bits are the same
+ * on every machine.
+ *
+ * There are two inverses. cs_sym3_invert_definite is for blocks that a solver of positive
+ * definite systems takes; it says where a block is not one. cs_sym3_invert_any and
+ * cs_sym3_invert are for any block and any units: they scale it first.
  */
 #ifndef CLOTHSIM_SMALL_H
 #define CLOTHSIM_SMALL_H
@@ -13,33 +20,35 @@
 extern "C" {
 #endif
 
-/* Vector i of an array (3,n). */
+/* Reads vector i of an array (3,n). */
 static inline void cs_vec3_read(size_t n, const double *array, size_t i, double out[3]) {
     for (size_t c = 0; c < 3; c++)
         out[c] = array[c * n + i];
 }
 
+/* Writes vector i of an array (3,n). */
 static inline void cs_vec3_write(size_t n, double *array, size_t i, const double a[3]) {
     for (size_t c = 0; c < 3; c++)
         array[c * n + i] = a[c];
 }
 
-/* Block i of an array (6,n). */
+/* Reads block i of an array (6,n). */
 static inline void cs_sym3_read(size_t n, const double *array, size_t i, double out[6]) {
     for (size_t c = 0; c < 6; c++)
         out[c] = array[c * n + i];
 }
 
-/* out = a p; out may not be p. */
+/* Writes block i of an array (6,n). */
+static inline void cs_sym3_write(size_t n, double *array, size_t i, const double a[6]) {
+    for (size_t c = 0; c < 6; c++)
+        array[c * n + i] = a[c];
+}
+
+/* out = a p, left to right. out may not be p. */
 static inline void cs_sym3_mul(const double a[6], const double p[3], double out[3]) {
     out[0] = a[0] * p[0] + a[1] * p[1] + a[2] * p[2];
     out[1] = a[1] * p[0] + a[3] * p[1] + a[4] * p[2];
     out[2] = a[2] * p[0] + a[4] * p[1] + a[5] * p[2];
-}
-
-static inline void cs_sym3_write(size_t n, double *array, size_t i, const double a[6]) {
-    for (size_t c = 0; c < 6; c++)
-        array[c * n + i] = a[c];
 }
 
 /* Writes the cofactors of a (the inverse is them over the determinant) and returns the
@@ -74,9 +83,11 @@ static inline bool cs_sym3_invert_definite(const double a[6], double inverse[6])
     return true;
 }
 
-/* The inverse by cofactors, definite or not, without a branch, so that loops over many blocks
- * vectorise. Returns the determinant of a scaled to a largest entry of 1: where that is not
- * above 1e-30 in magnitude (cs_sym3_is_regular), a is singular to working precision or not
+/* The inverse by cofactors, of a block that need not be definite. There is no branch in it, so
+ * that a loop over many blocks vectorises.
+ *
+ * Returns the determinant of a after it was scaled to a largest entry of 1. Ask
+ * cs_sym3_is_regular with it: where that says no, a is singular to working precision or not
  * finite, and inverse is worthless. inverse may be a. */
 static inline double cs_sym3_invert_any(const double a[6], double inverse[6]) {
     double largest = 0;
@@ -92,12 +103,14 @@ static inline double cs_sym3_invert_any(const double a[6], double inverse[6]) {
     return determinant;
 }
 
-/* Not a number is not regular. */
+/* Whether a block whose scaled determinant this is has an inverse: it is above 1e-30 in
+ * magnitude. Not a number is not. */
 static inline bool cs_sym3_is_regular(double scaled_determinant) {
     return fabs(scaled_determinant) > 1e-30;
 }
 
-/* The same for one block: false if a is singular or not finite, and inverse is not written. */
+/* The same for a single block. false: a is singular or not finite, and inverse is not
+ * written. inverse may be a. */
 static inline bool cs_sym3_invert(const double a[6], double inverse[6]) {
     double found[6];
     if (!cs_sym3_is_regular(cs_sym3_invert_any(a, found)))

@@ -1,7 +1,7 @@
 /* system.h - the particle system as an integrator sees it: read only, SI units.
  *
- * Arrays of 3-vectors are component-major, shape (3,n): all x, then all y, then all z.
- * A body's particles are one contiguous range; grid particle (i, j) of a body lies at
+ * Arrays of 3-vectors are component-major, of shape (3,n): all x, then all y, then all z.
+ * A body's particles are one contiguous range. In a grid, particle (i, j) of a body lies at
  * first + i * width + j.
  */
 #ifndef CLOTHSIM_SYSTEM_H
@@ -14,49 +14,87 @@
 extern "C" {
 #endif
 
-/* Vector kernels in one fixed order of sums, whatever the thread count. Arrays of n doubles. */
+/* Whether a table of this contract reaches as far as `field`. Tables grow at their ends, and
+ * their `size` says where the one at hand ends: ask before you use a field that came later
+ * than the first release. table is a pointer to a struct with the field `size`. */
+#define CS_HAS(table, field)                                                                   \
+    ((size_t)((const char *)(&(table)->field + 1) - (const char *)(table)) <= (table)->size)
+
+/* Vector kernels. Each adds up in one fixed order, whatever the number of threads, so that the
+ * bits of a run are the same everywhere. Arrays have n doubles. */
 struct cs_vector_kernels {
-    uint32_t size;
-    /* z = a x + b y; z may be x or y */
+    uint32_t size; /* sizeof at the host's build: see CS_HAS */
+
+    /* z = a x + b y. z may be x or y. */
     void (*linear_sum)(size_t n, double a, const double *x, double b, const double *y,
                        double *z);
+
+    /* The sum of x y. */
     double (*dot)(size_t n, const double *x, const double *y);
-    /* sum of (x w)^2: sqrt of its n-th part is the weighted RMS norm */
+
+    /* The sum of (x w)^2. The root of an n-th of it is the weighted RMS norm. */
     double (*weighted_square)(size_t n, const double *x, const double *w);
+
+    /* The largest |x|. */
     double (*max_norm)(size_t n, const double *x);
-    /* Calls part(arg, begin, end) for ranges that together are the items 0..n-1, each once,
-     * several at the same time on threads of the host's; returns when all are done. A part may
-     * write only what belongs to its items, and calls nothing of the host. Not in hosts whose
-     * size ends before it. */
+
+    /* Runs a loop of your own on the host's threads: calls part(arg, begin, end) for ranges
+     * that together are the items 0..n-1, each once, and returns when all are done. Several
+     * parts run at the same time. A part may write only what belongs to its items, and must not
+     * call the host. Later than the first release: ask CS_HAS(vector, share). */
     void (*share)(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg);
 };
 
+/* What stays the same during a run, or changes only at a restart. */
 struct cs_view {
-    uint32_t size;          /* sizeof at the host's build */
-    uint32_t n;             /* particles */
-    const double *mass;     /* (n) in kg, pinned particles too */
-    const double *inv_mass; /* (n) in 1/kg; 0 for a pinned particle */
-    const double *start;    /* (3,n) in m, positions at time 0 */
-    double omega; /* bound on the largest angular frequency at rest [1/s], see numerics */
-    double delta; /* bound on half the largest damping rate [1/s] */
+    /* sizeof at the host's build: see CS_HAS. */
+    uint32_t size;
+    /* The number of particles. */
+    uint32_t n;
 
-    /* spring list, only with CS_NEED_SPRINGS: in the order in which forces are summed */
+    /* (n) in kg, of pinned particles too. */
+    const double *mass;
+    /* (n) in 1/kg; 0 for a pinned particle. */
+    const double *inv_mass;
+    /* (3,n) in m: positions at time 0. */
+    const double *start;
+
+    /* Bounds for automatic steps, both in 1/s: on the largest angular frequency of the springs
+     * near rest, and on half the largest damping rate. They hold for the whole run. */
+    double omega;
+    double delta;
+
+    /* The springs one by one, in the order in which their forces are summed. Only with
+     * CS_NEED_SPRINGS; else n_springs is 0. */
     uint32_t n_springs;
-    const uint32_t *ends;    /* (n_springs, 2) */
-    const double *length;    /* (n_springs) rest lengths in m */
-    const double *stiffness; /* (n_springs) in N/m */
-    const double *damping;   /* (n_springs) in N s/m, of the damper beside the spring */
-    const uint32_t *kind;    /* (n_springs) CS_PART_STRETCH, CS_PART_SHEAR or CS_PART_BEND */
-    const uint8_t *axial;    /* (n_springs) 1: damped along the spring only; 0: in every way */
+    /* (n_springs, 2) particles a and b. */
+    const uint32_t *ends;
+    /* (n_springs) rest lengths in m. */
+    const double *length;
+    /* (n_springs) in N/m. */
+    const double *stiffness;
+    /* (n_springs) in N s/m, of the damper beside the spring. */
+    const double *damping;
+    /* (n_springs) CS_PART_STRETCH, CS_PART_SHEAR or CS_PART_BEND. */
+    const uint32_t *kind;
+    /* (n_springs) 1: the damper acts along the spring only; 0: against every relative
+     * velocity of the ends. */
+    const uint8_t *axial;
 
-    /* groups of particles that keep their shape (shape matching), only with CS_NEED_CLUSTERS;
-     * their shape is that of `start`. A particle may be in several groups of its body. */
+    /* Groups of particles that keep their shape, which is that of `start` (shape matching).
+     * A particle may be in several groups of its body. Only with CS_NEED_CLUSTERS. */
     uint32_t n_clusters;
-    const uint32_t *cluster_begin; /* (n_clusters + 1) places in cluster_items */
-    const uint32_t *cluster_items; /* particles of each cluster, ascending */
-    const double *cluster_alpha;   /* (n_clusters) 0..1, share of the way to its shape */
-    const double *cluster_beta;    /* (n_clusters) 0..1, share of the linear deformation kept */
-    const double *cluster_step;    /* (n_clusters) s, step that alpha is for; 0: for any */
+    /* (n_clusters + 1) places in cluster_items. */
+    const uint32_t *cluster_begin;
+    /* Particles of each cluster, ascending. */
+    const uint32_t *cluster_items;
+    /* (n_clusters) 0..1: the share of its way to the goal that a particle goes in a step of
+     * cluster_step. */
+    const double *cluster_alpha;
+    /* (n_clusters) 0..1: the share of the linear deformation that the shape keeps. */
+    const double *cluster_beta;
+    /* (n_clusters) s: the step that alpha is meant for; 0: alpha is for any step. */
+    const double *cluster_step;
 };
 
 #ifdef __cplusplus

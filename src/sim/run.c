@@ -124,8 +124,7 @@ void cs_run_fail_solves(struct cs_run *run) {
 
 bool cs_run_has_goals(const struct cs_integrator *integrator) {
     // a module that was built before the call was there has a shorter struct
-    const size_t needed = offsetof(struct cs_integrator, goals) + sizeof integrator->goals;
-    return integrator->size >= needed && integrator->goals;
+    return CS_HAS(integrator, goals) && integrator->goals;
 }
 
 void cs_run_goals(const struct cs_run *run, double *g) {

@@ -2,8 +2,8 @@
 """Counts what makes sources hard to read, prints it, and holds the limits below.
 
 Counted: functions with seven or more parameters; .c files without a head comment; functions of
-20 lines and more without a comment inside; share of comment lines in include (of the lines that
-are not blank); length of files; units (NAME.c, NAME.h or both) of each folder.
+20 lines and more without a comment inside; share of lines in include that are nothing but comment,
+of those that are not blank; length of files; units (NAME.c, NAME.h or both) of each folder.
 
 usage: counts.py ROOT [--list]     --list names what is counted
 """
@@ -21,6 +21,8 @@ LIMITS = {
     "longest file [lines]": ("most", 400),
     "units in the largest folder": ("most", 25),
 }
+# not there yet: told, but no failure
+LATER = {".c files without head comment", "functions >= 20 lines without a comment inside [%]"}
 TREES = ("src", "plugins", "bench")
 NAME = re.compile(r"([A-Za-z_]\w*)\s*\($")
 NO_FUNCTIONS = {"if", "for", "while", "switch", "return", "sizeof", "do", "else"}
@@ -104,7 +106,9 @@ def count(root):
     commented = written = 0
     for path in sorted((root / "include").rglob("*.h")):
         text = path.read_text()
-        commented += len(comment_lines(text))
+        code = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: re.sub(r"[^\n]", " ", m.group(0)), text,
+                      flags=re.S).split("\n")
+        commented += sum(1 for line in comment_lines(text) if not code[line].strip())
         written += sum(1 for line in text.split("\n") if line.strip())
     units = {}
     for path in texts:
@@ -129,8 +133,9 @@ def main():
     for name, value in figures.items():
         kind, limit = LIMITS.get(name, ("none", 0))
         held = not (kind == "most" and value > limit or kind == "least" and value < limit)
-        failed += not held
-        said = "" if kind == "none" else f"  at {kind} {limit}" + ("" if held else "  FAILED")
+        failed += not held and name not in LATER
+        verdict = "" if held else "  not yet" if name in LATER else "  FAILED"
+        said = "" if kind == "none" else f"  at {kind} {limit}{verdict}"
         print(f"{value:8.4g}  {name}{said}")
     for folder, names in sorted(units.items()):
         print(f"{len(names):8d}  units in {folder}")
