@@ -180,9 +180,16 @@ struct cs_wind {
     int32_t strength_unit; /* enum cs_wind_unit */
 };
 enum cs_drag_unit { CS_DRAG_PARTICLE, CS_DRAG_AREA };
+
+/* Numbers of `forces` that each belong to one force of model/force/term_NAME.c, from 0 on, and
+ * 0 where they are not given: X(key, unit, help). A row here is all that such a key takes. */
+#define CS_FORCE_NUMBERS(X) X(drag, "N s/m or Pa s/m", "force of still air: -drag * v")
+
 struct cs_forces {
-    double gravity[3];    /* m/s2 */
-    double drag;          /* N s/m per particle, or Pa s/m */
+    double gravity[3]; /* m/s2 */
+#define X(key, unit, help) double key;
+    CS_FORCE_NUMBERS(X)
+#undef X
     int32_t drag_unit;    /* enum cs_drag_unit */
     double velocity_loss; /* share of the velocity removed after every internal step */
     struct cs_wind wind;

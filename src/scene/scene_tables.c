@@ -227,9 +227,11 @@ static const double earth[3] = {0, -9.81, 0};
 static const char *const drag_units[] = {"N s/m", "Pa s/m", NULL};
 static const struct cs_option force_rows[] = {
     VECTOR(struct cs_forces, gravity, 3, "m/s2", earth, -BIG, BIG, "acceleration of free fall"),
-    REAL(struct cs_forces, drag, "N s/m or Pa s/m", 0, 0, BIG, "force of still air: -drag * v"),
-    CHOICE(struct cs_forces, drag_unit, drag_units, CS_DRAG_PARTICLE,
-           "N s/m: on each particle; Pa s/m: times the particle's share of the area"),
+#define X(key, unit_, help_) REAL(struct cs_forces, key, unit_, 0, 0, BIG, help_),
+    CS_FORCE_NUMBERS(X)
+#undef X
+        CHOICE(struct cs_forces, drag_unit, drag_units, CS_DRAG_PARTICLE,
+               "N s/m: on each particle; Pa s/m: times the particle's share of the area"),
     REAL(
         struct cs_forces, velocity_loss, "", 0, 0, 1,
         "share of the velocity removed after every internal step: a factor that depends on the "
