@@ -1,11 +1,9 @@
+/* conform.c - the checks of a card one after the other, and what the method says of itself. */
 #include "study/conform/conform.h"
 
 #include "study/conform/conform_checks.h"
-#include "study/conform/conform_probe.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 static const struct {
@@ -18,58 +16,6 @@ static const struct {
 #undef X
 };
 enum { CHECKS = sizeof checks / sizeof *checks };
-
-const char *cs_verdict_text(enum cs_verdict verdict) {
-    static const char *const texts[] = {
-#define X(name, text) text,
-        CS_VERDICT_LIST(X)
-#undef X
-    };
-    return texts[verdict];
-}
-
-static void note(struct cs_conform_row *row, const char *format, va_list args) {
-    vsnprintf(row->note, sizeof row->note, format, args);
-}
-
-/* share of the bound that is used up; not a number counts as all of it and more */
-static double used(double figure, double bound) {
-    return !(figure <= bound) ? (figure > bound && bound > 0 ? figure / bound : HUGE_VAL)
-           : bound > 0        ? figure / bound
-                              : 0;
-}
-
-void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
-                  ...) {
-    // the first that fails is the plainest
-    if (row->verdict == CS_VERDICT_FAIL)
-        return;
-    if (!isnan(row->bound) && used(figure, bound) <= used(row->figure, row->bound))
-        return;
-    row->figure = figure;
-    row->bound = bound;
-    row->verdict = figure <= bound ? CS_VERDICT_PASS : CS_VERDICT_FAIL;
-    va_list args;
-    va_start(args, format);
-    note(row, format, args);
-    va_end(args);
-}
-
-void cs_row_skip(struct cs_conform_row *row, const char *reason) {
-    row->verdict = CS_VERDICT_NONE;
-    snprintf(row->note, sizeof row->note, "%s", reason);
-}
-
-void cs_row_fail(struct cs_conform_row *row, const char *format, ...) {
-    if (row->verdict == CS_VERDICT_FAIL)
-        return;
-    row->verdict = CS_VERDICT_FAIL;
-    row->figure = row->bound = (double)NAN;
-    va_list args;
-    va_start(args, format);
-    note(row, format, args);
-    va_end(args);
-}
 
 static bool is_named(const struct cs_integrator *method, const char *check) {
     for (const char *const *name = method->fails; name && *name; name++)

@@ -1,8 +1,8 @@
-/* conform_checks.h - the checks of a card, a group a file, and how one states its result. */
+/* conform_checks.h - the checks of a card, a group a file. */
 #ifndef CS_CONFORM_CHECKS_H
 #define CS_CONFORM_CHECKS_H
 
-#include "study/conform/conform.h"
+#include "study/conform/conform_card.h"
 
 /* Whether a check holds a method against the motion of springs, which one of another model
  * (CS_FIDELITY_OTHER) does not follow. */
@@ -50,15 +50,5 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     void cs_check_##function(const struct cs_conform *card, struct cs_conform_row *row);
 CS_CONFORM_LIST(X)
 #undef X
-
-/* States a figure that must not be above its bound. Where a check states several, the row keeps
- * the first that fails, else the one nearest to its bound. */
-void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
-                  ...) __attribute__((format(printf, 4, 5)));
-/* The check does not apply, and why. */
-void cs_row_skip(struct cs_conform_row *row, const char *reason);
-/* The check failed without a figure. */
-void cs_row_fail(struct cs_conform_row *row, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
 
 #endif

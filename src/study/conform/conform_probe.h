@@ -2,7 +2,7 @@
 #ifndef CS_CONFORM_PROBE_H
 #define CS_CONFORM_PROBE_H
 
-#include "study/conform/conform.h"
+#include "study/conform/conform_card.h"
 #include "study/deviation.h"
 #include "study/perturb.h"
 #include "study/session.h"

@@ -1,0 +1,58 @@
+/* conform_card.h - a card in the making: the method, its rows, and how a check states a result.
+ */
+#ifndef CS_CONFORM_CARD_H
+#define CS_CONFORM_CARD_H
+
+#include "base/status.h"
+#include "base/text.h"
+
+#include <clothsim/integrator.h>
+
+#define CS_VERDICT_LIST(X)                                                                     \
+    X(CS_VERDICT_PASS, "pass")                                                                 \
+    X(CS_VERDICT_FAIL, "FAIL")                                                                 \
+    X(CS_VERDICT_EXPECTED, "expected")                                                         \
+    X(CS_VERDICT_STALE, "STALE")                                                               \
+    X(CS_VERDICT_NONE, "n/a")
+enum cs_verdict {
+#define X(name, text) name,
+    CS_VERDICT_LIST(X)
+#undef X
+        CS_VERDICTS
+};
+const char *cs_verdict_text(enum cs_verdict verdict);
+
+struct cs_conform_row {
+    const char *check, *what; /* its name, and what it shows */
+    enum cs_verdict verdict;
+    double figure, bound; /* passes where figure <= bound; both NAN: nothing was measured */
+    char note[320];       /* what the figure is, or why there is none */
+};
+
+struct cs_conform_cache;
+
+struct cs_conform {
+    const struct cs_integrator *method;
+    const void *options; /* filled, before the checks' own; NULL: the defaults */
+    /* the method that CS_FIDELITY_IMPLICIT_EULER is held against; NULL: there is none */
+    const struct cs_integrator *implicit_euler;
+    const char *only; /* one check by its name; NULL: all */
+    /* references that earlier cards have run, and where this one's go; NULL: none are kept */
+    struct cs_conform_cache *cache;
+    /* called after each check */
+    void (*report)(void *ctx, const struct cs_conform_row *row);
+    void *ctx;
+    uint32_t counts[CS_VERDICTS];
+};
+
+/* States a figure that must not be above its bound. Where a check states several, the row keeps
+ * the first that fails, else the one nearest to its bound. */
+void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
+                  ...) __attribute__((format(printf, 4, 5)));
+/* The check does not apply, and why. */
+void cs_row_skip(struct cs_conform_row *row, const char *reason);
+/* The check failed without a figure. */
+void cs_row_fail(struct cs_conform_row *row, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+#endif
