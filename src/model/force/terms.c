@@ -98,7 +98,7 @@ void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, doub
 }
 
 /* a term's share of the matrix as blocks (6,n) */
-static void add_own(const struct cs_system *system, const struct cs_matrix *matrix,
+static void add_share(const struct cs_system *system, const struct cs_matrix *matrix,
                     const struct cs_term *term, double *blocks) {
     if (term->add_blocks)
         term->add_blocks(system, matrix, 0, system->view.n, blocks);
@@ -116,8 +116,8 @@ void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at,
     for (uint32_t term = 0; term < system->n_terms; term++) {
         if (system->terms[term]->add_diagonal)
             system->terms[term]->add_diagonal(system, at->x, kxx, dvv);
-        add_own(system, &k, system->terms[term], kxx);
-        add_own(system, &d, system->terms[term], dvv);
+        add_share(system, &k, system->terms[term], kxx);
+        add_share(system, &d, system->terms[term], dvv);
     }
 }
 

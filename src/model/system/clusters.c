@@ -164,7 +164,7 @@ struct place {
     uint32_t n_clusters, n_items;
 };
 
-static void put(struct place *at, const struct cs_shape_matching *of, uint32_t first) {
+static void put_clusters(struct place *at, const struct cs_shape_matching *of, uint32_t first) {
     for (uint32_t k = 0; k < of->parts->n; k++) {
         at->alpha[at->n_clusters] = of->alpha;
         at->beta[at->n_clusters] = of->beta;
@@ -190,7 +190,7 @@ enum cs_status cs_clusters_build(struct cs_system *system, struct cs_error *erro
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_shape_matching *of = &cs_scene_bodies(system->scene)[b].shape_matching;
         if (of->present)
-            put(&at, of, system->bodies[b].first);
+            put_clusters(&at, of, system->bodies[b].first);
     }
     system->view.n_clusters = at.n_clusters;
     system->view.cluster_begin = at.begin;
