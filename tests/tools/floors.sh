@@ -1,8 +1,9 @@
 #!/bin/sh
 # Who may include whom: the own folder, and folders on lower floors; modules: include only.
 # A folder of src that is not in the list below is an error, and so is one with more than 25
-# units (a unit: NAME.c, NAME.h or both). The host is known to sim alone, and only a session begins
-# a run.
+# units (a unit: NAME.c, NAME.h or both). Units form no circle either: one that includes another's
+# header, or names what another's .c defines (a header may declare for several), stands above it.
+# The host is known to sim alone, and only a session begins a run.
 cd "$1" || exit 1
 awk '
     BEGIN {
@@ -15,10 +16,17 @@ awk '
         }
     }
     function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
+    function unit_of(path) { sub(/^src\//, "", path); sub(/\.[ch]$/, "", path); return path }
+
+    # --- who may include whom, and how many there are ---
+    FNR == 1 { here = unit_of(FILENAME); in_comment = 0 }
     FNR == 1 && FILENAME ~ /^src/ {
-        from = folder_of(substr(FILENAME, 5)); unit = FILENAME; sub(/\.[ch]$/, "", unit)
+        from = folder_of(substr(FILENAME, 5))
         if (!(from in floor)) wrong(FILENAME ": the floor of src/" from " is not known")
-        if (!(unit in units)) { units[unit]; if (++inside[from] == 26) wrong("src/" from " has more than 25 units") }
+        if (!(here in known)) {
+            known[here]; units[++n_units] = here
+            if (++inside[from] == 26) wrong("src/" from " has more than 25 units")
+        }
     }
     /^#include "/ {
         split($0, quoted, "\"")
@@ -29,6 +37,7 @@ awk '
             if (!(to in floor)) wrong(FILENAME " includes " quoted[2] ": no folder of src")
             else if (from != to && floor[from] <= floor[to])
                 wrong(FILENAME " includes " quoted[2] ": not on a lower floor")
+            connect(here, unit_of(quoted[2]), "includes " quoted[2])
         }
         if (quoted[2] == "sim/host.h" && from != "sim") wrong(FILENAME " includes sim/host.h: see the doors in sim/run.h")
         count++
@@ -39,9 +48,59 @@ awk '
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {
         wrong(FILENAME ": " $0 ": only the standard library and clothsim")
     }
+
+    # --- circles: what each .c of src defines and names, without comments and texts ---
+    FILENAME !~ /^src.*\.c$/ { next }
+    {
+        line = $0
+        gsub(/"([^"\\]|\\.)*"/, "", line); sub(/\/\/.*/, "", line)
+        if (in_comment && !sub(/^.*\*\//, "", line)) next
+        gsub(/\/\*([^*]|\*[^\/])*\*\//, "", line)
+        in_comment = sub(/\/\*.*/, "", line)
+    }
+    line ~ /^[a-z]/ && line !~ /^(static|extern|typedef)/ && match(line, /cs_[a-z0-9_]+(\(|\[| =)/) {
+        name = substr(line, RSTART, RLENGTH); sub(/[^a-z0-9_].*/, "", name)
+        if (index(owners[name] " ", " " here " ") == 0) owners[name] = owners[name] " " here
+    }
+    {
+        while (match(line, /cs_[a-z0-9_]+/)) {
+            name = substr(line, RSTART, RLENGTH); line = substr(line, RSTART + RLENGTH)
+            if (!((here, name) in named)) { named[here, name]; names[here] = names[here] " " name }
+        }
+    }
+    function connect(from, to, why) {
+        if (from == to || (from, to) in reason) return
+        reason[from, to] = why; below[from] = below[from] " " to
+    }
+    function connect_names(unit,    n, list, k, m, homes, i) {
+        n = split(names[unit], list, " ")
+        for (k = 1; k <= n; k++) {
+            if (!(list[k] in owners) || index(owners[list[k]] " ", " " unit " ")) continue
+            m = split(owners[list[k]], homes, " ")
+            for (i = 1; i <= m; i++) connect(unit, homes[i], "names " list[k] " of " homes[i])
+        }
+    }
+    # depth first; way[1..depth]: the units from the first to this one
+    function visit(unit, depth,    n, list, k) {
+        state[unit] = "open"; way[depth] = unit
+        n = split(below[unit], list, " ")
+        for (k = 1; k <= n; k++)
+            if (!(list[k] in state)) visit(list[k], depth + 1)
+            else if (state[list[k]] == "open") tell_circle(list[k], depth)
+        state[unit] = "done"
+    }
+    function tell_circle(first, depth,    message, k) {
+        for (k = depth; way[k] != first; k--) continue
+        for (; k < depth; k++) message = message way[k] " " reason[way[k], way[k + 1]] ", "
+        wrong("circle: " message way[depth] " " reason[way[depth], first])
+    }
+
     function wrong(message) { print message; failures++ }
     END {
         if (count < 100) wrong("only " count + 0 " includes were read")
+        for (k = 1; k <= n_units; k++) connect_names(units[k])
+        for (k = 1; k <= n_units; k++) if (!(units[k] in state)) visit(units[k], 1)
+        count += n_units
         print count - failures " passed, " failures + 0 " failed"
         exit failures > 0
-    }' $(find src -name '*.[ch]') plugins/*.[ch] include/clothsim/*.h
+    }' $(find src -name '*.[ch]' | LC_ALL=C sort) plugins/*.[ch] include/clothsim/*.h
