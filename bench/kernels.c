@@ -92,7 +92,7 @@ static void normals(void *object) {
 /* both have moved what there was to move when they are first called */
 static void contact(void *object) {
     struct bed *bed = object;
-    cs_contact_resolve(&bed->session.system, bed->x, bed->v);
+    cs_contact_resolve(&bed->session.system, 0, bed->x, bed->v);
 }
 
 static void limit(void *object) {

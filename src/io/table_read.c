@@ -187,8 +187,10 @@ enum cs_status cs_table_read(struct cs_reader *reader, const struct cs_json *val
         return read_row(reader, value, shorthand, object);
     if (cs_json_kind_of(value) != CS_JSON_OBJECT)
         return cs_reader_fail_type(reader, value,
-                                   table->shorthand_text ? "an object, a text or a number"
-                                                         : "an object");
+                                   !table->shorthand_text ? "an object"
+                                   : !table->shorthand_number
+                                       ? "an object or a text"
+                                       : "an object, a text or a number");
     for (const struct cs_json *m = cs_json_first(value); m; m = cs_json_next(m))
         if (read_member(reader, m, table, object))
             return reader->error->status;

@@ -28,7 +28,11 @@ static const struct {
     {"light", "it is of the pictures, not of the motion"},
     {"render", "it is of the pictures, not of the motion"},
     {"time", "frames are evenly spaced"},
-    {"colliders", "contact knows no moving obstacles"},
+    {"colliders.colour", "it is of the pictures, not of the motion"},
+    {"colliders.visible", "it is of the pictures, not of the motion"},
+    {"colliders.thickness", "it is part of the obstacle's shape"},
+    {"colliders", "obstacles are moved by an event of their own: move"},
+    {"contact", "a run keeps its law of contact"},
     {"events", "events cannot change events"},
 };
 

@@ -172,6 +172,16 @@ struct cs_collider {
     bool visible;
 };
 
+enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
+/* between particles and all colliders */
+struct cs_contact_keys {
+    int32_t law; /* enum cs_contact_law */
+    /* of the law force: */
+    double stiffness;      /* N/m a particle; NAN: that of the softest body's stretch springs */
+    double damping;        /* s, times the stiffness of the contact: N s/m */
+    double friction_speed; /* m/s, at which friction has 0.7 of its limit */
+};
+
 enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
 struct cs_wind {
     bool present;
@@ -251,7 +261,15 @@ struct cs_hold {
     struct cs_aim aim;
 };
 
-/* exactly one of impact ... release; `at`, or `from` and `to` */
+struct cs_move {
+    bool present;
+    int64_t collider;    /* -1: not given, refused */
+    struct cs_list path; /* struct cs_path_point: shifts from where it was at the beginning */
+    int32_t motion;      /* enum cs_motion */
+    double spin[3];      /* rad/s, about its centre */
+};
+
+/* exactly one of impact ... move; `at`, or `from` and `to` */
 struct cs_event {
     double at, from, to; /* s; NAN: absent */
     struct cs_impact impact;
@@ -260,6 +278,7 @@ struct cs_event {
     struct cs_ramp ramp;
     struct cs_grab grab;
     struct cs_hold pin, release;
+    struct cs_move move;
 };
 
 struct cs_time {
@@ -306,6 +325,7 @@ struct cs_scene {
     char about[CS_TEXT_MAX], source[CS_TEXT_MAX];
     struct cs_list bodies;    /* struct cs_body, at least one */
     struct cs_list colliders; /* struct cs_collider */
+    struct cs_contact_keys contact;
     struct cs_forces forces;
     struct cs_list events; /* struct cs_event */
     struct cs_time time;

@@ -171,14 +171,52 @@ static enum cs_status check_bodies(const struct place *at, struct cs_scene *scen
     return CS_OK;
 }
 
-static enum cs_status check_colliders(const struct place *at, struct cs_scene *scene) {
-    struct cs_collider *colliders = cs_scene_colliders(scene);
+static enum cs_status check_box(const struct place *at, uint32_t c, struct cs_cuboid *box) {
+    const double least = 0.5 * fmin(box->size[0], fmin(box->size[1], box->size[2]));
     char path[64];
-    for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        snprintf(path, sizeof path, "colliders[%u].plane.normal", c);
-        if (colliders[c].plane.present && make_unit(at, path, colliders[c].plane.normal, 3))
+    snprintf(path, sizeof path, "colliders[%u].box.radius", c);
+    if (isnan(box->radius))
+        box->radius = 0.1 * least;
+    if (box->radius > least)
+        return refuse(at, path, "%.9g m is more than half the shortest edge, %.9g m",
+                      box->radius, least);
+    snprintf(path, sizeof path, "colliders[%u].box.rotate", c);
+    return make_unit(at, path, box->rotate, 4);
+}
+
+static enum cs_status check_capsule(const struct place *at, uint32_t c,
+                                    const struct cs_capsule *capsule) {
+    const double axis[3] = {capsule->to[0] - capsule->from[0],
+                            capsule->to[1] - capsule->from[1],
+                            capsule->to[2] - capsule->from[2]};
+    char path[64];
+    snprintf(path, sizeof path, "colliders[%u].capsule", c);
+    return length_of(axis, 3) > 1e-9
+               ? CS_OK
+               : refuse(at, path, "from and to are the same, expected a sphere");
+}
+
+static enum cs_status check_collider(const struct place *at, uint32_t c,
+                                     struct cs_collider *collider) {
+    char path[64];
+    snprintf(path, sizeof path, "colliders[%u].plane.normal", c);
+    if (collider->plane.present)
+        return make_unit(at, path, collider->plane.normal, 3);
+    if (collider->box.present)
+        return check_box(at, c, &collider->box);
+    return collider->capsule.present ? check_capsule(at, c, &collider->capsule) : CS_OK;
+}
+
+static enum cs_status check_colliders(const struct place *at, struct cs_scene *scene) {
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (check_collider(at, c, cs_scene_colliders(scene) + c))
             return at->error->status;
-    }
+    return CS_OK;
+}
+
+static enum cs_status check_contact(const struct place *at, const struct cs_scene *scene) {
+    if (scene->contact.law == CS_CONTACT_FORCE)
+        return refuse(at, "contact.law", "force is not there yet, expected project");
     return CS_OK;
 }
 
@@ -209,7 +247,7 @@ static enum cs_status check_render(const struct place *at, const struct cs_rende
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {
     const struct place at = {path_out, error};
     path_out[0] = 0;
-    if (check_bodies(&at, scene) || check_colliders(&at, scene) ||
+    if (check_bodies(&at, scene) || check_colliders(&at, scene) || check_contact(&at, scene) ||
         (scene->forces.wind.present &&
          make_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||

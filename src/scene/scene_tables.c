@@ -195,11 +195,31 @@ static const struct cs_option floor_rows[] = {
 };
 static const struct cs_table floor_table = {ROWS(floor_rows), .size = sizeof(struct cs_floor),
                                             .optional = true};
+static const struct cs_option cuboid_rows[] = {
+    VECTOR(struct cs_cuboid, centre, 3, "m", NULL, -BIG, BIG, "centre"),
+    VECTOR(struct cs_cuboid, size, 3, "m", NULL, 1e-6, 1e6,
+           "length of its edges along x, y and z, before the rotation"),
+    VECTOR(struct cs_cuboid, rotate, 4, "", no_turn, -BIG, BIG,
+           "rotation about the centre as a quaternion x, y, z, w of any length"),
+    REAL(struct cs_cuboid, radius, "m", ABSENT, 1e-9, BIG,
+         "rounds edges and corners, within size; absent: a twentieth of the shortest edge"),
+};
+static const struct cs_table cuboid_table = {
+    ROWS(cuboid_rows), .size = sizeof(struct cs_cuboid), .optional = true};
+static const struct cs_option capsule_rows[] = {
+    VECTOR(struct cs_capsule, from, 3, "m", NULL, -BIG, BIG, "centre of one round end"),
+    VECTOR(struct cs_capsule, to, 3, "m", NULL, -BIG, BIG, "centre of the other"),
+    REAL(struct cs_capsule, radius, "m", 0.05, 1e-9, BIG, "of the ends and of the rod"),
+};
+static const struct cs_table capsule_table = {
+    ROWS(capsule_rows), .size = sizeof(struct cs_capsule), .optional = true};
 static const double grey[3] = {0.32, 0.36, 0.42};
 static const struct cs_option collider_rows[] = {
     TABLE(struct cs_collider, sphere, sphere_table, "a sphere"),
     TABLE(struct cs_collider, plane, plane_table, "an infinite plane"),
     TABLE(struct cs_collider, floor, floor_table, "an infinite horizontal plane"),
+    TABLE(struct cs_collider, box, cuboid_table, "a box with rounded edges"),
+    TABLE(struct cs_collider, capsule, capsule_table, "a rod with round ends"),
     REAL(struct cs_collider, friction, "", 0, 0, 1000, "Coulomb coefficient"),
     REAL(struct cs_collider, absorption, "", 1, -1, 1,
          "share of the inward normal velocity that is taken away; -e: it is turned round and "
@@ -210,6 +230,22 @@ static const struct cs_option collider_rows[] = {
 };
 static const struct cs_table collider_table = {
     ROWS(collider_rows), .size = sizeof(struct cs_collider), .one_of = true};
+
+static const char *const contact_names[] = {"project", "force", NULL};
+static const struct cs_option contact_rows[] = {
+    CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
+           "project: after each step what is inside a collider is put on its surface; force: "
+           "a force between surfaces that come near, part of the equation of motion"),
+    REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
+         "of force, for each particle; absent: springs.stretch of the softest body that has "
+         "such springs"),
+    REAL(struct cs_contact_keys, damping, "s", 0, 0, BIG,
+         "of force: normal damping over the stiffness of the contact"),
+    REAL(struct cs_contact_keys, friction_speed, "m/s", 1e-3, 1e-9, BIG,
+         "of force: sliding speed at which friction reaches 0.7 of its limit"),
+};
+static const struct cs_table contact_table = {
+    ROWS(contact_rows), .size = sizeof(struct cs_contact_keys), .shorthand_text = "law"};
 
 static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {
@@ -292,6 +328,7 @@ static const struct cs_option scene_rows[] = {
     TEXT(struct cs_scene, source, "where it comes from"),
     LIST(struct cs_scene, bodies, body_table, "what moves; at least one"),
     LIST(struct cs_scene, colliders, collider_table, "what bodies rest on and slide off"),
+    TABLE(struct cs_scene, contact, contact_table, "how bodies meet colliders"),
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
     LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),

@@ -196,9 +196,10 @@ static void limit_strain(struct cs_run_host *host, double dt, double *x, double 
     stage_end(host, CS_STAGE_LIMIT, begin);
 }
 
-static void resolve_contact(struct cs_run_host *host, double *x, double *v, bool *changed) {
+static void resolve_contact(struct cs_run_host *host, double t, double *x, double *v,
+                            bool *changed) {
     const double begin = stage_begin(host);
-    const struct cs_contact_counts counts = cs_contact_resolve(host->run->system, x, v);
+    const struct cs_contact_counts counts = cs_contact_resolve(host->run->system, t, x, v);
     host->run->counts.contact_tests += counts.tests;
     host->run->counts.contacts += counts.pushed;
     *changed |= counts.pushed > 0;
@@ -249,7 +250,7 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
     if (rows[CS_FEATURE_STRAIN_LIMIT].built)
         limit_strain(host, dt, x, v, changed);
     if (rows[CS_FEATURE_CONTACT].built)
-        resolve_contact(host, x, v, changed);
+        resolve_contact(host, t, x, v, changed);
     if (rows[CS_FEATURE_VELOCITY_LOSS].built)
         lose_velocity(host, v, changed);
     if (rows[CS_FEATURE_EVENTS].built)

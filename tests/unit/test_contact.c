@@ -8,7 +8,7 @@
 #define FLOOR(more) "{\"floor\": {\"height\": 0.5}" more "}"
 
 static struct cs_contact_counts resolve(struct sheet *sheet) {
-    return cs_contact_resolve(&sheet->system, sheet->x, sheet->v);
+    return cs_contact_resolve(&sheet->system, 0, sheet->x, sheet->v);
 }
 
 START_TEST(particle_is_put_on_the_floor_with_its_skin) {

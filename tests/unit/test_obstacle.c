@@ -260,6 +260,36 @@ START_TEST(hessian_has_no_jump) {
 }
 END_TEST
 
+/* Lines against the least distance of 4001 points on them: it lies within the spacing times the
+ * slope of the distance, 1, so that both agree unless it is that near to 0. A plane's line is
+ * met as well where its other end is behind. */
+START_TEST(lines_meet_what_their_points_meet) {
+    uint32_t met = 0, missed = 0;
+    for (uint32_t k = 0; k < N_COLLIDERS; k++) {
+        struct cs_obstacle of;
+        uint64_t seed = 13;
+        cs_obstacle_at(&at_rest, k, 0, &of);
+        for (int trial = 0; trial < 200; trial++) {
+            double from[3], to[3], way[3], p[3], n[3], least = HUGE_VAL;
+            draw_point(&seed, &of, from);
+            draw_point(&seed, &of, to);
+            for (int c = 0; c < 3; c++)
+                way[c] = 2 * (to[c] - from[c]);
+            for (int s = 0; s <= 4000; s++) {
+                for (int c = 0; c < 3; c++)
+                    p[c] = from[c] + s / 8000.0 * way[c];
+                least = fmin(least, cs_obstacle_distance(&of, p, n));
+            }
+            const bool meets = cs_obstacle_meets_line(&of, from, way, 0.5);
+            ck_assert(meets ? least < 1e-3 : least > -1e-12);
+            *(meets ? &met : &missed) += 1;
+        }
+    }
+    ck_assert_uint_gt(met, 200);
+    ck_assert_uint_gt(missed, 200);
+}
+END_TEST
+
 /* --- motion --- */
 
 static struct cs_obstacle_motion motions[N_COLLIDERS];
@@ -345,6 +375,7 @@ int main(void) {
                                   faces_are_exact,
                                   smooth_distance_is_near_the_distance,
                                   hessian_has_no_jump,
+                                  lines_meet_what_their_points_meet,
                                   quarter_turn_is_one,
                                   velocity_is_that_of_the_matter,
                                   moved_obstacle_stays_rigid};

@@ -32,7 +32,7 @@ static uint32_t look(struct looker *looker, const struct cs_prod *prod) {
     struct cs_sight sight;
     uint32_t count = 0;
     cs_sight_make(&sight, prod);
-    cs_sight_find(&sight, &looker->sheet.system, looker->sheet.x, prod->body, &looker->work,
+    cs_sight_find(&sight, &looker->sheet.system, 0, looker->sheet.x, prod->body, &looker->work,
                   looker->seen);
     for (size_t i = 0; i < looker->sheet.n; i++)
         count += looker->seen[i];

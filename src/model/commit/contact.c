@@ -1,6 +1,7 @@
 #include "model/commit/contact.h"
 
 #include "base/vector.h"
+#include "model/contact/obstacle.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -25,41 +26,27 @@ static void absorb(const struct cs_collider *collider, const double n[3], double
         v[c] = kept * tangential[c] + (1 - share) * inward * n[c];
 }
 
-/* Distance of p in front of the surface with its skin, and the normal there. A particle in the
- * very centre of a sphere is pushed upwards. */
-static double distance_of(const struct cs_collider *collider, const double p[3], double n[3]) {
-    if (collider->sphere.present) {
-        double squared = 0;
-        for (int c = 0; c < 3; c++) {
-            n[c] = p[c] - collider->sphere.centre[c];
-            squared += n[c] * n[c];
-        }
-        const double length = sqrt(squared);
-        for (int c = 0; c < 3; c++)
-            n[c] = length > 0 ? n[c] / length : c == 1;
-        return length - collider->sphere.radius - collider->thickness;
-    }
-    if (collider->plane.present) {
-        double distance = -collider->thickness;
-        for (int c = 0; c < 3; c++) {
-            n[c] = collider->plane.normal[c];
-            distance += n[c] * (p[c] - collider->plane.point[c]);
-        }
-        return distance;
-    }
-    n[0] = n[2] = 0;
-    n[1] = 1;
-    return p[1] - collider->floor.height - collider->thickness;
+/* the same for the velocity against the obstacle's */
+static void absorb_moving(const struct cs_obstacle *obstacle, const double p[3],
+                          const double n[3], double v[3]) {
+    double of[3];
+    cs_obstacle_velocity(obstacle, p, of);
+    for (int c = 0; c < 3; c++)
+        v[c] -= of[c];
+    absorb(obstacle->collider, n, v);
+    for (int c = 0; c < 3; c++)
+        v[c] += of[c];
 }
 
 struct resolving {
     const struct cs_system *system;
+    double t;
     double *x, *v;
     atomic_ullong tests, pushed; /* whole numbers: their sum has no order */
 };
 
 static struct cs_contact_counts resolve_range(const struct resolving *resolving,
-                                              const struct cs_collider *collider, size_t begin,
+                                              const struct cs_obstacle *obstacle, size_t begin,
                                               size_t end) {
     const size_t n = resolving->system->view.n;
     double *x = resolving->x, *v = resolving->v;
@@ -70,13 +57,16 @@ static struct cs_contact_counts resolve_range(const struct resolving *resolving,
         counts.tests++;
         const double p[3] = {x[i], x[n + i], x[2 * n + i]};
         double normal[3];
-        const double distance = distance_of(collider, p, normal);
+        const double distance = cs_obstacle_gap(obstacle, p, normal);
         /* a particle that is not finite is left for the blow-up test */
         if (!(distance < 0))
             continue;
         counts.pushed++;
         double velocity[3] = {v[i], v[n + i], v[2 * n + i]};
-        absorb(collider, normal, velocity);
+        if (resolving->system->motions)
+            absorb_moving(obstacle, p, normal, velocity);
+        else
+            absorb(obstacle->collider, normal, velocity);
         for (size_t c = 0; c < 3; c++) {
             x[c * n + i] = p[c] - distance * normal[c];
             v[c * n + i] = velocity[c];
@@ -89,16 +79,17 @@ static void resolve_part(void *arg, size_t begin, size_t end) {
     struct resolving *resolving = arg;
     const struct cs_scene *scene = resolving->system->scene;
     for (uint32_t k = 0; k < scene->colliders.n; k++) {
-        const struct cs_contact_counts counts =
-            resolve_range(resolving, cs_scene_colliders(scene) + k, begin, end);
+        struct cs_obstacle obstacle;
+        cs_obstacle_at(resolving->system, k, resolving->t, &obstacle);
+        const struct cs_contact_counts counts = resolve_range(resolving, &obstacle, begin, end);
         resolving->tests += counts.tests;
         resolving->pushed += counts.pushed;
     }
 }
 
-struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x,
+struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double t, double *x,
                                             double *v) {
-    struct resolving resolving = {.system = system, .x = x, .v = v};
+    struct resolving resolving = {.system = system, .t = t, .x = x, .v = v};
     cs_vector_share(system->view.n, resolve_part, &resolving);
     return (struct cs_contact_counts){resolving.tests, resolving.pushed};
 }

@@ -1,4 +1,4 @@
-/* contact.h - projection contact with spheres and planes, after a step. */
+/* contact.h - projection contact with the colliders, after a step. */
 #ifndef CS_CONTACT_H
 #define CS_CONTACT_H
 
@@ -13,8 +13,9 @@ struct cs_contact_counts {
  * away `absorption` of the normal velocity, v -= ka (v.n) n (eq. 5.32 as meant; a negative ka
  * turns the normal velocity round and multiplies it by |ka|); then Coulomb friction: the
  * tangential velocity loses at most `friction` times the normal velocity that was changed.
- * Each particle meets the colliders in the scene's order. Returns what was done. */
-struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double *x,
+ * Velocities are those against the collider as it moves at t. Each particle meets the colliders
+ * in the scene's order. Returns what was done. */
+struct cs_contact_counts cs_contact_resolve(const struct cs_system *system, double t, double *x,
                                             double *v);
 
 #endif

@@ -44,9 +44,10 @@ static double from_point(const double p[3], const double centre[3], double n[3])
     return length;
 }
 
-static double from_plane(const struct cs_obstacle *plane, const double p[3], double n[3]) {
+static double from_plane(const struct cs_obstacle *plane, double skin, const double p[3],
+                         double n[3]) {
     memcpy(n, plane->axes[1], 3 * sizeof *n);
-    double distance = 0;
+    double distance = -skin;
     for (int c = 0; c < 3; c++)
         distance += n[c] * (p[c] - plane->centre[c]);
     return distance;
@@ -81,7 +82,7 @@ double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3
     if (obstacle->kind == CS_OBSTACLE_SPHERE)
         return from_point(p, obstacle->centre, n) - obstacle->radius;
     if (obstacle->kind == CS_OBSTACLE_PLANE)
-        return from_plane(obstacle, p, n);
+        return from_plane(obstacle, 0, p, n);
     static const double middle[3] = {0, 0, 0};
     double x[3], out[3];
     to_own(obstacle, p, x);
@@ -105,12 +106,18 @@ double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3
     return length - obstacle->radius;
 }
 
+double cs_obstacle_gap(const struct cs_obstacle *obstacle, const double p[3], double n[3]) {
+    const double skin = obstacle->collider->thickness;
+    return obstacle->kind == CS_OBSTACLE_PLANE ? from_plane(obstacle, skin, p, n)
+                                               : cs_obstacle_distance(obstacle, p, n) - skin;
+}
+
 /* the plane and the sphere: no features to blend */
 static double smooth_point(const struct cs_obstacle *obstacle, const double p[3], double g[3],
                            double h[6]) {
     memset(h, 0, 6 * sizeof *h);
     if (obstacle->kind == CS_OBSTACLE_PLANE)
-        return from_plane(obstacle, p, g);
+        return from_plane(obstacle, 0, p, g);
     const double length = from_point(p, obstacle->centre, g);
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int e = 0; e < 6 && length > 0; e++)

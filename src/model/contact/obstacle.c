@@ -114,6 +114,13 @@ void cs_obstacle_turn(const struct cs_obstacle_motion *motion, double t, double 
     multiply(by, motion->turn, turn);
 }
 
+void cs_obstacle_shift(const struct cs_obstacle_motion *motion, double t, double shift[3]) {
+    // from whichever end is nearer in time, so that the far end is met exactly
+    for (int c = 0; c < 3; c++)
+        shift[c] = t < motion->until ? motion->from[c] + motion->rate[c] * (t - motion->since)
+                                     : motion->to[c] + motion->rate[c] * (t - motion->until);
+}
+
 static bool is_turned(const double turn[9]) {
     static const double same[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int k = 0; k < 9; k++)
@@ -123,19 +130,16 @@ static bool is_turned(const double turn[9]) {
 }
 
 static void move(struct cs_obstacle *out, const struct cs_obstacle_motion *motion, double t) {
-    double turn[9];
+    double turn[9], shift[3];
     cs_obstacle_turn(motion, t, turn);
+    cs_obstacle_shift(motion, t, shift);
     for (int k = 0; k < 3 && is_turned(turn); k++) {
         const double axis[3] = {out->axes[k][0], out->axes[k][1], out->axes[k][2]};
         for (int c = 0; c < 3; c++)
             out->axes[k][c] = dot(turn + 3 * (size_t)c, axis);
     }
     for (int c = 0; c < 3; c++) {
-        // from whichever end is nearer in time, so that the far end is met exactly
-        const double shift = t < motion->until
-                                 ? motion->from[c] + motion->rate[c] * (t - motion->since)
-                                 : motion->to[c] + motion->rate[c] * (t - motion->until);
-        out->centre[c] += shift;
+        out->centre[c] += shift[c];
         out->velocity[c] = motion->rate[c];
         out->spin[c] = motion->spin[c];
     }

@@ -39,6 +39,7 @@ struct cs_obstacle_motion {
     double from[3], to[3], rate[3]; /* m, m, m/s: the shift at both ends */
     double turn[9];                 /* rows of the rotation reached at `since` */
     double spin[3];                 /* rad/s */
+    uint32_t event;                 /* number of the event that moves it + 1; 0: none */
 };
 
 /* Poses of the system's colliders at t, in the scene's order: out (scene->colliders.n), or only
@@ -47,13 +48,18 @@ void cs_obstacles_at(const struct cs_system *system, double t, struct cs_obstacl
 void cs_obstacle_at(const struct cs_system *system, uint32_t k, double t,
                     struct cs_obstacle *out);
 
-/* The rotation that a motion has reached at t, by rows. */
+/* The shift and the rotation, by rows, that a motion has reached at t. */
+void cs_obstacle_shift(const struct cs_obstacle_motion *motion, double t, double shift[3]);
 void cs_obstacle_turn(const struct cs_obstacle_motion *motion, double t, double turn[9]);
 
 /* Distance in m of p from the surface, without thickness, and the outward unit normal n of the
  * surface point that is nearest. Negative inside, where it is exact too. In the centre of a
  * sphere, or on the axis of a capsule, n points up. Not finite where p is not. */
 double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3], double n[3]);
+
+/* The same from the surface moved out by the collider's thickness, which is where projection
+ * puts a particle. */
+double cs_obstacle_gap(const struct cs_obstacle *obstacle, const double p[3], double n[3]);
 
 /* The distance as the force of contact takes it: never smaller than the distance outside, with
  * three continuous derivatives there. Sphere, plane and the flat faces of a box: exact. At the
@@ -72,6 +78,10 @@ double cs_obstacle_smooth(const struct cs_obstacle *obstacle, const double p[3],
  * 2e z^4 (z^2 - 3z + 5/2) with z = (t + e)/2e; three continuous derivatives. out: value, first
  * and second derivative. e may be 0. */
 void cs_soft_part(double t, double e, double out[3]);
+
+/* true if the line from `from` to from + share way comes into the obstacle. */
+bool cs_obstacle_meets_line(const struct cs_obstacle *obstacle, const double from[3],
+                            const double way[3], double share);
 
 /* v = velocity in m/s of the obstacle's matter at p. */
 void cs_obstacle_velocity(const struct cs_obstacle *obstacle, const double p[3], double v[3]);

@@ -54,11 +54,12 @@ static struct cs_prod_state *state_of(const struct cs_prods *prods, uint32_t eve
 }
 
 /* sees anew; true if others than before */
-static bool look(const struct cs_system *system, struct cs_prod_state *state) {
+static bool look(const struct cs_system *system, struct cs_prod_state *state, double t) {
     const struct cs_prods *prods = system->events->prods;
     const struct cs_prod *prod = prod_of(system->scene, state->event);
     const size_t bytes = system->view.n * sizeof *state->seen;
-    cs_sight_find(&state->sight, system, system->state, prod->body, &prods->work, prods->marks);
+    cs_sight_find(&state->sight, system, t, system->state, prod->body, &prods->work,
+                  prods->marks);
     const bool changed = memcmp(state->seen, prods->marks, bytes) != 0;
     memcpy(state->seen, prods->marks, bytes);
     return changed;
@@ -94,7 +95,7 @@ void cs_prod_start(struct cs_system *system, uint32_t event) {
     const struct cs_event_state *of = events->states + event;
     const struct cs_prod *prod = prod_of(system->scene, event);
     struct cs_prod_state *state = state_of(events->prods, event);
-    look(system, state);
+    look(system, state, of->begin);
     state->active = of->end > of->begin;
     state->looks = 0;
     if (state->active)
@@ -116,7 +117,7 @@ bool cs_prods_look(struct cs_system *system, double t) {
     for (uint32_t k = 0; k < prods->n; k++) {
         if (prods->states[k].next > t + CS_EVENT_SAME)
             continue;
-        changed |= look(system, prods->states + k);
+        changed |= look(system, prods->states + k, t);
         plan_next(system, prods->states + k, t);
     }
     return changed;

@@ -1,6 +1,7 @@
 #include "model/event/sight.h"
 
 #include "base/sine.h"
+#include "model/contact/obstacle.h"
 #include "model/system/faces.h"
 
 #include <math.h>
@@ -99,59 +100,39 @@ static bool is_in_rectangle(const struct cs_sight *sight, const double p[3]) {
            p[1] <= sight->high[1] * p[2];
 }
 
-/* the way from the eye comes nearer to the centre than the radius */
-static bool is_behind_sphere(const struct cs_sphere *sphere, const double eye[3],
-                             const double way[3]) {
-    const double to[3] = {sphere->centre[0] - eye[0], sphere->centre[1] - eye[1],
-                          sphere->centre[2] - eye[2]};
-    const double at = fmin(fmax(dot(to, way) / dot(way, way), 0), REACH);
-    double squared = 0;
-    for (int c = 0; c < 3; c++)
-        squared += (at * way[c] - to[c]) * (at * way[c] - to[c]);
-    return squared < sphere->radius * sphere->radius;
-}
-
-/* one end of the way is behind the plane */
-static bool is_behind_plane(const double point[3], const double normal[3], const double eye[3],
-                            const double way[3]) {
-    double from = 0;
-    for (int c = 0; c < 3; c++)
-        from += normal[c] * (eye[c] - point[c]);
-    return from < 0 || from + REACH * dot(normal, way) < 0;
-}
-
-static bool is_behind_collider(const struct cs_collider *collider, const double eye[3],
-                               const double way[3]) {
-    static const double up[3] = {0, 1, 0};
-    const double middle[3] = {0, collider->floor.height, 0};
-    if (!collider->visible)
-        return false;
-    return collider->sphere.present ? is_behind_sphere(&collider->sphere, eye, way)
-           : collider->plane.present
-               ? is_behind_plane(collider->plane.point, collider->plane.normal, eye, way)
-               : is_behind_plane(middle, up, eye, way);
-}
-
-static bool is_behind_colliders(const struct cs_sight *sight, const struct cs_system *system,
-                                const double *x, size_t i) {
-    const size_t n = system->view.n;
-    const double way[3] = {x[i] - sight->eye[0], x[n + i] - sight->eye[1],
-                           x[2 * n + i] - sight->eye[2]};
-    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
-        if (is_behind_collider(cs_scene_colliders(system->scene) + k, sight->eye, way))
-            return true;
-    return false;
+/* hides the particles of a body that lie in or behind a collider */
+static void hide_behind_collider(const struct cs_sight *sight,
+                                 const struct cs_obstacle *obstacle, const double *x,
+                                 const struct cs_body_range *body, struct grid *grid) {
+    const size_t n = grid->n, end = (size_t)body->first + body->count;
+    for (size_t i = body->first; i < end; i++) {
+        const double way[3] = {x[i] - sight->eye[0], x[n + i] - sight->eye[1],
+                               x[2 * n + i] - sight->eye[2]};
+        grid->seen[i] =
+            grid->seen[i] && !cs_obstacle_meets_line(obstacle, sight->eye, way, REACH);
+    }
 }
 
 /* marks the particles of a body that may be seen as far as colliders go, and widens the bounds
  */
-static uint32_t mark(const struct cs_sight *sight, const struct cs_system *system,
+static uint32_t mark(const struct cs_sight *sight, const struct cs_system *system, double t,
                      const double *x, const struct cs_body_range *body, struct grid *grid) {
+    const struct cs_list *colliders = &system->scene->colliders;
+    const uint32_t end = body->first + body->count;
     uint32_t count = 0;
-    for (uint32_t i = body->first; i < body->first + body->count; i++) {
-        double p[3];
+    double p[3];
+    for (uint32_t i = body->first; i < end; i++) {
         place_of(grid->work, grid->n, i, p);
-        grid->seen[i] = is_in_rectangle(sight, p) && !is_behind_colliders(sight, system, x, i);
+        grid->seen[i] = is_in_rectangle(sight, p);
+    }
+    for (uint32_t k = 0; k < colliders->n; k++) {
+        struct cs_obstacle obstacle;
+        cs_obstacle_at(system, k, t, &obstacle);
+        if (obstacle.collider->visible)
+            hide_behind_collider(sight, &obstacle, x, body, grid);
+    }
+    for (uint32_t i = body->first; i < end; i++) {
+        place_of(grid->work, grid->n, i, p);
         for (int c = 0; c < 2 && grid->seen[i]; c++) {
             grid->low[c] = least(grid->low[c], p[c] / p[2]);
             grid->high[c] = most(grid->high[c], p[c] / p[2]);
@@ -281,7 +262,7 @@ static void hide_behind(struct grid *grid, const struct cs_body_range *body, uin
             hide_cell(grid, &face, row * grid->cells + column);
 }
 
-void cs_sight_find(const struct cs_sight *sight, const struct cs_system *system,
+void cs_sight_find(const struct cs_sight *sight, const struct cs_system *system, double t,
                    const double *x, int64_t body, const struct cs_sight_work *work,
                    bool *seen) {
     struct grid grid = {.work = work,
@@ -294,11 +275,11 @@ void cs_sight_find(const struct cs_sight *sight, const struct cs_system *system,
     turn_places(sight, work, grid.n, x);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
         if (body < 0 || body == b)
-            count += mark(sight, system, x, system->bodies + b, &grid);
+            count += mark(sight, system, t, x, system->bodies + b, &grid);
     if (count == 0)
         return;
     sort(&grid, count);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
-        for (uint32_t t = 0; t < cs_faces_count(system->bodies + b); t++)
-            hide_behind(&grid, system->bodies + b, t);
+        for (uint32_t f = 0; f < cs_faces_count(system->bodies + b); f++)
+            hide_behind(&grid, system->bodies + b, f);
 }

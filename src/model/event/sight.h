@@ -30,12 +30,12 @@ size_t cs_sight_bytes(uint32_t n);
 enum cs_status cs_sight_work_init(struct cs_sight_work *work, uint32_t n,
                                   struct cs_arena *arena, struct cs_error *error);
 
-/* seen (n) = which particles of a body (-1: of all) are seen at places x (3,n). Those exactly
- * on a side of the rectangle are in it. The line ends a billionth of its length before the
- * particle, so that one that touches a surface is not hidden by it. Planes and floors reach to
- * infinity, and what is behind them is solid, as is a sphere. A place that is not finite is not
- * seen. */
-void cs_sight_find(const struct cs_sight *sight, const struct cs_system *system,
+/* seen (n) = which particles of a body (-1: of all) are seen at time t and places x (3,n).
+ * Those exactly on a side of the rectangle are in it. The line ends a billionth of its length
+ * before the particle, so that one that touches a surface is not hidden by it. Planes and
+ * floors reach to infinity, and what is behind them is solid, as are the other colliders. A
+ * place that is not finite is not seen. */
+void cs_sight_find(const struct cs_sight *sight, const struct cs_system *system, double t,
                    const double *x, int64_t body, const struct cs_sight_work *work, bool *seen);
 
 #endif

@@ -1,0 +1,107 @@
+/* meets.c - whether a straight line comes into an obstacle.
+ *
+ * For box and capsule: the squared distance to the core, sum max(|x_i| - c_i, 0)^2, is convex
+ * along a line and quadratic between the points where the line crosses |x_i| = c_i. Its slope
+ * is linear there, so that the least distance is found exactly.
+ */
+#include "model/contact/obstacle.h"
+
+#include <math.h>
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* the line comes nearer to the centre than the radius */
+static bool meets_sphere(const struct cs_obstacle *sphere, const double from[3],
+                         const double way[3], double share) {
+    const double to[3] = {sphere->centre[0] - from[0], sphere->centre[1] - from[1],
+                          sphere->centre[2] - from[2]};
+    const double at = fmin(fmax(dot(to, way) / dot(way, way), 0), share);
+    double squared = 0;
+    for (int c = 0; c < 3; c++)
+        squared += (at * way[c] - to[c]) * (at * way[c] - to[c]);
+    return squared < sphere->radius * sphere->radius;
+}
+
+/* one end is behind the plane */
+static bool meets_plane(const struct cs_obstacle *plane, const double from[3],
+                        const double way[3], double share) {
+    const double *normal = plane->axes[1];
+    double distance = 0;
+    for (int c = 0; c < 3; c++)
+        distance += normal[c] * (from[c] - plane->centre[c]);
+    return distance < 0 || distance + share * dot(normal, way) < 0;
+}
+
+/* a line in the obstacle's own frame */
+struct line {
+    const double *core;
+    double from[3], way[3];
+};
+
+/* squared distance to the core at s, and half its slope */
+static double squared_at(const struct line *line, double s, double *slope) {
+    double squared = 0;
+    *slope = 0;
+    for (int k = 0; k < 3; k++) {
+        const double x = line->from[k] + s * line->way[k];
+        const double out = fmax(fabs(x) - line->core[k], 0);
+        squared += out * out;
+        *slope += copysign(out, x) * line->way[k];
+    }
+    return squared;
+}
+
+/* the ends and the crossings between them, ascending; returns their number */
+static int find_crossings(const struct line *line, double share, double at[8]) {
+    int n = 2;
+    at[0] = 0;
+    at[1] = share;
+    for (int k = 0; k < 6; k++) {
+        const double side = k % 2 ? line->core[k / 2] : -line->core[k / 2];
+        const double s = (side - line->from[k / 2]) / line->way[k / 2];
+        int place = n;
+        if (!(s > 0 && s < share))
+            continue;
+        for (; at[place - 1] > s; place--)
+            at[place] = at[place - 1];
+        at[place] = s;
+        n++;
+    }
+    return n;
+}
+
+static double least_squared(const struct line *line, double share) {
+    double at[8], before, after;
+    const int n = find_crossings(line, share, at);
+    const double first = squared_at(line, 0, &before);
+    if (before >= 0)
+        return first;
+    double least = first;
+    for (int k = 1; k < n; k++) {
+        least = squared_at(line, at[k], &after);
+        if (after >= 0) {
+            const double s = at[k - 1] + (at[k] - at[k - 1]) * (before / (before - after));
+            return fmin(least, squared_at(line, s, &after));
+        }
+        before = after;
+    }
+    return least;
+}
+
+bool cs_obstacle_meets_line(const struct cs_obstacle *obstacle, const double from[3],
+                            const double way[3], double share) {
+    if (obstacle->kind == CS_OBSTACLE_SPHERE)
+        return meets_sphere(obstacle, from, way, share);
+    if (obstacle->kind == CS_OBSTACLE_PLANE)
+        return meets_plane(obstacle, from, way, share);
+    const double shift[3] = {from[0] - obstacle->centre[0], from[1] - obstacle->centre[1],
+                             from[2] - obstacle->centre[2]};
+    struct line line = {.core = obstacle->core};
+    for (int k = 0; k < 3; k++) {
+        line.from[k] = dot(obstacle->axes[k], shift);
+        line.way[k] = dot(obstacle->axes[k], way);
+    }
+    return least_squared(&line, share) < obstacle->radius * obstacle->radius;
+}
