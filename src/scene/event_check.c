@@ -181,15 +181,15 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_event *e
     return CS_OK;
 }
 
-static enum cs_status check_grab(const struct look *at, const struct cs_event *event) {
-    const struct cs_grab *grab = &event->grab;
-    const struct cs_path_point *path = grab->path.items;
+/* key: grab or move */
+static enum cs_status check_path(const struct look *at, const char *key,
+                                 const struct cs_list *list) {
+    const struct cs_event *event = cs_scene_events(at->scene) + at->number;
+    const struct cs_path_point *path = list->items;
     double before = begin_of(event);
-    if (grab->path.n == 0)
-        return refuse(at, ".grab.path", "found no point, expected at least one");
-    for (uint32_t p = 0; p < grab->path.n; p++) {
+    for (uint32_t p = 0; p < list->n; p++) {
         char place[64];
-        snprintf(place, sizeof place, ".grab.path[%u]", p);
+        snprintf(place, sizeof place, ".%s.path[%u]", key, p);
         if (isnan(path[p].at))
             return refuse(at, place, "found no time, expected at");
         if (!(path[p].at >= before + APART))
@@ -199,7 +199,29 @@ static enum cs_status check_grab(const struct look *at, const struct cs_event *e
             return refuse(at, place, "at = %.9g s is after the end, to = %.9g s", before,
                           event->to);
     }
-    return check_aim(at, ".grab", &grab->aim);
+    return CS_OK;
+}
+
+static enum cs_status check_grab(const struct look *at, const struct cs_grab *grab) {
+    if (grab->path.n == 0)
+        return refuse(at, ".grab.path", "found no point, expected at least one");
+    return check_path(at, "grab", &grab->path) ? at->error->status
+                                               : check_aim(at, ".grab", &grab->aim);
+}
+
+static enum cs_status check_move(const struct look *at, const struct cs_move *move) {
+    const uint32_t n = at->scene->colliders.n;
+    const double *spin = move->spin;
+    if (move->collider < 0)
+        return refuse(at, ".move", "found no collider, expected its number");
+    if (n == 0)
+        return refuse(at, ".move.collider", "the scene has no colliders");
+    if (move->collider >= n)
+        return refuse(at, ".move.collider", "collider %lld does not exist (0..%u)",
+                      (long long)move->collider, n - 1);
+    if (move->path.n == 0 && spin[0] == 0 && spin[1] == 0 && spin[2] == 0)
+        return refuse(at, ".move", "found neither path nor spin");
+    return check_path(at, "move", &move->path);
 }
 
 /* the key whose value an event moves, or NULL */
@@ -235,7 +257,9 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
     if (event->ramp.present)
         return check_ramp(at, event);
     if (event->grab.present)
-        return check_grab(at, event);
+        return check_grab(at, &event->grab);
+    if (event->move.present)
+        return check_move(at, &event->move);
     return event->pin.present ? check_aim(at, ".pin", &event->pin.aim)
                               : check_aim(at, ".release", &event->release.aim);
 }

@@ -108,6 +108,27 @@ static const struct cs_option hold_rows[] = {AIM_ROWS(struct cs_hold)};
 static const struct cs_table hold_table = {ROWS(hold_rows), .size = sizeof(struct cs_hold),
                                            .optional = true};
 
+static const double zero3[3] = {0, 0, 0};
+static const struct cs_option shift_rows[] = {
+    REAL(struct cs_path_point, at, "s", ABSENT, 0, BIG,
+         "when the point is reached; must be given"),
+    VECTOR(struct cs_path_point, point, 3, "m", NULL, -BIG, BIG,
+           "how far it is then from where it was when the event began"),
+};
+static const struct cs_table shift_table = {ROWS(shift_rows),
+                                            .size = sizeof(struct cs_path_point)};
+static const struct cs_option move_rows[] = {
+    INT(struct cs_move, collider, "", -1, 0, 4294967295.0,
+        "number of the collider from 0; must be given"),
+    LIST(struct cs_move, path, shift_table,
+         "shifts in the order of their times; at the last it stays"),
+    CHOICE(struct cs_move, motion, motion_names, CS_MOTION_LINEAR, "as in grab"),
+    VECTOR(struct cs_move, spin, 3, "rad/s", zero3, -BIG, BIG,
+           "angular velocity about its centre, a plane's point or a floor's x = z = 0"),
+};
+static const struct cs_table move_table = {ROWS(move_rows), .size = sizeof(struct cs_move),
+                                           .optional = true};
+
 static const struct cs_option event_rows[] = {
     REAL(struct cs_event, at, "s", ABSENT, 0, BIG, "when it happens, at once"),
     REAL(struct cs_event, from, "s", ABSENT, 0, BIG, "when it begins, instead of at"),
@@ -125,6 +146,8 @@ static const struct cs_option event_rows[] = {
           "particles keep their place, until to or a release"),
     TABLE(struct cs_event, release, hold_table,
           "particles are free, with the velocity that they have"),
+    TABLE(struct cs_event, move, move_table,
+          "a collider moves along a path and turns, until to or another move"),
 };
 const struct cs_table cs_event_table = {ROWS(event_rows), .size = sizeof(struct cs_event),
                                         .one_of = true, .uncounted = 3};

@@ -61,7 +61,7 @@ void cs_bound_follow_events(struct cs_bound *bound, struct cs_system *system, do
     cs_events_move_values(system, t);
     bound->start = fmax(bound->start, now.start);
     bound->push = fmax(bound->push, now.push);
-    const double speed = cs_events_speed(system->events);
+    const double speed = cs_events_speed(system);
     for (size_t i = 0; i < system->view.n; i++)
         bound->speed += 2 * system->mass[i] * speed * speed;
 }

@@ -120,8 +120,8 @@ enum cs_status cs_watch_begin(struct cs_watch *watch, const struct cs_run *run,
 /* an event did something since the last look that no bound knows of */
 static bool is_disturbed(const struct cs_watch *watch, const struct cs_run *run) {
     const struct cs_events *events = run->system->events;
-    return events &&
-           (events->begin >= watch->looked || events->ramps || cs_events_speed(events) > 0);
+    return events && (events->begin >= watch->looked || events->ramps ||
+                      cs_events_speed(run->system) > 0);
 }
 
 /* kinetic and elastic energy that there can be */

@@ -1,5 +1,6 @@
 #include "model/event/event_act.h"
 
+#include "model/event/event_move.h"
 #include "model/event/event_times.h"
 #include "model/event/prods.h"
 #include "scene/shape.h"
@@ -94,43 +95,46 @@ static void begin_grab(struct cs_system *system, uint32_t event) {
             if (events->marks[i])
                 events->offsets[c * n + i] = x[i] - state->to[c];
     }
+    cs_event_begin_path(state, events->begin);
+}
+
+/* the point at the end of the chord that the state is in */
+static void chord_point(const struct cs_event_path *path, const struct cs_event_state *state,
+                        double out[3]) {
+    const double *point = path->points[state->leg].point;
+    const double s = (state->chord + 1) / (double)CS_EVENT_CHORDS;
+    const bool whole = state->chord + 1 == path->chords;
+    for (int c = 0; c < 3; c++)
+        out[c] = whole
+                     ? point[c]
+                     : state->corner[c] + (point[c] - state->corner[c]) * (s * s * (3 - 2 * s));
+}
+
+void cs_event_begin_path(struct cs_event_state *state, double t) {
     /* the end of a leg before the first: cs_event_turn goes on from there */
     memcpy(state->corner, state->to, sizeof state->corner);
     state->leg = 0;
     state->chord = UINT32_MAX;
-    state->until = events->begin;
-}
-
-/* the point at the end of the chord that the state is in */
-static void chord_point(const struct cs_grab *grab, const struct cs_event_state *state,
-                        double out[3]) {
-    const struct cs_path_point *path = grab->path.items;
-    const double s = (state->chord + 1) / (double)CS_EVENT_CHORDS;
-    const bool whole = grab->motion == CS_MOTION_LINEAR || state->chord + 1 == CS_EVENT_CHORDS;
-    for (int c = 0; c < 3; c++)
-        out[c] = whole ? path[state->leg].point[c]
-                       : state->corner[c] + (path[state->leg].point[c] - state->corner[c]) *
-                                                (s * s * (3 - 2 * s));
+    state->until = t;
 }
 
 void cs_event_turn(struct cs_events *events, uint32_t event, double t) {
     struct cs_event_state *state = events->states + event;
-    const struct cs_grab *grab = &cs_scene_events(&events->scene)[event].grab;
-    const uint32_t chords = grab->motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1;
+    const struct cs_event_path path = cs_event_path_of(cs_scene_events(&events->scene) + event);
     if (state->begin > t || state->until > t)
         return;
     memcpy(state->from, state->to, sizeof state->from);
     memset(state->rate, 0, sizeof state->rate);
     state->since = t;
     state->until = HUGE_VAL;
-    if (++state->chord == chords) {
+    if (++state->chord == path.chords) {
         memcpy(state->corner, state->to, sizeof state->corner);
         state->chord = 0;
         state->leg++;
     }
-    if (state->leg >= grab->path.n)
+    if (state->leg >= path.n)
         return;
-    chord_point(grab, state, state->to);
+    chord_point(&path, state, state->to);
     state->until = cs_event_chord_end(events, event, state->leg, state->chord);
     for (int c = 0; c < 3; c++)
         state->rate[c] = (state->to[c] - state->from[c]) / (state->until - t);
@@ -202,6 +206,8 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
         cs_prod_start(system, event);
     if (of->grab.present)
         begin_grab(system, event);
+    if (of->move.present)
+        cs_event_begin_move(system, event, events->begin);
     if (of->pin.present) {
         mark(system, &of->pin.aim);
         hold(system, event);
@@ -222,6 +228,8 @@ void cs_event_finish(struct cs_system *system, uint32_t event) {
         end_value(system, event);
     if (of->prod.present)
         cs_prod_finish(system, event);
+    if (of->move.present)
+        cs_event_end_move(system, event, events->begin);
     for (uint32_t i = 0; i < system->view.n; i++)
         if (events->holders[i] == event + 1)
             let_go(system, i);

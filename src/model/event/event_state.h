@@ -10,10 +10,11 @@ struct cs_event_state {
     bool active;                    /* between begin and end */
     double *value, first, last;     /* of a ramp: the number, at begin and at end */
     double winds[2][3];             /* of a gust: vectors at begin and at end */
-    uint32_t leg, chord;            /* of a grab: where it is on its path */
+    uint32_t leg, chord;            /* of a grab or a move: where it is on its path */
     double since, until;            /* s, of that chord */
     double from[3], to[3], rate[3]; /* m, m, m/s: its ends and its velocity */
     double corner[3];               /* m, where the leg began */
+    double origin[3];               /* m, of a move: the shift that its path starts from */
 };
 
 struct cs_prods;

@@ -11,25 +11,31 @@ static double end_of(const struct cs_event *event) {
     return isnan(event->at) ? event->to : event->at;
 }
 
-static uint32_t chords_of(const struct cs_grab *grab) {
-    return grab->motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1;
+struct cs_event_path cs_event_path_of(const struct cs_event *event) {
+    const bool moves = event->move.present;
+    const struct cs_list *list = moves ? &event->move.path : &event->grab.path;
+    const int32_t motion = moves ? event->move.motion : event->grab.motion;
+    return (struct cs_event_path){list->items, list->n,
+                                  motion == CS_MOTION_SMOOTH ? CS_EVENT_CHORDS : 1};
 }
 
 size_t cs_event_times_count(const struct cs_scene *scene) {
     const struct cs_event *events = cs_scene_events(scene);
     size_t n = 0;
-    for (uint32_t e = 0; e < scene->events.n; e++)
-        n += 2 + (events[e].grab.present
-                      ? (size_t)events[e].grab.path.n * chords_of(&events[e].grab)
-                      : 0);
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event_path path = cs_event_path_of(events + e);
+        n += 2 + (size_t)path.n * path.chords;
+    }
     return n;
 }
 
 static double chord_end(const struct cs_event *event, uint32_t leg, uint32_t chord) {
-    const struct cs_path_point *path = event->grab.path.items;
-    const uint32_t chords = chords_of(&event->grab);
-    const double begin = leg ? path[leg - 1].at : begin_of(event), end = path[leg].at;
-    return chord + 1 == chords ? end : begin + (end - begin) * ((chord + 1) / (double)chords);
+    const struct cs_event_path path = cs_event_path_of(event);
+    const double begin = leg ? path.points[leg - 1].at : begin_of(event);
+    const double end = path.points[leg].at;
+    return chord + 1 == path.chords
+               ? end
+               : begin + (end - begin) * ((chord + 1) / (double)path.chords);
 }
 
 double cs_event_time_snap(const struct cs_scene *scene, double t) {
@@ -61,8 +67,9 @@ static uint32_t collect(const struct cs_scene *scene, double *times) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
         times[n++] = cs_event_time_snap(scene, begin_of(list + e));
         times[n++] = cs_event_time_snap(scene, end_of(list + e));
-        for (uint32_t leg = 0; list[e].grab.present && leg < list[e].grab.path.n; leg++)
-            for (uint32_t c = 0; c < chords_of(&list[e].grab); c++)
+        const struct cs_event_path path = cs_event_path_of(list + e);
+        for (uint32_t leg = 0; leg < path.n; leg++)
+            for (uint32_t c = 0; c < path.chords; c++)
                 times[n++] = cs_event_time_snap(scene, chord_end(list + e, leg, c));
     }
     return n;

@@ -12,6 +12,13 @@ enum { CS_EVENT_CHORDS = 16 }; /* in which a smooth path is followed from point 
 /* t, or the time of a frame that is so near to it. */
 double cs_event_time_snap(const struct cs_scene *scene, double t);
 
+/* The path of a grab or a move: from point to point in a number of chords. n 0: none. */
+struct cs_event_path {
+    const struct cs_path_point *points;
+    uint32_t n, chords;
+};
+struct cs_event_path cs_event_path_of(const struct cs_event *event);
+
 /* An upper bound of the number of times. */
 size_t cs_event_times_count(const struct cs_scene *scene);
 
@@ -19,7 +26,7 @@ size_t cs_event_times_count(const struct cs_scene *scene);
  * a nanosecond of a frame is that frame's, and times so near to each other are one. */
 void cs_event_times_fill(struct cs_events *events);
 
-/* When a grab is at the end of a chord of a leg, as it stands in events->times. */
+/* When a grab or a move is at the end of a chord of a leg, as it stands in events->times. */
 double cs_event_chord_end(const struct cs_events *events, uint32_t event, uint32_t leg,
                           uint32_t chord);
 

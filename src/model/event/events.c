@@ -1,6 +1,8 @@
 #include "model/event/events.h"
 
+#include "model/contact/obstacle.h"
 #include "model/event/event_act.h"
+#include "model/event/event_move.h"
 #include "model/event/event_times.h"
 #include "model/event/prods.h"
 #include "model/force/bounds.h"
@@ -33,6 +35,8 @@ size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n) {
            scene->events.n * sizeof(struct cs_event_state) +
            scene->bodies.n * sizeof(struct cs_body) +
            scene->colliders.n * sizeof(struct cs_collider) +
+           (cs_event_moves_any(scene) ? scene->colliders.n : 0) *
+               sizeof(struct cs_obstacle_motion) +
            n * (2 * sizeof(uint32_t) + sizeof(bool) + vectors * sizeof(double));
 }
 
@@ -62,6 +66,8 @@ static void take_arrays(struct cs_system *system, struct cs_events *events,
         system->push = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
     if (any(scene, grabs))
         events->offsets = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+    if (cs_event_moves_any(scene))
+        cs_event_moves_build(system, error);
 }
 
 /* any particle may become a pinned one */
@@ -166,8 +172,10 @@ static void turn(struct cs_system *system, double t) {
         const struct cs_event *event = cs_scene_events(&events->scene) + e;
         events->ramps |=
             events->states[e].active && (event->ramp.present || event->wind.present);
-        if (event->grab.present)
+        if (event->grab.present || (event->move.present && system->motions))
             cs_event_turn(events, e, t);
+        if (event->move.present)
+            cs_event_follow_move(system, e, t);
     }
     for (uint32_t i = 0; i < system->view.n; i++) {
         const uint32_t holder = events->holders[i];
@@ -223,11 +231,12 @@ void cs_events_place(const struct cs_system *system, double t, double *x, double
     }
 }
 
-double cs_events_speed(const struct cs_events *events) {
+double cs_events_speed(const struct cs_system *system) {
+    const struct cs_events *events = system->events;
     double squared = 0;
     for (uint32_t e = 0; e < events->scene.events.n; e++) {
         const double *rate = events->states[e].rate;
         squared = fmax(squared, rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
     }
-    return sqrt(squared);
+    return sqrt(squared) + cs_event_turn_speed(system);
 }

@@ -38,8 +38,8 @@ uint32_t cs_events_cuts(const struct cs_events *events, double t);
  * step would cost the method its order. */
 void cs_events_move_values(struct cs_system *system, double t);
 
-/* Largest velocity in m/s of a path in the segment. */
-double cs_events_speed(const struct cs_events *events);
+/* Largest velocity in m/s of a path in the segment, and of what a collider turns. */
+double cs_events_speed(const struct cs_system *system);
 
 /* Puts the grabbed particles where they are at t, with the velocity of their path. */
 void cs_events_place(const struct cs_system *system, double t, double *x, double *v);

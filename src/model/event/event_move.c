@@ -1,0 +1,119 @@
+/* event_move.c - colliders on paths: an event's chords made into the motion of its obstacle. */
+#include "model/event/event_move.h"
+
+#include "model/contact/obstacle.h"
+#include "model/event/event_act.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct cs_obstacle_motion at_rest = {.until = HUGE_VAL,
+                                                  .turn = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+
+bool cs_event_moves_any(const struct cs_scene *scene) {
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        if (cs_scene_events(scene)[e].move.present && scene->colliders.n > 0)
+            return true;
+    return false;
+}
+
+enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *error) {
+    const uint32_t n = system->scene->colliders.n;
+    system->motions = cs_arena_take_n(&system->arena, n, sizeof *system->motions, error);
+    for (uint32_t k = 0; system->motions && k < n; k++)
+        system->motions[k] = at_rest;
+    return error->status;
+}
+
+static const struct cs_move *move_of(const struct cs_system *system, uint32_t event) {
+    return &cs_scene_events(system->scene)[event].move;
+}
+
+/* NULL where the collider was taken out of the scene, as compare does */
+static struct cs_obstacle_motion *motion_of(const struct cs_system *system, uint32_t event) {
+    return system->motions ? system->motions + move_of(system, event)->collider : NULL;
+}
+
+/* stands still from t on, as it is then */
+static void stop(struct cs_obstacle_motion *motion, double t) {
+    struct cs_obstacle_motion stopped = at_rest;
+    stopped.since = t;
+    cs_obstacle_shift(motion, t, stopped.from);
+    memcpy(stopped.to, stopped.from, sizeof stopped.to);
+    cs_obstacle_turn(motion, t, stopped.turn);
+    *motion = stopped;
+}
+
+void cs_event_begin_move(struct cs_system *system, uint32_t event, double t) {
+    struct cs_event_state *state = system->events->states + event;
+    struct cs_obstacle_motion *motion = motion_of(system, event);
+    if (!motion)
+        return;
+    stop(motion, t);
+    motion->event = event + 1;
+    memcpy(motion->spin, move_of(system, event)->spin, sizeof motion->spin);
+    memcpy(state->origin, motion->from, sizeof state->origin);
+    memset(state->to, 0, sizeof state->to);
+    cs_event_begin_path(state, t);
+}
+
+void cs_event_end_move(struct cs_system *system, uint32_t event, double t) {
+    struct cs_obstacle_motion *motion = motion_of(system, event);
+    if (!motion)
+        return;
+    memset(system->events->states[event].rate, 0, sizeof system->events->states[event].rate);
+    system->events->states[event].until = HUGE_VAL;
+    if (motion->event == event + 1)
+        stop(motion, t);
+}
+
+void cs_event_follow_move(struct cs_system *system, uint32_t event, double t) {
+    const struct cs_event_state *state = system->events->states + event;
+    struct cs_obstacle_motion *motion = motion_of(system, event);
+    if (!motion || motion->event != event + 1 || state->since != t)
+        return;
+    double turn[9];
+    cs_obstacle_turn(motion, t, turn);
+    memcpy(motion->turn, turn, sizeof turn);
+    motion->since = t;
+    motion->until = state->until;
+    for (int c = 0; c < 3; c++) {
+        motion->from[c] = state->origin[c] + state->from[c];
+        motion->to[c] = state->origin[c] + state->to[c];
+        motion->rate[c] = state->rate[c];
+    }
+}
+
+/* m, from the centre to the farthest matter; of a plane: to the farthest particle */
+static double reach_of(const struct cs_system *system, const struct cs_obstacle *obstacle) {
+    const double *core = obstacle->core, *x = system->state;
+    const size_t n = system->view.n;
+    if (obstacle->kind != CS_OBSTACLE_PLANE)
+        return sqrt(core[0] * core[0] + core[1] * core[1] + core[2] * core[2]) +
+               obstacle->radius;
+    double squared = 0;
+    for (size_t i = 0; i < n; i++) {
+        double sum = 0;
+        for (size_t c = 0; c < 3; c++) {
+            const double d = x[c * n + i] - obstacle->centre[c];
+            sum += d * d;
+        }
+        squared = fmax(squared, sum);
+    }
+    return sqrt(squared);
+}
+
+double cs_event_turn_speed(const struct cs_system *system) {
+    double speed = 0;
+    for (uint32_t k = 0; system->motions && k < system->scene->colliders.n; k++) {
+        const struct cs_obstacle_motion *motion = system->motions + k;
+        const double *w = motion->spin;
+        const double rate = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        struct cs_obstacle obstacle;
+        if (rate == 0)
+            continue;
+        cs_obstacle_at(system, k, motion->since, &obstacle);
+        speed = fmax(speed, rate * reach_of(system, &obstacle));
+    }
+    return speed;
+}
