@@ -4,14 +4,26 @@
 #include "draw/mesh.h"
 #include "mesh/trimesh.h"
 
-static void grow(double low[3], double high[3], const double place[3], double reach) {
+static void grow(double low[3], double high[3], const double place[3]) {
     for (int i = 0; i < 3; i++) {
-        low[i] = fmin(low[i], place[i] - reach);
-        high[i] = fmax(high[i], place[i] + reach);
+        low[i] = fmin(low[i], place[i]);
+        high[i] = fmax(high[i], place[i]);
     }
 }
 
-struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x) {
+/* all that a sphere, a box or a capsule may reach */
+static void grow_by(double low[3], double high[3], const struct cs_obstacle *obstacle) {
+    for (int i = 0; i < 3; i++) {
+        double reach = obstacle->radius;
+        for (int k = 0; k < 3; k++)
+            reach += fabs(obstacle->axes[k][i]) * obstacle->core[k];
+        low[i] = fmin(low[i], obstacle->centre[i] - reach);
+        high[i] = fmax(high[i], obstacle->centre[i] + reach);
+    }
+}
+
+struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
+                               const struct cs_obstacle *obstacles) {
     const struct cs_scene *scene = system->scene;
     double low[3], high[3], diagonal[3], place[3];
     struct cs_ball ball = {{0}, 0};
@@ -19,12 +31,11 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x) 
     memcpy(high, low, sizeof high);
     for (uint32_t i = 0; i < system->view.n; i++) {
         cs_mesh_place(system->view.n, x, i, place);
-        grow(low, high, place, 0);
+        grow(low, high, place);
     }
     for (uint32_t i = 0; i < scene->colliders.n; i++) {
-        const struct cs_collider *collider = cs_scene_colliders(scene) + i;
-        if (collider->visible && collider->sphere.present)
-            grow(low, high, collider->sphere.centre, collider->sphere.radius);
+        if (obstacles[i].collider->visible && obstacles[i].kind != CS_OBSTACLE_PLANE)
+            grow_by(low, high, obstacles + i);
     }
     for (int i = 0; i < 3; i++)
         ball.centre[i] = (low[i] + high[i]) / 2;

@@ -3,10 +3,13 @@
 #define CS_DRAW_EXTENT_H
 
 #include "draw/view.h"
+#include "model/contact/obstacle.h"
 #include "model/system/system.h"
 
-/* A ball around the particles at x (3,n) and the visible spheres. */
-struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x);
+/* A ball around the particles at x (3,n) and the visible spheres, boxes and capsules, which are
+ * at obstacles (scene->colliders.n). */
+struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
+                               const struct cs_obstacle *obstacles);
 
 /* The largest distance of neighbours in the bodies at rest, in m; 0 for lone particles. */
 double cs_extent_cell(const struct cs_system *system);

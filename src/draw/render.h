@@ -11,6 +11,7 @@
 
 #include "base/image.h"
 #include "base/status.h"
+#include "model/contact/obstacle.h"
 #include "model/system/system.h"
 
 #include <stdbool.h>
@@ -22,8 +23,10 @@ struct cs_canvas_settings {
     const struct cs_system *system; /* borrowed while the canvas lives */
     const struct cs_image
         *textures; /* (scene->bodies.n), width 0: none; needed by create only */
-    bool fast;     /* do not pin the CPU capabilities: 1.4 times faster, pixels depend on the
-                      machine */
+    const struct cs_obstacle
+        *obstacles; /* (scene->colliders.n), at the start; needed by create only */
+    bool fast;      /* do not pin the CPU capabilities: 1.4 times faster, pixels depend on the
+                       machine */
 };
 
 /* What one picture shows beside the scene itself. */
@@ -33,11 +36,12 @@ struct cs_frame {
     const double
         *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */
     double range[2]; /* values at the ends of the colours; lowest first */
-    const double *goals;    /* (3,n) m, of look goals; else NULL */
-    const double *inv_mass; /* (n) in 1/kg; 0: held, which some looks mark */
+    const double *goals;                 /* (3,n) m, of look goals; else NULL */
+    const double *inv_mass;              /* (n) in 1/kg; 0: held, which some looks mark */
+    const struct cs_obstacle *obstacles; /* (scene->colliders.n) where they are at t */
 };
 
-#define CS_RENDERER_ABI 2u
+#define CS_RENDERER_ABI 3u
 struct cs_renderer {
     unsigned abi;
     const char *name; /* "osmesa" or "egl" */

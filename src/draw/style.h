@@ -3,6 +3,7 @@
 #define CS_DRAW_STYLE_H
 
 #include "draw/mesh.h"
+#include "model/contact/obstacle.h"
 #include "scene/scene.h"
 
 enum cs_surface_mode {
@@ -29,12 +30,9 @@ bool cs_look_has_values(int32_t look);
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look);
 
-/* The style of a collider under cloth as coarse as `cell` (m): spheres are placed and sunk. */
-void cs_style_solid(struct cs_surface_style *style, const struct cs_collider *collider,
+/* The style of a collider under cloth as coarse as `cell` (m): spheres are placed, and what is
+ * curved is sunk. */
+void cs_style_solid(struct cs_surface_style *style, const struct cs_obstacle *obstacle,
                     double cell);
-
-/* The two triangles of a visible plane or floor; false for anything else. */
-bool cs_solid_square(const struct cs_collider *collider, double cell,
-                     struct cs_vertex corners[6]);
 
 #endif

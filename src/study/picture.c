@@ -45,6 +45,7 @@ static enum cs_status take_arrays(struct cs_picture *picture, struct cs_error *e
     const bool coloured = cs_picture_is_coloured(picture->scene);
     const bool drawn_to = picture->scene->render.look == CS_LOOK_GOALS;
     picture->x = calloc(n, 3 * sizeof(double));
+    picture->obstacles = calloc(picture->scene->colliders.n + 1, sizeof *picture->obstacles);
     picture->inv_mass = calloc(n, sizeof(double));
     if (coloured) {
         picture->scalar = calloc(n, sizeof(double));
@@ -52,8 +53,8 @@ static enum cs_status take_arrays(struct cs_picture *picture, struct cs_error *e
     }
     if (drawn_to)
         picture->goals = calloc(n, 3 * sizeof(double));
-    if (!picture->x || !picture->inv_mass || (drawn_to && !picture->goals) ||
-        (coloured && (!picture->scalar || !picture->work)))
+    if (!picture->x || !picture->inv_mass || !picture->obstacles ||
+        (drawn_to && !picture->goals) || (coloured && (!picture->scalar || !picture->work)))
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pictures of %zu particles",
                        n);
     return CS_OK;
@@ -69,8 +70,12 @@ static void free_textures(struct cs_picture *picture) {
 /* done by the hand, as all that touches the canvas */
 static void make_canvas(void *object) {
     struct cs_picture *picture = object;
-    const struct cs_canvas_settings settings = {picture->scene, picture->system,
-                                                picture->textures, picture->fast};
+    const struct cs_canvas_settings settings = {.scene = picture->scene,
+                                                .system = picture->system,
+                                                .textures = picture->textures,
+                                                .obstacles = picture->obstacles,
+                                                .fast = picture->fast};
+    cs_obstacles_at(picture->system, 0, picture->obstacles);
     picture->renderer->create(&settings, &picture->canvas, &picture->error);
 }
 
@@ -114,7 +119,8 @@ static void paint(void *object) {
                                    .scalar = picture->scalar,
                                    .range = {picture->range[0], picture->range[1]},
                                    .inv_mass = picture->inv_mass,
-                                   .goals = picture->goals};
+                                   .goals = picture->goals,
+                                   .obstacles = picture->obstacles};
     picture->renderer->paint(picture->canvas, &frame, picture->image, &picture->error);
     picture->seconds += cs_clock_wall() - start;
 }
@@ -125,6 +131,7 @@ void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
     const double start = cs_clock_wall();
     memcpy(picture->x, run->x, 3 * n * sizeof *picture->x);
     memcpy(picture->inv_mass, picture->system->inv_mass, n * sizeof *picture->inv_mass);
+    cs_obstacles_at(picture->system, run->t, picture->obstacles);
     if (picture->scalar)
         measure(picture, run);
     if (picture->goals)
@@ -160,5 +167,6 @@ void cs_picture_close(struct cs_picture *picture) {
     free(picture->scalar);
     free(picture->work);
     free(picture->goals);
+    free(picture->obstacles);
     *picture = (struct cs_picture){0};
 }

@@ -20,9 +20,10 @@ struct cs_picture {
     double *x, *inv_mass;      /* (3,n), (n), owned: the run as it was at begin */
     double *scalar, *work;     /* (n), (3,n), owned; NULL unless the look colours by a value */
     double *goals;             /* (3,n), owned; NULL unless the look shows them */
-    double t;                  /* s, of the picture begun last */
-    double range[2];           /* of its colours */
-    double seconds;            /* spent in drawing, until the picture ended last */
+    struct cs_obstacle *obstacles; /* (scene->colliders.n), owned: as they were at begin */
+    double t;                      /* s, of the picture begun last */
+    double range[2];               /* of its colours */
+    double seconds;                /* spent in drawing, until the picture ended last */
     bool fast;
     struct cs_hand *hand;   /* owned: has the canvas; NULL: the caller has it */
     struct cs_image *image; /* borrowed, of the picture under way */

@@ -33,7 +33,7 @@ struct cs_canvas {
     struct cs_backdrop backdrop;
     struct cs_surface_program program;
     struct cs_shadow shadow;
-    struct cs_obstacles obstacles;
+    struct cs_gl_colliders colliders;
     struct cs_cloth_picture *cloths; /* (scene->bodies.n) */
     struct cs_gl_lines lines;
     struct cs_overlay overlay;
@@ -82,14 +82,16 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
              (const char *)gl.GetString(GL_RENDERER), (const char *)gl.GetString(GL_VERSION),
              caps);
 
-    const struct cs_ball extent = cs_extent_solid(canvas->system, canvas->system->view.start);
+    const struct cs_ball extent =
+        cs_extent_solid(canvas->system, canvas->system->view.start, settings->obstacles);
     cs_view_init(&canvas->view, canvas->scene, &extent);
     if (cs_target_init(&canvas->target, (int)render->size[0], (int)render->size[1],
                        (int)render->samples, &canvas->arena, error) != CS_OK ||
         cs_backdrop_init(&canvas->backdrop, canvas->scene, &extent, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
         cs_shadow_init(&canvas->shadow, error) != CS_OK ||
-        cs_obstacles_init(&canvas->obstacles, canvas->system, &canvas->arena, error) != CS_OK ||
+        cs_gl_colliders_init(&canvas->colliders, canvas->system, settings->obstacles,
+                             &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
         cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
         cs_overlay_init(&canvas->overlay, canvas->system, canvas->view.pixels_per_m,
@@ -122,14 +124,14 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
     return error->status;
 }
 
-static void draw_shadow(struct cs_canvas *canvas, const double *x) {
-    const struct cs_ball solid = cs_extent_solid(canvas->system, x);
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame) {
+    const struct cs_ball solid = cs_extent_solid(canvas->system, frame->x, frame->obstacles);
     const bool has_shadow = cs_shadow_aim(&solid, &canvas->view.block);
     cs_view_upload(&canvas->view);
     if (!has_shadow)
         return;
     cs_shadow_begin(&canvas->shadow);
-    cs_obstacles_draw_shadow(&canvas->obstacles, canvas->shadow.model);
+    cs_gl_colliders_draw_shadow(&canvas->colliders, canvas->shadow.model);
     gl.Uniform4f(canvas->shadow.model, 0, 0, 0, 1);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++)
         cs_surface_draw(&canvas->cloths[b].surface);
@@ -139,7 +141,7 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_shadow_bind(&canvas->shadow);
     cs_target_begin(&canvas->target);
     cs_backdrop_draw_sky(&canvas->backdrop);
-    cs_obstacles_draw(&canvas->obstacles, &canvas->program);
+    cs_gl_colliders_draw(&canvas->colliders, &canvas->program);
     if (canvas->scene->render.ground)
         cs_backdrop_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
@@ -161,7 +163,8 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
                        frame->range);
         cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
     }
-    draw_shadow(canvas, frame->x);
+    cs_gl_colliders_move(&canvas->colliders, frame->obstacles);
+    draw_shadow(canvas, frame);
     draw_scene(canvas, frame);
     cs_target_read(&canvas->target, image);
     return cs_gl_check("drawing a frame", error);

@@ -1,69 +1,105 @@
+/* collider.c - spheres as one ball, placed; the other colliders as surfaces of their own. */
 #include "draw/gl/collider.h"
 
 #include "draw/ball.h"
 #include "draw/extent.h"
 #include "draw/gl/gl.h"
+#include "draw/solid.h"
 
-static void init_squares(struct cs_obstacles *obstacles) {
-    for (uint32_t i = 0; i < obstacles->scene->colliders.n; i++) {
-        struct cs_vertex corners[6];
-        if (!cs_solid_square(cs_scene_colliders(obstacles->scene) + i, obstacles->cell,
-                             corners))
-            continue;
-        cs_surface_init(obstacles->squares + i, NULL, 0);
-        cs_surface_upload(obstacles->squares + i, corners, 6);
-    }
+#include <string.h>
+
+static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
+    const uint32_t n = cs_solid_count(colliders->obstacles + i);
+    if (n == 0)
+        return;
+    cs_solid_fill(colliders->obstacles + i, colliders->cell, colliders->vertices);
+    cs_surface_upload(colliders->surfaces + i, colliders->vertices, n);
 }
 
-enum cs_status cs_obstacles_init(struct cs_obstacles *obstacles, const struct cs_system *system,
-                                 struct cs_arena *arena, struct cs_error *error) {
+static enum cs_status take(struct cs_gl_colliders *colliders, struct cs_arena *arena,
+                           struct cs_error *error) {
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < colliders->n; i++) {
+        const uint32_t count = cs_solid_count(colliders->obstacles + i);
+        most = count > most ? count : most;
+    }
+    colliders->surfaces =
+        cs_arena_take_n(arena, colliders->n, sizeof *colliders->surfaces, error);
+    colliders->vertices = cs_arena_take_n(arena, most, sizeof *colliders->vertices, error);
+    return error->status;
+}
+
+enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
+                                    const struct cs_system *system,
+                                    const struct cs_obstacle *obstacles, struct cs_arena *arena,
+                                    struct cs_error *error) {
     struct cs_vertex *vertices;
     uint32_t n;
-    obstacles->scene = system->scene;
-    obstacles->cell = cs_extent_cell(system);
-    obstacles->squares =
-        cs_arena_take_n(arena, system->scene->colliders.n, sizeof *obstacles->squares, error);
-    if (!obstacles->squares || cs_ball_make(&vertices, &n, arena, error) != CS_OK)
+    colliders->n = system->scene->colliders.n;
+    colliders->cell = cs_extent_cell(system);
+    colliders->obstacles =
+        cs_arena_take_n(arena, colliders->n, sizeof *colliders->obstacles, error);
+    if (!colliders->obstacles)
         return error->status;
-    cs_surface_init(&obstacles->ball, NULL, 0);
-    cs_surface_upload(&obstacles->ball, vertices, n);
-    init_squares(obstacles);
+    if (colliders->n > 0)
+        memcpy(colliders->obstacles, obstacles, colliders->n * sizeof *obstacles);
+    if (cs_ball_make(&vertices, &n, arena, error) || take(colliders, arena, error))
+        return error->status;
+    cs_surface_init(&colliders->ball, NULL, 0);
+    cs_surface_upload(&colliders->ball, vertices, n);
+    for (uint32_t i = 0; i < colliders->n; i++)
+        if (cs_solid_count(colliders->obstacles + i) > 0) {
+            cs_surface_init(colliders->surfaces + i, NULL, 0);
+            upload(colliders, i);
+        }
     return CS_OK;
 }
 
-static bool shows_sphere(const struct cs_collider *collider) {
-    return collider->visible && collider->sphere.present;
+void cs_gl_colliders_move(struct cs_gl_colliders *colliders,
+                          const struct cs_obstacle *obstacles) {
+    for (uint32_t i = 0; i < colliders->n; i++) {
+        struct cs_obstacle *now = colliders->obstacles + i;
+        const bool moved = memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
+                           memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
+        *now = obstacles[i];
+        if (moved)
+            upload(colliders, i);
+    }
 }
 
-void cs_obstacles_draw(const struct cs_obstacles *obstacles,
-                       const struct cs_surface_program *program) {
+void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
+                          const struct cs_surface_program *program) {
     // squares first, because they may be blended
     for (int pass = 0; pass < 2; pass++)
-        for (uint32_t i = 0; i < obstacles->scene->colliders.n; i++) {
-            const struct cs_collider *collider = cs_scene_colliders(obstacles->scene) + i;
+        for (uint32_t i = 0; i < colliders->n; i++) {
+            const struct cs_obstacle *obstacle = colliders->obstacles + i;
+            const bool square = obstacle->kind == CS_OBSTACLE_PLANE;
             struct cs_surface_style style;
-            if (!collider->visible || (pass == 1) != collider->sphere.present)
+            if (!obstacle->collider->visible || square != (pass == 0))
                 continue;
-            cs_style_solid(&style, collider, obstacles->cell);
+            cs_style_solid(&style, obstacle, colliders->cell);
             cs_surface_program_use(program, &style);
-            if (pass == 1) {
-                cs_surface_draw(&obstacles->ball);
-                continue;
-            }
-            gl.Enable(GL_BLEND);
-            cs_surface_draw(obstacles->squares + i);
+            if (square)
+                gl.Enable(GL_BLEND);
+            cs_surface_draw(obstacle->kind == CS_OBSTACLE_SPHERE ? &colliders->ball
+                                                                 : colliders->surfaces + i);
             gl.Disable(GL_BLEND);
         }
 }
 
-void cs_obstacles_draw_shadow(const struct cs_obstacles *obstacles, int model) {
-    for (uint32_t i = 0; i < obstacles->scene->colliders.n; i++) {
-        const struct cs_collider *collider = cs_scene_colliders(obstacles->scene) + i;
-        const double *centre = collider->sphere.centre;
-        if (!shows_sphere(collider))
+void cs_gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders, int model) {
+    for (uint32_t i = 0; i < colliders->n; i++) {
+        const struct cs_obstacle *obstacle = colliders->obstacles + i;
+        const double *centre = obstacle->centre;
+        if (!obstacle->collider->visible || obstacle->kind == CS_OBSTACLE_PLANE)
             continue;
-        gl.Uniform4f(model, (float)centre[0], (float)centre[1], (float)centre[2],
-                     (float)collider->sphere.radius);
-        cs_surface_draw(&obstacles->ball);
+        if (obstacle->kind == CS_OBSTACLE_SPHERE) {
+            gl.Uniform4f(model, (float)centre[0], (float)centre[1], (float)centre[2],
+                         (float)obstacle->radius);
+            cs_surface_draw(&colliders->ball);
+        } else {
+            gl.Uniform4f(model, 0, 0, 0, 1);
+            cs_surface_draw(colliders->surfaces + i);
+        }
     }
 }

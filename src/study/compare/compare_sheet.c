@@ -90,18 +90,21 @@ static void cut_margins(struct cs_image *image) {
 }
 
 static enum cs_status paint(struct cs_course *course, const struct cs_frame *frame,
-                            enum cs_gl gl, const char *path, struct cs_error *error) {
+                            const struct cs_obstacle *obstacles, enum cs_gl gl,
+                            const char *path, struct cs_error *error) {
     struct cs_scene *scene = &course->session.scene;
     const struct cs_renderer *renderer = NULL;
     struct cs_canvas *canvas = NULL;
     struct cs_image image = {DRAWN_WIDTH, TILE_HEIGHT, malloc(3 * DRAWN_WIDTH * TILE_HEIGHT)};
     struct cs_image *textures = calloc(scene->bodies.n, sizeof *textures);
-    const struct cs_canvas_settings settings = {scene, &course->session.system, textures,
-                                                false};
+    const struct cs_canvas_settings settings = {.scene = scene,
+                                                .system = &course->session.system,
+                                                .textures = textures,
+                                                .obstacles = obstacles};
     scene->render.size[0] = DRAWN_WIDTH;
     scene->render.size[1] = TILE_HEIGHT;
     scene->render.look = CS_LOOK_STRAIN; // any that colours by a value
-    if (!image.rgb || !textures)
+    if (!image.rgb || !textures || !obstacles)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
     else if (!cs_renderer_open(cs_renderer_folder(), gl, &renderer, error) &&
              !renderer->create(&settings, &canvas, error) &&
@@ -125,6 +128,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     struct cs_track track = {0};
     struct cs_course_end end;
     double *distance = calloc(compare->particles, sizeof *distance);
+    struct cs_obstacle *obstacles = NULL;
     cs_cell_integrator(cell, integrator, sizeof integrator);
     snprintf(path, sizeof path, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind,
              cell->method);
@@ -138,16 +142,22 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
                              cs_track_state(&compare->yardstick.track, track.frames), distance);
             for (uint32_t i = 0; i < track.n; i++)
                 distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
+            const struct cs_system *system = &course.session.system;
+            obstacles = calloc(system->scene->colliders.n + 1, sizeof *obstacles);
+            if (obstacles)
+                cs_obstacles_at(system, compare->time, obstacles);
             /* no time: what prods saw was forgotten at the end of the run */
             const struct cs_frame frame = {.x = x,
                                            .scalar = distance,
                                            .range = {sheet->range[0], sheet->range[1]},
-                                           .inv_mass = course.session.system.inv_mass};
-            paint(&course, &frame, gl, path, error);
+                                           .inv_mass = system->inv_mass,
+                                           .obstacles = obstacles};
+            paint(&course, &frame, obstacles, gl, path, error);
         }
         cs_track_finish(&track);
         cs_course_close(&course);
     }
+    free(obstacles);
     free(distance);
     return error->status;
 }

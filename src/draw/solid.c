@@ -1,0 +1,117 @@
+/* solid.c - planes as squares, boxes and capsules as cubes blown up to balls and pulled apart.
+ *
+ * Each face of a cube has a grid of directions, evenly spaced by angle. A direction d stands
+ * for the point sign(d) core + radius d of the surface. Where a component is 0 the grid has the
+ * line twice, once of each sign, if the core has an extent there: the strips and faces between
+ * them are the flat parts.
+ */
+#include "draw/solid.h"
+
+#include "draw/matrix.h"
+
+/* lines of a face's grid between its middle and its rim, less one */
+enum { PARTS = 8, LINES = 2 * (PARTS + 1) };
+
+/* a line of the grid: its place before directions are made unit vectors, and its side */
+struct line {
+    double at, side;
+};
+
+static bool is_curved(const struct cs_obstacle *obstacle) {
+    return obstacle->kind == CS_OBSTACLE_BOX || obstacle->kind == CS_OBSTACLE_CAPSULE;
+}
+
+/* the lines along an axis; returns their number */
+static uint32_t make_lines(double core, struct line lines[LINES]) {
+    uint32_t n = 0;
+    for (int k = -PARTS; k <= PARTS; k++) {
+        const double angle = 3.14159265358979323846 / 4 * k / PARTS;
+        const double at = k < 0 ? -cs_tangent(-angle) : cs_tangent(angle);
+        if (k == 0 && core > 0)
+            lines[n++] = (struct line){at, -1};
+        lines[n++] = (struct line){at, k < 0 ? -1 : 1};
+    }
+    return n;
+}
+
+uint32_t cs_solid_count(const struct cs_obstacle *obstacle) {
+    uint32_t n[3], quads = 0;
+    struct line lines[LINES];
+    if (!obstacle->collider->visible)
+        return 0;
+    if (!is_curved(obstacle))
+        return obstacle->kind == CS_OBSTACLE_PLANE ? 6 : 0;
+    for (int k = 0; k < 3; k++)
+        n[k] = make_lines(obstacle->core[k], lines) - 1;
+    for (int k = 0; k < 3; k++)
+        quads += 2 * n[k] * n[(k + 1) % 3];
+    return 6 * quads;
+}
+
+/* a square about the point of a plane, seen from the side of its normal */
+static void fill_square(const struct cs_obstacle *plane, double sink, struct cs_vertex out[6]) {
+    static const signed char signs[6][2] = {{-1, -1}, {1, -1}, {1, 1},
+                                            {-1, -1}, {1, 1},  {-1, 1}};
+    const struct cs_collider *collider = plane->collider;
+    const double extent =
+        collider->plane.present ? collider->plane.extent : collider->floor.extent;
+    const double *normal = plane->axes[1];
+    for (int k = 0; k < 6; k++) {
+        for (int i = 0; i < 3; i++) {
+            const double side =
+                signs[k][0] * plane->axes[2][i] + signs[k][1] * plane->axes[0][i];
+            out[k].place[i] = (float)(plane->centre[i] + extent * side - sink * normal[i]);
+            out[k].normal[i] = (float)normal[i];
+        }
+        out[k].value = 0;
+    }
+}
+
+/* the vertex of a direction of a cube's face, whose components are on the given sides */
+static void set_vertex(const struct cs_obstacle *obstacle, const double direction[3],
+                       const double sides[3], struct cs_vertex *out) {
+    double d[3] = {direction[0], direction[1], direction[2]};
+    cs_normalise(d);
+    for (int i = 0; i < 3; i++) {
+        double place = obstacle->centre[i], normal = 0;
+        for (int k = 0; k < 3; k++) {
+            place +=
+                (sides[k] * obstacle->core[k] + obstacle->radius * d[k]) * obstacle->axes[k][i];
+            normal += d[k] * obstacle->axes[k][i];
+        }
+        out->place[i] = (float)place;
+        out->normal[i] = (float)normal;
+    }
+    out->value = 0;
+}
+
+/* one side (-1 or 1) of the cube across an axis */
+static struct cs_vertex *fill_face(const struct cs_obstacle *obstacle, int axis, int side,
+                                   struct cs_vertex *out) {
+    static const unsigned char corners[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+    // right-handed with the outward direction, so that triangles turn the same way
+    const int u = (axis + (side > 0 ? 1 : 2)) % 3, v = (axis + (side > 0 ? 2 : 1)) % 3;
+    struct line lines[2][LINES];
+    const uint32_t n_u = make_lines(obstacle->core[u], lines[0]);
+    const uint32_t n_v = make_lines(obstacle->core[v], lines[1]);
+    for (uint32_t i = 0; i + 1 < n_u; i++)
+        for (uint32_t j = 0; j + 1 < n_v; j++)
+            for (int k = 0; k < 6; k++) {
+                const struct line *a = lines[0] + i + corners[k][0];
+                const struct line *b = lines[1] + j + corners[k][1];
+                double direction[3], sides[3];
+                direction[axis] = sides[axis] = side;
+                direction[u] = a->at, sides[u] = a->side;
+                direction[v] = b->at, sides[v] = b->side;
+                set_vertex(obstacle, direction, sides, out++);
+            }
+    return out;
+}
+
+void cs_solid_fill(const struct cs_obstacle *obstacle, double cell, struct cs_vertex *out) {
+    if (obstacle->kind == CS_OBSTACLE_PLANE)
+        fill_square(obstacle, 0.03 * cell, out);
+    for (int axis = 0; axis < 3 && is_curved(obstacle); axis++)
+        for (int side = -1; side <= 1; side += 2)
+            out = fill_face(obstacle, axis, side, out);
+}
