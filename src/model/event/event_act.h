@@ -12,11 +12,6 @@ void cs_event_finish(struct cs_system *system, uint32_t event);
 /* The value of an active ramp or gust at t. Springs are not refreshed. */
 void cs_event_set_value(struct cs_system *system, uint32_t event, double t);
 
-/* The path of a grab or a move begins at t, at state->to. */
-void cs_event_begin_path(struct cs_event_state *state, double t);
-/* Goes on to the next chord of the path of a grab or a move if that begins at t. */
-void cs_event_turn(struct cs_events *events, uint32_t event, double t);
-
 /* Accelerations of all active impacts and prods over an interval, on the particles that are
  * free. */
 void cs_event_sum_pushes(struct cs_system *system);

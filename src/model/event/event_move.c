@@ -2,7 +2,7 @@
 #include "model/event/event_move.h"
 
 #include "model/contact/obstacle.h"
-#include "model/event/event_act.h"
+#include "model/event/event_path.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #include "model/contact/obstacle.h"
 #include "model/event/event_act.h"
 #include "model/event/event_move.h"
+#include "model/event/event_path.h"
 #include "model/event/event_times.h"
 #include "model/event/prods.h"
 #include "model/force/bounds.h"
