@@ -45,7 +45,7 @@ static void resist_bound(const struct cs_system *system, const struct cs_row_sum
 }
 
 const struct cs_term cs_term_resist = {
-    .name = "resistance",
+    .name = "planted resistance",
     .parts = CS_PART_DISSIPATIVE,
     .plan = resist_plan,
     .add_force = resist_force,
@@ -137,7 +137,7 @@ static void trap_bound(const struct cs_system *system, const struct cs_eval *at,
 }
 
 const struct cs_term cs_term_trap = {
-    .name = "trap",
+    .name = "planted trap",
     .parts = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
     .plan = trap_plan,
     .add_force = trap_force,
@@ -162,7 +162,7 @@ static double swing_strongest(const struct cs_system *system, size_t i) {
 }
 
 const struct cs_term cs_term_swing = {
-    .name = "swing",
+    .name = "planted swing",
     .parts = CS_PART_EXTERNAL,
     .plan = swing_plan,
     .add_force = swing_force,
