@@ -25,6 +25,7 @@ LIMITS = {
 LATER = {".c files without head comment", "functions >= 20 lines without a comment inside [%]"}
 TREES = ("src", "plugins", "bench")
 NAME = re.compile(r"([A-Za-z_]\w*)\s*\($")
+BRACKETS = {"(": re.compile(r"[()]"), "{": re.compile(r"[{}]")}
 NO_FUNCTIONS = {"if", "for", "while", "switch", "return", "sizeof", "do", "else"}
 
 
@@ -49,12 +50,11 @@ def comment_lines(text):
 
 def close_of(code, opening):
     """The place of the bracket that closes the one at `opening`."""
-    pairs = {"(": ")", "{": "}"}
-    depth, close = 0, pairs[code[opening]]
-    for i in range(opening, len(code)):
-        depth += (code[i] == code[opening]) - (code[i] == close)
+    depth = 0
+    for m in BRACKETS[code[opening]].finditer(code, opening):
+        depth += 1 if m.group(0) == code[opening] else -1
         if depth == 0:
-            return i
+            return m.start()
     return len(code) - 1
 
 
@@ -69,22 +69,22 @@ def parameters(code):
 
 def functions(text):
     """(name, parameters, first line, last line) of each definition."""
-    code, found, i = blank(text), [], 0
+    code, found, i, done = blank(text), [], 0, 0
     while True:
         i = code.find("{", i)
         if i < 0:
             return found
         end = close_of(code, i)
-        head = code[:i].rstrip()
+        head = code[done:i].rstrip()
         if head.endswith(")"):
             start = head.rfind("(")
-            while start >= 0 and close_of(code, start) != len(head) - 1:
+            while start >= 0 and close_of(head, start) != len(head) - 1:
                 start = head.rfind("(", 0, start)
-            name = NAME.search(code[:start + 1]) if start >= 0 else None
+            name = NAME.search(head[:start + 1]) if start >= 0 else None
             if name and name.group(1) not in NO_FUNCTIONS:
-                found.append((name.group(1), parameters(code[start + 1:len(head) - 1]),
+                found.append((name.group(1), parameters(head[start + 1:-1]),
                               code.count("\n", 0, i), code.count("\n", 0, end)))
-        i = end + 1
+        i = done = end + 1
 
 
 def count(root):
