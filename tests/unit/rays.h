@@ -6,6 +6,7 @@
 #include "model/event/sight.h"
 
 #include "mesh/trimesh.h"
+#include "model/contact/obstacle.h"
 #include "sheet.h"
 
 /* two cloths, a closed mesh, and obstacles of every kind; %s: keys of the last sphere */
@@ -18,7 +19,10 @@
     " \"colliders\": [{\"sphere\": {\"centre\": [0.2, -0.1, 0.3], \"radius\": 0.2}},"          \
     " {\"plane\": {\"point\": [0, -0.4, 0], \"normal\": [0.1, 1, -0.2]}}, {\"floor\": "        \
     "{\"height\": -0.45}},"                                                                    \
-    " {\"sphere\": {\"centre\": [0, 0, 0.5], \"radius\": 3}, \"visible\": false}]}"
+    " {\"sphere\": {\"centre\": [0, 0, 0.5], \"radius\": 3}, \"visible\": false},"             \
+    " {\"box\": {\"centre\": [-0.4, 0.3, 0.2], \"size\": [0.3, 0.2, 0.4],"                     \
+    " \"rotate\": [0.1, 0.4, 0.2, 0.9], \"radius\": 0.04}},"                                   \
+    " {\"capsule\": {\"from\": [0.3, 0.4, 0.2], \"to\": [0.1, 0, 0.6], \"radius\": 0.06}}]}"
 
 static inline double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -82,6 +86,23 @@ static inline void look_past_triangles(struct verdict *verdict, const struct she
     }
 }
 
+/* the least distance of a convex obstacle from the way: by thirds, for it is convex too */
+static inline double least_distance(const struct cs_obstacle *of, const double eye[3],
+                                    const double way[3]) {
+    double low = 0, high = 1, d[2] = {0, 0};
+    for (int k = 0; k < 100; k++) {
+        const double at[2] = {low + (high - low) / 3, high - (high - low) / 3};
+        for (int s = 0; s < 2; s++) {
+            double n[3];
+            const double p[3] = {eye[0] + at[s] * way[0], eye[1] + at[s] * way[1],
+                                 eye[2] + at[s] * way[2]};
+            d[s] = cs_obstacle_distance(of, p, n);
+        }
+        *(d[0] < d[1] ? &high : &low) = d[0] < d[1] ? at[1] : at[0];
+    }
+    return fmin(d[0], d[1]);
+}
+
 static inline void look_past_obstacles(struct verdict *verdict, const struct sheet *sheet,
                                        const double eye[3], const double way[3]) {
     const struct cs_collider *colliders = cs_scene_colliders(&sheet->scene);
@@ -105,6 +126,11 @@ static inline void look_past_obstacles(struct verdict *verdict, const struct she
     require(verdict, dot(end, normal) + 0.4 * normal[1]);
     require(verdict, eye[1] + 0.45);
     require(verdict, end[1] + 0.45);
+    for (uint32_t k = 4; k < 6; k++) {
+        struct cs_obstacle of;
+        cs_obstacle_at(&sheet->system, k, 0, &of);
+        require(verdict, least_distance(&of, eye, way));
+    }
 }
 
 static inline struct verdict look_at(const struct sheet *sheet, const struct cs_prod *prod,

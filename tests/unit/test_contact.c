@@ -1,5 +1,7 @@
 /* Projection contact of one particle against closed forms. */
 #include "model/commit/contact.h"
+
+#include "model/contact/obstacle.h"
 #include "sheet.h"
 
 #define SCENE                                                                                  \
@@ -64,6 +66,59 @@ START_TEST(particle_is_put_on_a_sphere) {
     sheet_put(&one, 0, 1, 2, 3, 0, 0, 0);
     ck_assert_uint_eq(resolve(&one).pushed, 1);
     SHEET_ASSERT_AT(&one, one.x, 0, 1, 2.6, 3, 1e-14);
+    sheet_close(&one);
+}
+END_TEST
+
+/* on a face of a turned box, and on its rounded edge */
+START_TEST(particle_is_put_on_a_box) {
+    const double half = sqrt(0.5);
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "",
+               "{\"box\": {\"centre\": [1, 2, 3], \"size\": [0.6, 0.4, 2], \"rotate\":"
+               " [0, 0, 1, 1], \"radius\": 0.1}, \"thickness\": 0.02}");
+    // a quarter turn about z: 0.4 wide and 0.6 high
+    sheet_put(&one, 0, 1.1, 2.28, 2.5, 0, -1, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 1.1, 2.32, 2.5, 1e-14);
+    sheet_put(&one, 0, 1.15, 2.25, 2.5, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 1.1 + 0.12 * half, 2.2 + 0.12 * half, 2.5, 1e-14);
+    // beyond the round edge, where a sharp one would be
+    sheet_put(&one, 0, 1.195, 2.295, 2.5, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 0);
+    sheet_close(&one);
+}
+END_TEST
+
+/* on the rod and on its end */
+START_TEST(particle_is_put_on_a_capsule) {
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "",
+               "{\"capsule\": {\"from\": [0, 0, 1], \"to\": [0, 0, 3], \"radius\": 0.25}}");
+    sheet_put(&one, 0, 0.06, 0.08, 2.2, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 0.15, 0.2, 2.2, 1e-14);
+    sheet_put(&one, 0, 0, 0.06, 3.08, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 0, 0.15, 3.2, 1e-14);
+    sheet_put(&one, 0, 0, 0, 3.26, 0, 0, 0);
+    ck_assert_uint_eq(resolve(&one).pushed, 0);
+    sheet_close(&one);
+}
+END_TEST
+
+/* Normal and tangential velocity are those against the floor, which rises at 1 m/s and slides
+ * at 2 m/s: half of 3 m/s inwards is taken away, and friction 0.2 takes 0.3 of 5 m/s. */
+START_TEST(velocities_are_those_against_a_moving_floor) {
+    struct cs_obstacle_motion motion = {
+        .until = HUGE_VAL, .rate = {2, 1, 0}, .turn = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "", FLOOR(", \"absorption\": 0.5, \"friction\": 0.2"));
+    one.system.motions = &motion;
+    sheet_put(&one, 0, 0, 0.4, 0, 2 + 3, -2, 4);
+    ck_assert_uint_eq(resolve(&one).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.v, 0, 2 + 0.94 * 3, 1 - 1.5, 0.94 * 4, 1e-15);
     sheet_close(&one);
 }
 END_TEST
@@ -170,6 +225,9 @@ int main(void) {
                                   particle_in_front_is_left_alone,
                                   particle_is_put_on_a_plane,
                                   particle_is_put_on_a_sphere,
+                                  particle_is_put_on_a_box,
+                                  particle_is_put_on_a_capsule,
+                                  velocities_are_those_against_a_moving_floor,
                                   normal_velocity_is_absorbed,
                                   slope_is_slid_down_or_stuck_to,
                                   friction_counts_the_bounce,

@@ -193,6 +193,12 @@ START_TEST(obstacles_hide_what_is_behind) {
         {PAIR("[1, 1]", "{\"plane\": {\"point\": [0, 0, 1], \"normal\": [0, 0, 1]}}"), 0},
         {PAIR("[1, 1]", "{\"floor\": {\"height\": 0}}"), 45},
         {PAIR("[1, 1]", "{\"floor\": {\"height\": 0.01}}"), 0},
+        {PAIR("[1, 1]", "{\"box\": {\"centre\": [0, 0, 1], \"size\": [0.01, 0.01, 1]}}"), 80},
+        {PAIR("[1, 1]", "{\"box\": {\"centre\": [0, 0, -1], \"size\": [2, 2, 2]}}"), 81},
+        {PAIR("[1, 1]", "{\"box\": {\"centre\": [0, 0, 1], \"size\": [3, 3, 0.1]}}"), 0},
+        {PAIR("[1, 1]", "{\"capsule\": {\"from\": [-2, 0, 1], \"to\": [2, 0, 1],"
+                        " \"radius\": 0.01}}"),
+         72},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct looker looker;

@@ -1,0 +1,125 @@
+/* Colliders as triangles: on the surface, outwards, closed, of the right volume. */
+#include "draw/solid.h"
+
+#include "unit.h"
+
+#include <math.h>
+
+static struct cs_collider colliders[] = {
+    {.box = {true, {0.2, 0.1, -0.3}, {0.8, 0.5, 0.6}, {0.5, 0.5, 0.5, 0.5}, 0.06},
+     .visible = true},
+    {.capsule = {true, {-0.2, 0.1, 0.3}, {0.4, 0.5, -0.1}, 0.12}, .visible = true},
+    // as round as can be: a capsule, and a ball
+    {.box = {true, {0, 0, 0}, {0.4, 0.4, 1}, {0, 0, 0, 1}, 0.2}, .visible = true},
+    {.box = {true, {0, 0, 0}, {0.4, 0.4, 0.4}, {0.6, 0, 0, 0.8}, 0.2}, .visible = true},
+    {.plane = {true, {0.1, 0.2, 0.3}, {0.6, 0.8, 0}, 2}, .visible = true},
+    {.floor = {true, 0.25, 3}, .visible = true},
+    {.sphere = {true, {0, 0, 0}, 1}, .visible = true},
+    {.floor = {true, 0.25, 3}, .visible = false},
+};
+enum { CURVED = 4, PLANE = 4, FLOOR, SPHERE, HIDDEN, N_COLLIDERS };
+
+static struct cs_scene scene = {.colliders = {colliders, N_COLLIDERS}};
+static const struct cs_system rest = {.scene = &scene};
+
+static struct cs_vertex *make(uint32_t k, struct cs_obstacle *of, uint32_t *n) {
+    cs_obstacle_at(&rest, k, 0, of);
+    *n = cs_solid_count(of);
+    struct cs_vertex *vertices = calloc(*n + 1, sizeof *vertices);
+    ck_assert_ptr_nonnull(vertices);
+    cs_solid_fill(of, 0.02, vertices);
+    ck_assert(vertices[*n].normal[0] == 0 && vertices[*n].normal[1] == 0);
+    return vertices;
+}
+
+/* distance 0 but for the floats, and the normal of the surface there */
+START_TEST(vertices_lie_on_the_surface) {
+    for (uint32_t k = 0; k < CURVED; k++) {
+        struct cs_obstacle of;
+        uint32_t n;
+        struct cs_vertex *vertices = make(k, &of, &n);
+        ck_assert(n > 1000 && n % 3 == 0);
+        for (uint32_t i = 0; i < n; i++) {
+            double p[3], normal[3];
+            for (int c = 0; c < 3; c++)
+                p[c] = (double)vertices[i].place[c];
+            ck_assert_double_eq_tol(cs_obstacle_distance(&of, p, normal), 0, 1e-7);
+            for (int c = 0; c < 3; c++)
+                ck_assert_double_eq_tol((double)vertices[i].normal[c], normal[c], 3e-6);
+        }
+        free(vertices);
+    }
+}
+END_TEST
+
+/* Six times the volume under each triangle seen from the origin: the sum is that of the whole
+ * only if the surface is closed and its triangles all turn outwards. Inscribed, it holds less.
+ */
+START_TEST(volume_is_that_of_the_solid) {
+    const double pi = acos(-1), h[3] = {0.68, 0.38, 0.48}, r = 0.06;
+    const double length = sqrt(0.36 + 0.16 + 0.16);
+    const double volumes[CURVED] = {
+        // Steiner: the core, slabs on its faces, quarter rods on its edges, a ball on its
+        // corners
+        h[0] * h[1] * h[2] + 2 * r * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]) +
+            pi * r * r * (h[0] + h[1] + h[2]) + 4 * pi / 3 * r * r * r,
+        pi * 0.0144 * length + 4 * pi / 3 * 0.12 * 0.12 * 0.12,
+        pi * 0.04 * 0.6 + 4 * pi / 3 * 0.008, 4 * pi / 3 * 0.008};
+    for (uint32_t k = 0; k < CURVED; k++) {
+        struct cs_obstacle of;
+        uint32_t n;
+        struct cs_vertex *v = make(k, &of, &n);
+        double six = 0;
+        for (uint32_t i = 0; i < n; i += 3) {
+            double p[3][3];
+            for (uint32_t j = 0; j < 3; j++)
+                for (int c = 0; c < 3; c++)
+                    p[j][c] = (double)v[i + j].place[c];
+            six += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
+                   p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
+                   p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+        }
+        ck_assert_double_le(six / 6, volumes[k]);
+        ck_assert_double_ge(six / 6, 0.99 * volumes[k]);
+        free(v);
+    }
+}
+END_TEST
+
+START_TEST(planes_are_squares) {
+    static const uint32_t list[] = {PLANE, FLOOR};
+    static const double extents[] = {2, 3};
+    for (size_t k = 0; k < 2; k++) {
+        struct cs_obstacle of;
+        uint32_t n;
+        struct cs_vertex *v = make(list[k], &of, &n);
+        ck_assert_uint_eq(n, 6);
+        for (uint32_t i = 0; i < n; i++) {
+            double p[3], normal[3], squared = 0;
+            for (int c = 0; c < 3; c++) {
+                p[c] = (double)v[i].place[c];
+                squared += (p[c] - of.centre[c]) * (p[c] - of.centre[c]);
+            }
+            // 3 % of a cell below the plane
+            ck_assert_double_eq_tol(cs_obstacle_distance(&of, p, normal), -0.0006, 1e-6);
+            ck_assert_double_eq_tol(squared, 2 * extents[k] * extents[k], 1e-5);
+        }
+        free(v);
+    }
+}
+END_TEST
+
+START_TEST(balls_and_hidden_ones_have_no_triangles) {
+    struct cs_obstacle of;
+    cs_obstacle_at(&rest, SPHERE, 0, &of);
+    ck_assert_uint_eq(cs_solid_count(&of), 0);
+    cs_obstacle_at(&rest, HIDDEN, 0, &of);
+    ck_assert_uint_eq(cs_solid_count(&of), 0);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {vertices_lie_on_the_surface, volume_is_that_of_the_solid,
+                                  planes_are_squares, balls_and_hidden_ones_have_no_triangles};
+    return unit_run("solid", tests, sizeof tests / sizeof *tests);
+}
