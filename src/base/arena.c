@@ -1,3 +1,4 @@
+/* Bump allocation in blocks of 64 KiB or more; everything is freed at once. */
 #include "base/arena.h"
 
 #include <stdint.h>
@@ -28,6 +29,7 @@ static struct cs_arena_block *block_create(size_t capacity) {
 }
 
 void *cs_arena_take(struct cs_arena *arena, size_t bytes, struct cs_error *error) {
+    /* an overflow saturates, and block_create refuses it */
     const size_t size = bytes <= SIZE_MAX - ALIGNMENT
                             ? (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT
                             : SIZE_MAX;

@@ -1,3 +1,4 @@
+/* The program's only clocks: monotonic wall time and processor time. */
 #include "base/clock.h"
 
 #include <time.h>

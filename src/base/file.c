@@ -1,3 +1,5 @@
+/* Reads and writes whole files; a new file replaces the old one by rename, so that a reader
+ * never sees half of it. */
 #include "base/file.h"
 
 #include <errno.h>
@@ -115,6 +117,7 @@ enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
     snprintf(out->path, sizeof out->path, "%s", path);
     snprintf(out->temporary, sizeof out->temporary, "%s.tmp.%ld", path, (long)getpid());
 
+    /* the old file stays whole until cs_file_finish renames over it */
     const int file = open_temporary(out->temporary);
     if (file < 0)
         return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", path, strerror(errno));

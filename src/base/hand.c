@@ -1,3 +1,4 @@
+/* A worker thread that does one piece of work at a time. */
 #include "base/hand.h"
 
 #include <pthread.h>

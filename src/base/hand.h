@@ -11,7 +11,7 @@
 struct cs_hand;
 
 /* Starts the thread, with all signals blocked: they are the caller's. NULL where none can be
- * had; that is a hand too: the caller's own, which works at once. */
+ * started: every call takes it, and the caller then does the work itself, at once. */
 struct cs_hand *cs_hand_create(void);
 
 /* Waits for the work before and hands over the next. work and argument must live until it is

@@ -1,3 +1,4 @@
+/* XXH3-128 of doubles and bytes, printed in canonical form. */
 #include "base/hash.h"
 
 #include <endian.h>

@@ -1,3 +1,4 @@
+/* Defaults, checks and printing of any struct by its table of options. */
 #include "base/options.h"
 
 #include <math.h>
@@ -44,6 +45,7 @@ void cs_options_default(const struct cs_table *table, void *object) {
             memset(field, 0, CS_TEXT_MAX);
             break;
         case CS_TABLE:
+            /* an optional struct begins with its bool `present` */
             if (row->table->optional)
                 *(bool *)field = false;
             cs_options_default(row->table, field);
@@ -77,6 +79,7 @@ bool cs_option_is_optional(const struct cs_option *row) {
 
 bool cs_option_is_given(const struct cs_option *row, const void *object) {
     const void *field = const_field_of(row, object);
+    /* absence is coded in the value: NaN, below the range, negative or empty */
     switch (row->type) {
     case CS_REAL:
     case CS_VECTOR:
@@ -98,6 +101,7 @@ bool cs_option_is_given(const struct cs_option *row, const void *object) {
 
 bool cs_option_is_default(const struct cs_option *row, const void *object) {
     const void *field = const_field_of(row, object);
+    /* a vector without defaults must be given, and so is never at its default */
     bool same = row->defs;
     if (cs_option_is_optional(row))
         return !cs_option_is_given(row, object);
@@ -247,6 +251,7 @@ void cs_option_print(const struct cs_option *row, const void *object, struct cs_
     case CS_TEXT:
         cs_text_add_json(out, field);
         break;
+    /* the caller prints these row by row */
     case CS_TABLE:
     case CS_LIST:
         break;
@@ -272,6 +277,7 @@ void cs_option_print_range(const struct cs_option *row, struct cs_text *out) {
         for (uint32_t i = 0; row->choices[i]; i++)
             cs_text_add(out, "%s%s", i ? ", " : "", row->choices[i]);
         break;
+    /* any text; tables and lists have ranges in their own rows */
     case CS_TEXT:
     case CS_TABLE:
     case CS_LIST:

@@ -1,3 +1,5 @@
+/* A thread pool that waits passively: each thread has a share of the blocks of a loop, and
+ * takes blocks from the others when it has done its own. */
 #include "base/pool.h"
 
 #include <pthread.h>
@@ -72,6 +74,7 @@ static void *serve(void *argument) {
     uint32_t seen = 0;
     pthread_mutex_lock(&p->lock);
     for (;;) {
+        /* a loop that was joined before, or is closed again, is not joined */
         while (!p->closing && (!p->open || p->loops == seen)) {
             p->asleep++;
             pthread_cond_wait(&p->wake, &p->lock);
@@ -87,6 +90,7 @@ static void *serve(void *argument) {
         if (--p->inside == 0)
             pthread_cond_signal(&p->left);
         pthread_mutex_unlock(&p->lock);
+        /* the next loop often follows at once: look for it before sleeping */
         look(&p->loops, seen);
         pthread_mutex_lock(&p->lock);
     }
@@ -168,6 +172,7 @@ static int start_thread(struct pool *p) {
 static enum cs_status start(uint32_t threads, struct cs_error *error) {
     static bool forgotten_by_children;
     pool = aligned_alloc(_Alignof(struct pool), sizeof *pool);
+    /* fork handlers cannot be removed, so that there is one for all pools */
     if (!pool || (!forgotten_by_children && pthread_atfork(NULL, NULL, forget))) {
         free(pool);
         pool = NULL;
@@ -178,6 +183,7 @@ static enum cs_status start(uint32_t threads, struct cs_error *error) {
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->wake, NULL);
     pthread_cond_init(&pool->left, NULL);
+    /* n counts the threads that run: cs_pool_stop joins no others */
     for (pool->n = 1; pool->n < threads; pool->n++) {
         const int failed = start_thread(pool);
         if (!failed)

@@ -1,3 +1,4 @@
+/* Status codes, the first message of a failure, and assertions. */
 #include "base/status.h"
 
 #include <stdarg.h>

@@ -1,3 +1,5 @@
+/* Growable text, numbers that read back exactly, and the nearest of several words by edit
+ * distance. */
 #include "base/text.h"
 
 #include <ctype.h>
@@ -97,6 +99,7 @@ static size_t distance(const char *a, const char *b) {
     for (size_t j = 0; j <= n; j++)
         row[j] = j;
     for (size_t i = 0; a[i]; i++) {
+        /* one row will do: `diagonal` keeps the entry above left, already overwritten */
         size_t diagonal = row[0];
         row[0] = i + 1;
         for (size_t j = 0; j < n; j++) {

@@ -1,3 +1,5 @@
+/* Loops and sums over arrays in blocks of 4096. Each block is summed in 8 lanes and the block
+ * sums are added in order, so that no sum depends on the number of threads. */
 #include "base/vector.h"
 
 #include "base/pool.h"
