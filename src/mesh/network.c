@@ -1,3 +1,5 @@
+/* Draws the inner springs of a soft body: random partners, partners with opposed normals, or
+ * the nearest of several (soft-body thesis, sec. 6.3). */
 #include "mesh/network.h"
 
 #include <float.h>
@@ -81,6 +83,7 @@ static uint32_t draw_partner(struct work *work, uint32_t i) {
     double nearest = HUGE_VAL;
     int64_t found = 0;
     for (int64_t t = 0; t < network->tries && found < wanted; t++) {
+        /* scales 32 random bits to 0..n-1 without a division */
         const uint64_t drawn = cs_draws_next(&work->draws) >> 32;
         const uint32_t j = (uint32_t)(drawn * work->mesh->n >> 32);
         if (!is_candidate(work, i, j))

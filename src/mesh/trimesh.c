@@ -1,3 +1,5 @@
+/* Checks a triangle mesh and derives edges, hinges, triangles at each vertex and shares of
+ * area. */
 #include "mesh/trimesh.h"
 
 #include <math.h>
@@ -64,6 +66,7 @@ static enum cs_status check_triangle(const struct work *work, uint32_t t) {
     cs_trimesh_normal(mesh, t, mesh->places, mesh->n, 0, normal);
     const double doubled =
         sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    /* relative to the longest side: the unit of the mesh does not matter; NaN fails too */
     if (!(doubled > 1e-9 * longest))
         return cs_fail(work->error, CS_ERR_FILE,
                        "%s: the triangle of vertices %u, %u and %u has no area", place,
@@ -117,6 +120,7 @@ static enum cs_status walk_edges(struct work *work) {
     mesh->n_edges = mesh->n_open = work->n_hinges = 0;
     for (uint32_t s = 0, count; s < work->n_sides; s += count) {
         const struct side *side = work->sides + s;
+        /* sides are sorted: those of one edge are neighbours */
         for (count = 1; s + count < work->n_sides && side[count].low == side->low &&
                         side[count].high == side->high;)
             count++;
@@ -171,6 +175,7 @@ static enum cs_status fill_vertices(struct work *work) {
         if (end[i] == 0)
             return cs_fail(work->error, CS_ERR_FILE, "%s: vertex %u is in no face", work->name,
                            i + 1);
+        /* starts for now; they become ends while `around` is filled */
         const uint32_t count = end[i];
         end[i] = before;
         before += count;
@@ -228,6 +233,7 @@ static enum cs_status build(struct work *work) {
     fill_sides(work);
     if (walk_edges(work) || fill_vertices(work))
         return work->error->status;
+    /* the first walk has counted edges and hinges, the second writes them */
     mesh->edges =
         cs_arena_take_n(work->arena, mesh->n_edges, 2 * sizeof *mesh->edges, work->error);
     work->hinges = calloc((size_t)work->n_hinges + 1, 2 * sizeof *work->hinges);

@@ -20,7 +20,7 @@ enum { CS_MESH_DETAIL_MAX = 256 };
 
 struct cs_trimesh {
     uint32_t n, n_triangles, n_edges, n_hinges, n_inner;
-    double *places;      /* (3,n) m, before the placement */
+    double *places;      /* (3,n) m, positions before the placement */
     uint32_t *triangles; /* (n_triangles, 3), counter-clockwise from outside */
     float *uv;           /* (n_triangles, 3, 2) texture coordinates of corners; NULL: none */
 
@@ -38,7 +38,8 @@ struct cs_trimesh {
     size_t bytes; /* of this struct and its arrays, set by the reader of the scene */
 };
 
-/* Takes the arrays that the maker of a mesh fills: places, triangles and, if asked for, uv. */
+/* Takes the arrays that the maker of a mesh fills: positions, triangles and, if asked for, uv.
+ */
 enum cs_status cs_trimesh_init(struct cs_trimesh *mesh, uint32_t n, uint32_t n_triangles,
                                bool uv, struct cs_arena *arena, struct cs_error *error);
 
@@ -57,8 +58,8 @@ enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape
 enum cs_status cs_trimesh_make_limbs(struct cs_trimesh *mesh, uint32_t detail,
                                      struct cs_arena *arena, struct cs_error *error);
 
-/* Normal of triangle t of a mesh at places x (of n particles, the mesh's from `first` on), as
- * long as twice the triangle's area. One number after the other: loops over the axes become
+/* Normal of triangle t of a mesh at positions x (of n particles, the mesh's from `first` on),
+ * as long as twice the triangle's area. One number after the other: loops over the axes become
  * vectors that are put together and taken apart again, at several times the cost. */
 static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, const double *x,
                                      size_t n, uint32_t first, double normal[3]) {

@@ -121,6 +121,7 @@ static bool cell_vertex(const struct lattice *lattice, const uint32_t p[3], doub
                 continue;
             for (int c = 0; c < 3; c++)
                 to[c] = from[c] + (c == axis);
+            /* the crossing: where linear interpolation along the edge is 0 */
             const double a = lattice->field[at(lattice, from[0], from[1], from[2])];
             const double b = lattice->field[at(lattice, to[0], to[1], to[2])];
             for (int c = 0; c < 3; c++)
@@ -133,7 +134,7 @@ static bool cell_vertex(const struct lattice *lattice, const uint32_t p[3], doub
     return n > 0;
 }
 
-/* calls for every cell, or numbers them: places is NULL in the first pass */
+/* numbers the cells with a vertex, and in the second pass, with places given, writes it */
 static void walk_cells(struct lattice *lattice, double *places) {
     const size_t n = lattice->n_vertices;
     double place[3];
@@ -209,8 +210,10 @@ enum cs_status cs_trimesh_make_limbs(struct cs_trimesh *mesh, uint32_t detail,
         goto done;
     }
     fill_field(&lattice);
+    /* joining one place may make its neighbours touch */
     while (join_touching(&lattice))
         continue;
+    /* the first pass counts, the second writes */
     walk_cells(&lattice, NULL);
     walk_edges(&lattice, NULL);
     if (cs_trimesh_init(mesh, lattice.n_vertices, 2 * lattice.n_quads, false, arena, error))
