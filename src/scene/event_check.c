@@ -1,3 +1,5 @@
+/* Checks of events that the range of a single key cannot express: times, targets, directions,
+ * paths, overlaps. */
 #include "scene/event_check.h"
 
 #include "base/options.h"
@@ -145,6 +147,7 @@ static enum cs_status check_prod(const struct look *at, bool once, struct cs_pro
     const double *rectangle = prod->rectangle;
     const char *key, *fault;
     char place[64];
+    /* keys of the camera stand in first: the view is checked as it will be used */
     complete_viewpoint(at->scene, &prod->viewpoint);
     fault = cs_viewpoint_fault(from->eye, from->target, from->up, &key);
     snprintf(place, sizeof place, ".prod.viewpoint.%s", fault ? key : "");
@@ -246,6 +249,7 @@ static enum cs_status check_overlap(const struct look *at, const struct cs_event
 static enum cs_status check_event(const struct look *at, struct cs_event *event) {
     if (check_times(at, event) || check_overlap(at, event))
         return at->error->status;
+    /* the table allows exactly one action, which the reader has checked */
     if (event->impact.present)
         return make_unit(at, ".impact.direction", event->impact.direction)
                    ? at->error->status

@@ -1,3 +1,5 @@
+/* Finds the number that a ramp changes by its path, and refuses keys that cannot change in a
+ * run. */
 #include "scene/event_key.h"
 
 #include "base/options.h"
@@ -109,6 +111,7 @@ static const struct cs_option *descend(struct walk *walk) {
                 return NULL;
             walk->object += index * sizeof(double);
         }
+        /* the end of the way down: the path must end here too */
         if (!row->table) {
             if (*walk->rest)
                 refuse_key(walk, walk->rest);

@@ -1,4 +1,4 @@
-/* pin_tables.c - the rows that name particles, for bodies' pins and for events. */
+/* The rows that name particles, for bodies' pins and for events. */
 #include "scene/scene.h"
 #include "scene/table_rows.h"
 

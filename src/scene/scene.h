@@ -311,7 +311,7 @@ struct cs_render {
     int32_t look;    /* enum cs_look */
     double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
     double background[3]; /* linear RGB */
-    bool prods;           /* show what the prods of events see, and from where */
+    bool prods;           /* show what viewpoint forces see, and from where */
     bool ground;          /* draw a grid on the plane y = ground_height */
     double ground_height; /* m */
 };

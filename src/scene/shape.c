@@ -1,3 +1,4 @@
+/* Turns bodies into particles: positions, shares of area, pins. */
 #include "scene/shape.h"
 
 #include "base/sine.h"
@@ -104,6 +105,7 @@ double cs_shape_area(const struct cs_body *body, uint32_t i) {
 
 static bool is_named(enum cs_pin_name name, uint32_t i, uint32_t j, uint32_t rows,
                      uint32_t columns) {
+    /* row 0 is on top, column 0 at the left */
     const bool top = i == 0, bottom = i + 1 == rows, left = j == 0, right = j + 1 == columns;
     switch (name) {
     case CS_PIN_TOP_LEFT:

@@ -1,4 +1,4 @@
-/* shape.h - bodies made into particles: places, areas, masses, pins. */
+/* shape.h - bodies made into particles: positions, areas, pins. */
 #ifndef CS_SHAPE_H
 #define CS_SHAPE_H
 
@@ -12,7 +12,7 @@ const double *cs_shape_velocity(const struct cs_body *body);
 /* Rows of the rotation by a unit quaternion x, y, z, w. */
 void cs_quaternion_matrix(const double q[4], double r[9]);
 
-/* Places of a body's particles, placed rigidly: written to x[first..] of x (3,n). */
+/* Positions of a body's particles, placed rigidly: written to x[first..] of x (3,n). */
 void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x);
 
 /* Share of the rest area of the body's particle i in m2: a quarter of each cell at it, a third
