@@ -1,3 +1,4 @@
+/* Decides what a scene and a method need to be built, and prints it with sizes and reasons. */
 #include "model/plan.h"
 
 #include "base/pool.h"
@@ -97,8 +98,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     count_bodies(plan, scene, &n_runs);
     const size_t n = plan->n, s = plan->n_springs, real = sizeof(double);
     const struct cs_forces *forces = &scene->forces;
+    /* x and v, the start, mass and its inverse */
     plan->state_bytes = (6 + 3 + 2) * n * real + scene->bodies.n * sizeof(struct cs_body_range);
 
+    /* springs of meshes have a length and a stiffness of their own */
     const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
     decide(plan, CS_FEATURE_MESHES, any_body(scene, is_mesh), mesh_bytes(scene),
            "bodies are meshes", "every body is a grid");
@@ -125,6 +128,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "the scene has events", "no events");
     decide(plan, CS_FEATURE_PRODS, cs_prods_any(scene), cs_prods_bytes(scene, plan->n),
            "an event is a prod; it needs a test of what is seen", "no event is a prod");
+    /* ends and kind; length, stiffness and damping; axial or not */
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
            s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),
            "the integrator asks for it", "the integrator does not ask for it");
@@ -137,6 +141,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "bodies have shape_matching, and the integrator asks for it",
            needs & CS_NEED_CLUSTERS ? "no body has shape_matching"
                                     : "the integrator does not ask for it");
+    /* 3x3 blocks of forces at single particles need room in the solver too */
     const bool forced = has_blocks(plan);
     const size_t levels = cs_multigrid_bytes(scene, forced);
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,

@@ -1,3 +1,5 @@
+/* Splits the work of a system among threads: particles into blocks, springs of meshes into
+ * chunks. */
 #include "model/shares.h"
 
 #include "base/pool.h"
@@ -136,6 +138,7 @@ static void build_lots(struct cs_system *system, const struct sizes *sizes,
         const uint32_t n = system->bodies[run->body].count;
         if (!run->ends)
             continue;
+        /* springs by particle: each thread adds to its own particles, in the springs' order */
         waits[r] = (struct cs_wait){n, starts, around, forces};
         list_around(run, n, starts, around);
         starts += n + 1;

@@ -1,4 +1,5 @@
-/* shares.h - how the threads of the pool share a system: blocks of particles, lots of springs.
+/* shares.h - how the threads of the pool share a system: blocks of particles, chunks of
+ * springs.
  *
  * Each thread adds forces to the particles of its block alone, in the order in which one thread
  * would: so sums, and the state's bits, are those of one thread. */

@@ -24,6 +24,7 @@ static double *take(struct cs_system *system, size_t n, struct cs_error *error) 
 static void build_springs(struct cs_system *system, struct cs_error *error) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     uint32_t n_runs = 0, n_springs = 0, n_listed = 0;
+    /* the first pass counts; springs of meshes alone have lists */
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
         n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL,
                                      bodies[b].mesh.present ? &n_listed : &n_springs);
@@ -61,6 +62,7 @@ static void build_spring_list(struct cs_system *system, struct cs_error *error) 
             length[s] = cs_spring_length(run, i);
             stiffness[s] = cs_spring_stiffness(run, i);
             damping[s] = run->damping;
+            /* the part bit by which a method asks for such forces */
             kind[s] = CS_PART_STRETCH << run->kind;
             axial[s] = run->axial;
         }
@@ -144,6 +146,7 @@ static void take_arrays(struct cs_system *system, struct cs_error *error) {
     system->inv_mass = take(system, n, error);
     system->state = take(system, 6 * n, error);
     system->start = take(system, 3 * n, error);
+    /* what no force of the scene reads is not taken */
     if (is_built(&system->plan, CS_FEATURE_AREA))
         system->area = take(system, n, error);
     if (cs_terms_use(system->scene, &system->plan) & CS_USE_NORMALS)
@@ -175,6 +178,7 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     if (error->status)
         return;
     bool *pinned = work;
+    /* masses may depend on the springs at a particle, which are there now */
     cs_system_weigh(system);
     if (system->area)
         fill_area(system);
@@ -182,6 +186,7 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     fill_pins(system, pinned, error);
     if (error->status)
         return;
+    /* events choose particles by where they start, so before them */
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
     choose_terms(system);
     if (!is_built(&system->plan, CS_FEATURE_EVENTS))
@@ -196,7 +201,7 @@ enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *
     system->view.size = sizeof system->view;
     system->view.n = plan->n;
 
-    /* pin marks first, then the row sums of cs_bounds_set */
+    /* pin marks first, then the Gershgorin sums of cs_bounds_set */
     void *work = calloc(plan->n, 2 * sizeof(double));
     if (!work)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %u particles", plan->n);

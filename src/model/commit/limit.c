@@ -26,8 +26,10 @@ static bool shorten(const struct pass *pass, const struct cs_spring_run *run, ui
         squared += d[c] * d[c];
     }
     const double wa = system->inv_mass[a], wb = system->inv_mass[b];
+    /* nothing to move between two pinned ends */
     if (!(squared > longest * longest) || wa + wb == 0)
         return false;
+    /* by inverse masses, so that the pair keeps its momentum */
     const double share = (1 - longest / sqrt(squared)) / (wa + wb);
     for (size_t c = 0; c < 3; c++) {
         const double move_a = wa * share * d[c], move_b = -wb * share * d[c];

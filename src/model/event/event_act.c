@@ -157,8 +157,10 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
         state->first = *state->value;
         state->last = of->ramp.value;
     }
+    /* at once: the last value now; else cs_event_set_value moves it there */
     if ((of->wind.present || of->ramp.present) && !state->active)
         end_value(system, event);
+    /* at once: a change of velocity; else a force, see cs_event_sum_pushes */
     if (of->impact.present && !state->active)
         strike(system, &of->impact, of->impact.impulse,
                system->state + 3 * (size_t)system->view.n);

@@ -12,8 +12,8 @@ void cs_event_finish(struct cs_system *system, uint32_t event);
 /* The value of an active ramp or gust at t. Springs are not refreshed. */
 void cs_event_set_value(struct cs_system *system, uint32_t event, double t);
 
-/* Accelerations of all active impacts and prods over an interval, on the particles that are
- * free. */
+/* Accelerations of all active impacts and viewpoint forces over an interval, on the particles
+ * that are free. */
 void cs_event_sum_pushes(struct cs_system *system);
 
 /* The springs' stiffness and damping, and the spring list, from the values of the scene. */

@@ -36,11 +36,13 @@ void cs_event_turn(struct cs_events *events, uint32_t event, double t) {
     memset(state->rate, 0, sizeof state->rate);
     state->since = t;
     state->until = HUGE_VAL;
+    /* the leg is done: the next one begins where it ends */
     if (++state->chord == path.chords) {
         memcpy(state->corner, state->to, sizeof state->corner);
         state->chord = 0;
         state->leg++;
     }
+    /* behind the last point it stays there */
     if (state->leg >= path.n)
         return;
     chord_point(&path, state, state->to);

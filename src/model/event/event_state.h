@@ -29,7 +29,7 @@ struct cs_events {
     bool *marks;                   /* (n) work */
     double *offsets;        /* (3,n) in m, from the point of the path; NULL without grabs */
     struct cs_prods *prods; /* NULL without */
-    double look;            /* s, when a prod looks anew; HUGE_VAL: never */
+    double look;            /* s, of the next visibility test; HUGE_VAL: none */
     double now;             /* s, of the ramps' values */
     bool ramps, grabs;      /* some are under way in the segment */
 };

@@ -1,3 +1,4 @@
+/* The times at which events begin, end or turn: snapped to frames, sorted, near ones merged. */
 #include "model/event/event_times.h"
 
 #include <math.h>

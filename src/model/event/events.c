@@ -1,3 +1,4 @@
+/* The events of a run: cuts it into segments and, between two, applies what begins and ends. */
 #include "model/event/events.h"
 
 #include "model/contact/obstacle.h"
@@ -88,6 +89,7 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     widen_pinned(system, error);
     const struct cs_event *list = cs_scene_events(&events->scene);
     for (uint32_t e = 0; e < events->scene.events.n && !error->status; e++) {
+        /* ramps point into the copy of the scene, which they may change */
         struct cs_event_key key;
         if (list[e].ramp.present &&
             !cs_event_key_find(&events->scene, list[e].ramp.key, &key, error))
@@ -161,6 +163,7 @@ static void turn(struct cs_system *system, double t) {
     events->next++;
     events->begin = events->now = t;
     events->end = events->next < events->n_times ? events->times[events->next] : HUGE_VAL;
+    /* ends first: the next event may take over the same value or particles */
     for (uint32_t e = 0; e < n; e++)
         if (events->states[e].active && events->states[e].end <= t)
             cs_event_finish(system, e);
@@ -168,6 +171,7 @@ static void turn(struct cs_system *system, double t) {
         if (events->states[e].begin == t)
             cs_event_start(system, e);
 
+    /* what is under way in the segment that begins */
     events->ramps = events->grabs = false;
     for (uint32_t e = 0; e < n; e++) {
         const struct cs_event *event = cs_scene_events(&events->scene) + e;

@@ -22,12 +22,13 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
 void cs_events_set_bounds(struct cs_system *system, double *work);
 
 /* When something happens next that has not happened yet, in s: the segment ends, or within it a
- * prod looks anew. */
+ * viewpoint force tests visibility again. */
 double cs_events_next(const struct cs_events *events);
 
-/* Everything that happens at t: ends before beginnings, each in the scene's order, then looks
- * of prods. Changes the system's state, pins and values; where the segment ended, opens the one
- * from t to events->end. false if nothing changed: prods looked, and saw the same. */
+/* Everything that happens at t: ends before beginnings, each in the scene's order, then
+ * visibility tests. Changes the system's state, pins and values; where the segment ended, opens
+ * the one from t to events->end. false if nothing changed: the tests selected the same
+ * particles. */
 bool cs_events_apply(struct cs_system *system, double t);
 
 /* Times up to t, besides those of frames, at which a method may have to stop, or more. */

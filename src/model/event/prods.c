@@ -1,3 +1,5 @@
+/* Viewpoint forces (the event `prod`): the particles that they act on, and the times at which
+ * visibility is tested again. */
 #include "model/event/prods.h"
 
 #include "model/event/event_times.h"
@@ -41,6 +43,7 @@ enum cs_status cs_prods_build(struct cs_system *system, struct cs_error *error) 
         *state = (struct cs_prod_state){.event = e, .seen = seen, .next = HUGE_VAL};
         cs_sight_make(&state->sight, prod_of(scene, e));
     }
+    /* shared work: nobody keeps anything in it between two calls */
     prods->marks = system->events->marks;
     system->events->prods = prods;
     return cs_sight_work_init(&prods->work, n, arena, error);
@@ -53,7 +56,7 @@ static struct cs_prod_state *state_of(const struct cs_prods *prods, uint32_t eve
     return prods->states + k;
 }
 
-/* sees anew; true if others than before */
+/* tests visibility again; true if other particles are seen than before */
 static bool look(const struct cs_system *system, struct cs_prod_state *state, double t) {
     const struct cs_prods *prods = system->events->prods;
     const struct cs_prod *prod = prod_of(system->scene, state->event);
@@ -75,7 +78,7 @@ static void add(const struct cs_system *system, const struct cs_prod_state *stat
                 out[c * n + i] += state->sight.axes[2][c] * (factor / system->mass[i]);
 }
 
-/* when the prod looks after so many looks */
+/* time of the visibility test number `looks`, in s */
 static double time_of(const struct cs_scene *scene, const struct cs_prod *prod, double begin,
                       double looks) {
     return prod->refresh > 0 ? cs_event_time_snap(scene, begin + looks / prod->refresh)

@@ -1,9 +1,10 @@
-/* prods.h - forces from a viewpoint: what the events `prod` act on, and when they look anew.
+/* prods.h - viewpoint forces: what the events `prod` act on, and when visibility is tested.
  *
- * A prod over an interval acts on the particles that it saw at its last look. Between two looks
- * they stay the same, so that forces are smooth there; a look that sees other particles than
- * the one before makes the method start anew, like every event. Looks come one after the other
- * and are not listed: an interval may be long. A scene without prods has none of this.
+ * A viewpoint force over an interval acts on the particles that its last visibility test has
+ * selected. Between two tests they stay the same, so that forces are smooth there; a test that
+ * selects other particles than the one before restarts the method, like every event. The times
+ * of tests are not listed, as an interval may be long. A scene without viewpoint forces has
+ * none of this.
  */
 #ifndef CS_PRODS_H
 #define CS_PRODS_H
@@ -13,10 +14,10 @@
 struct cs_prod_state {
     uint32_t event; /* number in the scene */
     struct cs_sight sight;
-    bool *seen;   /* (n) particles at the last look */
+    bool *seen;   /* (n) particles at the last test */
     bool active;  /* between its two ends */
-    double looks; /* how many there were in this interval */
-    double next;  /* s, of the next one; HUGE_VAL: none */
+    double looks; /* tests so far in this interval */
+    double next;  /* s, of the next test; HUGE_VAL: none */
 };
 
 struct cs_prods {
@@ -28,21 +29,21 @@ struct cs_prods {
 
 bool cs_prods_any(const struct cs_scene *scene);
 
-/* Bytes that the prods of a scene with n particles take. */
+/* Bytes that the viewpoint forces of a scene with n particles take. */
 size_t cs_prods_bytes(const struct cs_scene *scene, uint32_t n);
 
-/* Makes the prods of events that are there. CS_ERR_MEMORY. */
+/* Makes the viewpoint forces of events that are built. CS_ERR_MEMORY. */
 enum cs_status cs_prods_build(struct cs_system *system, struct cs_error *error);
 
-/* An event begins now: it looks; over an interval it goes on to act, else each particle's
- * momentum changes by force times duration. The other: it ends. */
+/* An event begins now: visibility is tested; over an interval it goes on to act, else the
+ * momentum of each particle changes by force times duration. The other: it ends. */
 void cs_prod_start(struct cs_system *system, uint32_t event);
 void cs_prod_finish(struct cs_system *system, uint32_t event);
 
-/* Looks anew where it is time at t. true if any now sees others than before. */
+/* Tests visibility where it is time at t. true if any now sees others than before. */
 bool cs_prods_look(struct cs_system *system, double t);
 
-/* Time of the next look in s; HUGE_VAL: none. */
+/* Time of the next test in s; HUGE_VAL: none. */
 double cs_prods_next(const struct cs_prods *prods);
 
 /* push (3,n) += acceleration in m/s2 of those that are seen and free. */
@@ -51,7 +52,7 @@ void cs_prods_add_push(const struct cs_system *system, double *push);
 /* Force in N on a particle that is seen by all that are active, at most. */
 double cs_prods_force(const struct cs_prods *prods, const struct cs_scene *scene);
 
-/* Looks of a scene until t that are at no frame. */
+/* Tests of a scene until t that are at no frame. */
 uint32_t cs_prods_cuts(const struct cs_scene *scene, double t);
 
 #endif

@@ -1,3 +1,5 @@
+/* Visibility from a viewpoint: of the particles in the rectangle, those that no triangle and no
+ * collider hides. */
 #include "model/event/sight.h"
 
 #include "base/sine.h"
@@ -7,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* share of the way to a particle that is looked along */
+/* share of the line to a particle that is tested */
 #define REACH (1 - 1e-9)
 /* cells by which a triangle's bounds are widened, far above rounding */
 #define MARGIN 1e-6
@@ -125,6 +127,7 @@ static uint32_t mark(const struct cs_sight *sight, const struct cs_system *syste
         place_of(grid->work, grid->n, i, p);
         grid->seen[i] = is_in_rectangle(sight, p);
     }
+    /* before the bounds, which hidden particles would widen */
     for (uint32_t k = 0; k < colliders->n; k++) {
         struct cs_obstacle obstacle;
         cs_obstacle_at(system, k, t, &obstacle);
@@ -142,8 +145,7 @@ static uint32_t mark(const struct cs_sight *sight, const struct cs_system *syste
     return count;
 }
 
-/* the column or row of a place in the image, moved by some cells; outside, that at the border
- */
+/* column or row of a position in the image, moved by some cells; outside, that at the border */
 static uint32_t line_of(const struct grid *grid, int axis, double image, double move) {
     const double at = (image - grid->low[axis]) * grid->scale[axis] + move;
     return (uint32_t)least(most(at, 0), grid->cells - 1);
@@ -176,7 +178,7 @@ static void sort(struct grid *grid, uint32_t count) {
 }
 
 /* A triangle as seen from the eye: the cells that its image lies in, and what tells whether a
- * way goes through it. */
+ * line from the eye goes through it. */
 struct face {
     uint32_t corners[3];
     uint32_t from[2], to[2]; /* column, row */
@@ -215,7 +217,7 @@ static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
     return true;
 }
 
-/* The way to p goes through the triangle: p is on one side of the planes through the eye and
+/* The line to p goes through the triangle: p is on one side of the planes through the eye and
  * each edge, and behind the triangle's own. Neighbours compute the same numbers for the edge
  * between them but for the sign, so nothing is seen through a seam. */
 static bool hides(const struct face *face, const double p[3]) {
@@ -223,7 +225,7 @@ static bool hides(const struct face *face, const double p[3]) {
         return false;
     const double a = dot(face->sides[0], p), b = dot(face->sides[1], p),
                  c = dot(face->sides[2], p);
-    const double sum = a + b + c; /* the way meets the plane at volume / sum of its length */
+    const double sum = a + b + c; /* the line meets the plane at volume / sum of its length */
     if (a >= 0 && b >= 0 && c >= 0)
         return face->volume > 0 && face->volume < REACH * sum;
     if (a <= 0 && b <= 0 && c <= 0)

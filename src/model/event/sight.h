@@ -1,4 +1,4 @@
-/* sight.h - which particles are seen through a rectangle from a viewpoint.
+/* sight.h - visibility: which particles are seen through a rectangle from a viewpoint.
  *
  * A particle is seen if it lies in front of the eye, its perspective image lies in the
  * rectangle, and nothing lies on the straight line to it: no triangle of any body but those it
@@ -19,7 +19,7 @@ struct cs_sight {
 
 /* Work of n particles, the caller's. */
 struct cs_sight_work {
-    double *places;                   /* (3,n) m, along the axes from the eye */
+    double *places;                   /* (3,n) m, positions along the axes from the eye */
     uint32_t *cells, *order, *begins; /* (n), (n), (n + 1) */
 };
 
@@ -30,11 +30,11 @@ size_t cs_sight_bytes(uint32_t n);
 enum cs_status cs_sight_work_init(struct cs_sight_work *work, uint32_t n,
                                   struct cs_arena *arena, struct cs_error *error);
 
-/* seen (n) = which particles of a body (-1: of all) are seen at time t and places x (3,n).
+/* seen (n) = which particles of a body (-1: of all) are seen at time t and positions x (3,n).
  * Those exactly on a side of the rectangle are in it. The line ends a billionth of its length
  * before the particle, so that one that touches a surface is not hidden by it. Planes and
  * floors reach to infinity, and what is behind them is solid, as are the other colliders. A
- * place that is not finite is not seen. */
+ * position that is not finite is not seen. */
 void cs_sight_find(const struct cs_sight *sight, const struct cs_system *system, double t,
                    const double *x, int64_t body, const struct cs_sight_work *work, bool *seen);
 

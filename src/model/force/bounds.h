@@ -4,10 +4,11 @@
 
 #include "model/system/system.h"
 
-/* Bounds from the forces' row sums of 3x3 blocks (Gershgorin): omega^2 is the largest sum of df/dx
- * over the mass of a free particle, delta half the largest of df/dv. at: at that state; NULL:
- * what holds for the whole run, as far as forces can say: springs that are not shorter than
- * half their rest length, dampers, drag. work has 2n doubles. */
+/* Gershgorin bounds from the 3x3 blocks of all forces. Of the sums of their norms in the rows
+ * of free particles, over the mass: omega^2 is the largest of df/dx, delta half the largest of
+ * df/dv. at: at that state; NULL: what holds for the whole run, as far as forces can say:
+ * springs that are not shorter than half their rest length, dampers, drag. work has 2n doubles.
+ */
 void cs_bounds_at(const struct cs_system *system, const struct cs_eval *at, double *work,
                   double *omega, double *delta);
 

@@ -1,3 +1,4 @@
+/* Measures a state: energies, strains and forces. */
 #include "model/force/measure.h"
 
 #include "model/force/normals.h"

@@ -1,4 +1,4 @@
-/* measure.h - what a state is like: energy, strain, force, hash. */
+/* measure.h - what a state is like: energy, strain, force. */
 #ifndef CS_MEASURE_H
 #define CS_MEASURE_H
 

@@ -15,8 +15,8 @@ enum cs_term_use {
     CS_USE_AREA = 1u << 1     /* area (n) */
 };
 
-/* For bounds.h, at each particle: the sum of the norms of the 3x3 blocks in its row of a force's
- * derivative, its own block and those of its neighbours (Gershgorin). */
+/* For the Gershgorin bounds of bounds.h, at each particle: the sum of the norms of the 3x3
+ * blocks in its row of a force's derivative, the diagonal block and those of its neighbours. */
 struct cs_row_sums {
     double *stiffness, *damping; /* (n) of df/dx in N/m and of df/dv in N s/m */
 };
@@ -66,7 +66,7 @@ struct cs_term {
                          double *dvv);
 
     /* --- how strong it is --- */
-    /* Adds bounds on its row sums that hold for the whole run, with the values that the scene
+    /* Adds its Gershgorin bounds that hold for the whole run, with the values that the scene
      * has now. NULL: none, or none that holds for every state. */
     void (*add_bound)(const struct cs_system *system, const struct cs_row_sums *sums);
     /* Bounds at a state, instead of those above. NULL: they hold at any. */

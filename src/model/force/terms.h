@@ -24,7 +24,7 @@ extern const uint32_t cs_n_terms;
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f);
 /* df (3,n), 0 on pinned particles. Fresh normals as above. */
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df);
-/* The particles' own blocks kxx, dvv (6,n) of CS_PART_LINEARISED: xx, xy, xz, yy, yz, zz. */
+/* The diagonal blocks kxx, dvv (6,n) of CS_PART_LINEARISED: xx, xy, xz, yy, yz, zz. */
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv);
 

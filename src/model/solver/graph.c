@@ -1,3 +1,4 @@
+/* Joins the nodes of a weighted graph in pairs, each with its heaviest free neighbour. */
 #include "model/solver/graph.h"
 
 #include <stdbool.h>

@@ -1,3 +1,5 @@
+/* Multigrid levels of a grid: 2 x 2 cells become one, springs between them are summed and
+ * halved. */
 #include "model/solver/hierarchy.h"
 
 #include "base/pool.h"

@@ -1,3 +1,5 @@
+/* Multigrid levels of a mesh: cells are joined in pairs, twice, by the stiffness between them.
+ */
 #include "model/solver/hierarchy.h"
 
 #include "base/pool.h"
@@ -78,6 +80,7 @@ static enum cs_status level_of(const struct cs_graph *graph, uint32_t pitch,
     if (error->status)
         return error->status;
     memcpy(level->ends, graph->ends, 2 * sizeof(uint32_t) * graph->n_edges);
+    /* the number of slots is known only now */
     count_slots(graph, level, count);
     const size_t n_slots = level->starts[level->n / CS_LANES];
     level->neighbours = cs_arena_take_n(arena, n_slots * CS_LANES, sizeof(uint32_t), error);

@@ -1,3 +1,5 @@
+/* Kernels of one multigrid level in single precision: product, Chebyshev smoother and inverse
+ * diagonal blocks. */
 #include "model/solver/level.h"
 
 #include "base/pool.h"

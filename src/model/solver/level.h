@@ -2,7 +2,7 @@
  *
  * A level is a matrix of the same form as the solver's, in single precision:
  *   (A p)_i = own_i p_i + sum over the springs of cell i of B (p_i - p_j),  B symmetric, >= 0
- * where own_i is the cell's mass and whatever ties it to pinned places. The differences
+ * where own_i is the cell's mass and whatever ties it to pinned particles. The differences
  * matter: moving all cells alike costs their mass and nothing else, whatever the rounding of
  * stiff blocks. A cell without mass is dead: a pinned particle, or the padding around a grid.
  *

@@ -1,3 +1,4 @@
+/* Preconditioned conjugate gradients on (cm M + cd df/dv + ck df/dx) u = b, matrix-free. */
 #include "model/solver/linear.h"
 
 #include "base/vector.h"

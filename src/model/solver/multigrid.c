@@ -1,3 +1,4 @@
+/* Aggregation multigrid as a preconditioner: one V-cycle for each body, in single precision. */
 #include "model/solver/multigrid.h"
 
 #include "base/clones.h"
@@ -117,6 +118,7 @@ CS_CLONES static void load_own(void *arg, uint32_t block) {
                 double value = on_diagonal[c] ? mass[at] : 0;
                 if (blocks)
                     value += blocks[c * n + at];
+                /* 0 marks a dead cell: a pinned particle does not move */
                 own[i] = inv_mass[at] > 0 ? (float)(loading->exchange.gain * value) : 0;
             }
         }

@@ -1,3 +1,5 @@
+/* Runs dependent loops over the blocks of an array as one wavefront, so that a block is still
+ * in the cache when the next loop comes to it. */
 #include "model/solver/wave.h"
 
 #include "base/pool.h"

@@ -8,7 +8,7 @@
 #include "base/clones.h"
 #include "model/spring/runs.h"
 
-enum { PIECE = 256 }; /* springs whose forces wait in a buffer on the stack */
+enum { PIECE = 256 }; /* springs whose forces a buffer on the stack holds */
 enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
 _Static_assert(CS_LOT_MOST % PIECE == 0, "a lot is of whole pieces");
 
@@ -138,7 +138,7 @@ CS_INLINE void scatter(const struct piece *piece, const double *fx, const double
     }
 }
 
-/* the forces that wait, particle by particle, in the order of the springs; the run's body has
+/* the buffered forces, particle by particle, in the order of the springs; the run's body has
  * particles in the block */
 CS_INLINE void gather(const struct cs_wait *wait, const struct cs_spring_run *run,
                       const struct cs_block *block, size_t n, double *f) {
@@ -152,6 +152,7 @@ CS_INLINE void gather(const struct cs_wait *wait, const struct cs_spring_run *ru
         for (size_t k = wait->starts[i]; k < wait->starts[i + 1]; k++) {
             const size_t spring = wait->around[k] >> 1;
             const double s = sign[wait->around[k] & 1];
+            /* times 1 or -1 is exact: the bits are those of scatter */
             x += s * fx[spring];
             y += s * fy[spring];
             z += s * fz[spring];
@@ -198,7 +199,7 @@ CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run
     }
 }
 
-/* Leaves what kernel makes of the springs of one lot to wait. */
+/* Buffers what kernel makes of the springs of one chunk. */
 CS_INLINE void wait_lot(const struct job *job, const struct cs_lot *lot, run_test *asks,
                         piece_kernel *kernel) {
     const struct cs_spring_run *run = job->springs->runs + lot->run;

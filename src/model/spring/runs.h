@@ -72,8 +72,8 @@ struct cs_matrix {
 };
 
 /* Springs [begin, end) of a mesh's run whose forces one thread computes. As their ends lie
- * anywhere, each force waits in its place, and a thread adds to a particle of its block what
- * waits for it, in the order of the springs. */
+ * anywhere, each force is buffered in a slot of its own, and a thread adds to the particles of
+ * its block from there, in the order of the springs. */
 struct cs_lot {
     uint32_t run, begin, end;
 };

@@ -1,5 +1,5 @@
 /* Kernels over spring runs: force, energy, Jacobian product. Rows are done in pieces that fit a
- * small buffer on the stack; within a piece no spring waits for another, so the loops
+ * small buffer on the stack; within a piece no spring depends on another, so the loops
  * vectorise. */
 #include "model/spring/springs.h"
 
@@ -187,9 +187,11 @@ CS_INLINE void jvp_of(const struct piece *piece, const struct inputs *in, const 
         const double L = listed ? piece->lengths[i] : length;
         const double k = listed ? asked.k * piece->stiffnesses[i] : asked.k;
         const struct difference p = across(x, i, listed);
+        /* DBL_MIN as in force_of, whose derivative this is */
         const double inverse = 1 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z + DBL_MIN);
         const double ux = p.x * inverse, uy = p.y * inverse, uz = p.z * inverse;
         double rx = 0, ry = 0, rz = 0;
+        /* the spring changes its length and turns, and axial dampers turn with it */
         if (moved) {
             const struct difference e = across(dx, i, listed);
             const double ue = ux * e.x + uy * e.y + uz * e.z;
@@ -204,6 +206,7 @@ CS_INLINE void jvp_of(const struct piece *piece, const struct inputs *in, const 
             ry = slack * e.y + along * uy + closing * ty;
             rz = slack * e.z + along * uz + closing * tz;
         }
+        /* dv changes the speeds of the ends alone, which dampers feel */
         if (turned) {
             const struct difference g = across(dv, i, listed);
             const double along = axial * (g.x * ux + g.y * uy + g.z * uz);

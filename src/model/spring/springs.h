@@ -47,7 +47,7 @@ void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const stru
 void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
                          const struct cs_eval *at);
 
-/* Adds every particle's own blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
+/* Adds the diagonal blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
  * The position derivative of axial damping is left out, as in the solver's matrix. */
 void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const double *x,
                              double *kxx, double *dvv);
@@ -61,7 +61,7 @@ void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
 /* By all threads. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y);
-/* Own blocks (6,n) of that matrix, added. */
+/* Diagonal blocks (6,n) of that matrix, added. */
 void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
                                 const double *factors, double *blocks);
 

@@ -89,6 +89,7 @@ static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_bod
     *run = *like;
     run->lengths = lengths;
     run->stiffnesses = lists + like->count;
+    /* of the mesh before its placement, whose rounding would change lengths */
     for (uint32_t i = 0; i < like->count; i++) {
         double squared = 0;
         for (size_t c = 0; c < 3; c++) {
@@ -106,6 +107,7 @@ static uint32_t mesh_runs(const struct cs_body *body, uint32_t body_index, uint3
                           struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
     const struct cs_spring_law *law = &body->springs;
     const struct cs_trimesh *mesh = body->mesh.geometry;
+    /* in the order of sums; the inner springs of a network count as shear */
     const struct {
         uint32_t kind, count;
         const uint32_t *ends;

@@ -1,4 +1,4 @@
-/* The springs' Jacobian as a matrix: own blocks of particles, and the factored form
+/* The springs' Jacobian as a matrix: diagonal blocks, and the factored form
  * y = sum of (s I + w w^T)(p_a - p_b) that the linear solver multiplies by. */
 #include "model/spring/springs.h"
 
@@ -46,7 +46,7 @@ CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks
         }
 }
 
-/* Own blocks of one piece: of df/dx; of df/dv only with axial dampers, which turn with the
+/* Diagonal blocks of one piece: of df/dx; of df/dv only with axial dampers, which turn with the
  * spring. */
 CS_INLINE void piece_diagonal(const struct piece *piece, struct ends e, const bool listed,
                               const bool axial, struct blocks *stiff, struct blocks *damp) {

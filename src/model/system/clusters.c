@@ -1,3 +1,5 @@
+/* Cuts bodies into overlapping clusters for shape matching: halves across the longest side,
+ * again and again, each grown by a margin. */
 #include "model/system/clusters.h"
 
 #include "mesh/trimesh.h"
@@ -13,7 +15,7 @@ struct key {
     uint32_t particle;
 };
 
-/* a cloth's numbers of columns and rows are its places, times the distance of neighbours */
+/* of a cloth: column and row times the distance of neighbours, before its placement */
 static double place_of(const struct cs_body *body, uint32_t axis, uint32_t particle) {
     if (body->mesh.present)
         return body->mesh.geometry->places[(size_t)axis * body->mesh.geometry->n + particle];
@@ -85,6 +87,7 @@ static void find_boxes(const struct cs_body *body, uint32_t count, const uint32_
             box->low[axis] = fmin(box->low[axis], at);
             box->high[axis] = fmax(box->high[axis], at);
         }
+    /* the same margin on all sides, whatever the resolution of the mesh */
     for (uint32_t k = 0; k < parts; k++) {
         double side = 0;
         for (int axis = 0; axis < 3; axis++)
@@ -136,6 +139,7 @@ enum cs_status cs_clusters_make(const struct cs_body *body, struct cs_clusters *
             keys[i].particle = i;
         cut(body, keys, count, parts, 0, part_of);
         find_boxes(body, count, part_of, boxes);
+        /* the first pass counts, the second writes */
         fill(body, count, boxes, clusters->begin, NULL);
         clusters->items =
             cs_arena_take_n(arena, clusters->begin[parts], sizeof *clusters->items, error);
@@ -189,6 +193,7 @@ enum cs_status cs_clusters_build(struct cs_system *system, struct cs_error *erro
         return error->status;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_shape_matching *of = &cs_scene_bodies(system->scene)[b].shape_matching;
+        /* items count within a body, the view over all particles */
         if (of->present)
             put_clusters(&at, of, system->bodies[b].first);
     }

@@ -9,7 +9,7 @@ struct cs_system;
 
 struct cs_clusters {
     uint32_t n;
-    uint32_t *begin; /* (n + 1) places in items */
+    uint32_t *begin; /* (n + 1) offsets into items */
     uint32_t *items; /* particles within the body, ascending in each part */
 };
 

@@ -20,6 +20,7 @@ static void count_degrees(const struct cs_system *system, double *degree) {
 void cs_system_weigh(struct cs_system *system) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     memset(system->mass, 0, system->view.n * sizeof *system->mass);
+    /* the masses hold degrees until each body has set its own */
     count_degrees(system, system->mass);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_mass *mass = &bodies[b].mass;

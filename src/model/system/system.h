@@ -30,11 +30,11 @@ struct cs_system {
     struct cs_body_range *bodies; /* (scene->bodies.n) */
     struct cs_springs springs;
     double *mass, *inv_mass; /* (n) */
-    double *start;           /* (3,n) places at time 0 */
+    double *start;           /* (3,n) positions at time 0 */
     double *state;           /* 6n: x (3,n), v (3,n) at time 0 */
     double *area;            /* (n) share of the area in m2; NULL unless a law asks for it */
-    double *normals;         /* (3,n) of the last places asked for; NULL: no force uses them */
-    double *push; /* (3,n) m/s2, of events over an interval; NULL where none can push */
+    double *normals; /* (3,n) of the last positions asked for; NULL: no force uses them */
+    double *push;    /* (3,n) m/s2, of events over an interval; NULL where none can push */
     uint32_t *pinned, n_pinned;                 /* (n_pinned) particles, ascending */
     const struct cs_term *terms[CS_TERMS_MOST]; /* the forces that this scene has */
     uint32_t n_terms;
