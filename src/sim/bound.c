@@ -1,3 +1,5 @@
+/* Detects a blow-up: numbers that are not finite, or more kinetic energy than the scene can
+ * give. */
 #include "sim/bound.h"
 
 #include "base/vector.h"
@@ -79,7 +81,7 @@ struct watched {
     const double *mass, *x, *v;
 };
 
-/* Kinetic energy of a range, not a number where a place or a speed is none. In lanes: it runs
+/* Kinetic energy of a range; not finite where a position or a speed is not. In lanes: it runs
  * after every step. */
 static double watch_part(const void *arg, size_t begin, size_t end) {
     enum { LANES = sizeof(lanes) / sizeof(double) };
@@ -116,6 +118,7 @@ bool cs_bound_is_passed(const struct cs_bound *bound, struct cs_run *run, double
     if (energy <= most)
         return false;
 
+    /* whose fault: the first particle that is not finite, or else the fastest */
     uint32_t worst = 0;
     double fastest = -1;
     run->outcome = CS_UNBOUNDED;

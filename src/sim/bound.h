@@ -18,9 +18,9 @@ struct cs_bound {
 void cs_bound_set(struct cs_bound *bound, const struct cs_system *system, double t);
 
 /* After the events at time t were applied: from the state that they leave, with the larger of
- * what holds now and what ramps come to; a grab may pull all particles along. Where prods only
- * looked anew, the bound goes on with other forces: it would else follow a blow-up from look to
- * look. */
+ * what holds now and what ramps come to; a grab may pull all particles along. Where viewpoint
+ * forces only tested visibility again, the bound goes on with other forces: it would else
+ * follow a blow-up from test to test. */
 void cs_bound_follow_events(struct cs_bound *bound, struct cs_system *system, double t);
 
 /* Runs after every step. true: run->outcome and run->blow_up say what happened. */

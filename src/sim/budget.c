@@ -1,3 +1,4 @@
+/* Limits the processor time of a run, at little cost a step. */
 #include "sim/budget.h"
 
 #include "base/clock.h"

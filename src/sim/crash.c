@@ -1,3 +1,4 @@
+/* Names the integrator when a fatal signal arrives in its first call. */
 #include "sim/crash.h"
 
 #include "base/status.h"

@@ -1,3 +1,4 @@
+/* Finds the program's own modules: in its build tree, or where they are installed beside it. */
 #include "sim/folders.h"
 
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* Saves and restores the floating-point mode around foreign code. */
 #include "sim/guard.h"
 
 #include <fenv.h>

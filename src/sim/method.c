@@ -1,4 +1,4 @@
-/* method.c - the parser of NAME:key=value,... that every command uses. */
+/* The parser of NAME:key=value,... that every command uses. */
 #include "sim/method.h"
 
 #include "base/options.h"

@@ -1,3 +1,4 @@
+/* Opens an integrator module and checks it against the contract before it is called. */
 #include "sim/module.h"
 
 #include "sim/guard.h"
@@ -39,11 +40,13 @@ static enum cs_status check_option(const struct cs_integrator *integrator,
         return refuse_option(integrator, option, "its name is not of [a-z0-9_]", error);
     if (size == 0)
         return refuse_option(integrator, option, "its type is not for modules", error);
+    /* in this order the subtraction cannot wrap round */
     if (option->offset > integrator->options_size ||
         size > integrator->options_size - option->offset)
         return refuse_option(integrator, option, "it lies outside its struct", error);
     if (!option->help || !option->unit)
         return refuse_option(integrator, option, "it has no help or unit", error);
+    /* written so that a NaN is refused */
     if (option->type == CS_CHOICE) {
         int32_t n = 0;
         while (option->choices && option->choices[n])
@@ -64,6 +67,7 @@ static const uint32_t least_size = offsetof(struct cs_integrator, goals);
 
 static enum cs_status check_integrator(const struct cs_integrator *integrator,
                                        struct cs_error *error) {
+    /* the name first: every message needs it */
     if (!integrator || !is_name(integrator->name, "abcdefghijklmnopqrstuvwxyz0123456789-"))
         return cs_fail(error, CS_ERR_MODULE, "an integrator's name is not of [a-z0-9-]");
     if (integrator->size < least_size)

@@ -1,3 +1,4 @@
+/* Finds integrators by name among the module files, and opens as few of them as possible. */
 #include "sim/registry.h"
 
 #include "base/file.h"
@@ -18,6 +19,7 @@ static enum cs_status add_entry(struct cs_registry *registry, const char *file,
                                 struct cs_error *error) {
     if (registry->n == registry->capacity) {
         const uint32_t capacity = 2 * registry->capacity + 32;
+        /* an arena cannot grow an array: the old one stays until finish */
         struct cs_registered *entries =
             cs_arena_take_n(&registry->arena, capacity, sizeof *entries, error);
         if (!entries)

@@ -1,3 +1,5 @@
+/* Runs a method over a system: creates it, advances it frame by frame, restarts it at events.
+ */
 #include "sim/run.h"
 
 #include "base/clock.h"
