@@ -1,4 +1,4 @@
-/* arkode.c - Runge-Kutta methods of SUNDIALS ARKODE, with error control or a fixed step.
+/* Runge-Kutta methods of SUNDIALS ARKODE, with error control or a fixed step.
  *
  *   ark-erk   explicit
  *   ark-dirk  diagonally implicit: one Newton iteration a stage
@@ -160,6 +160,7 @@ static enum cs_step create(const struct cs_host *host, const void *options,
     if (!table->stages)
         return host->fail(host->ctx, "SUNDIALS %s has no table of order %d: take another order",
                           SUNDIALS_VERSION, (int)self->asked.order);
+    /* each stage keeps a slope, of an additive pair two */
     const int slopes =
         (explicit_part ? table->stages : 0) + (implicit_part ? table->stages : 0);
     if (sundials_open(&self->base, host, &library, slopes + WORK_VECTORS,

@@ -1,4 +1,4 @@
-/* arkode_tables.c - the tables by order; see arkode_tables.h. */
+/* The names of ARKODE's tables by order, as this version of SUNDIALS has them. */
 #include "arkode_tables.h"
 
 #include <sundials/sundials_version.h>

@@ -1,4 +1,4 @@
-/* bdf2.c - two-step backward differentiation, by Newton or by one linear solve.
+/* Two-step backward differentiation, by Newton or by one linear solve.
  *
  * For y = (x, v), y' = F(t, y), and y_ one step of the same length before y:
  *   y' = y + (y - y_)/3 + 2/3 h F(t + h, y')
@@ -62,6 +62,7 @@ static enum cs_step step(struct halving *object, double t, double h, double *x, 
     struct method *self = (struct method *)object;
     const struct cs_view *view = object->loop.host->view;
     const size_t bytes = 3 * sizeof(double) * view->n;
+    /* on copies: a refused step leaves x and v as they were */
     memcpy(self->xn, x, bytes);
     memcpy(self->vn, v, bytes);
     const enum cs_step status = halving_is_fresh(object, h)
@@ -73,6 +74,7 @@ static enum cs_step step(struct halving *object, double t, double h, double *x, 
     *accepted &= !object->turned;
     if (status != CS_STEP_OK || !*accepted)
         return status;
+    /* the old state is the history of the next step */
     memcpy(self->xl, x, bytes);
     memcpy(self->vl, v, bytes);
     memcpy(x, self->xn, bytes);

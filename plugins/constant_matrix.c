@@ -1,4 +1,4 @@
-/* constant_matrix.c - the matrix as a list of entries, and when it is factored anew. */
+/* The matrix as a list of entries, and when it is factored anew. */
 #include "constant_matrix.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* cvode.c - linear multistep methods of variable order and step, by SUNDIALS CVODE: backward
+/* Linear multistep methods of variable order and step, by SUNDIALS CVODE: backward
  * differentiation with a Newton iteration, and Adams-Moulton with a fixed-point iteration.
  * CVODE goes on across frames, and after commits that moved the state: see cvode_history.h.
  */
@@ -152,6 +152,7 @@ static int open_memory(struct cvode *self, int family) {
     code = CVodeSetErrHandlerFn(base->memory, sundials_keep_message, base);
 #endif
     const int order = (int)(family == CV_BDF ? choose_bdf_order(self) : asked->max_order);
+    /* 0: rtol of 1 m and 1 m/s */
     const double atol = asked->atol > 0 ? asked->atol : asked->rtol;
     if (code == CV_SUCCESS)
         code = CVodeInit(base->memory, sundials_whole_slope, 0, base->state);

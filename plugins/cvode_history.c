@@ -1,4 +1,4 @@
-/* cvode_history.c - finds and moves CVODE's history; see cvode_history.h. */
+/* Finds and moves CVODE's history; see cvode_history.h. */
 #include "cvode_history.h"
 
 #include <cvode/cvode.h>

@@ -1,4 +1,4 @@
-/* dopri5.c - the explicit pair 5(4) of Dormand and Prince with error control.
+/* The explicit pair 5(4) of Dormand and Prince with error control.
  *
  * With y = (x, v), F = (v, f/m):  k_i = F(t + c_i h, y + h sum_j a_ij k_j),
  * y' = y + h sum_j a_7j k_j of order 5, and h sum_j e_j k_j is its distance from the method of
@@ -174,6 +174,7 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
         struct step_control *control = &self->control;
         control->h = control->h < dt_max ? control->h : dt_max;
         const double h = cut(control->h, t1 - t);
+        /* a shorter step is lost in the rounding of t; NaN is refused too */
         if (!(h > 4 * DBL_EPSILON * t1))
             return host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", h, t);
         const double error = attempt(self, t, h, x);
@@ -182,6 +183,7 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
             continue;
         }
         accept(self, x);
+        /* ends at t1 itself, not at a sum that rounds beside it */
         t = h < t1 - t ? t + h : t1;
         bool changed = false;
         const enum cs_step status = host->commit(host->ctx, t, h, x, v, &changed);
@@ -202,6 +204,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (self->asked.atol <= 0)
         self->asked.atol = self->asked.rtol;
     self->length = 6 * (size_t)host->view->n;
+    /* pinned particles have no error: the norm is a mean over the others */
     for (size_t i = 0; i < host->view->n; i++)
         self->free += host->view->inv_mass[i] > 0 ? 6 : 0;
     self->free = self->free > 1 ? self->free : 1;

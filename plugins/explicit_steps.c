@@ -1,4 +1,4 @@
-/* explicit_steps.c - one step of each explicit method.
+/* One step of each explicit method.
  *
  * With a = f(t, x, v) / m and step h, ' marking the new state:
  *   explicit-euler    x' = x + h v,              v' = v + h a    (cloth thesis, eq. 5.15)
@@ -54,6 +54,7 @@ static void move_part(void *arg, size_t begin, size_t end) {
             .weight = move->weight,
             .forth = move->forth,
         };
+        /* the method's own arrays (3,n) lie one behind the other */
         for (size_t k = 0; k < self->n_kept; k++)
             row.kept[k] = self->kept + 3 * n * k + at;
         move->row(&row);
@@ -252,6 +253,7 @@ enum cs_step step_rk4(struct fixed_step *loop, double t, double h, double *x, do
     struct explicit_method *self = method_of(loop);
     const double *stage_x = self->kept, *stage_v = stage_x + 3 * (size_t)loop->host->view->n;
     move_all(self, h, x, v, rk4_begin_row);
+    /* stage k + 1 lies at t + reach[k] h; after the last there is none */
     double stage_t = t;
     for (int k = 0; k < 4; k++) {
         struct move stage = {.row = rk4_stage_row,

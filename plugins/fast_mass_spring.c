@@ -1,4 +1,4 @@
-/* fast_mass_spring.c - implicit Euler by local/global steps with a constant matrix.
+/* Implicit Euler by local/global steps with a constant matrix.
  *
  * A spring's energy is the least over p with |p| = L of k/2 |x_b - x_a - p|^2. In turn,
  * `iterations` times over, from the place y = x + h v + h^2 f/m that the outer forces alone

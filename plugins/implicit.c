@@ -1,4 +1,4 @@
-/* implicit.c - implicit Euler methods that solve one linear system a step.
+/* Implicit Euler methods that solve one linear system a step.
  *
  * With K = df/dx, D = df/dv of CS_PART_LINEARISED at (x, v), and step h:
  *
@@ -175,6 +175,7 @@ static inline bool solve_piece(const struct block *self, size_t first, size_t co
         for (int c = 0; c < 3; c++)
             dv[c][i] = out[c];
     }
+    /* tested apart, so that the loop above has no branch */
     bool regular = true;
     for (size_t i = 0; i < count; i++)
         regular &= cs_sym3_is_regular(determinant[i]);

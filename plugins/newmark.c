@@ -1,4 +1,4 @@
-/* newmark.c - Newmark's family: average acceleration, HHT, generalised-alpha.
+/* Newmark's family: average acceleration, HHT, generalised-alpha.
  *
  *   M ((1 - am) a' + am a) = f(t + (1 - af) h, (1 - af) x' + af x, (1 - af) v' + af v)
  *   x' = x + h v + h^2 ((1/2 - beta) a + beta a'),   v' = v + h ((1 - gamma) a + gamma a')

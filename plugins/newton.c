@@ -1,4 +1,5 @@
-/* newton.c - see newton.h. */
+/* Newton's method with a line search for the equation of one implicit stage; formulas and
+ * sources are in newton.h. */
 #include "newton.h"
 
 #include <float.h>
@@ -75,6 +76,7 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     const struct cs_host *host = newton->host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
+    /* far from the solution only the clamped matrix surely leads downhill */
     const uint32_t flags = newton->norm < NEAR * newton->impulse ? 0 : CS_SOLVE_PSD;
     enum cs_step status =
         host->solve_setup(host->ctx, stage->t, newton->x, newton->v, 1, -stage->s * stage->gv,
@@ -87,6 +89,7 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
             newton->b[c * n + i] = -newton->r[c * n + i];
             newton->du[c * n + i] = view->inv_mass[i] * newton->b[c * n + i];
         }
+    /* the free fall is kept if it halves the residual */
     host->apply(host->ctx, newton->du, newton->f);
     host->vector->linear_sum(3 * n, 1, newton->b, -1, newton->f, newton->f);
     const double left = host->vector->dot(3 * n, newton->f, newton->f);

@@ -1,4 +1,4 @@
-/* newton_module.c - own implicit methods on one Newton iteration (newton.h), as a module. */
+/* Own implicit methods on one Newton iteration (newton.h), as a module. */
 #include "newton_methods.h"
 
 static const struct cs_integrator *const integrators[] = {

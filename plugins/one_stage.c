@@ -1,4 +1,4 @@
-/* one_stage.c - methods of one Newton stage: implicit Euler and the midpoint rule.
+/* Methods of one Newton stage: implicit Euler and the midpoint rule.
  *
  *   M (u - v) = s f(t + s, X, u),   X = x + s u
  * backward-euler: s = h, x' = X, v' = u, which is the minimum of the incremental potential

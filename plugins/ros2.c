@@ -1,4 +1,4 @@
-/* ros2.c - Rosenbrock method of two stages with one matrix: two linear solves a step.
+/* Rosenbrock method of two stages with one matrix: two linear solves a step.
  *
  * For y = (x, v), y' = F(t, y), J about dF/dy at (t, y), g = (1 - 1/sqrt 2) h:
  *   (I - g J) k1 = F(t, y)
@@ -71,6 +71,7 @@ static enum cs_step step(struct halving *base, double t, double h, double *x, do
     if (status != CS_STEP_OK)
         return status;
 
+    /* first stage: the right-hand side is (v, f/m) */
     host->force(host->ctx, t, x, v, CS_PART_ALL, b);
     memcpy(bx, v, 3 * n * sizeof *v);
     add_stiffness(self, t, g, x, v, k1);
@@ -83,6 +84,7 @@ static enum cs_step step(struct halving *base, double t, double h, double *x, do
     if ((base->turned = springs_turned(view, x, self->xn)))
         return CS_STEP_OK;
 
+    /* second stage: F(t + h, y + h k1) - 2 k1, where kx of the first is v + g k1 */
     host->force(host->ctx, t + h, self->xn, self->vn, CS_PART_ALL, b);
     for (size_t c = 0, k = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++, k++) {
@@ -92,6 +94,7 @@ static enum cs_step step(struct halving *base, double t, double h, double *x, do
     add_stiffness(self, t, g, x, v, k2);
     if ((status = solve(self, k2)) != CS_STEP_OK)
         return status;
+    /* kx = bx + g kv in either stage */
     for (size_t k = 0; k < 3 * n; k++) {
         self->xn[k] = x[k] + h * (1.5 * (v[k] + g * k1[k]) + 0.5 * (bx[k] + g * k2[k]));
         self->vn[k] = v[k] + h * (1.5 * k1[k] + 0.5 * k2[k]);

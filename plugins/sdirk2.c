@@ -1,4 +1,4 @@
-/* sdirk2.c - two diagonally implicit stages with g = (1 - 1/sqrt 2) h.
+/* Two diagonally implicit stages with g = (1 - 1/sqrt 2) h.
  *
  * For y = (x, v), y' = F(t, y):
  *   y1 = y + g F(t + g, y1)
@@ -37,6 +37,7 @@ enum cs_step sdirk2_step(struct newton *newton, const struct sdirk2_arrays *arra
     if (status != CS_STEP_OK || !*accepted)
         return status;
 
+    /* (h - g) F of the first stage, whose slope is u and (u - v) / g */
     for (size_t k = 0; k < n3; k++) {
         ub[k] = v[k] + (1 - c) / c * (u[k] - v[k]);
         xb[k] = x[k] + (h - g) * u[k];

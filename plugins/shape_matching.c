@@ -1,6 +1,6 @@
-/* shape_matching.c - bodies that are drawn back to their shape instead of held by springs.
+/* Bodies that are drawn back to their shape instead of held by springs.
  *
- * A step of length h, with particles of mass m, their places q at time 0 and all forces f,
+ * A step of length h, with particles of mass m, their positions q at time 0 and all forces f,
  * those of other bodies' springs too:
  *
  *     v += h f/m,  x += h v                                   (symplectic Euler)
@@ -10,10 +10,10 @@
  *     d = alpha (g - x),  x += d,  v += d/h
  *
  * (Mueller et al. 2005, eq. 3 to 12, in the order of the soft-body thesis, sec. 2: the goals
- * are those of the places after the free step.) That order is an implicit Euler step of springs
- * between particles and their goals, 1/(1 + (k/m) h^2) = 1 - alpha; so that alpha of a step
- * alpha_step becomes alpha_h = alpha h^2 / ((1 - alpha) alpha_step^2 + alpha h^2) in one of h,
- * with the same stiffness k = m alpha/((1 - alpha) alpha_step^2).
+ * are those of the positions after the free step.) That order is an implicit Euler step of
+ * springs between particles and their goals, 1/(1 + (k/m) h^2) = 1 - alpha; so that alpha of a
+ * step alpha_step becomes alpha_h = alpha h^2 / ((1 - alpha) alpha_step^2 + alpha h^2) in one
+ * of h, with the same stiffness k = m alpha/((1 - alpha) alpha_step^2).
  *
  * A particle in several clusters has w = m/their number in each and takes the mean of its
  * d. Then d has no momentum and, about x, no angular momentum: A_pq R^T is symmetric. A pinned
@@ -50,10 +50,10 @@ static const struct cs_option rows[] = {
         "= A_pq or the linear transformation A: to show what that does, no use otherwise"),
 };
 
-/* what the places at time 0 and the pins make of a cluster */
+/* what the positions at time 0 and the pins make of a cluster */
 struct cluster {
     double weight;     /* kg */
-    double centre[3];  /* m, of the places at time 0 */
+    double centre[3];  /* m, of the positions at time 0 */
     double inverse[9]; /* 1/(kg m2), of A_qq */
     double null[9];    /* projector on the directions in which the cluster is flat */
     double size;       /* kg m2, trace of A_qq */
@@ -73,7 +73,7 @@ static double coordinate(const struct cs_view *view, const double *x, size_t c, 
     return x[c * view->n + view->cluster_items[item]];
 }
 
-/* weighted mean of the places x of a cluster */
+/* weighted mean of the positions x of a cluster */
 static void find_centre(const struct shape *self, uint32_t k, const double *x,
                         double centre[3]) {
     const struct cs_view *view = self->loop.host->view;
@@ -131,7 +131,7 @@ static void find_transformation(const struct shape *self, uint32_t k, const doub
         t[i] = scale * a[i] + (1 - share) * t[i];
 }
 
-/* Adds the way of each particle of a cluster to its goal, alpha of it, to d (3,n). */
+/* Adds alpha times the displacement of each particle of a cluster to its goal to d (3,n). */
 static void add_ways(const struct shape *self, uint32_t k, double alpha, const double *x,
                      double turn[4], double *d) {
     const struct cs_view *view = self->loop.host->view;
@@ -142,6 +142,7 @@ static void add_ways(const struct shape *self, uint32_t k, double alpha, const d
     find_transformation(self, k, a_pq, turn, t);
     for (uint32_t item = view->cluster_begin[k]; item < view->cluster_begin[k + 1]; item++) {
         const uint32_t particle = view->cluster_items[item];
+        /* a particle in several clusters takes the mean of their pulls */
         const double share = alpha * self->held[particle];
         double q[3];
         for (size_t j = 0; j < 3; j++)
@@ -208,8 +209,8 @@ static void weigh(struct shape *self, uint32_t k) {
     self->clusters[k].weight = free + factor * pinned;
 }
 
-/* The pins may be others now. The last rotations are kept: places alone do not say from which
- * side a body that has become a line got there. */
+/* The pins may be others now. The last rotations are kept: positions alone do not say from
+ * which side a body that has become a line got there. */
 static enum cs_step restart(void *object, double t, const double *x, const double *v) {
     struct shape *self = object;
     const struct cs_view *view = self->loop.host->view;
@@ -266,10 +267,12 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         !(self->weight = host->alloc(host->ctx, sizeof(double) * n_items)) ||
         !(self->clusters = host->alloc(host->ctx, sizeof(struct cluster) * view->n_clusters)))
         return CS_STEP_FAIL;
+    /* counted, then inverted: its share in each of its clusters */
     for (uint32_t item = 0; item < n_items; item++)
         self->held[view->cluster_items[item]]++;
     for (size_t i = 0; i < view->n; i++)
         self->held[i] = self->held[i] > 0 ? 1 / self->held[i] : 0;
+    /* no rotation yet */
     for (uint32_t k = 0; k < view->n_clusters; k++)
         self->clusters[k].turn[3] = 1;
     return CS_STEP_OK;

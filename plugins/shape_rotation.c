@@ -1,3 +1,5 @@
+/* The rotation nearest to a 3x3 matrix, by Horn's quaternion (Horn 1987, sec. 4) and Jacobi's
+ * eigenvalue method; in + - * / and sqrt alone. */
 #include "shape_rotation.h"
 
 #include <float.h>

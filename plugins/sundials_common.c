@@ -1,4 +1,4 @@
-/* sundials_common.c - context, right-hand side, messages and the loop; see sundials_common.h.
+/* Context, right-hand side, messages and the loop; see sundials_common.h.
  */
 #include "sundials_common.h"
 

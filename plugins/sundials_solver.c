@@ -1,4 +1,4 @@
-/* sundials_solver.c - (I - g J) z = b of a Newton iteration, by the host's solver.
+/* Solves (I - g J) z = b of a Newton iteration, by the host's solver.
  *
  * Eliminating z_x leaves half the unknowns and the host's matrix, with K = df/dx, D = df/dv:
  *   (M - g D - g^2 K) z_v = M b_v + g K b_x,   z_x = b_x + g z_v.

@@ -1,4 +1,4 @@
-/* sundials_vector.c - the operations that SUNDIALS asks of a vector; see sundials_vector.h. */
+/* The operations that SUNDIALS asks of a vector; see sundials_vector.h. */
 #include "sundials_vector.h"
 
 #include <math.h>

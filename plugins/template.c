@@ -1,4 +1,4 @@
-/* template.c - explicit midpoint method, to start an integrator module of your own from.
+/* Explicit midpoint method, to start an integrator module of your own from.
  *
  *   x_m = x + h/2 v,  v_m = v + h/2 f(t, x, v)/m
  *   x'  = x + h v_m,  v'  = v + h f(t + h/2, x_m, v_m)/m       (Runge 1895)

@@ -1,4 +1,4 @@
-/* tr_bdf2.c - trapezoidal rule to t + c h, then BDF2 to t + h, with c = 2 - sqrt 2.
+/* Trapezoidal rule to t + c h, then BDF2 to t + h, with c = 2 - sqrt 2.
  *
  * For y = (x, v), y' = F(t, y):
  *   y1 = y + c h/2 (F(y) + F(y1))

@@ -1,7 +1,7 @@
-/* xpbd.c - extended position based dynamics: springs as constraints with compliance.
+/* Extended position based dynamics: springs as constraints with compliance.
  *
- * With h the step, y = x + h v + h^2 f/m the place that the outer forces alone lead to, and for
- * a spring of stiffness k and rest length L, unit direction n, C = |x_b - x_a| - L and
+ * With h the step, y = x + h v + h^2 f/m the position that the outer forces alone lead to, and
+ * for a spring of stiffness k and rest length L, unit direction n, C = |x_b - x_a| - L and
  * compliance a = 1/(k h^2), the springs in turn, `iterations` times over, from x = y and l = 0:
  *   dl = (-C - a l - g n.(d - d_old)) / ((1 + g) (w_a + w_b) + a),   g = c/(k h)
  *   l += dl, x_b += w_b dl n, x_a -= w_a dl n,   w the inverse masses
@@ -194,6 +194,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         !(self->old = host->alloc(host->ctx, vectors)) ||
         !(self->spring = host->alloc(host->ctx, springs)))
         return CS_STEP_FAIL;
+    /* three multipliers a spring, which only relative dampers need */
     if (has_relative_dampers(view) && !(self->damper = host->alloc(host->ctx, 3 * springs)))
         return CS_STEP_FAIL;
     return CS_STEP_OK;
