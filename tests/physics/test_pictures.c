@@ -8,10 +8,13 @@
 
 enum { WIDTH = 160, HEIGHT = 120, FRAMES = 6 };
 
-/* pins are drawn, and let go in the middle: what is drawn of them changes with the run */
+/* pins are drawn, and let go in the middle: what is drawn of them changes with the run, and so
+ * does the place of a box */
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}, \"pins\": "     \
-    "[\"top-left\", \"top-right\"]}], \"events\": [{\"at\": 0.05, \"release\": {}}], "         \
+    "[\"top-left\", \"top-right\"]}], \"events\": [{\"at\": 0.05, \"release\": {}}, "          \
+    "{\"at\": 0, \"move\": {\"collider\": 0, \"spin\": [0, 9, 0]}}], "                         \
+    "\"colliders\": [{\"box\": {\"centre\": [0.4, 0.1, 1], \"size\": [0.3, 0.2, 0.1]}}], "     \
     "\"render\": {\"size\": [160, 120], \"look\": \"%s\"}}"
 
 static uint8_t *draw_frames(const char *look, bool beside) {
@@ -50,6 +53,62 @@ START_TEST(pictures_beside_the_run_are_those_at_once) {
         }
         free(beside);
         free(at_once);
+    }
+}
+END_TEST
+
+/* a cloth at rest between two balls, which bound the scene; %s: a collider, %s: the events */
+#define STILL                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}, \"pins\": "     \
+    "[\"edges\"]}], \"forces\": {\"gravity\": [0, 0, 0]}, \"colliders\": [%s, "                \
+    "{\"sphere\": {\"centre\": [1, 1, 1], \"radius\": 0.125}}, "                               \
+    "{\"sphere\": {\"centre\": [-1, -1, -1], \"radius\": 0.125}}], \"events\": [%s], "         \
+    "\"light\": {\"point\": [1, 2, 3]}, \"render\": {\"size\": [160, 120]}}"
+
+static uint8_t *draw_moved(const char *collider, const char *events) {
+    struct fixture cloth;
+    struct cs_picture picture;
+    struct cs_error error = {0};
+    uint8_t *pixels = calloc((size_t)WIDTH * HEIGHT, 3);
+    struct cs_image image = {WIDTH, HEIGHT, pixels};
+    ck_assert_ptr_nonnull(pixels);
+    fixture_open(&cloth, "symplectic-euler", STILL, collider, events);
+    fixture_start(&cloth);
+    cs_picture_open(&picture, cloth.system, CS_GL_AUTO, false, true, &error);
+    fixture_frames(&cloth, 2);
+    cs_picture_begin(&picture, &cloth.session.run, &image);
+    cs_picture_end(&picture, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_picture_close(&picture);
+    fixture_close(&cloth);
+    return pixels;
+}
+
+/* A collider on its way by (1/4, 1/2, -1/4) looks as one that stands there, shadow and all, and
+ * not as one that stands where it was. The numbers have no rounding. */
+START_TEST(moved_colliders_are_drawn_where_they_are) {
+    static const char *const colliders[][2] = {
+        {"{\"sphere\": {\"centre\": [0, -0.25, 0.75], \"radius\": 0.125}}",
+         "{\"sphere\": {\"centre\": [0.25, 0.25, 0.5], \"radius\": 0.125}}"},
+        {"{\"box\": {\"centre\": [0, -0.25, 0.75], \"size\": [0.5, 0.25, 0.125]}}",
+         "{\"box\": {\"centre\": [0.25, 0.25, 0.5], \"size\": [0.5, 0.25, 0.125]}}"},
+        {"{\"capsule\": {\"from\": [0, -0.25, 0.75], \"to\": [0.25, 0, 0.5]}}",
+         "{\"capsule\": {\"from\": [0.25, 0.25, 0.5], \"to\": [0.5, 0.5, 0.25]}}"},
+        {"{\"plane\": {\"point\": [0, -0.25, -0.25], \"normal\": [0, 0, 1], \"extent\": 0.5}}",
+         "{\"plane\": {\"point\": [0.25, 0.25, -0.5], \"normal\": [0, 0, 1], \"extent\": "
+         "0.5}}"}};
+    for (size_t k = 0; k < sizeof colliders / sizeof *colliders; k++) {
+        const size_t bytes = (size_t)WIDTH * HEIGHT * 3;
+        uint8_t *moved =
+            draw_moved(colliders[k][0], "{\"at\": 0, \"move\": {\"collider\": 0, \"path\":"
+                                        " [{\"at\": 0.02, \"point\": [0.25, 0.5, -0.25]}]}}");
+        uint8_t *there = draw_moved(colliders[k][1], "");
+        uint8_t *before = draw_moved(colliders[k][0], "");
+        ck_assert_msg(!memcmp(moved, there, bytes), "collider %zu", k);
+        ck_assert_msg(memcmp(moved, before, bytes), "collider %zu", k);
+        free(moved);
+        free(there);
+        free(before);
     }
 }
 END_TEST
@@ -110,8 +169,8 @@ START_TEST(a_renderer_that_fails_is_told) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {pictures_beside_the_run_are_those_at_once,
-                                  what_prods_see_is_drawn_at_once,
-                                  a_renderer_that_fails_is_told};
+    const TTest *const tests[] = {
+        pictures_beside_the_run_are_those_at_once, moved_colliders_are_drawn_where_they_are,
+        what_prods_see_is_drawn_at_once, a_renderer_that_fails_is_told};
     return fixture_run("pictures", tests, sizeof tests / sizeof *tests);
 }
