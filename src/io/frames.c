@@ -1,3 +1,4 @@
+/* Writes numbered PNG frames on a worker thread, through a queue of two images. */
 #include "io/frames.h"
 
 #include "base/arena.h"

@@ -1,3 +1,4 @@
+/* Runs gnuplot on a script if the program is installed. */
 #include "io/gnuplot.h"
 
 #include <spawn.h>
@@ -14,7 +15,7 @@ enum cs_status cs_gnuplot_run(const char *folder, const char *script, bool *draw
     *drawn = false;
     if (posix_spawn_file_actions_init(&actions))
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a program to run");
-    // warnings of its fonts are nobody's business
+    /* its warnings about fonts would only confuse the user */
     if (!posix_spawn_file_actions_addchdir_np(&actions, folder) &&
         !posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", 1, 0) &&
         !posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ) &&

@@ -1,3 +1,4 @@
+/* Parses strict JSON with cJSON and records where each value stands in the text. */
 #include "io/json.h"
 
 #include "io/utf8.h"
@@ -65,6 +66,7 @@ static enum cs_status check_keys(const cJSON *object, struct cs_json_fault *faul
     n = 0;
     for (const cJSON *child = object->child; child; child = child->next)
         members[n++] = child;
+    /* equal keys end up side by side in text order, so that the later one is reported */
     qsort(members, n, sizeof(*members), compare_keys);
     for (size_t i = 1; i < n && !status; i++) {
         if (strcmp(members[i - 1]->string, members[i]->string) != 0)
@@ -188,6 +190,7 @@ void cs_json_describe(const struct cs_json *value, struct cs_text *out) {
         cs_text_add_real(out, cs_json_number(value));
         break;
     case CS_JSON_TEXT:
+        /* user text can be long: only its start goes into the message */
         cs_text_add(out, "text ");
         cs_utf8_add_short(out, cs_json_text(value));
         break;

@@ -1,3 +1,5 @@
+/* Checks that a text is strict JSON (RFC 8259) within stated limits, and finds where it is not.
+ */
 #include "io/json_check.h"
 
 #include "base/text.h"
@@ -68,6 +70,7 @@ static long take_unit(struct check *check) {
 
 static bool check_escape(struct check *check) {
     const size_t start = check->at;
+    /* one-letter escapes are final; only \u needs more work */
     if (check->text[start + 1] != 'u') {
         if (!check->text[start + 1] || !strchr("\"\\/bfnrt", check->text[start + 1]))
             return fail_at(check, start,
@@ -79,8 +82,10 @@ static bool check_escape(struct check *check) {
     const long unit = take_unit(check);
     if (unit < 0)
         return fail_at(check, start, "expected four hexadecimal digits after \\u");
+    /* a zero would end the C strings that hold the parsed text */
     if (unit == 0)
         return fail_at(check, start, "\\u0000 is not allowed in a string");
+    /* characters above U+FFFF take two escapes, high surrogate first */
     const bool high = unit >= 0xd800 && unit <= 0xdbff;
     if (unit >= 0xdc00 && unit <= 0xdfff)
         return fail_at(check, start, "second half of a surrogate pair without the first");
@@ -94,6 +99,7 @@ static bool check_text(struct check *check) {
     const size_t start = check->at++;
     for (;;) {
         const unsigned char c = (unsigned char)check->text[check->at];
+        /* compared by length: a zero byte inside the text is only a control character */
         if (check->at >= check->length)
             return fail_at(check, start, "the string that starts here does not end");
         if (c == '"')
@@ -140,6 +146,7 @@ static bool check_number(struct check *check) {
             return fail_expected(check, "a digit of the exponent");
     }
 
+    /* a copy that ends in a zero, which cs_parse_real needs; it refuses what overflows */
     char digits[CS_JSON_NUMBER_MAX + 1];
     const size_t length = check->at - start;
     if (length >= sizeof digits)
@@ -198,6 +205,7 @@ static bool check_members(struct check *check, char close) {
 
 static bool check_value(struct check *check) {
     skip_blank(check);
+    /* counted before the tree is built, so that its memory is bounded */
     if (++check->values > CS_JSON_VALUES_MAX)
         return fail_at(check, check->at, "more than %d values", CS_JSON_VALUES_MAX);
     switch (check->text[check->at]) {

@@ -1,3 +1,4 @@
+/* Finds and sets values of a JSON tree by a path such as bodies[0].springs.stretch. */
 #include "io/json_path.h"
 #include "io/utf8.h"
 
@@ -15,6 +16,7 @@ static bool take_step(const char **at, bool first, struct step *step) {
     *step = (struct step){0};
     if (*s == '[') {
         const size_t digits = strspn(s + 1, "0123456789");
+        /* at most 9 digits, so that the index fits 32 bits */
         if (digits < 1 || digits > 9 || s[1 + digits] != ']')
             return false;
         for (size_t i = 1; i <= digits; i++)
@@ -22,6 +24,7 @@ static bool take_step(const char **at, bool first, struct step *step) {
         *at = s + digits + 2;
         return true;
     }
+    /* only the first key has no point before it */
     if (!first && *s++ != '.')
         return false;
     const size_t length = strcspn(s, ".[]");
@@ -64,6 +67,7 @@ static enum cs_status check_step(const struct cs_json *parent, const struct step
         cs_text_finish(&found);
         return error->status;
     }
+    /* an index equal to the count is allowed: it appends */
     if (!is_key && step->index > cs_json_count(parent))
         return cs_fail(error, CS_ERR_USAGE,
                        "--set %s: index %u is out of range, expected 0..%u (%u adds one)", path,
@@ -88,9 +92,11 @@ static enum cs_status make_value(const char *path, const char *value, struct cs_
     struct cs_json_fault fault = {0};
     enum cs_status status = cs_json_parse(value, strlen(value), made, &fault);
     if (!status) {
+        /* the offsets are those of the argument, not of the scene file */
         cs_json_forget_places(*made);
         return CS_OK;
     }
+    /* a bare word is a text, so that the shell needs no second pair of quotes */
     if (status == CS_ERR_SCENE && is_bare_word(value)) {
         if (!cs_utf8_is_plain(value))
             return cs_fail(error, CS_ERR_USAGE,

@@ -1,3 +1,4 @@
+/* Reads triangle meshes from Wavefront OBJ files in two passes: one counts, one fills. */
 #include "io/mesh_read.h"
 
 #include "base/file.h"
@@ -159,9 +160,11 @@ static enum cs_status read_face(struct obj *obj) {
     struct corner fan[3];
     uint32_t n = 0;
     for (next_word(obj, word); *word; next_word(obj, word), n++) {
+        /* three corners are enough: polygons become a fan around their first corner */
         struct corner *corner = fan + (n < 2 ? n : 2);
         if (read_corner(obj, word, corner))
             return obj->error->status;
+        /* texture coordinates are all or none: the first corner of the file decides */
         if (obj->done.triangles == 0 && n == 0)
             obj->textured = corner->textured;
         if (corner->textured != obj->textured)
@@ -174,6 +177,7 @@ static enum cs_status read_face(struct obj *obj) {
         if (obj->mesh)
             set_triangle(obj, fan);
         obj->done.triangles++;
+        /* the next triangle starts at the edge that this one ended with */
         fan[1] = fan[2];
     }
     return n < 3 ? fail(obj, "a face has %u corners, expected 3 or more", n) : CS_OK;
@@ -215,6 +219,7 @@ enum cs_status cs_mesh_read_text(const char *name, const char *text, size_t leng
     struct obj obj = {.name = name, .end = text + length, .scale = scale, .error = error};
     if (memchr(text, 0, length))
         return cs_fail(error, CS_ERR_FILE, "%s: found a zero byte, expected text", name);
+    /* the first pass only counts, since obj.mesh is still NULL */
     if (pass(&obj, text))
         return error->status;
     obj.total = obj.done;
@@ -222,6 +227,7 @@ enum cs_status cs_mesh_read_text(const char *name, const char *text, size_t leng
                         error))
         return error->status;
     obj.mesh = mesh;
+    /* one spare element each: calloc of nothing may return NULL */
     obj.uv = calloc((size_t)obj.total.uv + 1, 2 * sizeof *obj.uv);
     obj.lines = calloc((size_t)obj.total.triangles + 1, sizeof *obj.lines);
     if (!obj.uv || !obj.lines)

@@ -1,3 +1,4 @@
+/* Writes arrays of 3-vectors as NumPy files, format 1.0. */
 #include "io/npy.h"
 
 #include "base/file.h"

@@ -1,3 +1,4 @@
+/* Reads PNG files of any kind as 8-bit RGB through libpng, with limits on size and memory. */
 #include "base/file.h"
 #include "io/png.h"
 
@@ -74,14 +75,17 @@ static bool decode(struct reader *reader) {
     if (setjmp(png_jmpbuf(png)))
         return false;
     png_set_read_fn(png, reader, on_read);
+    /* limits first: a hostile header must not make libpng take memory */
     png_set_user_limits(png, SIDE_MAX, SIDE_MAX);
     png_set_chunk_malloc_max(png, CHUNK_BYTES_MAX);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(png, reader->info);
+    /* before any conversion, since it judges the size of the rows as they are stored */
     take_image(reader);
     ask_for_rgb(png);
     const int passes = png_set_interlace_handling(png);
     png_read_update_info(png, reader->info);
+    /* rows of another size would be written past the image */
     const size_t row_bytes = 3 * (size_t)reader->image.width;
     if (png_get_rowbytes(png, reader->info) != row_bytes)
         png_error(png, "a kind of pixel that cannot be made RGB");
@@ -107,6 +111,7 @@ enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t len
         status =
             cs_fail(error, CS_ERR_FILE, "cannot read \"%s\" as PNG: %s", name, reader.message);
     png_destroy_read_struct(&reader.png, &reader.info, NULL);
+    /* *image is filled only if every row was decoded */
     if (status)
         free(reader.image.rgb);
     else

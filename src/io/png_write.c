@@ -1,3 +1,4 @@
+/* Writes RGB images as PNG files through libpng, beside the target and then renamed. */
 #include "base/file.h"
 #include "io/png.h"
 

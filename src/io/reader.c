@@ -1,4 +1,5 @@
-/* reader.c - the path of the value at hand, and messages with file, line and column. */
+/* Keeps the path of the value that is being read, and makes messages with file, line and
+ * column. */
 #include "io/reader.h"
 
 #include "io/utf8.h"

@@ -1,3 +1,5 @@
+/* Hashes what a scene means: XXH3 (128 bits) over sorted "path=value" lines, defaults left
+ * out. */
 #include "io/scene_hash.h"
 
 #include "base/options.h"
@@ -23,11 +25,13 @@ static void add_row(const struct cs_option *row, const void *object, const char 
     const void *field = (const char *)object + row->offset;
     struct cs_text inner = {0};
     if (row->type == CS_TABLE) {
+        /* presence alone has a meaning, even if every value is the default */
         if (row->table->optional)
             cs_text_add(out, "%s%s={}\n", path, row->name);
         cs_text_add(&inner, "%s%s.", path, row->name);
         cs_scene_add_meaning(row->table, field, cs_text_get(&inner), out);
     } else if (row->type == CS_LIST) {
+        /* every element has a line of its own, or lists of defaults would all look alike */
         const struct cs_list *list = field;
         for (uint32_t i = 0; i < list->n; i++) {
             struct cs_text item = {0};
@@ -38,6 +42,7 @@ static void add_row(const struct cs_option *row, const void *object, const char 
             out->failed |= item.failed;
             cs_text_finish(&item);
         }
+        /* a default has no line, so that a new key changes no scene's hash */
     } else if (!cs_option_is_default(row, object)) {
         cs_text_add(out, "%s%s=", path, row->name);
         add_value(row, object, out);

@@ -1,3 +1,4 @@
+/* Prints the scene tables as scdoc text for clothsim-scene(5). */
 #include "base/options.h"
 #include "io/scene_write.h"
 #include "io/table_complete.h"

@@ -1,3 +1,5 @@
+/* Gives each body of a scene its mesh, its network of springs and its shape-matching
+ * clusters. */
 #include "io/scene_mesh.h"
 
 #include "io/json_path.h"
@@ -65,6 +67,7 @@ static enum cs_status make_mesh(struct cs_reader *reader, const struct cs_json *
     if (source->shape == CS_MESH_LIMBS && source->detail < LIMBS_DETAIL_MIN)
         return refuse(reader, root, b, "mesh.detail", CS_ERR_SCENE,
                       "limbs need at least 8, or some are lost");
+    /* a bad file is blamed on its name; a degenerate shape can only come from its scale */
     if (*source->file ? read_file(scene, source, mesh, reader->arena, &said)
                       : make_shape(source, mesh, reader->arena, &said))
         return refuse(reader, root, b,
@@ -74,6 +77,7 @@ static enum cs_status make_mesh(struct cs_reader *reader, const struct cs_json *
                       said.status, said.message);
     if (!body->network.present)
         return CS_OK;
+    /* network springs run through the inside, which an open mesh does not have */
     if (mesh->n_open) {
         char message[160];
         snprintf(

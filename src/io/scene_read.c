@@ -1,3 +1,4 @@
+/* Reads a scene file: JSON text, overrides, tables, integrator, meshes, then the checks. */
 #include "io/scene_read.h"
 
 #include "base/file.h"
@@ -80,6 +81,7 @@ static enum cs_status read_setting(struct cs_reader *reader, const struct cs_jso
     struct cs_text text = {0};
     switch (cs_json_kind_of(value)) {
     case CS_JSON_NUMBER:
+        /* the shortest decimal reads back as the same double */
         cs_text_add_real(&text, cs_json_number(value));
         break;
     case CS_JSON_BOOL:

@@ -1,3 +1,4 @@
+/* Prints the JSON schema (draft 2020-12) of scene files from the scene tables. */
 #include "base/options.h"
 #include "io/scene_write.h"
 #include "io/table_complete.h"
@@ -30,6 +31,7 @@ static void add_number(const struct cs_option *row, bool whole, struct cs_text *
 }
 
 static void add_default(const struct cs_option *row, struct cs_text *out) {
+    /* a value that may be absent or must be given has no default to state */
     if (cs_option_is_optional(row) || cs_table_needs_row(row))
         return;
     cs_text_add(out, ", \"default\": ");
@@ -79,6 +81,7 @@ static void add_plain(const struct cs_option *row, struct cs_text *out) {
         add_number(row, row->type == CS_COUNTS, out);
         cs_text_add(out, " }");
         break;
+    /* CS_TEXT: add_row handles tables and lists */
     default:
         cs_text_add(out, "\"type\": \"string\", \"maxLength\": %d", CS_TEXT_MAX - 1);
     }
@@ -123,6 +126,7 @@ static void add_needs(const struct cs_table *table, int indent, struct cs_text *
     for (uint32_t r = 0; r < table->n; r++) {
         if (!cs_table_needs_row(table->rows + r))
             continue;
+        /* opened at the first row that is needed, so that there is no empty list */
         if (!n)
             add_line(out, false, indent);
         cs_text_add(out, "%s\"%s\"", n++ ? ", " : "\"required\": [", table->rows[r].name);
@@ -132,6 +136,7 @@ static void add_needs(const struct cs_table *table, int indent, struct cs_text *
         return;
     add_line(out, false, indent);
     n = 0;
+    /* rows before `uncounted` are not part of the choice */
     for (uint32_t r = table->uncounted; r < table->n; r++)
         if (cs_option_is_optional(table->rows + r))
             cs_text_add(out, "%s{ \"required\": [\"%s\"] }", n++ ? ", " : "\"oneOf\": [",
@@ -184,6 +189,7 @@ static void add_integrator(int indent, struct cs_text *out) {
     cs_text_add(out, "\"default\": ");
     cs_text_add_json(out, CS_INTEGRATOR_DEFAULT);
     add_line(out, false, indent + STEP);
+    /* a plain name, or an object whose other keys the integrator itself checks */
     cs_text_add(out, "\"anyOf\": [%s, {", name);
     add_line(out, true, indent + 2 * STEP);
     cs_text_add(out, "\"type\": \"object\"");

@@ -1,3 +1,4 @@
+/* Prints a scene as JSON with every value that it holds, defaults included. */
 #include "io/scene_write.h"
 
 #include "base/options.h"

@@ -1,4 +1,4 @@
-/* table_complete.c - refuses tables in which something is missing, or named twice over. */
+/* Refuses tables that lack a required value, or that do not give exactly one of a choice. */
 #include "io/table_complete.h"
 
 #include "base/options.h"
@@ -34,6 +34,7 @@ void cs_table_add_expected(const struct cs_option *row, struct cs_text *out) {
         cs_text_add(out, "an object");
         return;
     }
+    /* only rows of numbers get here; the others returned without a range */
     cs_option_print_range(row, out);
     cs_text_add(out, ")");
 }
@@ -80,6 +81,7 @@ static enum cs_status check_complete(struct cs_reader *reader, const struct cs_j
         if (!cs_table_needs_row(row) || (!absent && cs_json_find(value, row->name)))
             continue;
         const size_t outside = cs_reader_enter(reader, row->name);
+        /* a row without a default is a list of numbers or a table that holds one */
         if (row->type != CS_TABLE) {
             struct cs_text expected = {0};
             cs_table_add_expected(row, &expected);
@@ -87,6 +89,7 @@ static enum cs_status check_complete(struct cs_reader *reader, const struct cs_j
                            cs_text_get(&expected));
             cs_text_finish(&expected);
         } else {
+            /* the table itself may be absent: the message names the value that it lacks */
             check_complete(reader, value, true, row->table, (const char *)object + row->offset);
         }
         if (reader->error->status)

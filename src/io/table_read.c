@@ -1,3 +1,4 @@
+/* Fills structs from JSON values as their option tables say. */
 #include "io/table_read.h"
 
 #include "base/options.h"
@@ -75,6 +76,7 @@ static enum cs_status read_components(struct cs_reader *reader, const struct cs_
         if (cs_json_kind_of(c) != CS_JSON_NUMBER)
             return cs_reader_fail_type(reader, c, "a number");
         const double number = cs_json_number(c);
+        /* index -1: the reader's path names the component already */
         cs_option_check_range(row, number, -1, "", CS_ERR_SCENE, &said);
         if (pass_on(reader, c, &said))
             return reader->error->status;
@@ -93,6 +95,7 @@ static enum cs_status read_list(struct cs_reader *reader, const struct cs_json *
         return fail_row(reader, value, row);
     struct cs_list *list = field_of(row, object);
     const uint32_t n = cs_json_count(value);
+    /* the default is an empty list already */
     if (!n)
         return CS_OK;
     char *items = cs_arena_take_n(reader->arena, n, row->table->size, reader->error);
@@ -102,6 +105,7 @@ static enum cs_status read_list(struct cs_reader *reader, const struct cs_json *
     for (const struct cs_json *item = cs_json_first(value); item;
          item = cs_json_next(item), i++) {
         const size_t outside = cs_reader_enter_at(reader, i);
+        /* defaults first: the file need not give every key of an element */
         cs_options_default(row->table, items + i * row->table->size);
         if (cs_table_read(reader, item, row->table, items + i * row->table->size))
             return reader->error->status;
@@ -114,6 +118,7 @@ static enum cs_status read_list(struct cs_reader *reader, const struct cs_json *
 
 static enum cs_status read_row(struct cs_reader *reader, const struct cs_json *value,
                                const struct cs_option *row, void *object) {
+    /* no default case, so that the compiler reports a type that is missing here */
     switch (row->type) {
     case CS_REAL:
     case CS_INT:

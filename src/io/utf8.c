@@ -1,3 +1,4 @@
+/* Checks UTF-8 (the Unicode standard, table 3-7) and cuts long texts between characters. */
 #include "io/utf8.h"
 
 #include <string.h>
