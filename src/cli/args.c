@@ -1,3 +1,4 @@
+/* Parses a command's options and operands by its table of options. */
 #include "cli/args.h"
 
 #include <stdlib.h>
@@ -25,7 +26,6 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
                    word, command->name);
 }
 
-/* The row of "--name", "--name=value", "-n" or "-nvalue", and the value that hangs at it. */
 /* The long name; an option that may be repeated answers to its singular too (--integrator). */
 static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
     const size_t whole = strlen(row->name);
@@ -33,6 +33,7 @@ static bool is_called(const struct cs_arg *row, const char *word, size_t length)
     return (whole == length || singular) && !strncmp(row->name, word, length);
 }
 
+/* The row of "--name", "--name=value", "-n" or "-nvalue", and the value attached to it. */
 static const struct cs_arg *find_row(const struct cs_command *command, const char *word,
                                      const char **attached) {
     *attached = NULL;
@@ -116,6 +117,7 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
     args->help = asks_for_help(argc, argv);
     if (args->help)
         return CS_OK;
+    /* no word gives more than one option or operand */
     args->given = cs_arena_take_n(&args->arena, (size_t)argc, sizeof *args->given, error);
     args->operands = cs_arena_take_n(&args->arena, (size_t)argc, sizeof *args->operands, error);
     if (error->status)
@@ -124,6 +126,7 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
     for (int i = 0; i < argc; i++) {
         if (options && !strcmp(argv[i], "--"))
             options = false;
+        /* a lone "-" is an operand */
         else if (options && argv[i][0] == '-' && argv[i][1]) {
             if (take_option(args, argc, argv, &i, error))
                 return error->status;

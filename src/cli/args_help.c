@@ -1,4 +1,4 @@
-/* args_help.c - what --help says, from a command's table. */
+/* Prints the help of a command from its table of options. */
 #include "cli/args.h"
 #include "cli/print.h"
 

@@ -1,4 +1,4 @@
-/* args_values.c - the values of options, checked. */
+/* Reads the values of options as numbers, choices and overrides, and checks them. */
 #include "cli/args.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* cmd_advise.c - clothsim advise: safe steps, what binds them, and what a frame costs. */
+/* clothsim advise: finds a safe step for each method, what limits it and what a frame costs. */
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -52,6 +52,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         .progress = show_progress,
         .ctx = &progress,
     };
+    /* one flag stops the run at hand and keeps further ones from starting */
     study.session.run.stop = study.stop = cs_interrupt_catch();
     if (cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
         cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||
@@ -65,6 +66,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     cs_progress_begin(&progress, cs_args_get(args, ADVISE_QUIET));
     progress.what = "method";
     cs_advise_run(&study, error);
+    /* the line goes before anything is printed below it */
     cs_progress_end(&progress);
     if (!error->status) {
         cs_advise_print(&study, &out);

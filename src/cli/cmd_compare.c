@@ -1,4 +1,4 @@
-/* cmd_compare.c - clothsim compare: error against cost of methods on a scene. */
+/* clothsim compare: measures error against run time for integrators on a scene. */
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/print.h"
@@ -167,6 +167,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
                           error) ||
         cs_args_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error))
         return error->status;
+    /* last: the length of a frame may come from --set */
     return read_frames(args, settings, error);
 }
 
@@ -198,12 +199,14 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     cs_progress_begin(&screen.progress, screen.quiet);
     if (!cs_compare_run(&screen.compare, &settings, error)) {
         cs_progress_end(&screen.progress);
+        /* files first: they must not be lost because printing failed */
         if (!cs_compare_write_report(&screen.compare, error) &&
             !print_verdict(&screen, error) && cs_args_get(args, COMPARE_PICTURES))
             cs_sheet_write(&screen.compare, (enum cs_gl)gl, error);
     }
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);
+    /* callbacks return nothing: errors of their printing are reported here */
     return error->status ? error->status
            : screen.error.status
                ? cs_fail(error, screen.error.status, "%s", screen.error.message)

@@ -1,4 +1,4 @@
-/* cmd_conform.c - clothsim conform: the card of a method, as text or JSON. */
+/* clothsim conform: prints a method's conformance card as text or JSON. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/print.h"
@@ -103,6 +103,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
                                  struct cs_error *error) {
     const struct cs_registered *euler = NULL;
     struct cs_error ignored = {0};
+    /* not finding it is no failure: the check that needs it is then skipped */
     if (method->fidelity != CS_FIDELITY_ODE)
         cs_registry_find(registry, "backward-euler", &euler, &ignored);
     struct cs_conform card = {
@@ -206,6 +207,7 @@ static enum cs_status print_list(struct cs_error *error) {
 static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
     const char *file = cs_args_get(args, CONFORM_JSON);
     struct cs_registry registry = {0};
+    /* JSON on standard output takes the place of the text */
     struct output output = {.args = args,
                             .text = !file || strcmp(file, "-") != 0,
                             .quiet = cs_args_get(args, CONFORM_QUIET)};

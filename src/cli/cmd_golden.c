@@ -1,4 +1,4 @@
-/* cmd_golden.c - clothsim golden: recomputes what runs came to, and says what differs. */
+/* clothsim golden: recomputes golden hashes and images, and reports what differs. */
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -63,6 +63,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     struct cs_golden check = {
         .folder = folder ? folder : "golden",
         .only = cs_args_get(args, GOLDEN_ONLY),
+        /* without a flag both are checked, as with both flags */
         .hashes = hashes || !images,
         .images = images || !hashes,
         .accept = cs_args_get(args, GOLDEN_ACCEPT),
@@ -76,6 +77,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
         return error->status;
     printf("%u agree, %u differ, %u accepted, %u skipped\n", check.passed, check.failed,
            check.accepted, check.skipped);
+    /* a misspelt --only must not look like success */
     if (check.passed + check.failed + check.accepted + check.skipped == 0)
         return cs_fail(error, CS_ERR_USAGE, "no golden row matches");
     if (check.failed > 0)

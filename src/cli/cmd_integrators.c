@@ -1,4 +1,4 @@
-/* cmd_integrators.c - clothsim integrators: which methods there are, and what one takes. */
+/* clothsim integrators: lists the integrators, or describes one with its options. */
 #include "base/options.h"
 #include "cli/commands.h"
 #include "cli/print.h"
@@ -114,6 +114,7 @@ static enum cs_status add_options(const struct cs_integrator *integrator, struct
         cs_text_add(out, "\nno options\n");
         return CS_OK;
     }
+    /* defaults are printed from a struct, filled as for a run */
     void *defaults = calloc(1, table.size);
     if (!defaults)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the options of %s",
@@ -142,6 +143,7 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
     cs_print_hanging("order", cs_text_get(&order), DETAIL_COLUMN, &out);
     cs_print_hanging("traits", list.length ? cs_text_get(&list) : "none", DETAIL_COLUMN, &out);
     cs_print_hanging("fidelity", fidelity_text(integrator->fidelity), DETAIL_COLUMN, &out);
+    /* only a method that names checks it fails has this line */
     struct cs_text fails = {0};
     for (const char *const *check = integrator->fails; check && *check; check++)
         cs_text_add(&fails, "%s%s", fails.length ? ", " : "", *check);
@@ -153,6 +155,7 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
     cs_text_finish(&list);
     if (!add_options(integrator, &out, error))
         return cs_print_out(stdout, &out, error);
+    /* cs_print_out would have freed it */
     cs_text_finish(&out);
     return error->status;
 }

@@ -1,4 +1,4 @@
-/* cmd_plot.c - clothsim plot: the cells of a comparison with other axes. */
+/* clothsim plot: draws two columns of a comparison against each other. */
 #include "cli/commands.h"
 #include "cli/print.h"
 #include "study/compare/compare_csv.h"
@@ -76,10 +76,12 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
     if (out)
         snprintf(path, sizeof path, "%s", out);
     else
+        /* beside the file, named after the axes */
         snprintf(path, sizeof path, "%.*s%s_%s", slash ? (int)(slash - file) + 1 : 0, file,
                  settings->y->name, settings->x->name);
     settings->title = title ? title : file;
     split(path, folder, &settings->name);
+    /* both end up between quotes in the gnuplot script */
     if (check_name("title", settings->title, error) || check_name("out", path, error))
         return error->status;
     if (!*settings->name)

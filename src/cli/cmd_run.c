@@ -1,4 +1,4 @@
-/* cmd_run.c - clothsim run: a scene to pictures, states, hashes and a report. */
+/* clothsim run: simulates a scene and writes pictures, states, hashes and a report. */
 #include "base/file.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -107,6 +107,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
         cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
         cs_args_choice(args, RUN_GL, cs_gl_names, &settings->gl, error))
         return error->status;
+    /* a program could not tell the two apart in one stream */
     if (settings->hash && settings->json && !strcmp(settings->json, "-"))
         return cs_fail(error, CS_ERR_USAGE, "--hash and --json - both ask for standard output");
     return read_session(args, &settings->session, error);

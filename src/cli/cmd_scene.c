@@ -1,4 +1,4 @@
-/* cmd_scene.c - clothsim scene: checks a scene, and shows what it comes to. */
+/* clothsim scene: checks a scene file and prints its plan, its values or the schema. */
 #include "cli/commands.h"
 #include "cli/print.h"
 #include "io/scene_write.h"

@@ -1,4 +1,4 @@
-/* cmd_soft_bench.c - clothsim soft-bench: what spring networks and shape matching cost. */
+/* clothsim soft-bench: measures spring networks against shape matching on a soft body. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"

@@ -1,5 +1,4 @@
-/* cmd_stability.c - clothsim stability: which steps a method survives, as a map and a picture.
- */
+/* clothsim stability: maps which steps a method survives, as text, CSV, JSON and a picture. */
 #include "cli/commands.h"
 #include "cli/stability_map.h"
 #include "study/stability/extreme.h"
@@ -27,6 +26,7 @@ static enum cs_status run_extreme(struct cs_args *args,
         .folder = folder ? folder : "scenes/extreme",
         .only_scene = args->n_operands ? args->operands[0] : NULL,
         .methods = methods,
+        /* 0 stands for every method that can be used */
         .n_methods = all ? 0 : n_methods,
         .plugins = settings->session.plugins,
         .n_plugins = settings->session.n_plugins,
@@ -37,6 +37,7 @@ static enum cs_status run_extreme(struct cs_args *args,
         .ctx = args,
     };
     cs_extreme_run(&extreme, error);
+    /* CS_ERR_CHECK says that an expectation was missed: the counts are valid */
     if (!error->status || error->status == CS_ERR_CHECK)
         printf("%u as expected, %u not\n", extreme.met, extreme.missed);
     return error->status;
@@ -50,12 +51,14 @@ static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
     if (cs_stability_read(args, &settings, error) ||
         cs_args_all(args, STABILITY_INTEGRATORS, &methods, &n_methods, error))
         return error->status;
+    /* before the operand is checked: here it is only part of a name, and may be absent */
     if (cs_args_get(args, STABILITY_EXTREME))
         return run_extreme(args, &settings, methods, n_methods, error);
     if (!settings.session.scene)
         return cs_fail(error, CS_ERR_USAGE,
                        "expected SCENE or --extreme (see: clothsim stability --help)");
     folder = folder ? folder : "stability";
+    /* no method named: the scene's own */
     if (!n_methods)
         return cs_stability_map_one(args, &settings, folder, error);
     for (uint32_t k = 0; k < n_methods && !error->status; k++) {

@@ -1,3 +1,4 @@
+/* Turns SIGINT and SIGTERM into a flag that stops a run at its next step. */
 #include "cli/interrupt.h"
 
 #include <time.h>
@@ -7,7 +8,8 @@ enum { PATIENCE_SECONDS = 2 };
 static volatile sig_atomic_t stop;
 static struct timespec first;
 
-/* Some programs that pass signals on send each of them twice. */
+/* A second signal ends the program only after a pause: some programs that pass signals on send
+ * each of them twice. */
 static void request_stop(int signal_number) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

@@ -1,4 +1,4 @@
-/* main.c - which command, and how it ended. */
+/* Picks the command, prints its error and sets the exit code. */
 #include "cli/commands.h"
 #include "cli/print.h"
 

@@ -1,3 +1,4 @@
+/* Prints wrapped columns, whole texts and error messages to the terminal. */
 #include "cli/print.h"
 
 #include <errno.h>
@@ -12,6 +13,7 @@ static void add_blanks(struct cs_text *out, size_t n) {
 void cs_print_hanging(const char *left, const char *right, size_t column, struct cs_text *out) {
     size_t at = strlen(left);
     cs_text_add(out, "%s", left);
+    /* a left part that reaches into the right column has a line of its own */
     if (at && at + 1 > column) {
         cs_text_add(out, "\n");
         at = 0;
@@ -19,6 +21,7 @@ void cs_print_hanging(const char *left, const char *right, size_t column, struct
     bool first = true;
     while (*right) {
         const size_t word = strcspn(right, " ");
+        /* the first word of a line is never wrapped, however long it is */
         if (!first && at + 1 + word > SCREEN_COLUMNS) {
             cs_text_add(out, "\n");
             at = 0;

@@ -1,3 +1,4 @@
+/* Shows a progress line with the time that is left. */
 #include "cli/progress.h"
 
 #include "base/clock.h"

@@ -1,3 +1,4 @@
+/* Runs a scene frame by frame and hands out its pictures, states, hashes and report. */
 #include "cli/run_job.h"
 
 #include "base/clock.h"
@@ -83,7 +84,7 @@ static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) 
     return CS_OK;
 }
 
-/* Nothing on disk is touched before all that can be refused was looked at. */
+/* Opens the renderer, which may be missing, before it touches any file on disk. */
 static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const int64_t *size = job->session.scene.render.size;
@@ -139,6 +140,7 @@ static enum cs_status give_picture(struct cs_job *job, struct cs_error *error) {
         {"clothsim:renderer", cs_text_get(&job->renderer)},
         {"clothsim:range", cs_text_get(&range)},
     };
+    /* the range comes last, so that it can be left out where nothing is coloured */
     const uint32_t n_texts = sizeof texts / sizeof *texts - !range.length;
     if (time.failed || range.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
@@ -274,12 +276,14 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     job->frames =
         settings->frames ? settings->frames : frames_of_one_second(&job->session.scene);
 
+    /* the start has a state and a hash but no picture */
     const uint32_t n = job->session.system.view.n;
     cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
     if (settings->states && cs_output_state(settings->states, 0, run->x, run->v, n, error))
         return error->status;
     if (!begin_watch(job, error))
         run_frames(job, error);
+    /* also after a failure: rows and frames that were finished are kept */
     write_watch(job, error);
     if (job->writer)
         finish_pictures(job, error);

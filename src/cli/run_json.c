@@ -1,4 +1,4 @@
-/* run_json.c - run.json: what one needs to do a run again and to see that it is the same. */
+/* Prints run.json: what is needed to repeat a run and to see that it gave the same result. */
 #include "base/pool.h"
 #include "cli/run_report.h"
 
@@ -34,6 +34,7 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, ",\n  \"outcome_detail\": ");
     cs_text_add_json(out, cs_text_get(&sentence));
     cs_text_finish(&sentence);
+    /* only a blow-up has a particle to name and a bound that it crossed */
     if (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED) {
         add_real(out, ",\n  \"blow_up\": {\"time\": ", run->blow_up.time);
         cs_text_add(out, ", \"particle\": %u", run->blow_up.particle);
@@ -54,6 +55,7 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
 }
 
 static void add_counts(const struct cs_counts *c, struct cs_text *out) {
+    /* scripts read these names: they are part of the schema version */
     const struct {
         const char *name;
         uint64_t value;

@@ -1,3 +1,4 @@
+/* Writes state files, and finds or removes the files of an earlier run. */
 #include "cli/run_output.h"
 
 #include "base/file.h"

@@ -1,3 +1,4 @@
+/* Prints what a run did as a table: outcome, counts, energy, memory and times. */
 #include "cli/run_report.h"
 
 #include "base/pool.h"

@@ -1,3 +1,4 @@
+/* Holds the options of clothsim stability and reads them into its settings. */
 #include "cli/stability_args.h"
 
 #include "base/pool.h"
@@ -72,6 +73,7 @@ static enum cs_status read_axis(const struct cs_args *args,
                                 struct cs_stability_settings *settings,
                                 struct cs_error *error) {
     int axis = -1, named = -1;
+    /* the options of the axes stand in the order of enum cs_axis */
     for (uint32_t row = STABILITY_STIFFNESS; row <= STABILITY_RESOLUTION; row++) {
         if (!cs_args_get(args, row))
             continue;
@@ -87,6 +89,7 @@ static enum cs_status read_axis(const struct cs_args *args,
     if (axis >= 0 && named >= 0 && axis != named)
         return cs_fail(error, CS_ERR_USAGE, "--axis %s and --%s: a map has one axis",
                        cs_axis_names[named], cs_axis_names[axis]);
+    /* --axis may repeat what the option of the values says already */
     settings->axis = (enum cs_axis)(axis >= 0 ? axis : named >= 0 ? named : 0);
     return CS_OK;
 }
@@ -99,6 +102,7 @@ enum cs_status cs_stability_read(struct cs_args *args, struct cs_stability_setti
                                                .budget = 5,
                                                .workers = cs_pool_processors(CS_WORKERS_MOST)};
     settings->session.run.stop = cs_interrupt_catch();
+    /* no scene is no mistake here: --extreme needs none */
     settings->session.scene = args->n_operands ? args->operands[0] : NULL;
     if (cs_args_whole(args, STABILITY_COLUMNS, 1, CS_MAP_MOST, &settings->columns, error) ||
         cs_args_whole(args, STABILITY_STEPS, 1, CS_MAP_MOST, &settings->rows, error) ||

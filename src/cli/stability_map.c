@@ -1,3 +1,4 @@
+/* Makes the stability map of one method or of all, and writes its files. */
 #include "cli/stability_map.h"
 
 #include "base/file.h"
@@ -17,7 +18,7 @@ static void show_progress(void *ctx, uint32_t done, uint32_t total) {
     cs_progress_show(&((struct screen *)ctx)->progress, done, total);
 }
 
-/* One file of a map; print fills it. */
+/* Writes one file of a map; frees the text. */
 static enum cs_status write_file(const struct cs_args *args, const char *folder,
                                  const char *name, const char *ending, struct cs_text *text,
                                  struct cs_error *error) {
@@ -80,6 +81,7 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
         !write_files(args, &map, folder, error) && !quiet) {
         struct cs_text out = {0};
         cs_stability_print_table(&map, &out);
+        /* gnuplot may be missing: the line then says that there is no picture */
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
                     folder, map.integrator->name,
                     draw(folder, map.integrator->name) ? ", .png" : "; no gnuplot: no picture");
@@ -100,9 +102,11 @@ enum cs_status cs_stability_map_all(const struct cs_args *args,
         goto done;
     for (uint32_t k = 0; k < registry.n && !error->status; k++) {
         const struct cs_integrator *integrator = registry.entries[k].integrator;
+        /* a module that was refused */
         if (!integrator)
             continue;
         const bool other = integrator->fidelity == CS_FIDELITY_OTHER;
+        /* a map varies dt, and its theory is that of the equation of motion */
         if (cs_method_takes_dt(integrator) && !other) {
             settings->session.integrator = integrator->name;
             cs_stability_map_one(args, settings, folder, error);
