@@ -1,4 +1,4 @@
-/* aim.c - a cone or a box of light about what casts shadow. */
+/* Aims a cone or a box of light at everything that casts a shadow. */
 #include "draw/aim.h"
 
 #include "draw/matrix.h"

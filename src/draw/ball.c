@@ -1,3 +1,4 @@
+/* Makes a unit sphere by subdividing an icosahedron, without sines. */
 #include "draw/ball.h"
 
 #include "draw/matrix.h"
@@ -30,9 +31,11 @@ static struct cs_vertex *cut(double p[3][3], int cuts, struct cs_vertex *out) {
     for (int i = 0; i < 3; i++) {
         for (int axis = 0; axis < 3; axis++)
             middle[i][axis] = p[i][axis] + p[(i + 1) % 3][axis];
+        /* the middle of an edge lies inside the sphere: pushed out onto it */
         cs_normalise(middle[i]);
     }
     for (int i = 0; i < 3; i++) {
+        /* corners in the order of the parent's, so that every triangle faces outwards */
         double part[3][3];
         memcpy(part[0], p[i], sizeof part[0]);
         memcpy(part[1], middle[i], sizeof part[1]);

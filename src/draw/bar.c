@@ -1,3 +1,4 @@
+/* Draws the colour bar beside a picture, with its range in figures. */
 #include "draw/bar.h"
 
 #include "draw/colour.h"

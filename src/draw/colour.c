@@ -1,3 +1,4 @@
+/* Holds the colours of values and of the ink, and converts sRGB to linear RGB. */
 #include "draw/colour.h"
 
 #include "scene/scene.h"

@@ -1,3 +1,4 @@
+/* Compares two images for the second level of the golden image gate. */
 #include "draw/compare.h"
 
 #include "base/status.h"
@@ -10,6 +11,7 @@ struct cs_image_difference cs_image_compare(const struct cs_image *a,
     CS_ASSERT(a->width == b->width && a->height == b->height);
     const uint64_t pixels = (uint64_t)a->width * a->height;
     struct cs_image_difference difference = {0};
+    /* sums of integers, which are exact for pictures of any size */
     uint64_t squares = 0, far = 0;
     for (uint64_t i = 0; i < pixels; i++) {
         int most = 0;
@@ -19,6 +21,7 @@ struct cs_image_difference cs_image_compare(const struct cs_image *a,
             most = off > most ? off : most;
         }
         difference.pixels += most > 0;
+        /* up to 2 levels count as rounding; rmse sees them all the same */
         far += most > 2;
         difference.largest = most > difference.largest ? most : difference.largest;
     }

@@ -1,3 +1,4 @@
+/* Measures the extent of a scene, and the largest cell of its bodies. */
 #include "draw/extent.h"
 
 #include "draw/matrix.h"
@@ -33,6 +34,7 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
         cs_mesh_place(system->view.n, x, i, place);
         grow(low, high, place);
     }
+    /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++) {
         if (obstacles[i].collider->visible && obstacles[i].kind != CS_OBSTACLE_PLANE)
             grow_by(low, high, obstacles + i);
@@ -40,6 +42,7 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
     for (int i = 0; i < 3; i++)
         ball.centre[i] = (low[i] + high[i]) / 2;
     cs_subtract(high, low, diagonal);
+    /* even a lone particle has some extent: what is drawn scales by the radius */
     ball.radius = fmax(cs_length(diagonal) / 2, 1e-3);
     return ball;
 }

@@ -1,3 +1,4 @@
+/* Draws figures as strokes, which are the only lettering of a picture. */
 #include "draw/glyph.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Chooses position, spacing and colour of the grid on the ground. */
 #include "draw/ground.h"
 
 #include "draw/colour.h"

@@ -1,4 +1,4 @@
-/* line.c - collects lines until a renderer draws them. */
+/* Collects lines until a renderer draws them. */
 #include "draw/line.h"
 
 enum cs_status cs_lines_init(struct cs_lines *lines, uint32_t capacity, struct cs_arena *arena,

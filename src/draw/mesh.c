@@ -1,3 +1,4 @@
+/* Turns the particles of a body into vertices, normals and texture coordinates. */
 #include "draw/mesh.h"
 
 #include "draw/matrix.h"
@@ -106,6 +107,7 @@ static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low
 void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
     const struct cs_trimesh *from = mesh->range.mesh;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    /* the box that a mesh without coordinates of its own is projected onto */
     for (size_t c = 0; from && c < 2; c++)
         for (uint32_t i = 0; i < from->n; i++) {
             low[c] = fmin(low[c], from->places[c * from->n + i]);
@@ -117,6 +119,7 @@ void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
         if (!from)
             grid_uv(mesh, i, at);
         else if (from->uv)
+            /* one pair a corner: a textured mesh is split, so that k counts corners */
             at[0] = (double)from->uv[2 * (size_t)k],
             at[1] = (double)from->uv[2 * (size_t)k + 1];
         else

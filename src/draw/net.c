@@ -1,3 +1,4 @@
+/* Draws bodies as lines: edges, springs by kind, pins, goals and threads. */
 #include "draw/net.h"
 
 #include "draw/colour.h"
@@ -114,6 +115,7 @@ void cs_net_draw_goals(const struct cs_net *net, struct cs_lines *lines, const d
     static const uint32_t colours[2] = {0x2b5fa8, 0xc8321f};
     const struct cs_system *system = net->system;
     const uint32_t n = system->view.n;
+    /* two passes, so that the dots lie over the lines of every body */
     for (int dots = 0; dots < 2; dots++) {
         struct cs_line_style style = {.alpha = dots ? 0.95 : 0.75, .lift = net->lift};
         cs_colour_linear(colours[dots], style.colour);

@@ -1,3 +1,4 @@
+/* Draws everything of a picture that consists of lines. */
 #include "draw/overlay.h"
 
 #include "draw/extent.h"

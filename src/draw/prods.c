@@ -1,8 +1,9 @@
+/* Draws viewpoint forces over a picture: viewpoint, rectangle and the particles affected. */
 #include "draw/prods.h"
 
 #include "draw/colour.h"
-#include "draw/mesh.h"
 #include "draw/matrix.h"
+#include "draw/mesh.h"
 #include "model/event/event_times.h"
 #include "model/event/prods.h"
 

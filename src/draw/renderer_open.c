@@ -1,4 +1,4 @@
-/* renderer_open.c - finds a renderer module; part of the program, and free of OpenGL. */
+/* Finds and loads a renderer module; part of the program, and free of OpenGL. */
 #include "base/text.h"
 #include "draw/render.h"
 

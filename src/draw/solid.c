@@ -1,4 +1,4 @@
-/* solid.c - planes as squares, boxes and capsules as cubes blown up to balls and pulled apart.
+/* Makes planes as squares, boxes and capsules as cubes blown up to balls and pulled apart.
  *
  * Each face of a cube has a grid of directions, evenly spaced by angle. A direction d stands
  * for the point sign(d) core + radius d of the surface. Where a component is 0 the grid has the

@@ -1,4 +1,4 @@
-/* style.c - how bodies and colliders look, from their tables in the scene. */
+/* Derives the looks of bodies and colliders from their tables in the scene. */
 #include "draw/style.h"
 
 #include "draw/matrix.h"

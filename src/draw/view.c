@@ -1,3 +1,4 @@
+/* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
 #include "draw/colour.h"

@@ -1,3 +1,4 @@
+/* Draws the sky and the grid on the ground through OpenGL. */
 #include "draw/gl/backdrop.h"
 
 #include "draw/gl/gl.h"

@@ -1,4 +1,4 @@
-/* canvas.c - a scene made ready to draw, and the table that the module exports. */
+/* Prepares a scene for drawing through OpenGL, and exports the renderer's table of calls. */
 #include "draw/aim.h"
 #include "draw/extent.h"
 #include "draw/gl/backdrop.h"
@@ -48,6 +48,7 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
     if (cs_mesh_init(&cloth->mesh, canvas->system->bodies + b, flat, texture->width > 0,
                      &canvas->arena, error) != CS_OK)
         return error->status;
+    /* split vertices stand in the order in which they are drawn, without indices */
     cs_surface_init(&cloth->surface, cloth->mesh.split ? NULL : cloth->mesh.indices,
                     cloth->mesh.n_indices);
     cs_style_cloth(&cloth->style, material, texture->width > 0, canvas->scene->render.look);
@@ -75,6 +76,7 @@ static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_imag
 static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_settings *settings,
                            struct cs_error *error) {
     const struct cs_render *render = &canvas->scene->render;
+    /* before there is a context: Mesa reads its environment only once */
     const char *caps = cs_driver_pin(settings->fast);
     if (cs_context_create(&canvas->context, error) != CS_OK || cs_gl_load(error) != CS_OK)
         return error->status;
@@ -82,6 +84,7 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
              (const char *)gl.GetString(GL_RENDERER), (const char *)gl.GetString(GL_VERSION),
              caps);
 
+    /* by the start alone, so that the view is the same in every frame */
     const struct cs_ball extent =
         cs_extent_solid(canvas->system, canvas->system->view.start, settings->obstacles);
     cs_view_init(&canvas->view, canvas->scene, &extent);

@@ -1,4 +1,4 @@
-/* collider.c - spheres as one ball, placed; the other colliders as surfaces of their own. */
+/* Draws colliders through OpenGL: one ball placed for each sphere, surfaces for the others. */
 #include "draw/gl/collider.h"
 
 #include "draw/ball.h"
@@ -41,10 +41,12 @@ enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
         cs_arena_take_n(arena, colliders->n, sizeof *colliders->obstacles, error);
     if (!colliders->obstacles)
         return error->status;
+    /* a copy, by which cs_gl_colliders_move sees what has moved */
     if (colliders->n > 0)
         memcpy(colliders->obstacles, obstacles, colliders->n * sizeof *obstacles);
     if (cs_ball_make(&vertices, &n, arena, error) || take(colliders, arena, error))
         return error->status;
+    /* spheres share one ball, which the shader scales and moves */
     cs_surface_init(&colliders->ball, NULL, 0);
     cs_surface_upload(&colliders->ball, vertices, n);
     for (uint32_t i = 0; i < colliders->n; i++)

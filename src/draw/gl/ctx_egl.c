@@ -1,4 +1,4 @@
-/* ctx_egl.c - the context through EGL on Mesa's surfaceless platform: no display, no window. */
+/* Makes an OpenGL context through EGL on Mesa's surfaceless platform: no display, no window. */
 #include "draw/gl/context.h"
 
 #include <EGL/egl.h>
@@ -33,6 +33,7 @@ static enum cs_status open(struct cs_context *context, struct cs_error *error) {
         return fail(error, "no display without a surface");
     if (!eglBindAPI(EGL_OPENGL_API))
         return fail(error, "no OpenGL");
+    /* no config, since there is no surface to match: frames go to framebuffer objects */
     context->handle =
         eglCreateContext(context->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     if (context->handle == EGL_NO_CONTEXT)

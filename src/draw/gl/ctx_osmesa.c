@@ -1,4 +1,4 @@
-/* ctx_osmesa.c - the context through OSMesa. Its own buffer is never drawn into. */
+/* Makes an OpenGL context through OSMesa, whose own buffer is never drawn into. */
 #include "draw/gl/context.h"
 
 #include <GL/osmesa.h>
@@ -28,6 +28,7 @@ enum cs_status cs_context_create(struct cs_context **context, struct cs_error *e
     if (!(*context)->handle)
         cs_fail(error, CS_ERR_MODULE, "renderer osmesa: no OpenGL 3.3 core context");
     else
+        /* current at once: the OpenGL calls are loaded next */
         cs_context_use(*context, error);
     if (error->status == CS_OK)
         return CS_OK;

@@ -1,3 +1,4 @@
+/* Pins the driver of Mesa and its CPU instructions through the environment. */
 #include "draw/gl/driver.h"
 
 #include <stdlib.h>

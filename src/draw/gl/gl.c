@@ -1,3 +1,4 @@
+/* Loads the OpenGL 3.3 calls by name, and turns OpenGL errors into messages. */
 #include "draw/gl/gl.h"
 
 #include "draw/gl/context.h"

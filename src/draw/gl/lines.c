@@ -1,3 +1,4 @@
+/* Draws lines and the rectangle of the colour bar through OpenGL. */
 #include "draw/gl/lines.h"
 
 #include "draw/gl/gl.h"
@@ -17,6 +18,7 @@ static void draw(struct cs_lines *base, const struct cs_line_style *style) {
                   GL_STREAM_DRAW);
     if (style->over || style->flat)
         gl.Disable(GL_DEPTH_TEST);
+    /* no depth is written: soft edges would cut holes into later lines */
     gl.Enable(GL_BLEND);
     gl.DepthMask(GL_FALSE);
     gl.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)base->n);
@@ -42,6 +44,7 @@ enum cs_status cs_gl_lines_init(struct cs_gl_lines *lines, struct cs_error *erro
         cs_shader_make(&cs_shader_bar, &lines->ramp, error) != CS_OK)
         return error->status;
     lines->box = gl.GetUniformLocation(lines->ramp, "box");
+    /* the bar has no vertex data, but a core context draws nothing without an array object */
     gl.GenVertexArrays(1, &lines->ramp_object);
     lines->paint = gl.GetUniformLocation(lines->program, "paint");
     lines->half_width = gl.GetUniformLocation(lines->program, "half_width");
@@ -51,6 +54,7 @@ enum cs_status cs_gl_lines_init(struct cs_gl_lines *lines, struct cs_error *erro
     gl.BindVertexArray(lines->object);
     gl.GenBuffers(1, &lines->buffer);
     gl.BindBuffer(GL_ARRAY_BUFFER, lines->buffer);
+    /* one instance a line: both ends advance by instance, not by vertex */
     for (GLuint end = 0; end < 2; end++) {
         gl.EnableVertexAttribArray(end);
         gl.VertexAttribPointer(end, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),

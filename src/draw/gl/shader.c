@@ -1,3 +1,4 @@
+/* Compiles and links shaders, and holds the GLSL that they share. */
 #include "draw/gl/shader.h"
 
 #include "draw/gl/gl.h"
@@ -77,6 +78,7 @@ static void flatten(char *log) {
 static enum cs_status compile(GLuint program, GLenum stage, const char *name, const char *text,
                               struct cs_error *error) {
     const bool is_vertex = stage == GL_VERTEX_SHADER;
+    /* only fragments look up the shadow */
     const char *parts[] = {head, common, is_vertex ? "" : shadow, text};
     char log[600] = "";
     GLint done = 0;
@@ -92,6 +94,7 @@ static enum cs_status compile(GLuint program, GLenum stage, const char *name, co
         cs_fail(error, CS_ERR_MODULE, "%s shader of %s does not compile: %s",
                 is_vertex ? "vertex" : "fragment", name, log);
     }
+    /* an attached shader lives on until its program is deleted */
     gl.DeleteShader(shader);
     return error->status;
 }

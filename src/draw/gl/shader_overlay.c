@@ -1,4 +1,4 @@
-/* shader_overlay.c - GLSL of everything but surfaces: sky, ground grid, lines, colour bar. */
+/* GLSL of everything but surfaces: sky, ground grid, lines, colour bar. */
 #include "draw/gl/shader.h"
 
 #define GLSL(...) #__VA_ARGS__ "\n"
@@ -86,6 +86,7 @@ static const char line_vertex[] = GLSL(
         vec3 pb = in_b;
         ends = vec4(0.0);
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+        // an end behind the near plane is moved onto it: dividing by its w would flip the line
         if (a.w < near && b.w < near)
             return;
         if (a.w < near)
@@ -100,6 +101,7 @@ static const char line_vertex[] = GLSL(
         along = n > 1e-6 ? along / n : vec2(1.0, 0.0);
         bool first = gl_VertexID < 2;
         float side = gl_VertexID % 2 == 0 ? 1.0 : -1.0;
+        // a pixel more on all sides, for the smooth edge
         float reach = half_width + 1.0;
         vec2 pixel = first ? ends.xy - reach * along : ends.zw + reach * along;
         pixel += side * reach * vec2(-along.y, along.x);

@@ -1,4 +1,4 @@
-/* shader_surface.c - GLSL of cloth and colliders: Blinn-Phong per fragment (cloth thesis,
+/* GLSL of cloth and colliders: Blinn-Phong per fragment (cloth thesis,
  * eq. 4.15) with a soft shadow, the looks that colour by a value, and the depth pass of the
  * shadow. */
 #include "draw/gl/shader.h"

@@ -1,3 +1,4 @@
+/* Renders the depth map that is seen from the light. */
 #include "draw/gl/shadow.h"
 
 #include "draw/aim.h"

@@ -1,3 +1,4 @@
+/* Uploads, shades and draws triangles through OpenGL. */
 #include "draw/gl/surface.h"
 
 #include "draw/gl/gl.h"

@@ -1,3 +1,4 @@
+/* Holds the frame buffer that is drawn into, and reads its pixels back. */
 #include "draw/gl/target.h"
 
 #include "draw/gl/gl.h"
@@ -60,6 +61,7 @@ void cs_target_begin(const struct cs_target *target) {
 
 void cs_target_read(const struct cs_target *target, struct cs_image *image) {
     const int w = target->width, h = target->height;
+    /* OpenGL reads no multisampled pixels: they are averaged into the plain buffer first */
     if (target->single != target->many) {
         gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target->many);
         gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target->single);
@@ -71,6 +73,7 @@ void cs_target_read(const struct cs_target *target, struct cs_image *image) {
     image->width = (uint32_t)w;
     image->height = (uint32_t)h;
     uint8_t *out = image->rgb;
+    /* OpenGL counts rows from the bottom, a picture from the top */
     for (int row = h - 1; row >= 0; row--) {
         const uint8_t *in = target->rgba + (size_t)row * (size_t)w * 4;
         for (int i = 0; i < w; i++, in += 4, out += 3) {

@@ -1,4 +1,4 @@
-/* view_upload.c - the view block as a buffer that all shaders read. */
+/* Uploads the view block as the uniform buffer that all shaders read. */
 #include "draw/gl/gl.h"
 #include "draw/view.h"
 
