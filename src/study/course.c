@@ -1,3 +1,4 @@
+/* Runs a method on the smooth form of a scene, and records its trajectory. */
 #include "study/course.h"
 
 #include "base/clock.h"

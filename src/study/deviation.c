@@ -1,3 +1,4 @@
+/* Measures how far one recorded run is from another. */
 #include "study/deviation.h"
 
 #include "model/force/measure.h"

@@ -1,3 +1,4 @@
+/* Derives the verdict on a run by comparing it with a trusted run of the same scene. */
 #include "study/fate.h"
 
 #include <math.h>

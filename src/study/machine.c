@@ -1,3 +1,4 @@
+/* Describes the processor, compiler and load under which a measurement was taken. */
 #include "study/machine.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Perturbs the start of a scene reproducibly: by a hash of each index, or by smooth waves. */
 #include "study/perturb.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Draws the pictures of a run: copies its state, colours it and paints it beside the run. */
 #include "study/picture.h"
 
 #include "base/clock.h"
@@ -67,7 +68,7 @@ static void free_textures(struct cs_picture *picture) {
     picture->textures = NULL;
 }
 
-/* done by the hand, as all that touches the canvas */
+/* done by the worker thread, as all that touches the canvas */
 static void make_canvas(void *object) {
     struct cs_picture *picture = object;
     const struct cs_canvas_settings settings = {.scene = picture->scene,
@@ -84,7 +85,7 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
     *picture = (struct cs_picture){.scene = system->scene, .system = system, .fast = fast};
     if (!read_textures(picture, error) && !take_arrays(picture, error) &&
         !cs_renderer_open(cs_renderer_folder(), gl, &picture->renderer, error)) {
-        /* what prods see is drawn from the events, which move on with the run */
+        /* what viewpoint forces see is drawn from the events, which move on with the run */
         const bool apart = beside && !picture->scene->render.prods;
         picture->hand = apart ? cs_hand_create() : NULL;
         cs_hand_give(picture->hand, make_canvas, picture);

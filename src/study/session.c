@@ -1,3 +1,4 @@
+/* Takes a scene to a running method: the one way that every command and study goes. */
 #include "study/session.h"
 
 #include "base/pool.h"

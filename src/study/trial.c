@@ -1,3 +1,4 @@
+/* Runs a scene once for a study, and samples how it behaved. */
 #include "study/trial.h"
 
 #include <math.h>
@@ -47,12 +48,14 @@ static void take_sample(struct cs_trial *trial, const struct cs_trial_settings *
     trial->kinetic = fmax(trial->kinetic, energy.kinetic);
     trial->elastic = fmax(trial->elastic, energy.elastic);
     trial->held = fmax(trial->held, cs_energy_held(&energy));
+    /* energy that keeps growing from one half to the next marks an instability */
     double *half = run->t < settings->seconds / 2 ? &trial->early : &trial->late;
     *half = fmax(*half, cs_energy_held(&energy));
     trial->gained = fmax(trial->gained, whole - trial->start_energy);
     trial->mean_kinetic += energy.kinetic;
     trial->strain = fmax(trial->strain, cs_measure_strain(run->system, run->x));
     note_excess(trial, run, settings->limits.speed);
+    /* only the first crossing counts: its time is reported */
     if (!trial->beyond &&
         (trial->held > settings->limits.energy || trial->gained > settings->limits.gain)) {
         trial->beyond = true;

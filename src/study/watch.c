@@ -1,3 +1,4 @@
+/* Judges by its energy alone whether a run is still sound. */
 #include "study/watch.h"
 
 #include "model/event/events.h"
@@ -35,6 +36,7 @@ static enum cs_status spring_speed(const struct cs_run *run, double *speed,
                                  run->x[2 * n + b] - run->x[2 * n + a]};
             const double stretch = length_of(d) - cs_spring_length(s, i);
             const double energy = 0.5 * cs_spring_stiffness(s, i) * stretch * stretch;
+            /* the whole energy at both ends: either particle may get all of it */
             stored[a] += energy;
             stored[b] += energy;
         }
@@ -96,6 +98,7 @@ static void start(struct cs_watch *watch, const struct cs_run *run) {
     watch->start_speed = fmax(watch->start_speed, fastest(run, HUGE_VAL, &particle, &count));
     watch->pull = watch->push = watch->mass = watch->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
+        /* pinned particles do not move, whatever pushes them */
         if (system->inv_mass[i] <= 0)
             continue;
         const double push = push_of(system, i, false) + seen_push(system, i);
@@ -137,6 +140,7 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     *row = (struct cs_watch_row){.t = run->t};
     row->energy = cs_measure_energy(system, run->t, run->x, run->v);
     row->strain = cs_measure_strain(system, run->x);
+    /* no bound knows what an event has added: the account starts anew */
     if (is_disturbed(watch, run))
         start(watch, run);
     watch->looked = run->t;
@@ -144,11 +148,13 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     const double passed = run->t - watch->since;
     const double energy = fmax(available(watch, passed), LEAST_ENERGY);
     const double mean = watch->mass > 0 ? sqrt(2 * energy / watch->mass) : 0;
+    /* what the forces can have added, at most a few times the mean that the energy allows */
     const double fall = fmin((watch->pull + watch->push) * passed, SPEED_SPREAD * mean);
     row->energy_limit = ENERGY_FACTOR * energy;
     row->speed_limit = SPEED_FACTOR * fmax(watch->start_speed + fall, LEAST_SPEED);
     row->speed = fastest(run, row->speed_limit, &row->particle, &row->particles);
     const double held = cs_energy_held(&row->energy);
+    /* first, because no comparison with NAN is true */
     if (!isfinite(held + row->speed + row->strain))
         row->verdict = CS_FATE_NOT_FINITE;
     else if (held > row->energy_limit)

@@ -1,3 +1,4 @@
+/* Shares independent tasks among forked processes. */
 #include "study/workers.h"
 
 #include <errno.h>
@@ -88,7 +89,7 @@ static pid_t start(struct cs_workers *workers, struct shared *shared, uint32_t w
     _exit(0);
 }
 
-/* true where a worker left one task and others wait */
+/* true if a worker was ended in a task and there are tasks left */
 static bool wants_another(const struct cs_workers *workers, struct shared *shared, int end) {
     return WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF &&
            atomic_load(&shared->next) < workers->n_tasks;

@@ -1,3 +1,4 @@
+/* Compares methods on a scene: reference, cells, measurements, and the rows of compare.csv. */
 #include "study/compare/compare.h"
 
 #include "base/hash.h"
@@ -17,6 +18,7 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
     struct cs_session session = {0};
     struct cs_course course = {0};
     asked.integrator = "velocity-verlet";
+    /* opened as it is first: the smooth form no longer has what it leaves out */
     if (!cs_session_open_plan(&session, &asked, error))
         cs_course_describe_changes(&session.scene, &compare->changes);
     cs_session_close(&session);
@@ -26,6 +28,7 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
         compare->particles = system->view.n;
         compare->springs = course.session.plan.n_springs;
         compare->fps = course.session.scene.time.fps;
+        /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
         compare->time = settings->frames / compare->fps;
         compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;

@@ -1,3 +1,4 @@
+/* Describes the columns of a comparison in one table, which every reader and writer uses. */
 #include "study/compare/compare_cell.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Writes the cells of a comparison as CSV (RFC 4180), and reads them back. */
 #include "study/compare/compare_csv.h"
 
 #include "base/file.h"
@@ -49,6 +50,7 @@ void cs_csv_add_cell(struct cs_text *out, const struct cs_cell *cell) {
 static char *cut_line(char *line, char *fields[FIELDS_MAX], uint32_t *n) {
     char *in = line;
     for (*n = 0;;) {
+        /* in place: a field without its quotes is never longer */
         char *out = in;
         const bool quoted = *in == '"';
         char *field = out;
@@ -63,6 +65,7 @@ static char *cut_line(char *line, char *fields[FIELDS_MAX], uint32_t *n) {
             in++;
         const char end = *in;
         *out = 0;
+        /* fields beyond that are passed over, not written past the array */
         if (*n < FIELDS_MAX)
             fields[(*n)++] = field;
         if (end != ',')

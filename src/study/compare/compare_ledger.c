@@ -1,4 +1,4 @@
-/* compare_ledger.c - takes over, appends and rewrites the rows of compare.csv. */
+/* Takes over, appends and rewrites the rows of compare.csv. */
 #include "study/compare/compare_ledger.h"
 
 #include "base/file.h"

@@ -1,5 +1,5 @@
-/* compare_measure.c - one cell: a run that is recorded, then runs that are timed; and observed
- * orders, the slopes of error against step. */
+/* Measures one cell by a recorded run and then timed runs, and finds observed orders, the
+ * slopes of error against step. */
 #include "study/compare/compare_measure.h"
 
 #include "study/compare/yardstick.h"

@@ -1,3 +1,4 @@
+/* Prints cells as a log-log diagram: a gnuplot script that holds its data. */
 #include "study/compare/compare_plot.h"
 
 #include "base/file.h"
@@ -92,6 +93,7 @@ static void print_head(const struct cs_plot_settings *settings, const struct box
                      "\n");
     cs_text_add(out, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", box->x[0], box->x[1],
                 box->y[0], box->y[1]);
+    /* grey below the reference's own error, where no difference means anything */
     if (box->bar > 0)
         cs_text_add(out,
                     "set object 1 rectangle from graph 0, first %.6g to graph 1, first %.6g "
@@ -159,6 +161,7 @@ static void print_data(const struct cs_plot_settings *settings, const struct gro
 static void print_plot(const struct cs_plot_settings *settings, const struct group *groups,
                        uint32_t n, struct cs_text *out) {
     cs_text_add(out, "plot");
+    /* by family, so that the legend lists its methods below its name */
     for (int family = 0; cs_family_names[family]; family++) {
         bool named = false;
         for (uint32_t k = 0; k < n; k++) {
@@ -168,6 +171,7 @@ static void print_plot(const struct cs_plot_settings *settings, const struct gro
             if (groups[k].family != family)
                 continue;
             if (groups[k].drawn > 0 && !named)
+                /* a curve without points, for the name of the family in the legend */
                 cs_text_add(
                     out, " NaN with lines linecolor rgb \"white\" title \"{/:Bold %s}\", \\\n",
                     cs_family_names[family]);

@@ -1,5 +1,5 @@
-/* compare_report.c - compare.json with everything, for programs; compare.md, one report for
- * people; the diagrams. */
+/* Writes compare.json with everything, for programs; compare.md, a report for people; and the
+ * diagrams. */
 #include "study/compare/compare_report.h"
 
 #include "base/file.h"
@@ -51,6 +51,7 @@ static void add_reference(const struct cs_yardstick *yardstick, struct cs_text *
                    {"amplification", yardstick->horizon.amplification},
                    {"horizon", yardstick->horizon.time}};
     cs_text_add(out, "  \"reference\": {\"methods\": [");
+    /* a family, its tighter twin, the other family, its tighter twin */
     for (int k = 0; k < CS_YARDSTICK_RUNS; k++) {
         cs_text_add(out, "%s", k ? ", " : "");
         cs_text_add_json(out, yardstick->methods[k]);
@@ -129,6 +130,7 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
     add_machine(out);
     add_reference(&compare->yardstick, out);
     add_verdict(ranking, compare, out);
+    /* in the order of the sweep: the verdict above refers to cells by index */
     cs_text_add(out, "  \"cells\": [");
     for (uint32_t k = 0; k < compare->sweep.n; k++) {
         cs_text_add(out, "%s\n    ", k ? "," : "");

@@ -1,3 +1,4 @@
+/* Draws contact sheets: last frames of the methods, coloured by distance to the reference. */
 #include "study/compare/compare_sheet.h"
 
 #include "base/file.h"
@@ -146,7 +147,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
             obstacles = calloc(system->scene->colliders.n + 1, sizeof *obstacles);
             if (obstacles)
                 cs_obstacles_at(system, compare->time, obstacles);
-            /* no time: what prods saw was forgotten at the end of the run */
+            /* no time: what viewpoint forces saw was forgotten at the end of the run */
             const struct cs_frame frame = {.x = x,
                                            .scalar = distance,
                                            .range = {sheet->range[0], sheet->range[1]},
@@ -176,6 +177,7 @@ static void print_script(const struct sheet *sheet, const struct cs_compare *com
         COLUMNS * 320, 60 + lines * 275, sheet->kind, lines, COLUMNS,
         !strcmp(sheet->kind, "equal_step") ? "Equal step" : "Equal cost", compare->time,
         sheet->range[0], sheet->range[1]);
+    /* paths are relative: gnuplot runs in the folder of the script */
     for (uint32_t k = 0; k < sheet->n; k++) {
         const struct cs_cell *cell = sheet->cells[k];
         cs_text_add(out,
@@ -202,6 +204,7 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
     struct cs_text script = {0};
     char name[32], path[4200];
     bool drawn;
+    /* before the tiles, which all share it */
     set_range(sheet, compare);
     snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
     if (sheet->n == 0 || cs_folder_make(path, error))

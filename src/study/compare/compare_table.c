@@ -1,3 +1,4 @@
+/* Prints a comparison as aligned text. */
 #include "study/compare/compare_table.h"
 
 #include <math.h>
@@ -12,6 +13,7 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
                 compare->settings->course.frames);
     cs_text_add(out, "reference  %s\n   against %s\n", yardstick->methods[1],
                 yardstick->methods[3]);
+    /* without a reference the figures below have no meaning */
     if (!yardstick->agree) {
         cs_text_add(out, "  no reference: %s\n", yardstick->reason);
         return;
@@ -94,6 +96,7 @@ static void add_method(const struct cs_cell *cells, uint32_t n, struct cs_text *
         }
     }
     cs_text_add(out, "%-20s %2u of %2u", cells->method, finished, n);
+    /* one figure for a steady order, a range for one that varies with the step */
     if (high > 0)
         cs_text_add(out, high - low > 0.1 ? "  order %.2f to %.2f" : "  order %.2f", low, high);
     if (finished > 0 && !cells->adaptive)

@@ -1,3 +1,4 @@
+/* Measures the predictability horizon: how fast runs from nearly equal starts move apart. */
 #include "study/compare/horizon.h"
 
 #include "study/deviation.h"

@@ -1,4 +1,4 @@
-/* ranking.c - fronts and ranks of the cells; the verdict and the warnings in words. */
+/* Finds the Pareto front and ranks of cells, and prints verdict and warnings in words. */
 #include "study/compare/ranking.h"
 
 #include <math.h>
@@ -179,6 +179,7 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
     if (cs_text_get(&compare->changes)[0])
         cs_text_add(out, "%s%s switched off: no part of the equation of motion\n", bullet,
                     cs_text_get(&compare->changes));
+    /* one line for all cells of a kind, however many there are */
     add(out, bullet, tally.below, "below the reference's own error",
         ": not drawn, and ranked as if at it");
     add(out, bullet, tally.blown, "blew up", ": the step is beyond the stable one");

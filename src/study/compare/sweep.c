@@ -1,3 +1,4 @@
+/* Makes the cells of a comparison from a list of methods with steps or tolerances. */
 #include "study/compare/sweep.h"
 
 #include "base/file.h"

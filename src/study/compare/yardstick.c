@@ -1,4 +1,4 @@
-/* yardstick.c - the four runs, their differences, and whether they make a reference. */
+/* Computes the verified reference: four runs, their differences, and whether they agree. */
 #include "study/compare/yardstick.h"
 
 #include "base/hash.h"
@@ -120,6 +120,7 @@ static enum cs_status compute(struct cs_yardstick *yardstick, const struct cs_co
         measure_motion(yardstick, &probe->session.system);
         measure_bar(yardstick, &probe->session.system, tracks);
         judge(yardstick);
+        /* its states now belong to the reference and must not be freed below */
         tracks[1] = (struct cs_track){0};
         tell(settings, CS_YARDSTICK_RUNS, "horizon");
         cs_horizon_measure(&yardstick->horizon, settings->course, settings->accuracy,

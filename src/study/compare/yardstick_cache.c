@@ -1,4 +1,4 @@
-/* yardstick_cache.c - the key, the header and the states of a reference's file. */
+/* Keeps a reference in a file: its key, its header and its states. */
 #include "study/compare/yardstick_cache.h"
 
 #include "base/file.h"
@@ -68,6 +68,7 @@ bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const
         return false;
     struct cs_track track;
     bool good = length > sizeof header && !cs_track_init(&track, course, &missing);
+    /* a file that does not fit or was damaged is passed over, and the reference is computed */
     if (good) {
         memcpy(&header, bytes, sizeof header);
         const size_t values = ((size_t)track.frames + 1) * 6 * track.n;
@@ -106,9 +107,11 @@ enum cs_status cs_yardstick_write(const struct cs_yardstick *yardstick, const ch
     header->n = track->n;
     header->frames = track->frames;
     header->yardstick = *yardstick;
+    /* an address means nothing to the next run */
     header->yardstick.track.states = NULL;
     cs_hash_doubles(track->states, values, header->hash);
     if (!cs_folder_make(folder, error) && !cs_file_create(&out, path, error)) {
+        /* failures of fwrite are seen by cs_file_finish */
         fwrite(header, sizeof *header, 1, out.file);
         fwrite(track->states, sizeof(double), values, out.file);
         cs_file_finish(&out, error);

@@ -1,4 +1,4 @@
-/* yardstick_choice.c - the list of families, best first, and their tighter twins. */
+/* Chooses two families of methods for a reference, and tightens their settings. */
 #include "study/compare/yardstick_choice.h"
 
 #include <math.h>
@@ -100,6 +100,7 @@ enum cs_status cs_yardstick_tighten(const char *integrator, char *out, size_t si
     const char *name = copy ? strsep(&rest, ":") : "", *key, *value;
     struct cs_text text = {0};
     cs_text_add(&text, "%s", name);
+    /* a pair that cannot be read ends the loop: its message is in *error */
     for (char mark = ':'; rest && !cs_method_take_pair(name, &rest, &key, &value, error);
          mark = ',') {
         cs_text_add(&text, "%c", mark);

@@ -1,4 +1,4 @@
-/* conform.c - the checks of a card one after the other, and what the method says of itself. */
+/* Runs the checks of a card in order, and weighs them against the method's own claims. */
 #include "study/conform/conform.h"
 
 #include "study/conform/conform_checks.h"
@@ -40,6 +40,7 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
     bool found = false;
     memset(card->counts, 0, sizeof card->counts);
     for (uint32_t k = 0; k < CHECKS; k++) {
+        /* all names, also those of checks not run: one of them may have been meant */
         names[k] = checks[k].name;
         if (card->only && strcmp(card->only, checks[k].name) != 0)
             continue;

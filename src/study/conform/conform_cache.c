@@ -1,4 +1,4 @@
-/* conform_cache.c - reference states by name, in a list: there are a few dozen. */
+/* Keeps reference states by name, in a list: there are a few dozen. */
 #include "study/conform/conform_cache.h"
 
 #include <stdlib.h>

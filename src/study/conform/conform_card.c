@@ -1,4 +1,4 @@
-/* conform_card.c - the rows of a card: of several figures the one that tells most. */
+/* Fills the rows of a card: of several figures the one that says most. */
 #include "study/conform/conform_card.h"
 
 #include <math.h>

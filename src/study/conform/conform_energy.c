@@ -1,4 +1,4 @@
-/* conform_energy.c - what symplectic methods promise, and what no method may do to energy. */
+/* Checks what symplectic methods promise, and what no method may do to energy. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_drum.h"
 
@@ -27,6 +27,7 @@ void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *r
     if (cs_drum_open(&back, card, card->method, &drum) &&
         cs_probe_run(&there, CS_DRUM_FRAMES)) {
         double start[CS_DRUM_VALUES];
+        /* kept before the run back overwrites it with the end of the run there */
         memcpy(start, back.x, sizeof start);
         const double move = cs_rms_difference(there.x, start, CS_DRUM_VALUES);
         for (size_t i = 0; i < CS_DRUM_VALUES; i++) {
@@ -67,6 +68,7 @@ void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) 
     double start = (double)NAN, motion = (double)NAN, worst = 0;
     if (cs_drum_open(&drum, card, method, &(struct cs_drum){0})) {
         start = cs_probe_energy(&drum);
+        /* the energy of the motion alone: the tension of the sheet at rest holds some too */
         motion = start - rest_energy(card);
     }
     const bool adaptive = method->traits & CS_ADAPTIVE;

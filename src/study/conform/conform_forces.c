@@ -1,5 +1,5 @@
-/* conform_forces.c - the motion under one force at a time, under unequal masses, and under
- * forces that change with time, against the reference.
+/* Checks the motion under one force at a time, under unequal masses, and under forces that
+ * change with time, against the reference.
  *
  * With step h and the rate w of the scene, a method of order p may be off by (h w)^p of the
  * motion times w T, the length of the run; twice that is left to it. A force that is missed, or
@@ -96,6 +96,7 @@ static void follow(const struct cs_conform *card, struct cs_conform_row *row,
         const size_t part = k * 3 * probe.n;
         const double off =
             cs_rms_difference(probe.x + part, truth.state + part, 3 * probe.n) / truth.scale[k];
+        /* twice the error that the order explains, but never less than rounding leaves */
         cs_row_state(row, off, fmax(2 * share * fmax(scene->rate * DURATION, 1), FLOOR),
                      "of the motion off the reference in %s, %s: %s", parts[k],
                      accuracy->level ? "fine" : "coarse", scene->what);
@@ -166,6 +167,7 @@ void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *
         const struct cs_force_scene *scene = cs_force_scenes + k;
         if (!is_for(card, scene, "time-dependence"))
             continue;
+        /* fixed: a method that chose its own steps would hide the order */
         for (int level = 0; level < 2; level++)
             follow(card, row, scene,
                    &(struct accuracy){.order = cs_probe_order(card, scene->by_velocity),

@@ -1,5 +1,5 @@
-/* conform_memory.c - whether a method takes memory in a step, seen from the C library's own
- * account of what is handed out, over all of its arenas. */
+/* Checks whether a method takes memory in a step, by the C library's own account of what it has
+ * handed out over all of its arenas. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -56,6 +56,7 @@ void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *r
         "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"particle\": 0.05},"
         " \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"
         " \"pins\": [\"top-left\"]}], \"colliders\": [{\"floor\": {\"height\": -0.55}}]}";
+    /* without an account nothing can be seen, which is no pass */
     if (handed_out() == 0) {
         cs_row_skip(row, "this C library keeps no account of its memory");
         return;

@@ -1,5 +1,5 @@
-/* conform_motion.c - motions that are known in advance: fall, translation, rotation, and the
- * momenta of what is left alone. */
+/* Checks motions that are known in advance: fall, translation, rotation, and the momenta of a
+ * free sheet. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -18,7 +18,7 @@
     " \"springs\": {\"stretch\": 25}}], \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": "      \
     "{\"fps\": 20}}"
 
-/* stirred, so that all springs pull; axial damping, whose forces have no torque */
+/* perturbed, so that all springs pull; axial damping, whose forces have no torque */
 #define FREE                                                                                   \
     "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5]}, \"mass\": {\"particle\": 0.1},"             \
     " \"springs\": {\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": 0.05,"           \
@@ -97,6 +97,7 @@ static void turn(const struct cs_conform *card, struct cs_conform_row *row, int 
         for (size_t i = 0; i < 2; i++) {
             const double side = (i ? 0.5 : -0.5) * length;
             pair.x[i] = side;
+            /* along y, across the spring: both particles go round their middle */
             pair.v[2 + i] = w * side;
         }
     }
@@ -148,6 +149,7 @@ static double drift(const struct cs_conform *card, struct cs_conform_row *row, i
     double before[2][3], after[2][3], scale[2];
     struct cs_probe sheet;
     if (cs_probe_open(&sheet, card, card->method, FREE)) {
+        /* from rest at rest length the momenta would stay 0 with any method */
         cs_perturb_smooth(&sheet.session.system, 0.01, 0.2);
         momenta(&sheet, before[0], before[1], scale);
     }

@@ -1,5 +1,5 @@
-/* conform_order.c - closed-form oscillators, the order of fixed steps, the tolerance of
- * adaptive ones, and both through an event. */
+/* Checks closed-form oscillators, the order of fixed steps, the tolerance of adaptive ones, and
+ * both through an event. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_drum.h"
 
@@ -73,6 +73,7 @@ static void measure_order(const struct cs_conform *card, struct cs_conform_row *
             found[part] = cs_rms_difference(state + part * CS_DRUM_VALUES,
                                             reference + part * CS_DRUM_VALUES, CS_DRUM_VALUES) /
                           scale[part];
+        /* from here on rounding would show as a slope */
         if (k > 0 && fmin(found[0], found[1]) < FLOOR)
             break;
         for (int part = 0; part < 2 && k > 0; part++) {

@@ -1,3 +1,4 @@
+/* Runs a small scene with one method for a check, at a set step or tolerance. */
 #include "study/conform/conform_probe.h"
 
 #include "base/options.h"

@@ -1,5 +1,6 @@
-/* conform_reference.c - four stages k_i = F(t + c_i h, y + c_i h k_(i-1)), c = 0, 1/2, 1/2, 1;
- * y' = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4) (Kutta 1901), y = (x, v). */
+/* The reference method of conformance checks (Kutta 1901): y = (x, v), four stages
+ * k_i = F(t + c_i h, y + c_i h k_(i-1)), c = 0, 1/2, 1/2, 1;
+ * y' = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4). */
 #include "study/conform/conform_reference.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* conform_rules.c - rules of the contract that hold for every method. */
+/* Checks the rules of the contract that hold for every method. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -31,6 +31,7 @@ void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
                    traits = CS_IMPLICIT | CS_ADAPTIVE | CS_MULTISTEP | CS_SYMPLECTIC |
                             CS_LIBRARY_BITS | CS_NOT_GALILEAN;
     bool falls_off = false;
+    /* a run ignores bits that it does not know, so that a slip would go unnoticed */
     if (method->needs & ~needs)
         cs_row_fail(row, "unknown bits in needs: %#x", method->needs & ~needs);
     if (method->traits & ~traits)
@@ -146,6 +147,7 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
                                         "a step far too large"};
     uint32_t hidden = 0;
     const char *which = "none";
+    /* a state that is not finite from the start, by overflow, or by an unstable step */
     for (int k = 0; k < 3; k++) {
         struct cs_probe sheet;
         cs_probe_open(&sheet, card, card->method, HANGING, "axial");

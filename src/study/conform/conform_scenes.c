@@ -1,4 +1,4 @@
-/* conform_scenes.c - small scenes as text, a table of them below: a new force adds its own. */
+/* Holds small scenes as text, in a table at the end: a new force adds its own. */
 #include "study/conform/conform_scenes.h"
 
 #define FREE_OF_SPRINGS "\"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\": 0}"

@@ -1,4 +1,4 @@
-/* conform_threads.c - whether the state is the same to the last bit over numbers of threads. */
+/* Checks that the state is the same to the last bit with any number of threads. */
 #include "base/hash.h"
 #include "base/pool.h"
 #include "study/conform/conform_checks.h"

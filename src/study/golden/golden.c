@@ -1,4 +1,4 @@
-/* golden.c - the tables of golden values, row by row. */
+/* Compares state hashes and images with the golden tables, row by row. */
 #include "study/golden/golden.h"
 
 #include "base/file.h"
@@ -57,6 +57,7 @@ static enum cs_status read_table(struct table *table, const char *folder, const 
     table->rows = calloc(lines + 1, sizeof *table->rows);
     if (!table->rows)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    /* the text is cut up at its line ends, since rows point into it */
     char *rest = table->text, *line = strsep(&rest, "\n");
     if (strcmp(line, table->head))
         return cs_fail(error, CS_ERR_FILE, "%s: the first line is not \"%s\"", table->path,

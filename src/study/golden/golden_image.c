@@ -1,5 +1,5 @@
-/* golden_image.c - one picture through the two-level gate: pixel for pixel where the renderer
- * is the golden's own, else within the calibrated tolerance. */
+/* Puts a picture through the two-level gate: pixel for pixel if the renderer is the golden's
+ * own, else within the calibrated tolerance. */
 #include "study/golden/golden_image.h"
 
 #include "draw/compare.h"
@@ -69,6 +69,7 @@ static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row
                             const struct cs_image *found, const char *renderer,
                             struct cs_error *error) {
     const bool same_renderer = !strcmp(renderer, row->note);
+    /* equal hashes of pixels decide: the golden picture need not be read */
     if (same_renderer && !strcmp(row->found, row->hash))
         return CS_OK;
     char path[1024];

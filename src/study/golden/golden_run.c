@@ -1,4 +1,4 @@
-/* golden_run.c - opens a row's session and steps it to the row's frame. */
+/* Opens the session of a golden row and steps it to the row's frame. */
 #include "study/golden/golden_run.h"
 
 #include <stdio.h>
@@ -22,7 +22,9 @@ enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_go
                               bool render, struct cs_session *session, struct cs_error *error) {
     char scene[1280], text[1024];
     struct cs_override overrides[16];
+    /* scenes are named from the folder above the golden one */
     snprintf(scene, sizeof scene, "%s/../%s", golden->folder, run->scene);
+    /* a copy, which split_overrides cuts up */
     snprintf(text, sizeof text, "%s", run->overrides);
     const struct cs_session_settings settings = {
         .scene = scene,

@@ -1,3 +1,4 @@
+/* Measures what spring networks and shape matching cost, over the size of a soft body. */
 #include "study/soft/soft.h"
 
 #include "base/clock.h"
@@ -71,6 +72,7 @@ static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
             samples[n++] = (now - start) / (double)(run->counts.steps - before);
             steps += run->counts.steps - before;
         }
+        /* after a frame, so that there is one sample however short the time */
         if (n >= least && now - begin > soft->seconds)
             break;
         warm = true;
@@ -93,6 +95,7 @@ static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_r
     if (!image.rgb)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
     if (!cs_picture_open(&picture, &session->system, CS_GL_AUTO, false, false, error))
+        /* the first picture warms up the renderer and does not count */
         for (int k = -1; k < PICTURES && !error->status; k++) {
             const double start = cs_clock_wall();
             cs_picture_begin(&picture, &session->run, &image);

@@ -1,6 +1,5 @@
-/* soft_report.c - tables and what they say; CSV; the soft-body thesis's two graphs side by
- * side.
- */
+/* Prints what soft bodies cost as tables with their meaning, as CSV, and as the soft-body
+ * thesis's two graphs side by side. */
 #include "study/soft/soft_report.h"
 
 #include <math.h>
@@ -108,6 +107,7 @@ void cs_soft_print_csv(const struct cs_soft *soft, struct cs_text *out) {
     for (uint32_t k = 0; k < soft->n; k++) {
         const struct cs_soft_row *row = soft->rows + k;
         cs_text_add(out, "%s,%u,%u", cs_soft_names[row->series], row->vertices, row->springs);
+        /* a body whose run failed has no times: its fields stay empty */
         const bool timed = row->step_seconds > 0;
         const double values[] = {1e3 * row->step_seconds,
                                  row->steps,
@@ -146,6 +146,7 @@ static void add_curves(const struct curve *curves, uint32_t n, int x, struct cs_
 }
 
 void cs_soft_print_plot(const struct cs_soft *soft, struct cs_text *out) {
+    /* the thesis's two graphs: over the number of springs, and over that of vertices */
     static const struct curve springs[] = {
         {CS_SOFT_SMALL, 8, "#2171b5", "smaller body, one step a picture", 7},
         {CS_SOFT_LARGE, 8, "#d7301f", "larger body, one step a picture", 5},

@@ -1,3 +1,4 @@
+/* Finds a safe step for each method from linear theory, and confirms it by runs. */
 #include "study/stability/advise.h"
 
 #include "study/workers.h"
@@ -60,6 +61,7 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
         row->kind = CS_ADVICE_NONE;
         return CS_OK;
     }
+    /* the message is about the step of a frame, which is not advised */
     *row->message = 0;
     row->safe = MARGIN * row->limit;
     return try_safe(row, settings, reference, frame, error);
@@ -102,6 +104,7 @@ static enum cs_status advise_fixed(struct cs_advice *row,
     }
     row->limit = row->theory = reference.worst.dt;
     row->mode = reference.worst.mode;
+    /* theory knows no limit */
     if (row->limit > 1e100)
         return try_frame(row, settings, &reference, frame, error);
     row->kind = row->limit > 0 ? CS_ADVICE_THEORY : CS_ADVICE_NONE;
@@ -147,6 +150,7 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
         PERTURBATION * cs_springs_shortest(&advise->opened.system.springs);
     trial.session.run.budget = advise->budget;
     trial.session.integrator = row->method = advise->names[task];
+    /* only to learn whether the method can follow the scene, and whether it takes dt */
     if (cs_session_open_plan(&session, &trial.session, error)) {
         cs_workers_tick(&work->workers, 1);
         return refuse(row, error);
@@ -271,6 +275,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     case CS_ADVICE_REFUSED:
         break;
     }
+    /* a message says more than the verdict; a sound run needs neither */
     if (*row->message)
         cs_text_add(out, "%s%s", row->kind == CS_ADVICE_REFUSED ? "" : "; ", row->message);
     else if (row->verdict != CS_FATE_BOUNDED && row->kind != CS_ADVICE_NONE)

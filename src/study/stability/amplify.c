@@ -1,3 +1,4 @@
+/* Measures the amplification matrix of a method's step on a damped oscillator. */
 #include "study/stability/amplify.h"
 
 #include "study/session.h"

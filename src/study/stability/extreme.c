@@ -1,3 +1,4 @@
+/* Runs the catalogue of extreme scenes with every method, against what each scene expects. */
 #include "study/stability/extreme.h"
 
 #include "base/clock.h"
@@ -40,6 +41,7 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
         }
     row->verdict = watch.worst;
     cs_watch_print(&watch, run->system, &text);
+    /* the method's own error is an outcome, any other one ends the study */
     if (failure.status == CS_ERR_MODULE) {
         ending->refused = true;
         row->verdict = CS_FATE_FAILED;
@@ -125,6 +127,7 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
     if (scene->dt > 0 && cs_method_set_dt(&session.method, scene->dt))
         dt = scene->dt;
     if (!cs_session_build(&session, error)) {
+        /* an instability needs something to grow from */
         cs_perturb_random(&session.system,
                           PERTURBATION * cs_springs_shortest(&session.system.springs), 0);
         if (dt > 0 && cs_extreme_expects(row->expected, "theory"))
@@ -216,6 +219,7 @@ static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
     catalogue->workers.ticks = cs_workers_take(sizeof(uint32_t), error);
     if (!catalogue->rows || !catalogue->workers.ticks)
         return error->status;
+    /* these texts are from before the fork: their addresses hold in every worker */
     for (uint32_t k = 0; k < n; k++) {
         catalogue->rows[k].scene = catalogue->scenes[k / catalogue->n_methods].name;
         catalogue->rows[k].method = catalogue->methods[k % catalogue->n_methods];
@@ -227,6 +231,7 @@ static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
     catalogue->workers.ctx = catalogue;
     catalogue->workers.progress = progress;
     catalogue->workers.progress_ctx = catalogue;
+    /* a run ends itself at its budget: only a step that never ends is cut off */
     catalogue->workers.most_seconds = 2 * catalogue->extreme->budget + 1;
     catalogue->workers.stop = catalogue->extreme->stop;
     return cs_workers_run(&catalogue->workers, error);
@@ -244,6 +249,7 @@ enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error
         cs_fail(error, CS_ERR_USAGE, "no scene of the catalogue has \"%.60s\" in its name",
                 extreme->only_scene);
     else if (!run_all(&catalogue, extreme->n_workers, error)) {
+        /* rows that no worker finished are reported too */
         report_rows(&catalogue, true);
         if (extreme->missed)
             cs_fail(error, CS_ERR_CHECK, "%u of %u runs did not end as expected",

@@ -1,3 +1,4 @@
+/* Reads the scenes of the catalogue, and what each expects of every class of methods. */
 #include "study/stability/extreme_scene.h"
 
 #include "base/file.h"
@@ -94,6 +95,7 @@ static enum cs_status take_values(struct cs_extreme_scene *scene, const struct c
                        scene->path);
     scene->seconds = cs_json_number(seconds);
     scene->dt = dt ? cs_json_number(dt) : 0;
+    /* no class may be left out: what is not expected could never fail */
     for (int c = 0; c < CS_CLASSES; c++) {
         const struct cs_json *expected = cs_json_find(values, cs_class_names[c]);
         if (!expected || cs_json_kind_of(expected) != CS_JSON_TEXT)
@@ -158,6 +160,7 @@ enum cs_status cs_extreme_scenes(const char *folder, struct cs_extreme_scene **s
     closedir(entries);
     if (!*n && !error->status)
         cs_fail(error, CS_ERR_FILE, "no scenes in \"%s\"", folder);
+    /* a folder has no order, but a report needs one */
     if (*n)
         qsort(*scenes, *n, sizeof **scenes, by_name);
     return error->status;

@@ -1,4 +1,4 @@
-/* modes.c - the largest eigenvalue of M^-1/2 (a K + b C) M^-1/2 by restarted Lanczos steps. */
+/* Finds the largest eigenvalue of M^-1/2 (a K + b C) M^-1/2 by restarted Lanczos steps. */
 #include "study/stability/modes.h"
 
 #include "model/force/terms.h"
@@ -58,6 +58,7 @@ static void apply(struct cs_modes *modes, const double *x, double a, double b, c
     double *dx = modes->dx, *dv = modes->dv;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
+            /* negative, because the product of the Jacobian is -K dx - C dv */
             dx[c * n + i] = -modes->root[i] * p[c * n + i];
     for (size_t i = 0; i < 3 * n; i++) {
         dv[i] = b * dx[i];

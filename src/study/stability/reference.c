@@ -1,3 +1,4 @@
+/* Runs a trusted reference, and follows the limits of linear theory along its trajectory. */
 #include "study/stability/reference.h"
 
 #include <math.h>

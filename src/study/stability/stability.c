@@ -1,4 +1,4 @@
-/* stability.c - a map: its columns are shared out among workers. */
+/* Makes a stability map; its columns are shared among worker processes. */
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
@@ -48,6 +48,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     trial.session.perturbation =
         PERTURBATION * cs_springs_shortest(&map->session.system.springs);
     trial.session.run.budget = map->settings->budget;
+    /* springs get shorter as columns are added, and so must the perturbation */
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
         trial.session.perturbation *= map->own / column->value;
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
@@ -141,6 +142,7 @@ static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) 
         dt = choose_dt(map, values);
     map->n_columns = settings->columns;
     map->n_rows = settings->rows;
+    /* shared by the workers, in one block with all cells */
     map->columns = cs_workers_take(bytes_of(map), error);
     map->dt = cs_arena_take_n(&map->arena, map->n_rows, sizeof *map->dt, error);
     if (error->status)

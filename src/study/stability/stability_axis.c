@@ -1,3 +1,4 @@
+/* Varies one value of a scene over the columns of a stability map. */
 #include "study/stability/stability_axis.h"
 
 #include <math.h>

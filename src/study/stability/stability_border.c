@@ -1,4 +1,4 @@
-/* stability_border.c - a run judged by the reference; bisection. */
+/* Judges a step against the reference, and bisects the border of stable steps. */
 #include "study/stability/stability_border.h"
 
 #include <math.h>
@@ -26,8 +26,10 @@ static enum cs_status try_step(const struct cs_trial_settings *settings,
         .time = trial.end,
         .particles = trial.excess.particles,
     };
+    /* drift compares the energies at the end, which both runs must have reached */
     if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)
         cell->drift = cs_fate_drift(&trial, &reference->trial);
+    /* the time that is told is that of the first sign, not that of the end */
     if (trial.outcome == CS_UNBOUNDED || trial.outcome == CS_NOT_FINITE)
         cell->time = trial.blow_up.time;
     if (cell->verdict == CS_FATE_GLOBAL && trial.beyond)
@@ -70,10 +72,12 @@ enum cs_status cs_stability_border(const struct cs_trial_settings *settings,
     *border = (double)NAN;
     if (enclose(settings, reference, &stable, &unstable, &known, error) || !known)
         return error->status;
+    /* no stable step was found, or no unstable one */
     *border = stable <= 0 ? 0 : HUGE_VAL;
     if (stable <= 0 || unstable > LONGEST_DT)
         return CS_OK;
     for (int k = 0; k < BISECTIONS && unstable > RESOLUTION * stable; k++) {
+        /* the geometric mean, since steps cover decades */
         const double dt = sqrt(stable * unstable);
         if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
             return error->status;

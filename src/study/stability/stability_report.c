@@ -1,6 +1,5 @@
-/* stability_report.c - a map as text (letters for verdicts, the border and theory below), as
- * CSV and JSON, and as a gnuplot script (cells coloured by verdict, theory's curves over them).
- */
+/* Prints a stability map as text (letters for verdicts, border and theory below), as CSV and
+ * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
 #include "study/stability/stability_report.h"
 
 #include <math.h>
@@ -199,6 +198,7 @@ static void add_member(struct cs_text *out, const char *before, double value) {
 static void add_json_column(const struct cs_stability *map, uint32_t c, struct cs_text *out) {
     const struct cs_stability_column *column = map->columns + c;
     const struct cs_reference *reference = &column->reference;
+    /* limits that do not exist are NAN or infinite, which are written as null */
     add_member(out, "    {\"value\": ", column->value);
     add_member(out, ", \"seconds\": ", reference->seconds);
     add_member(out, ", \"border\": ", column->border);
@@ -253,6 +253,7 @@ static void add_head(const struct cs_stability *map, const char *name, struct cs
                 map->integrator->name, map->session.scene.path, map->settings->seconds);
     cs_text_add(out, "set xlabel '%s  [%s]'\nset ylabel 'dt  [s]' offset 1,0\n",
                 cs_axis_names[axis], cs_axis_unit(axis));
+    /* columns of a grid span no decades: plain numbers serve them better */
     cs_text_add(out, "set logscale xy\nset format y '10^{%%T}'\nset format x '%s'\n",
                 axis == CS_AXIS_RESOLUTION ? "%g" : "10^{%T}");
     cs_text_add(out,
@@ -282,6 +283,7 @@ static bool is_there(const struct cs_stability *map, int verdict) {
 
 void cs_stability_print_plot(const struct cs_stability *map, const char *name,
                              struct cs_text *out) {
+    /* in the order of drawing: the white dot lies on the black one */
     static const struct {
         int column;
         const char *style, *title;
@@ -296,6 +298,7 @@ void cs_stability_print_plot(const struct cs_stability *map, const char *name,
     add_ranges(map, out);
     cs_text_add(out, "plot \\\n");
     for (int v = 0; v < CS_FATES; v++)
+        /* only verdicts that occur have a line in the legend */
         if (is_there(map, v))
             cs_text_add(
                 out,

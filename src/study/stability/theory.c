@@ -1,3 +1,4 @@
+/* Finds the largest stable step of a method on a system by linear theory. */
 #include "study/stability/theory.h"
 
 #include <math.h>
