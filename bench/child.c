@@ -1,3 +1,4 @@
+/* Runs other programs to their end, and collects their output, times and memory. */
 #include "child.h"
 
 #include "base/clock.h"
@@ -46,6 +47,7 @@ enum cs_status bench_child_run(const char *const *arguments, struct cs_text *out
     if (child == 0)
         become(arguments, out);
     close(out[1]);
+    /* before waiting: a child whose pipe is full would wait for a reader for ever */
     collect(out[0], output);
     if (child < 0 || wait4(child, &state, 0, &used) < 0)
         return cs_fail(error, CS_ERR_MODULE, "cannot run %s: %s", arguments[0],
@@ -66,6 +68,7 @@ enum cs_status bench_program_run(struct bench_run *run, const struct bench_setti
     struct cs_text path = {0}, output = {0};
     char threads[16];
     snprintf(threads, sizeof threads, "%u", settings->threads);
+    /* a bare name is a scene that was written here, any other one is of the source tree */
     cs_text_add(&path, "%s/%s", strchr(scene, '/') ? BENCH_ROOT : settings->scratch, scene);
     const char *all[ARGUMENTS_MAX] = {BENCH_PROGRAM, "run",       cs_text_get(&path),
                                       "--json",      "-",         "--timing",

@@ -168,6 +168,7 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
     bed->x = system->state;
     bed->v = bed->x + 3 * n;
     bed->out = take(bed, 3 * n, error);
+    /* the other variants are timed with the force alone */
     if (variant != FULL)
         return error->status;
     bed->dx = take(bed, 3 * n, error);

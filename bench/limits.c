@@ -1,4 +1,4 @@
-/* The limits: divider and memory. */
+/* Measures what the machine can do at best: its divider and its memory. */
 #include "limits.h"
 
 #include "base/clones.h"
@@ -99,6 +99,7 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
     if (!error->status)
         bench_measure(settings, tasks, n);
     for (uint32_t k = 0, r = 0; k < n && !error->status; k++, r++) {
+        /* rows that were passed over have no task */
         while (rows[r].slow && settings->quick)
             r++;
         add_row(table, r, tasks + k);

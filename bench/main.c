@@ -1,4 +1,4 @@
-/* main.c - the benchmark: sections by name, tables on standard output, CSV in a folder. */
+/* The benchmark: runs sections by name, prints their tables, and writes them as CSV. */
 #include "bench.h"
 
 #include "base/clock.h"
@@ -88,6 +88,7 @@ static enum cs_status read_arguments(struct asked *asked, int argc, char **argv,
     }
     for (int k = optind; k < argc && !error->status; k++)
         choose(asked, argv[k], error);
+    /* no section was named: all of them */
     for (int s = 0; s < SECTIONS && optind == argc; s++)
         asked->sections[s] = true;
     return error->status;

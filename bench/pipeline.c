@@ -21,6 +21,7 @@ static enum cs_status sample(const struct bench_settings *settings, uint32_t fra
         "--frames",           number,  "--overwrite",           "--out",
         cs_text_get(&folder), "--set", "render.size=[640,480]", NULL};
     if (!bench_program_run(&run, settings, "scenes/sphere_rest.json", arguments, error)) {
+        /* stages by the program's own clocks; the whole as the system saw it */
         seconds[SIMULATE] = bench_run_number(&run, "seconds", "method");
         seconds[DRAW] = bench_run_number(&run, "seconds", "draw");
         seconds[ENCODE] = bench_run_number(&run, "seconds", "encode");
@@ -46,6 +47,7 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
     }
     for (int s = 0; s < STAGES; s++) {
         const struct bench_spread time = bench_spread_of(samples[s], runs);
+        /* stages come first: the whole run is then held against the slowest of them */
         slowest = s < WALL && time.median > slowest ? time.median : slowest;
         bench_table_add(table, "%s,%u,%.3f,%.3f,%.3f,%.2f,%.2f", stage_names[s], frames,
                         time.median, time.min, time.max, 1e3 * time.median / frames,

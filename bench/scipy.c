@@ -1,4 +1,4 @@
-/* SciPy's BDF beside cvode-bdf: the work is that of scipy_bdf.py. */
+/* Runs SciPy's BDF beside cvode-bdf; scipy_bdf.py does the work. */
 #include "child.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Writes the models to be measured as scenes in JSON, and opens them. */
 #include "sheet.h"
 
 #include "base/file.h"

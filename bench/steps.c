@@ -1,4 +1,4 @@
-/* Whole steps, through the same calls into a module that a run makes. */
+/* Times whole steps, through the same calls into a module that a run makes. */
 #include "child.h"
 #include "limits.h"
 #include "sheet.h"
@@ -103,6 +103,7 @@ static void add_row(const struct method_case *one, const struct stepping *steppi
                     struct bench_table *table) {
     const struct bench_model model = {.r = one->r, .stiffness = one->stiffness};
     const struct cs_counts *counts = &stepping->session.run.counts;
+    /* explicit steps are timed in twenties, but a row is about one unit of the case */
     const double units = (double)steps_of(one) / one->steps, ms = 1e3 / units;
     const struct cs_system *system = &stepping->session.system;
     const double ns = 1e9 * task->time.median / steps_of(one) / system->view.n;
@@ -133,6 +134,7 @@ static enum cs_status measure(const struct bench_settings *settings,
         open_case(steppings + k, first + k, settings, error);
         tasks[k] = (struct bench_task){.run = advance, .object = steppings + k};
     }
+    /* the divider in turn with the cases, so that the same machine is seen by both */
     tasks[n] = (struct bench_task){.run = bench_sqrt_divide, .object = &loop};
     if (!error->status)
         bench_measure(settings, tasks, n + 1);

@@ -1,3 +1,4 @@
+/* Prints the figures of a section as an aligned table, or as CSV. */
 #include "table.h"
 
 #include "base/file.h"
@@ -78,6 +79,7 @@ void bench_table_print(const struct bench_table *table, struct cs_text *out) {
     for (const char *cell = cs_text_get(&table->lines); *cell;) {
         const size_t length = strcspn(cell, ",\n");
         add_cell(out, cell, length, widths[column], column < section->n_keys);
+        /* a cell without a comma behind it is the last of its line */
         column = cell[length] == ',' ? column + 1 : 0;
         if (!column)
             end_line(out);

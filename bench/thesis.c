@@ -91,6 +91,7 @@ static enum cs_status replay(const struct bench_settings *settings, uint32_t siz
         return error->status;
     struct cs_run *run = &session.run;
     *total = 0;
+    /* the first frame warms up and is not counted */
     cs_run_frame(run, error);
     for (uint32_t k = 0; k < frames && !error->status; k++) {
         look(run, before);

@@ -1,3 +1,4 @@
+/* Measures how long a piece of work takes: a warm-up, then samples in turns. */
 #include "timing.h"
 
 #include "base/clock.h"
