@@ -25,7 +25,7 @@ enum {
     COMPARE_CACHE,
     COMPARE_FRESH,
     COMPARE_PICTURES,
-    COMPARE_GL,
+    COMPARE_RENDERER,
     COMPARE_QUIET,
     COMPARE_ROWS
 };
@@ -61,7 +61,8 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                           "draw the last frame of the methods at equal step and at equal cost, "
                           "coloured by their error",
                           false},
-    [COMPARE_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
+    [COMPARE_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
+                          false},
     [COMPARE_QUIET] = {"quiet", 'q', NULL, "no progress and no rows, only the verdict", false},
 };
 
@@ -188,9 +189,9 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
 static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     struct cs_compare_settings settings;
     struct screen screen = {.quiet = cs_args_get(args, COMPARE_QUIET)};
-    int gl = CS_GL_AUTO;
+    int kind = CS_RENDERER_AUTO;
     if (read_settings(args, &settings, error) ||
-        cs_args_choice(args, COMPARE_GL, cs_gl_names, &gl, error))
+        cs_args_choice(args, COMPARE_RENDERER, cs_renderer_names, &kind, error))
         return error->status;
     settings.reference_progress = show_reference;
     settings.begun = show_begin;
@@ -202,7 +203,7 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
         /* files first: they must not be lost because printing failed */
         if (!cs_compare_write_report(&screen.compare, error) &&
             !print_verdict(&screen, error) && cs_args_get(args, COMPARE_PICTURES))
-            cs_sheet_write(&screen.compare, (enum cs_gl)gl, error);
+            cs_sheet_write(&screen.compare, (enum cs_renderer_kind)kind, error);
     }
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);

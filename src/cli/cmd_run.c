@@ -23,7 +23,7 @@ enum {
     RUN_WATCH,
     RUN_TIMING,
     RUN_THREADS,
-    RUN_GL,
+    RUN_RENDERER,
     RUN_FAST,
     RUN_LEVEL,
     RUN_QUIET,
@@ -65,7 +65,7 @@ static const struct cs_arg rows[RUN_ROWS] = {
                      "threads that step the scene, 1 to 64 (default: one a processor, up to "
                      "16; one below 16384 particles)",
                      false},
-    [RUN_GL] = {"gl", 0, "NAME", "renderer: auto, osmesa or egl (default: auto)", false},
+    [RUN_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)", false},
     [RUN_FAST] = {"fast-render", 0, NULL,
                   "use all of the processor; pixels then depend on the machine", false},
     [RUN_LEVEL] = {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)", false},
@@ -95,7 +95,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
         .states = cs_args_get(args, RUN_STATES),
         .json = cs_args_get(args, RUN_JSON),
         .watch = cs_args_get(args, RUN_WATCH),
-        .gl = CS_GL_AUTO,
+        .renderer = CS_RENDERER_AUTO,
         .level = 1,
         .fast = cs_args_get(args, RUN_FAST),
         .hash = cs_args_get(args, RUN_HASH),
@@ -105,7 +105,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
     if (cs_args_whole(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
         cs_args_whole(args, RUN_EVERY, 1, MOST_FRAMES, &settings->every, error) ||
         cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
-        cs_args_choice(args, RUN_GL, cs_gl_names, &settings->gl, error))
+        cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))
         return error->status;
     /* a program could not tell the two apart in one stream */
     if (settings->hash && settings->json && !strcmp(settings->json, "-"))

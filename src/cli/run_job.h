@@ -15,7 +15,7 @@ struct cs_job_settings {
     uint32_t every;                     /* draw each so-many-th frame */
     const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
     const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
-    int gl;                             /* enum cs_gl */
+    int renderer;                       /* enum cs_renderer_kind */
     uint32_t level;                     /* zlib */
     bool fast, hash, overwrite, quiet;
 };

@@ -1,7 +1,8 @@
 /* render.h - what the program knows of a renderer: a table of four calls in a module.
  *
- * The modules render-osmesa.so and render-egl.so hold everything that touches OpenGL, and are
- * loaded only when a frame is asked for (cs_renderer_open).
+ * The module render-cpu.so needs nothing but the processor; render-osmesa.so and render-egl.so
+ * hold everything that touches OpenGL. They are loaded only when a frame is asked for
+ * (cs_renderer_open).
  *
  * A canvas belongs to the thread that made it. Scene and system may be stepped on another while
  * it paints: of what steps and events change, it reads nothing but the frame.
@@ -25,8 +26,11 @@ struct cs_canvas_settings {
         *textures; /* (scene->bodies.n), width 0: none; needed by create only */
     const struct cs_obstacle
         *obstacles; /* (scene->colliders.n), at the start; needed by create only */
-    bool fast;      /* do not pin the CPU capabilities: 1.4 times faster, pixels depend on the
-                       machine */
+    bool fast; /* of OpenGL: do not pin the CPU capabilities: 1.4 times faster, pixels depend on
+                  the machine */
+    uint32_t threads; /* that may draw at the same time; they do not change the picture */
+    /* shares out the blocks of a loop among them, as cs_pool_run does; NULL: in order */
+    void (*share)(uint32_t blocks, void (*task)(void *arg, uint32_t block), void *arg);
 };
 
 /* What one picture shows beside the scene itself. */
@@ -41,10 +45,10 @@ struct cs_frame {
     const struct cs_obstacle *obstacles; /* (scene->colliders.n) where they are at t */
 };
 
-#define CS_RENDERER_ABI 3u
+#define CS_RENDERER_ABI 4u
 struct cs_renderer {
     unsigned abi;
-    const char *name; /* "osmesa" or "egl" */
+    const char *name; /* as in the names of enum cs_renderer_kind */
     /* Makes a context, shaders and buffers for this scene. On failure CS_ERR_MODULE, *canvas
      * NULL. */
     enum cs_status (*create)(const struct cs_canvas_settings *settings,
@@ -57,12 +61,18 @@ struct cs_renderer {
     void (*destroy)(struct cs_canvas *canvas); /* NULL is fine */
 };
 
-enum cs_gl { CS_GL_AUTO, CS_GL_OSMESA, CS_GL_EGL };
-extern const char *const cs_gl_names[];
+enum cs_renderer_kind {
+    CS_RENDERER_AUTO,
+    CS_RENDERER_CPU,
+    CS_RENDERER_OSMESA,
+    CS_RENDERER_EGL
+};
+extern const char *const cs_renderer_names[];
 
-/* Loads the module of a renderer from folder; auto takes OSMesa, else EGL without a display.
- * Never unloaded. On failure CS_ERR_MODULE and the message says what to install. */
-enum cs_status cs_renderer_open(const char *folder, enum cs_gl gl,
+/* Loads the module of a renderer from folder; auto takes OSMesa, else EGL without a display,
+ * else the one that needs neither. Never unloaded. On failure CS_ERR_MODULE and the message
+ * says what to install. */
+enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
                                 const struct cs_renderer **renderer, struct cs_error *error);
 
 #endif

@@ -5,25 +5,39 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
-const char *const cs_gl_names[] = {"auto", "osmesa", "egl", NULL};
+const char *const cs_renderer_names[] = {"auto", "cpu", "osmesa", "egl", NULL};
 
-/* Debian packages of the libraries that a module is linked to, and needs when it runs. */
-static const char *const packages[] = {NULL, "libosmesa6", "libegl1 (and libgl1-mesa-dri)"};
+/* Debian packages of the libraries that a module is built with, and needs when it runs. */
+static const struct {
+    const char *build, *run;
+} packages[] = {[CS_RENDERER_CPU] = {NULL, NULL},
+                [CS_RENDERER_OSMESA] = {"libosmesa6-dev", "libosmesa6"},
+                [CS_RENDERER_EGL] = {"libegl-dev", "libegl1 (and libgl1-mesa-dri)"}};
 
-static enum cs_status open_path(const char *path, enum cs_gl gl,
-                                const struct cs_renderer **renderer, struct cs_error *error) {
-    const char *name = cs_gl_names[gl];
-    if (access(path, R_OK) != 0)
+static enum cs_status fail_missing(const char *path, enum cs_renderer_kind kind,
+                                   struct cs_error *error) {
+    const char *name = cs_renderer_names[kind], *package = packages[kind].build;
+    if (!package)
         return cs_fail(error, CS_ERR_MODULE,
-                       "renderer %s: no module %s: build clothsim with the renderer (Debian "
-                       "packages libosmesa6-dev and libegl-dev), or install it again",
-                       name, path);
+                       "renderer %s: no module %s: install clothsim again", name, path);
+    return cs_fail(error, CS_ERR_MODULE,
+                   "renderer %s: no module %s: build clothsim with the Debian package %s, or "
+                   "draw with --renderer cpu",
+                   name, path, package);
+}
+
+static enum cs_status open_path(const char *path, enum cs_renderer_kind kind,
+                                const struct cs_renderer **renderer, struct cs_error *error) {
+    const char *name = cs_renderer_names[kind];
+    if (access(path, R_OK) != 0)
+        return fail_missing(path, kind, error);
     // never closed: the driver leaves threads and exit handlers behind
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!module)
-        return cs_fail(error, CS_ERR_MODULE,
-                       "renderer %s cannot be loaded: %s; install the Debian package %s", name,
-                       dlerror(), packages[gl]);
+        return cs_fail(error, CS_ERR_MODULE, "renderer %s cannot be loaded: %s; install %s%s",
+                       name, dlerror(),
+                       packages[kind].run ? "the Debian package " : "clothsim again",
+                       packages[kind].run ? packages[kind].run : "");
     const struct cs_renderer *found = dlsym(module, "clothsim_renderer");
     if (!found)
         return cs_fail(error, CS_ERR_MODULE, "renderer %s: %s is no renderer module", name,
@@ -38,27 +52,31 @@ static enum cs_status open_path(const char *path, enum cs_gl gl,
     return CS_OK;
 }
 
-static enum cs_status open_one(const char *folder, enum cs_gl gl,
+static enum cs_status open_one(const char *folder, enum cs_renderer_kind kind,
                                const struct cs_renderer **renderer, struct cs_error *error) {
     struct cs_text path = {0};
-    cs_text_add(&path, "%s/render-%s.so", folder, cs_gl_names[gl]);
+    cs_text_add(&path, "%s/render-%s.so", folder, cs_renderer_names[kind]);
     if (path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the path of a module");
     else
-        open_path(cs_text_get(&path), gl, renderer, error);
+        open_path(cs_text_get(&path), kind, renderer, error);
     cs_text_finish(&path);
     return error->status;
 }
 
-enum cs_status cs_renderer_open(const char *folder, enum cs_gl gl,
+enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
                                 const struct cs_renderer **renderer, struct cs_error *error) {
-    struct cs_error first = {0}, second = {0};
+    static const enum cs_renderer_kind order[] = {CS_RENDERER_OSMESA, CS_RENDERER_EGL,
+                                                  CS_RENDERER_CPU};
     *renderer = NULL;
-    if (gl != CS_GL_AUTO)
-        return open_one(folder, gl, renderer, error);
-    if (open_one(folder, CS_GL_OSMESA, renderer, &first) == CS_OK ||
-        open_one(folder, CS_GL_EGL, renderer, &second) == CS_OK)
-        return CS_OK;
-    // each message is cut, so that both fit into one
-    return cs_fail(error, CS_ERR_MODULE, "%.480s; %.480s", first.message, second.message);
+    if (kind != CS_RENDERER_AUTO)
+        return open_one(folder, kind, renderer, error);
+    struct cs_error last = {0};
+    for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
+        last = (struct cs_error){0};
+        if (open_one(folder, order[i], renderer, &last) == CS_OK)
+            return CS_OK;
+    }
+    // the last one needs no library: why it cannot be had is what helps
+    return cs_fail(error, CS_ERR_MODULE, "%s", last.message);
 }

@@ -2,6 +2,7 @@
 #include "study/picture.h"
 
 #include "base/clock.h"
+#include "base/pool.h"
 #include "io/png.h"
 
 #include <math.h>
@@ -75,16 +76,19 @@ static void make_canvas(void *object) {
                                                 .system = picture->system,
                                                 .textures = picture->textures,
                                                 .obstacles = picture->obstacles,
-                                                .fast = picture->fast};
+                                                .fast = picture->fast,
+                                                .threads = cs_pool_threads(),
+                                                .share = cs_pool_run};
     cs_obstacles_at(picture->system, 0, picture->obstacles);
     picture->renderer->create(&settings, &picture->canvas, &picture->error);
 }
 
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
-                               enum cs_gl gl, bool fast, bool beside, struct cs_error *error) {
+                               enum cs_renderer_kind kind, bool fast, bool beside,
+                               struct cs_error *error) {
     *picture = (struct cs_picture){.scene = system->scene, .system = system, .fast = fast};
     if (!read_textures(picture, error) && !take_arrays(picture, error) &&
-        !cs_renderer_open(cs_renderer_folder(), gl, &picture->renderer, error)) {
+        !cs_renderer_open(cs_renderer_folder(), kind, &picture->renderer, error)) {
         /* what viewpoint forces see is drawn from the events, which move on with the run */
         const bool apart = beside && !picture->scene->render.prods;
         picture->hand = apart ? cs_hand_create() : NULL;

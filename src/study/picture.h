@@ -35,7 +35,8 @@ struct cs_picture {
  * the same. On failure the picture is
  * closed; CS_ERR_MODULE, CS_ERR_FILE (a texture) or CS_ERR_MEMORY. */
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
-                               enum cs_gl gl, bool fast, bool beside, struct cs_error *error);
+                               enum cs_renderer_kind kind, bool fast, bool beside,
+                               struct cs_error *error);
 
 /* Begins to draw the state of a run into an image of the scene's size, which must not be
  * touched before the end. The picture before must have ended. */

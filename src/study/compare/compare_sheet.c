@@ -91,7 +91,7 @@ static void cut_margins(struct cs_image *image) {
 }
 
 static enum cs_status paint(struct cs_course *course, const struct cs_frame *frame,
-                            const struct cs_obstacle *obstacles, enum cs_gl gl,
+                            const struct cs_obstacle *obstacles, enum cs_renderer_kind kind,
                             const char *path, struct cs_error *error) {
     struct cs_scene *scene = &course->session.scene;
     const struct cs_renderer *renderer = NULL;
@@ -107,7 +107,7 @@ static enum cs_status paint(struct cs_course *course, const struct cs_frame *fra
     scene->render.look = CS_LOOK_STRAIN; // any that colours by a value
     if (!image.rgb || !textures || !obstacles)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
-    else if (!cs_renderer_open(cs_renderer_folder(), gl, &renderer, error) &&
+    else if (!cs_renderer_open(cs_renderer_folder(), kind, &renderer, error) &&
              !renderer->create(&settings, &canvas, error) &&
              !renderer->paint(canvas, frame, &image, error)) {
         cut_margins(&image);
@@ -122,7 +122,7 @@ static enum cs_status paint(struct cs_course *course, const struct cs_frame *fra
 
 /* Runs a cell again and draws its last frame. */
 static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
-                                const struct cs_compare *compare, enum cs_gl gl,
+                                const struct cs_compare *compare, enum cs_renderer_kind kind,
                                 struct cs_error *error) {
     char integrator[320], path[4200];
     struct cs_course course;
@@ -153,7 +153,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
                                            .range = {sheet->range[0], sheet->range[1]},
                                            .inv_mass = system->inv_mass,
                                            .obstacles = obstacles};
-            paint(&course, &frame, obstacles, gl, path, error);
+            paint(&course, &frame, obstacles, kind, path, error);
         }
         cs_track_finish(&track);
         cs_course_close(&course);
@@ -200,7 +200,7 @@ static void set_range(struct sheet *sheet, const struct cs_compare *compare) {
 }
 
 static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *compare,
-                                  enum cs_gl gl, struct cs_error *error) {
+                                  enum cs_renderer_kind kind, struct cs_error *error) {
     struct cs_text script = {0};
     char name[32], path[4200];
     bool drawn;
@@ -210,7 +210,7 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
     if (sheet->n == 0 || cs_folder_make(path, error))
         return error->status;
     for (uint32_t k = 0; k < sheet->n && !error->status; k++)
-        draw_tile(sheet, sheet->cells[k], compare, gl, error);
+        draw_tile(sheet, sheet->cells[k], compare, kind, error);
     print_script(sheet, compare, &script);
     snprintf(name, sizeof name, "%s.gp", sheet->kind);
     snprintf(path, sizeof path, "%s/%s", compare->settings->folder, name);
@@ -222,14 +222,14 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
     return error->status;
 }
 
-enum cs_status cs_sheet_write(const struct cs_compare *compare, enum cs_gl gl,
+enum cs_status cs_sheet_write(const struct cs_compare *compare, enum cs_renderer_kind kind,
                               struct cs_error *error) {
     struct sheet step = {.kind = "equal_step"}, cost = {.kind = "equal_cost"};
     if (!compare->yardstick.pointwise)
         return CS_OK;
     choose_step(&step, compare);
     choose_cost(&cost, compare);
-    if (!write_sheet(&step, compare, gl, error))
-        write_sheet(&cost, compare, gl, error);
+    if (!write_sheet(&step, compare, kind, error))
+        write_sheet(&cost, compare, kind, error);
     return error->status;
 }

@@ -31,7 +31,8 @@ static enum cs_status paint(const struct cs_golden *golden, const struct cs_gold
     image->rgb = malloc(bytes_of(image));
     if (!image->rgb) {
         cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    } else if (!cs_picture_open(&picture, &session.system, golden->gl, false, false, error)) {
+    } else if (!cs_picture_open(&picture, &session.system, golden->renderer, false, false,
+                                error)) {
         cs_picture_begin(&picture, &session.run, image);
         cs_picture_end(&picture, error);
         cs_text_add(renderer, "%s", cs_picture_renderer(&picture));

@@ -29,7 +29,7 @@ struct cs_golden {
     const char *only;    /* rows whose scene or integrator holds this text; NULL: all */
     bool hashes, images; /* what to do */
     bool accept;         /* write what was found instead of failing */
-    enum cs_gl gl;
+    enum cs_renderer_kind renderer;
     uint32_t threads; /* as in struct cs_session_settings */
     const volatile sig_atomic_t *stop;
     /* called after each row; may be NULL */

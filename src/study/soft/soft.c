@@ -94,7 +94,7 @@ static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_r
     image.rgb = malloc(3 * (size_t)image.width * image.height);
     if (!image.rgb)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
-    if (!cs_picture_open(&picture, &session->system, CS_GL_AUTO, false, false, error))
+    if (!cs_picture_open(&picture, &session->system, CS_RENDERER_AUTO, false, false, error))
         /* the first picture warms up the renderer and does not count */
         for (int k = -1; k < PICTURES && !error->status; k++) {
             const double start = cs_clock_wall();

@@ -1,0 +1,36 @@
+#include "draw/cpu/bins.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum cs_status cs_bins_init(struct cs_bins *bins, int height, struct cs_error *error) {
+    bins->bands = (uint32_t)((height + CS_ROWS - 1) / CS_ROWS);
+    bins->ends = calloc(bins->bands + 1, sizeof *bins->ends);
+    return bins->ends ? CS_OK : cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+}
+
+void cs_bins_clear(struct cs_bins *bins) {
+    memset(bins->ends, 0, (bins->bands + 1) * sizeof *bins->ends);
+}
+
+// counts of bands, one place up, become the beginnings of their lists
+void cs_bins_turn(struct cs_bins *bins) {
+    for (uint32_t band = 0; band < bins->bands; band++)
+        bins->ends[band + 1] += bins->ends[band];
+    const size_t n = bins->ends[bins->bands];
+    bins->failed = false;
+    if (n <= bins->capacity)
+        return;
+    free(bins->list);
+    bins->capacity = n + n / 4;
+    bins->list = malloc(bins->capacity * sizeof *bins->list);
+    bins->failed = !bins->list;
+    if (bins->failed)
+        bins->capacity = 0;
+}
+
+void cs_bins_finish(struct cs_bins *bins) {
+    free(bins->ends);
+    free(bins->list);
+    *bins = (struct cs_bins){0};
+}

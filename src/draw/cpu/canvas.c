@@ -1,0 +1,268 @@
+/* canvas.c - a scene made ready to draw without OpenGL, and the table that the module exports.
+ *
+ * Colliders are made ready anew only where one has moved. Of a frame, the cloths become
+ * triangles on one thread; then stripes of the light's picture and bands of the picture are
+ * shared out. */
+#include "draw/cpu/bodies.h"
+#include "draw/cpu/solids.h"
+#include "draw/extent.h"
+#include "draw/matrix.h"
+#include "draw/overlay.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+
+struct cs_canvas {
+    struct cs_canvas_settings settings;
+    struct cs_arena arena; /* owns all memory but that of lists which grow */
+    struct cs_view_state view;
+    struct cs_lens lens;
+    struct cs_tone tone;
+    struct cs_lightmap lightmap;
+    struct cs_triangles light_fixed, light_moving;
+    struct cs_solids solids;
+    struct cs_body_picture *bodies; /* (scene->bodies.n) */
+    struct cs_drawing drawing;
+    struct cs_overlay overlay;
+    struct cs_board *boards; /* (threads) */
+    atomic_uint next_band;
+};
+
+static void init_rays(struct cs_rays *rays, const struct cs_scene *scene) {
+    const struct cs_camera *camera = &scene->camera;
+    const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
+    double look[16];
+    cs_matrix_look(camera->eye, camera->target, camera->up, look);
+    for (int i = 0; i < 3; i++) {
+        rays->eye[i] = (float)camera->eye[i];
+        rays->right[i] = (float)look[4 * i];
+        rays->up[i] = (float)look[4 * i + 1];
+        rays->back[i] = (float)look[4 * i + 2];
+    }
+    const double aspect = (double)scene->render.size[0] / (double)scene->render.size[1];
+    rays->slope_x = (float)(slope * aspect);
+    rays->slope_y = (float)slope;
+}
+
+static void init_ground(struct cs_canvas *canvas, const struct cs_ball *extent) {
+    struct cs_drawing *drawing = &canvas->drawing;
+    const struct cs_scene *scene = canvas->settings.scene;
+    drawing->has_ground = scene->render.ground;
+    if (!drawing->has_ground)
+        return;
+    cs_ground_make(&drawing->ground, scene, extent);
+    cs_ground_add(&drawing->ground, &canvas->lens, &drawing->ground_square);
+    const float *ink = drawing->ground.ink;
+    drawing->ground_ink = cs_tone_pack(&canvas->tone, ink[0], ink[1], ink[2]);
+}
+
+static void init_view(struct cs_canvas *canvas) {
+    const struct cs_scene *scene = canvas->settings.scene;
+    const struct cs_system *system = canvas->settings.system;
+    const int width = (int)scene->render.size[0], height = (int)scene->render.size[1];
+    const struct cs_ball extent =
+        cs_extent_solid(system, system->view.start, canvas->settings.obstacles);
+    struct cs_drawing *drawing = &canvas->drawing;
+    cs_view_init(&canvas->view, scene, &extent);
+    cs_lens_make(&canvas->lens, canvas->view.block.world_to_clip, canvas->view.block.size[2],
+                 width, height);
+    cs_tone_make(&canvas->tone);
+    init_rays(&drawing->easel.rays, scene);
+    drawing->easel.width = width;
+    drawing->easel.height = height;
+    drawing->easel.view = &canvas->view.block;
+    drawing->easel.lightmap = &canvas->lightmap;
+    drawing->easel.tone = &canvas->tone;
+    drawing->pattern = scene->render.samples > 1 ? &cs_pattern_four : &cs_pattern_one;
+    init_ground(canvas, &extent);
+}
+
+static void add_solids(struct cs_canvas *canvas) {
+    struct cs_drawing *drawing = &canvas->drawing;
+    drawing->triangles.n = 0;
+    cs_solids_add(&canvas->solids, &canvas->lens, drawing->easel.rays.eye, drawing->coats,
+                  &drawing->triangles, &drawing->n_squares);
+    drawing->n_fixed = drawing->triangles.n;
+}
+
+static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *error) {
+    const struct cs_canvas_settings *settings = &canvas->settings;
+    const uint32_t n = settings->scene->bodies.n, solids = settings->scene->colliders.n;
+    struct cs_drawing *drawing = &canvas->drawing;
+    if (n + solids > UINT16_MAX)
+        return cs_fail(error, CS_ERR_MODULE,
+                       "renderer cpu draws at most %d bodies and colliders, not %u", UINT16_MAX,
+                       n + solids);
+    drawing->coats = cs_arena_take_n(&canvas->arena, n + solids, sizeof *drawing->coats, error);
+    canvas->bodies = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->bodies, error);
+    for (uint32_t b = 0; b < n && error->status == CS_OK; b++)
+        cs_body_picture_init(canvas->bodies + b, settings, b, drawing->coats + solids + b,
+                             &canvas->arena, error);
+    if (error->status || cs_solids_init(&canvas->solids, settings->system, settings->obstacles,
+                                        &canvas->arena, error))
+        return error->status;
+    add_solids(canvas);
+    return CS_OK;
+}
+
+static bool has_fading(const struct cs_canvas *canvas) {
+    for (uint32_t i = 0; i < canvas->settings.scene->colliders.n; i++)
+        if (canvas->drawing.coats[i].fade > 0)
+            return true;
+    return false;
+}
+
+static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *error) {
+    const uint32_t n = canvas->settings.threads;
+    canvas->boards = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->boards, error);
+    for (uint32_t i = 0; i < n && error->status == CS_OK; i++)
+        cs_board_init(canvas->boards + i, canvas->drawing.easel.width, has_fading(canvas),
+                      canvas->drawing.has_ground, &canvas->arena, error);
+    return error->status;
+}
+
+static enum cs_status init(struct cs_canvas *canvas, struct cs_error *error) {
+    struct cs_drawing *drawing = &canvas->drawing;
+    init_view(canvas);
+    if (cs_lightmap_init(&canvas->lightmap, &canvas->arena, error) != CS_OK ||
+        init_surfaces(canvas, error) != CS_OK || init_boards(canvas, error) != CS_OK ||
+        cs_bins_init(&drawing->bins, drawing->easel.height, error) != CS_OK ||
+        cs_strokes_init(&drawing->strokes, &drawing->easel, &canvas->lens, error) != CS_OK)
+        return error->status;
+    return cs_overlay_init(&canvas->overlay, canvas->settings.system, canvas->view.pixels_per_m,
+                           &drawing->strokes.lines, &canvas->arena, error);
+}
+
+static void destroy(struct cs_canvas *canvas) {
+    if (!canvas)
+        return;
+    cs_triangles_finish(&canvas->light_fixed);
+    cs_triangles_finish(&canvas->light_moving);
+    cs_triangles_finish(&canvas->drawing.triangles);
+    cs_triangles_finish(&canvas->drawing.ground_square);
+    cs_bins_finish(&canvas->drawing.bins);
+    cs_strokes_finish(&canvas->drawing.strokes);
+    cs_arena_finish(&canvas->arena);
+    free(canvas);
+}
+
+static enum cs_status create(const struct cs_canvas_settings *settings,
+                             struct cs_canvas **canvas, struct cs_error *error) {
+    *canvas = calloc(1, sizeof **canvas);
+    if (!*canvas)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a canvas");
+    (*canvas)->settings = *settings;
+    if (!settings->share || !settings->threads)
+        (*canvas)->settings.threads = 1;
+    if (init(*canvas, error) == CS_OK)
+        return CS_OK;
+    destroy(*canvas);
+    *canvas = NULL;
+    return error->status;
+}
+
+static void share(struct cs_canvas *canvas, uint32_t blocks,
+                  void (*task)(void *arg, uint32_t block)) {
+    if (canvas->settings.threads > 1)
+        canvas->settings.share(blocks, task, canvas);
+    else
+        for (uint32_t block = 0; block < blocks; block++)
+            task(canvas, block);
+}
+
+static void draw_stripe(void *arg, uint32_t stripe) {
+    struct cs_canvas *canvas = arg;
+    cs_lightmap_draw(&canvas->lightmap, stripe, &canvas->light_fixed, &canvas->light_moving);
+}
+
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame, bool moved) {
+    const struct cs_triangle_kind kind = {.attributes = 0};
+    const struct cs_ball solid =
+        cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
+    cs_shadow_aim(&solid, &canvas->view.block);
+    const bool changed = cs_lightmap_aim(&canvas->lightmap, &canvas->view.block);
+    if (!canvas->lightmap.present)
+        return;
+    if (changed || moved) {
+        canvas->light_fixed.n = 0;
+        cs_solids_add_shadow(&canvas->solids, &canvas->lightmap.lens, &canvas->light_fixed);
+    }
+    canvas->light_moving.n = 0;
+    for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
+        cs_body_picture_add(canvas->bodies + b, &canvas->lightmap.lens, &kind,
+                            &canvas->light_moving);
+    share(canvas, CS_MAP_STRIPES, draw_stripe);
+    cs_lightmap_bound(&canvas->lightmap);
+}
+
+static void add_bodies(struct cs_canvas *canvas) {
+    struct cs_drawing *drawing = &canvas->drawing;
+    drawing->triangles.n = drawing->n_fixed;
+    for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++) {
+        struct cs_body_picture *body = canvas->bodies + b;
+        const struct cs_triangle_kind kind = {
+            .surface = (uint16_t)(canvas->settings.scene->colliders.n + b),
+            .attributes = body->coat->mode == CS_SURFACE_PLAIN   ? 3
+                          : body->coat->mode == CS_SURFACE_VALUE ? 4
+                                                                 : CS_ATTRIBUTES};
+        if (!body->hidden)
+            cs_body_picture_add(body, &canvas->lens, &kind, &drawing->triangles);
+    }
+    cs_drawing_sort(drawing);
+}
+
+// one board draws bands as long as there are any
+static void draw_bands(void *arg, uint32_t board) {
+    struct cs_canvas *canvas = arg;
+    for (;;) {
+        const uint32_t band = atomic_fetch_add(&canvas->next_band, 1);
+        if (band >= canvas->drawing.bins.bands)
+            break;
+        cs_drawing_band(&canvas->drawing, band, canvas->boards + board);
+    }
+}
+
+static bool ran_out(const struct cs_canvas *canvas) {
+    const struct cs_drawing *drawing = &canvas->drawing;
+    return canvas->light_fixed.failed || canvas->light_moving.failed ||
+           drawing->triangles.failed || drawing->ground_square.failed || drawing->bins.failed ||
+           drawing->strokes.failed || drawing->strokes.bins.failed;
+}
+
+static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,
+                            struct cs_image *image, struct cs_error *error) {
+    struct cs_drawing *drawing = &canvas->drawing;
+    image->width = (uint32_t)drawing->easel.width;
+    image->height = (uint32_t)drawing->easel.height;
+    drawing->image = image;
+    for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
+        cs_body_picture_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
+    const bool moved = cs_solids_move(&canvas->solids, frame->obstacles);
+    if (moved)
+        add_solids(canvas);
+    draw_shadow(canvas, frame, moved);
+    add_bodies(canvas);
+    drawing->strokes.n = 0;
+    cs_overlay_draw(&canvas->overlay, frame);
+    cs_strokes_sort(&drawing->strokes);
+    atomic_store(&canvas->next_band, 0);
+    share(canvas, canvas->settings.threads, draw_bands);
+    return ran_out(canvas) ? cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture")
+                           : CS_OK;
+}
+
+static const char *description(const struct cs_canvas *canvas) {
+    (void)canvas;
+    return "cpu 1 | the same pixels on every machine";
+}
+
+#define EXPORT __attribute__((visibility("default")))
+extern EXPORT const struct cs_renderer clothsim_renderer;
+EXPORT const struct cs_renderer clothsim_renderer = {
+    .abi = CS_RENDERER_ABI,
+    .name = "cpu",
+    .create = create,
+    .paint = paint,
+    .description = description,
+    .destroy = destroy,
+};

@@ -1,0 +1,190 @@
+/* drawing.c - a band of the picture: what each sample shows, its colour, what lies over it. */
+#include "draw/cpu/drawing.h"
+
+void cs_drawing_sort(struct cs_drawing *drawing) {
+    const struct cs_triangles *all = &drawing->triangles;
+    cs_bins_clear(&drawing->bins);
+    for (size_t i = 0; i < all->n; i++)
+        cs_bins_count(&drawing->bins, all->items[i].top, all->items[i].bottom);
+    cs_bins_turn(&drawing->bins);
+    for (size_t i = 0; i < all->n; i++)
+        cs_bins_put(&drawing->bins, (uint32_t)i, all->items[i].top, all->items[i].bottom);
+}
+
+static float value_at(const struct cs_slope *slope, float x, float y) {
+    return slope->at + slope->x * x + slope->y * y;
+}
+
+/* Texels from one pixel to the next, squared: the longer way of that along a row and that along
+ * a column, in blocks of 2 x 2 pixels from the bottom left. */
+static float texels_of(const struct cs_drawing *drawing, const struct cs_triangle *t,
+                       const struct cs_mips *mips, int x, int y) {
+    const int last = drawing->easel.height - 1;
+    const float left = (float)((x & ~1) - t->left);
+    const float low = (float)(last - ((last - y) & ~1) - t->top);
+    const float places[3][2] = {{left, low}, {left + 1, low}, {left, low - 1}};
+    float uv[3][2], squares[2];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++)
+            uv[i][k] = value_at(t->attributes + 3 + k, places[i][0], places[i][1]) /
+                       value_at(&t->inverse, places[i][0], places[i][1]);
+    for (int i = 0; i < 2; i++) {
+        const float du = (uv[i + 1][0] - uv[0][0]) * (float)mips->copies[0].width;
+        const float dv = (uv[i + 1][1] - uv[0][1]) * (float)mips->copies[0].height;
+        squares[i] = du * du + dv * dv;
+    }
+    return squares[0] > squares[1] ? squares[0] : squares[1];
+}
+
+// the open fragments of one side of a surface
+static struct cs_fragments *slot_of(const struct cs_drawing *drawing,
+                                    const struct cs_triangle *t, struct cs_board *board) {
+    const uint32_t key = 2u * t->surface + t->back;
+    struct cs_fragments *slot = board->slots + key % CS_SLOTS;
+    if (slot->n == CS_FRAGMENTS || (slot->n && slot->key != key))
+        cs_shade(&drawing->easel, slot, board->colours);
+    slot->key = key;
+    slot->side = t->back;
+    slot->coat = drawing->coats + t->surface;
+    return slot;
+}
+
+// what a triangle shows at a pixel: its colour comes later
+static void add_fragment(const struct cs_drawing *drawing, const struct cs_triangle *t, int x,
+                         int y, uint32_t out, struct cs_board *board) {
+    struct cs_fragments *f = slot_of(drawing, t, board);
+    const float across = (float)(x - t->left), down = (float)(y - t->top);
+    const float inverse = value_at(&t->inverse, across, down);
+    const int i = f->n++;
+    f->x[i] = (float)x;
+    f->y[i] = (float)y;
+    // the middle of a pixel may lie beyond the edge, and there beyond the horizon
+    f->inverse[i] = inverse > 1e-6f ? inverse : 1e-6f;
+    for (int k = 0; k < 3; k++)
+        f->attributes[k][i] = value_at(t->attributes + k, across, down);
+    for (int k = 3; k < CS_ATTRIBUTES && f->coat->mode != CS_SURFACE_PLAIN; k++)
+        f->attributes[k][i] = value_at(t->attributes + k, across, down);
+    if (f->coat->mode == CS_SURFACE_TEXTURED)
+        f->texels[i] = texels_of(drawing, t, f->coat->mips, x, y);
+    f->out[i] = out;
+}
+
+/* The square behind square `id` at a sample: the last one drawn before it that was nearest
+ * then. CS_NOTHING: the sky. */
+static int32_t find_behind(const struct cs_drawing *drawing, int32_t id, int x, int y,
+                           int sample) {
+    const uint16_t surface = drawing->triangles.items[id].surface;
+    float depth = 0;
+    int32_t behind = CS_NOTHING;
+    for (size_t i = 0; i < drawing->n_squares; i++) {
+        const struct cs_triangle *t = drawing->triangles.items + i;
+        cs_f4 z;
+        if (t->surface == surface)
+            break;
+        if (!(cs_raster_covers(t, drawing->pattern, x, y, &z) >> sample & 1) ||
+            !(z[sample] >= depth))
+            continue;
+        depth = z[sample];
+        behind = (int32_t)i;
+    }
+    return behind;
+}
+
+static void add_shown(const struct cs_drawing *drawing, int32_t id, int x, int y, int sample,
+                      uint32_t sky, uint32_t out, struct cs_board *board) {
+    const struct cs_triangle *t = drawing->triangles.items + id;
+    if (drawing->coats[t->surface].fade > 0) {
+        const size_t most = 4 * (size_t)board->samples.width * CS_ROWS;
+        const int32_t behind = find_behind(drawing, id, x, y, sample);
+        uint32_t under = sky;
+        if (behind != CS_NOTHING && board->n_behind < most) {
+            board->n_behind++;
+            under = board->n_colours++;
+            add_shown(drawing, behind, x, y, sample, sky, under, board);
+        }
+        board->glazes[board->n_glazes++] = (struct cs_glaze){out, under};
+    }
+    add_fragment(drawing, t, x, y, out, board);
+}
+
+// a pixel whose samples show several things: one fragment of each, their colours in a row
+static void add_mixed(const struct cs_drawing *drawing, cs_i4 shown, int x, int y, uint32_t sky,
+                      size_t pixel, struct cs_board *board) {
+    int samples[4];
+    uint32_t n = 0, code = 0;
+    for (int s = 0; s < 4; s++) {
+        uint32_t k = 0;
+        while (k < n && shown[samples[k]] != shown[s])
+            k++;
+        if (k == n)
+            samples[n++] = s;
+        code |= k << 2 * s;
+    }
+    const uint32_t first = board->n_colours;
+    board->base[pixel] = first;
+    board->codes[pixel] = (uint8_t)code;
+    board->n_colours += n;
+    for (uint32_t k = 0; k < n; k++)
+        if (shown[samples[k]] == CS_NOTHING)
+            board->colours[first + k] = board->colours[sky];
+        else
+            add_shown(drawing, shown[samples[k]], x, y, samples[k], sky, first + k, board);
+}
+
+static void add_pixel(const struct cs_drawing *drawing, cs_i4 shown, int x, int y, uint32_t sky,
+                      size_t pixel, struct cs_board *board) {
+    const int32_t id = shown[0];
+    if (((shown[1] ^ id) | (shown[2] ^ id) | (shown[3] ^ id)) != 0) {
+        add_mixed(drawing, shown, x, y, sky, pixel, board);
+        return;
+    }
+    board->codes[pixel] = 0;
+    board->base[pixel] = id == CS_NOTHING ? sky : board->n_colours++;
+    if (id != CS_NOTHING)
+        add_shown(drawing, id, x, y, 0, sky, board->base[pixel], board);
+}
+
+// of a row: brighter above
+static uint32_t sky_colour(const struct cs_drawing *drawing, int y) {
+    const float height = 1 - ((float)y + 0.5f) * (2 / (float)drawing->easel.height);
+    float c[3];
+    for (int i = 0; i < 3; i++)
+        c[i] = cs_clamp(drawing->easel.view->sky[i] * (0.94f + 0.12f * height) +
+                            0.02f * (1 + height),
+                        0, 1);
+    return cs_tone_pack(drawing->easel.tone, c[0], c[1], c[2]);
+}
+
+static void show(const struct cs_drawing *drawing, uint32_t band, struct cs_board *board) {
+    const struct cs_samples *on = &board->samples;
+    size_t n;
+    const uint32_t *list = cs_bins_of(&drawing->bins, band, &n);
+    for (size_t i = 0; i < n; i++)
+        cs_raster_fill(drawing->triangles.items + list[i], (int32_t)list[i], drawing->pattern,
+                       on);
+    for (int row = 0; row < on->rows; row++) {
+        const uint32_t sky = board->n_colours++;
+        board->colours[sky] = sky_colour(drawing, on->top + row);
+        for (int x = 0; x < on->width; x++) {
+            const size_t pixel = (size_t)row * (size_t)on->width + (size_t)x;
+            add_pixel(drawing, on->shown[pixel], x, on->top + row, sky, pixel, board);
+        }
+    }
+    for (int i = 0; i < CS_SLOTS; i++)
+        cs_shade(&drawing->easel, board->slots + i, board->colours);
+    // what is behind came first
+    for (uint32_t i = 0; i < board->n_glazes; i++) {
+        uint32_t *over = board->colours + board->glazes[i].over;
+        *over = cs_tone_blend(board->colours[board->glazes[i].under], *over, *over >> 24);
+    }
+}
+
+void cs_drawing_band(const struct cs_drawing *drawing, uint32_t band, struct cs_board *board) {
+    const int top = (int)band * CS_ROWS;
+    cs_board_clear(board, top, cs_least(CS_ROWS, drawing->easel.height - top));
+    show(drawing, band, board);
+    if (drawing->has_ground)
+        cs_ground_draw(drawing, board);
+    cs_strokes_draw(&drawing->strokes, band, drawing->pattern, board);
+    cs_board_resolve(board, drawing->image);
+}

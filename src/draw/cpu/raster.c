@@ -1,0 +1,179 @@
+/* raster.c - filling by edge functions (Pineda 1988), a pixel of four samples at a time. */
+#include "draw/cpu/raster.h"
+
+// rows of the picture count from the top, those of OpenGL from the bottom
+const struct cs_pattern cs_pattern_four = {{96, 224, 32, 160}, {224, 160, 96, 32}};
+const struct cs_pattern cs_pattern_one = {{128, 128, 128, 128}, {128, 128, 128, 128}};
+
+struct edges {
+    int32_t dx[3], dy[3], bias[3];
+};
+
+CS_INLINE struct edges edges_of(const struct cs_triangle *t) {
+    struct edges e;
+    for (int k = 0; k < 3; k++) {
+        const int j = k == 2 ? 0 : k + 1;
+        e.dx[k] = t->x[j] - t->x[k];
+        e.dy[k] = t->y[j] - t->y[k];
+        // samples on a top or left edge are inside, on others not
+        e.bias[k] = e.dy[k] < 0 || (e.dy[k] == 0 && e.dx[k] > 0) ? 0 : -1;
+    }
+    return e;
+}
+
+CS_INLINE cs_f4 to_float(cs_i4 v) {
+    return __builtin_convertvector(v, cs_f4);
+}
+
+// depth of a row of samples at the picture's left edge, and of those of a pixel in it
+CS_INLINE cs_f4 up_at(const struct cs_triangle *t, const struct cs_pattern *pattern, int y) {
+    const cs_f4 up = to_float(256 - pattern->y) * (1.0f / 256) + (float)(t->bottom_row - y);
+    return t->depth.y * up;
+}
+
+CS_INLINE cs_f4 across_at(const struct cs_pattern *pattern) {
+    return to_float(pattern->x) * (1.0f / 256);
+}
+
+// nearness, not beyond that of the corners; the sums' order is that of OpenGL
+CS_INLINE cs_f4 nearness_at(const struct cs_triangle *t, cs_f4 across, cs_f4 rise) {
+    const cs_f4 z = (t->depth.at + t->depth.x * across) + rise;
+    return cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->farthest, t->nearest);
+}
+
+CS_INLINE void put(cs_f4 *depth, cs_i4 *shown, cs_i4 mask, cs_f4 z, int32_t id) {
+    const cs_f4 old = *depth;
+    const cs_i4 ids = {id, id, id, id};
+    mask &= z >= old;
+    *depth = (cs_f4)cs_pick(mask, (cs_i4)z, (cs_i4)old);
+    *shown = cs_pick(mask, ids, *shown);
+}
+
+CS_INLINE void fill_small_row(const struct cs_triangle *t, const struct edges *e, int32_t id,
+                              const struct cs_pattern *pattern, int y, cs_f4 *depth,
+                              cs_i4 *shown) {
+    cs_i4 inside[3];
+    for (int k = 0; k < 3; k++)
+        inside[k] = e->dx[k] * (pattern->y + (y * 256 - t->y[k])) -
+                    e->dy[k] * (pattern->x + (t->left * 256 - t->x[k])) + e->bias[k];
+    const cs_f4 rise = up_at(t, pattern, y), across = across_at(pattern);
+    for (int x = t->left; x <= t->right; x++, depth++, shown++) {
+        const cs_i4 mask = (inside[0] | inside[1] | inside[2]) >= 0;
+        put(depth, shown, mask, nearness_at(t, across + (float)x, rise), id);
+        for (int k = 0; k < 3; k++)
+            inside[k] -= 256 * e->dy[k];
+    }
+}
+
+CS_INLINE int64_t divide_down(int64_t a, int64_t b) {
+    const int64_t q = a / b;
+    return q - (a % b != 0 && (a < 0) != (b < 0));
+}
+
+// first and last pixel of a row whose sample at (sx, sy) lies inside
+CS_INLINE void span(const struct cs_triangle *t, const struct edges *e, int sx, int sy, int y,
+                    int64_t *left, int64_t *right) {
+    *left = t->left;
+    *right = t->right;
+    for (int k = 0; k < 3; k++) {
+        // dx (y - y_k) - dy (256 x + sx - x_k) + bias >= 0
+        const int64_t c = (int64_t)e->dx[k] * (sy + y * 256 - t->y[k]) -
+                          (int64_t)e->dy[k] * (sx - t->x[k]) + e->bias[k];
+        const int64_t step = (int64_t)e->dy[k] * 256;
+        if (step == 0) {
+            *right = c < 0 ? *left - 1 : *right;
+        } else if (step > 0) {
+            const int64_t last = divide_down(c, step);
+            *right = last < *right ? last : *right;
+        } else {
+            const int64_t first = -divide_down(c, -step);
+            *left = first > *left ? first : *left;
+        }
+    }
+}
+
+CS_INLINE void fill_large_row(const struct cs_triangle *t, const struct edges *e, int32_t id,
+                              const struct cs_pattern *pattern, int y, cs_f4 *depth,
+                              cs_i4 *shown) {
+    cs_i4 left, right;
+    int from = t->right + 1, to = t->left - 1;
+    for (int s = 0; s < 4; s++) {
+        int64_t l, r;
+        span(t, e, pattern->x[s], pattern->y[s], y, &l, &r);
+        const bool some = l <= r;
+        left[s] = some ? (int)l : 1;
+        right[s] = some ? (int)r : 0;
+        from = some ? cs_least(from, (int)l) : from;
+        to = some ? cs_most(to, (int)r) : to;
+    }
+    const cs_f4 rise = up_at(t, pattern, y), across = across_at(pattern);
+    for (int x = from; x <= to; x++) {
+        const cs_i4 at = {x, x, x, x};
+        put(depth + (x - t->left), shown + (x - t->left), (at >= left) & (at <= right),
+            nearness_at(t, across + (float)x, rise), id);
+    }
+}
+
+CS_CLONES void cs_raster_fill(const struct cs_triangle *t, int32_t id,
+                              const struct cs_pattern *pattern,
+                              const struct cs_samples *samples) {
+    const struct edges e = edges_of(t);
+    const int top = cs_most(t->top, samples->top);
+    const int bottom = cs_least(t->bottom, samples->top + samples->rows - 1);
+    for (int y = top; y <= bottom; y++) {
+        const size_t at = (size_t)(y - samples->top) * (size_t)samples->width + (size_t)t->left;
+        if (t->small)
+            fill_small_row(t, &e, id, pattern, y, samples->depth + at, samples->shown + at);
+        else
+            fill_large_row(t, &e, id, pattern, y, samples->depth + at, samples->shown + at);
+    }
+}
+
+unsigned cs_raster_covers(const struct cs_triangle *t, const struct cs_pattern *pattern, int x,
+                          int y, cs_f4 *depth) {
+    const struct edges e = edges_of(t);
+    unsigned mask = 0;
+    if (x < t->left || x > t->right || y < t->top || y > t->bottom)
+        return 0;
+    for (int s = 0; s < 4; s++) {
+        bool in = true;
+        for (int k = 0; k < 3; k++)
+            in = in && (int64_t)e.dx[k] * (pattern->y[s] + y * 256 - t->y[k]) -
+                               (int64_t)e.dy[k] * (pattern->x[s] + x * 256 - t->x[k]) +
+                               e.bias[k] >=
+                           0;
+        mask |= (unsigned)in << s;
+    }
+    *depth = nearness_at(t, across_at(pattern) + (float)x, up_at(t, pattern, y));
+    return mask;
+}
+
+CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z) {
+    cs_f4_loose *at = (cs_f4_loose *)map;
+    const cs_f4 old = *at;
+    mask &= z > old;
+    *at = (cs_f4)cs_pick(mask, (cs_i4)z, (cs_i4)old);
+}
+
+CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t stride, int top,
+                               int rows) {
+    const cs_i4 ramp = {0, 1, 2, 3};
+    const struct edges e = edges_of(t);
+    const int last = cs_least(t->bottom, top + rows - 1);
+    for (int y = cs_most(t->top, top); y <= last; y++) {
+        const cs_f4 rise = up_at(t, &cs_pattern_one, y);
+        float *at = map + (size_t)y * stride;
+        int64_t left = t->left, right = t->right;
+        if (!t->small)
+            span(t, &e, 128, 128, y, &left, &right);
+        for (int x = (int)left; x <= right; x += 4) {
+            const cs_i4 column = ramp + x;
+            cs_i4 mask = column <= (int)right;
+            for (int k = 0; t->small && k < 3; k++)
+                mask &= e.dx[k] * (128 + y * 256 - t->y[k]) + e.bias[k] -
+                            e.dy[k] * (column * 256 + (128 - t->x[k])) >=
+                        0;
+            raise_four(at + x, mask, nearness_at(t, to_float(column) + 0.5f, rise));
+        }
+    }
+}

@@ -1,0 +1,252 @@
+/* shade.c - Blinn-Phong (cloth thesis, eq. 4.15) with a soft shadow, and the looks that colour
+ * by a value: the same formulas as in the shaders of OpenGL, over arrays.
+ *
+ * Each loop does one thing to all fragments, which compilers turn into vectors. A root of a
+ * choice is not vectorised, so choices are stored before. */
+#include "draw/cpu/shade.h"
+
+#include "draw/cpu/lanes.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+enum { N = CS_FRAGMENTS };
+
+struct work {
+    float place[3][N], view[3][N], normal[3][N], light[3][N];
+    float facing[N], share[N], shine[N], base[3][N], colour[3][N], cover[N];
+};
+
+void cs_coat_make(struct cs_coat *coat, const struct cs_surface_style *style) {
+    for (int i = 0; i < 3; i++) {
+        coat->base[0][i] = (float)style->front[i];
+        coat->base[1][i] = (float)style->back[i];
+    }
+    coat->mode = style->mode;
+    coat->ambient = (float)style->ambient;
+    coat->diffuse = (float)style->diffuse;
+    coat->specular = (float)style->specular;
+    const int parts = (int)(style->shininess * 256 + 0.5);
+    coat->shine = parts / 256;
+    coat->shine_part = parts % 256;
+    coat->fade = (float)style->fade;
+}
+
+CS_INLINE void find_places(const struct cs_easel *easel, const struct cs_fragments *f,
+                           struct work *w) {
+    for (int i = 0; i < N; i++) {
+        const float t = 1 / f->inverse[i];
+        float d[3];
+        cs_rays_through(easel, f->x[i], f->y[i], d);
+        const float length = 1 / sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int k = 0; k < 3; k++) {
+            w->place[k][i] = easel->rays.eye[k] + t * d[k];
+            w->view[k][i] = -d[k] * length;
+        }
+    }
+}
+
+CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
+    for (int i = 0; i < N; i++) {
+        const float x = f->attributes[0][i], y = f->attributes[1][i], z = f->attributes[2][i];
+        const float square = x * x + y * y + z * z;
+        w->facing[i] = square > 1e-30f ? square : 1e-30f;
+    }
+    for (int i = 0; i < N; i++) {
+        const float length = 1 / sqrtf(w->facing[i]);
+        for (int k = 0; k < 3; k++)
+            w->normal[k][i] = f->attributes[k][i] * length;
+    }
+}
+
+CS_INLINE void find_light(const struct cs_easel *easel, struct work *w) {
+    const float *lamp = easel->view->light;
+    const float x = lamp[0], y = lamp[1], z = lamp[2], near = lamp[3];
+    for (int i = 0; i < N; i++) {
+        const float a = x - near * w->place[0][i], b = y - near * w->place[1][i];
+        const float c = z - near * w->place[2][i];
+        const float length = 1 / sqrtf(a * a + b * b + c * c);
+        w->light[0][i] = a * length;
+        w->light[1][i] = b * length;
+        w->light[2][i] = c * length;
+        w->facing[i] = w->normal[0][i] * w->light[0][i] + w->normal[1][i] * w->light[1][i] +
+                       w->normal[2][i] * w->light[2][i];
+    }
+}
+
+/* The highlight: a whole power by squaring again and again, the rest by roots: x^(1/2),
+ * x^(1/4).. to 1/256, an error of the exponent of 1/512. Small numbers become 0, as those
+ * beyond the smallest normal one are slow. */
+CS_INLINE void find_shine(const struct cs_coat *coat, struct work *w) {
+    float power[N];
+    for (int i = 0; i < N; i++) {
+        float h[3], square = 0, along = 0;
+        for (int k = 0; k < 3; k++) {
+            h[k] = w->light[k][i] + w->view[k][i];
+            square += h[k] * h[k];
+            along += h[k] * w->normal[k][i];
+        }
+        power[i] = square > 1e-30f ? square : 1e-30f;
+        w->shine[i] = along;
+    }
+    for (int i = 0; i < N; i++) {
+        const float cosine = w->shine[i] / sqrtf(power[i]);
+        power[i] = cosine > 0 ? cosine : 0;
+        w->shine[i] = 1;
+    }
+    for (int bit = 128; bit && coat->shine_part; bit >>= 1) {
+        float root[N];
+        // from the half on, each root is one of the one before
+        for (int i = 0; i < N; i++)
+            root[i] = bit == 128 ? power[i] : w->cover[i];
+        for (int i = 0; i < N; i++)
+            w->cover[i] = sqrtf(root[i]);
+        for (int i = 0; i < N && (coat->shine_part & bit); i++)
+            w->shine[i] *= w->cover[i];
+    }
+    for (int left = coat->shine; left; left >>= 1) {
+        for (int i = 0; i < N && (left & 1); i++)
+            w->shine[i] *= power[i];
+        for (int i = 0; i < N; i++) {
+            const float square = power[i] * power[i];
+            power[i] = square > 1e-18f ? square : 0;
+        }
+    }
+}
+
+// what a texture makes of the base: its colour in sRGB becomes linear
+static void paint_base(const struct cs_easel *easel, const struct cs_fragments *f,
+                       struct work *w) {
+    for (int i = 0; i < f->n; i++) {
+        const float t = 1 / f->inverse[i];
+        float rgb[3];
+        cs_mips_look(f->coat->mips, f->attributes[3][i] * t, f->attributes[4][i] * t,
+                     f->texels[i], rgb);
+        for (int k = 0; k < 3; k++) {
+            const int byte = (int)rgb[k];
+            const float *linear = easel->tone->linear + byte;
+            const float next = byte < 255 ? linear[1] : linear[0];
+            w->base[k][i] *= linear[0] + (rgb[k] - (float)byte) * (next - linear[0]);
+        }
+    }
+}
+
+CS_INLINE void shade_lit(const struct cs_easel *easel, const struct cs_fragments *f,
+                         struct work *w) {
+    const struct cs_coat *coat = f->coat;
+    find_light(easel, w);
+    const struct cs_lit lit = {.places = {w->place[0], w->place[1], w->place[2]},
+                               .normals = {w->normal[0], w->normal[1], w->normal[2]},
+                               .facing = w->facing,
+                               .share = w->share,
+                               .n = f->n};
+    cs_lightmap_look(easel->lightmap, &lit);
+    for (int i = f->n; i < N; i++)
+        w->share[i] = 0;
+    find_shine(coat, w);
+    for (int k = 0; k < 3; k++) {
+        const float ambient = easel->view->ambient[k], diffuse = easel->view->diffuse[k];
+        const float specular = easel->view->specular[k];
+        for (int i = 0; i < N; i++) {
+            // ambient light is 1 on an upright surface seen straight on; more from above and
+            // less towards the outline, or folds without direct light would be one flat patch
+            const float across = w->normal[0][i] * w->view[0][i] +
+                                 w->normal[1][i] * w->view[1][i] +
+                                 w->normal[2][i] * w->view[2][i];
+            const float around = 0.7f + 0.3f * across + 0.35f * w->normal[1][i];
+            const float facing = w->facing[i] > 0 ? w->facing[i] : 0;
+            const float base = w->base[k][i];
+            w->colour[k][i] = (around > 0 ? around : 0) * coat->ambient * ambient * base +
+                              w->share[i] * (coat->diffuse * facing * diffuse * base +
+                                             coat->specular * w->shine[i] * specular);
+        }
+    }
+}
+
+// how much a surface is seen straight on
+CS_INLINE void find_towards(struct work *w) {
+    for (int i = 0; i < N; i++) {
+        const float across = w->normal[0][i] * w->view[0][i] + w->normal[1][i] * w->view[1][i] +
+                             w->normal[2][i] * w->view[2][i];
+        w->share[i] = across < 0 ? -across : across;
+    }
+}
+
+static void shade_value(const struct cs_easel *easel, const struct cs_fragments *f,
+                        struct work *w) {
+    find_towards(w);
+    for (int i = 0; i < N; i++) {
+        const float at = cs_clamp(f->attributes[3][i] / f->inverse[i], 0, 1) * 5;
+        const int low = cs_least((int)at, 4);
+        const float *a = easel->view->stops[low], *b = easel->view->stops[low + 1];
+        const float bright = 0.5f + 0.5f * w->share[i];
+        for (int k = 0; k < 3; k++)
+            w->colour[k][i] = (a[k] + (b[k] - a[k]) * (at - (float)low)) * bright;
+    }
+}
+
+CS_INLINE void shade_faint(const struct cs_easel *easel, struct work *w) {
+    find_towards(w);
+    for (int k = 0; k < 3; k++) {
+        const float pale = easel->view->sky[k] * 0.55f + 0.45f;
+        for (int i = 0; i < N; i++)
+            w->colour[k][i] = pale * (0.62f + 0.38f * w->share[i]);
+    }
+}
+
+// a floor has no end: its square melts into the background
+CS_INLINE void find_cover(const struct cs_coat *coat, struct work *w) {
+    if (!(coat->fade > 0)) {
+        for (int i = 0; i < N; i++)
+            w->cover[i] = 1;
+        return;
+    }
+    for (int i = 0; i < N; i++) {
+        const float x = w->place[0][i], z = w->place[2][i];
+        const float far = sqrtf(x * x + z * z) / coat->fade;
+        const float t = cs_clamp((far - 0.35f) / 0.65f, 0, 1);
+        w->cover[i] = 1 - t * t * (3 - 2 * t);
+    }
+}
+
+CS_CLONES static void shade(const struct cs_easel *easel, struct cs_fragments *f,
+                            struct work *w) {
+    // the places behind the last fragment are shaded too, for whole vectors
+    for (int i = f->n; i < N; i++) {
+        f->x[i] = f->y[i] = 0;
+        f->inverse[i] = 1;
+        for (int k = 0; k < CS_ATTRIBUTES; k++)
+            f->attributes[k][i] = 1;
+    }
+    find_places(easel, f, w);
+    find_normals(f, w);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < N; i++)
+            w->base[k][i] = f->coat->base[f->side][k];
+    if (f->coat->mode == CS_SURFACE_TEXTURED)
+        paint_base(easel, f, w);
+    if (f->coat->mode <= CS_SURFACE_TEXTURED)
+        shade_lit(easel, f, w);
+    else if (f->coat->mode == CS_SURFACE_VALUE)
+        shade_value(easel, f, w);
+    else
+        shade_faint(easel, w);
+    find_cover(f->coat, w);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < N; i++)
+            w->colour[k][i] = cs_clamp(w->colour[k][i], 0, 1);
+}
+
+void cs_shade(const struct cs_easel *easel, struct cs_fragments *f, uint32_t *colours) {
+    struct work w;
+    if (f->n == 0)
+        return;
+    shade(easel, f, &w);
+    for (int i = 0; i < f->n; i++) {
+        const uint32_t cover = (uint32_t)(w.cover[i] * 255 + 0.5f);
+        colours[f->out[i]] =
+            cs_tone_pack(easel->tone, w.colour[0][i], w.colour[1][i], w.colour[2][i]) |
+            cover << 24;
+    }
+    f->n = 0;
+}

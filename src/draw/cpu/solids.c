@@ -1,0 +1,139 @@
+#include "draw/cpu/solids.h"
+
+#include "draw/ball.h"
+#include "draw/extent.h"
+#include "draw/solid.h"
+
+#include <math.h>
+#include <string.h>
+
+enum cs_status cs_solids_init(struct cs_solids *solids, const struct cs_system *system,
+                              const struct cs_obstacle *obstacles, struct cs_arena *arena,
+                              struct cs_error *error) {
+    struct cs_vertex *ball;
+    uint32_t most = 0;
+    solids->n = system->scene->colliders.n;
+    solids->cell = cs_extent_cell(system);
+    for (uint32_t i = 0; i < solids->n; i++) {
+        const uint32_t count = cs_solid_count(obstacles + i);
+        most = count > most ? count : most;
+    }
+    solids->obstacles = cs_arena_take_n(arena, solids->n, sizeof *solids->obstacles, error);
+    solids->vertices = cs_arena_take_n(arena, most, sizeof *solids->vertices, error);
+    if (error->status || cs_ball_make(&ball, &solids->n_ball, arena, error))
+        return error->status;
+    solids->ball = ball;
+    if (solids->n > 0)
+        memcpy(solids->obstacles, obstacles, solids->n * sizeof *obstacles);
+    return CS_OK;
+}
+
+bool cs_solids_move(struct cs_solids *solids, const struct cs_obstacle *obstacles) {
+    bool moved = false;
+    for (uint32_t i = 0; i < solids->n; i++) {
+        struct cs_obstacle *now = solids->obstacles + i;
+        moved = moved || memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
+                memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
+        *now = obstacles[i];
+    }
+    return moved;
+}
+
+/* `sink` moves only the depth away from the eye: between its particles a cloth is a chord that
+ * cuts into the ball it lies on, and would show specks of it */
+static void sink(const struct cs_lens *lens, const float place[3], const float eye[3], float by,
+                 struct cs_corner *corner) {
+    float d[3], square = 0, moved[3];
+    for (int i = 0; i < 3; i++) {
+        d[i] = place[i] - eye[i];
+        square += d[i] * d[i];
+    }
+    const float share = square > 0 ? by / sqrtf(square) : 0;
+    for (int i = 0; i < 3; i++)
+        moved[i] = place[i] + share * d[i];
+    cs_lens_move_depth(lens, moved, corner);
+}
+
+/* Triangles of three vertices each, placed by the style. eye NULL: a light's picture, without
+ * sinking. */
+static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
+                         const struct cs_surface_style *style, const struct cs_lens *lens,
+                         const float *eye, const struct cs_triangle_kind *kind,
+                         struct cs_triangles *triangles) {
+    for (uint32_t v = 0; v < n; v += 3) {
+        struct cs_corner corners[3];
+        const struct cs_corner *three[3] = {corners, corners + 1, corners + 2};
+        for (uint32_t i = 0; i < 3; i++) {
+            const struct cs_vertex *vertex = vertices + v + i;
+            float place[3];
+            for (int k = 0; k < 3; k++)
+                place[k] = (float)style->centre[k] + (float)style->scale * vertex->place[k];
+            cs_lens_corner(lens, place, corners + i);
+            memcpy(corners[i].attributes, vertex->normal, sizeof vertex->normal);
+            if (eye && style->sink > 0)
+                sink(lens, place, eye, (float)style->sink, corners + i);
+        }
+        cs_triangles_add(triangles, lens, three, kind);
+    }
+}
+
+static void add_obstacle(const struct cs_solids *solids, uint32_t i,
+                         const struct cs_surface_style *style, const struct cs_lens *lens,
+                         const float *eye, const struct cs_triangle_kind *kind,
+                         struct cs_triangles *triangles) {
+    const struct cs_obstacle *obstacle = solids->obstacles + i;
+    const bool ball = obstacle->kind == CS_OBSTACLE_SPHERE;
+    if (!ball)
+        cs_solid_fill(obstacle, solids->cell, solids->vertices);
+    add_vertices(ball ? solids->ball : solids->vertices,
+                 ball ? solids->n_ball : cs_solid_count(obstacle), style, lens, eye, kind,
+                 triangles);
+}
+
+void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
+                   const float eye[3], struct cs_coat *coats, struct cs_triangles *triangles,
+                   size_t *n_squares) {
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0; i < solids->n; i++) {
+            const struct cs_obstacle *obstacle = solids->obstacles + i;
+            const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
+            const bool square = obstacle->kind == CS_OBSTACLE_PLANE;
+            struct cs_surface_style style;
+            cs_style_solid(&style, obstacle, solids->cell);
+            cs_coat_make(coats + i, &style);
+            if (obstacle->collider->visible && square == (pass == 0))
+                add_obstacle(solids, i, &style, lens, eye, &kind, triangles);
+        }
+        if (pass == 0)
+            *n_squares = triangles->n;
+    }
+}
+
+void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *lens,
+                          struct cs_triangles *triangles) {
+    const struct cs_triangle_kind kind = {.attributes = 0};
+    for (uint32_t i = 0; i < solids->n; i++) {
+        const struct cs_obstacle *obstacle = solids->obstacles + i;
+        struct cs_surface_style style;
+        if (!obstacle->collider->visible || obstacle->kind == CS_OBSTACLE_PLANE)
+            continue;
+        cs_style_solid(&style, obstacle, solids->cell);
+        add_obstacle(solids, i, &style, lens, NULL, &kind, triangles);
+    }
+}
+
+void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,
+                   struct cs_triangles *triangles) {
+    static const signed char signs[6][2] = {{-1, -1}, {1, -1}, {-1, 1},
+                                            {1, -1},  {1, 1},  {-1, 1}};
+    const struct cs_triangle_kind kind = {.attributes = 0};
+    const float *span = ground->span;
+    const struct cs_surface_style style = {.scale = 1};
+    struct cs_vertex square[6] = {{.value = 0}};
+    for (int i = 0; i < 6; i++) {
+        square[i].place[0] = span[0] + span[3] * signs[i][0];
+        square[i].place[1] = span[1];
+        square[i].place[2] = span[2] + span[3] * signs[i][1];
+    }
+    add_vertices(square, 6, &style, lens, NULL, &kind, triangles);
+}

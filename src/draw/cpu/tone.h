@@ -1,0 +1,48 @@
+/* tone.h - linear light to the bytes of sRGB and back (IEC 61966-2-1), without libm. */
+#ifndef CS_DRAW_TONE_H
+#define CS_DRAW_TONE_H
+
+#include "base/clones.h"
+
+#include <stdint.h>
+
+/* Zero: not made. */
+struct cs_tone {
+    uint8_t start[4098];  /* byte at each 1/4096 */
+    float threshold[258]; /* linear light from which on a byte holds; past the last one 2 */
+    float linear[256];    /* of each byte */
+};
+
+void cs_tone_make(struct cs_tone *tone);
+
+/* The byte of c in 0..1, rounded exactly: no two thresholds lie within 1/4096. */
+CS_INLINE uint32_t cs_tone_encode(const struct cs_tone *tone, float c) {
+    const uint32_t byte = tone->start[(int)(c * 4096)];
+    return byte + (c >= tone->threshold[byte + 1]);
+}
+
+CS_INLINE uint32_t cs_tone_pack(const struct cs_tone *tone, float red, float green,
+                                float blue) {
+    return cs_tone_encode(tone, red) | cs_tone_encode(tone, green) << 8 |
+           cs_tone_encode(tone, blue) << 16;
+}
+
+/* a b / 255 of two bytes, rounded. */
+CS_INLINE uint32_t cs_tone_times(uint32_t a, uint32_t b) {
+    const uint32_t product = a * b;
+    return (product + (product >> 8) + 128) >> 8;
+}
+
+/* `over` laid on `under` with a share of 0..255; bytes of red, green, blue from the lowest on.
+ * Both parts are rounded, as renderers of bytes do; 255 gives `over`. */
+CS_INLINE uint32_t cs_tone_blend(uint32_t under, uint32_t over, uint32_t share) {
+    uint32_t out = 0;
+    for (int k = 0; k < 24; k += 8) {
+        const uint32_t sum = cs_tone_times(under >> k & 255, 255 - share) +
+                             cs_tone_times(over >> k & 255, share);
+        out |= (sum < 255 ? sum : 255) << k;
+    }
+    return out;
+}
+
+#endif

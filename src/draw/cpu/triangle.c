@@ -1,0 +1,166 @@
+/* triangle.c - set-up: corners on a grid of 1/256 pixel, planes of depth and attributes. */
+#include "draw/cpu/triangle.h"
+
+#include "draw/cpu/lanes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SMALL = 16000 }; // 1/256 pixel: products of two stay below 2^28
+
+// planes of a triangle: two sides in pixels over twice the area, and the way to the first pixel
+struct frame {
+    double dx[2], dy[2], across, down;
+};
+
+static int32_t snap(double pixel) {
+    return (int32_t)floor(pixel * 256 + 0.5);
+}
+
+static struct cs_slope slope(const struct frame *f, double a, double b, double c) {
+    const double x = (b - a) * f->dy[1] - (c - a) * f->dy[0];
+    const double y = (c - a) * f->dx[0] - (b - a) * f->dx[1];
+    return (struct cs_slope){(float)(a + x * f->across + y * f->down), (float)x, (float)y};
+}
+
+/* From the places before they were put on the grid. A sliver has no slopes to speak of: its
+ * planes are flat. */
+static struct frame make_frame(const struct cs_triangle *t,
+                               const struct cs_corner *const p[3]) {
+    const double from_top = t->bottom_row + 1 - (double)p[0]->y;
+    struct frame f = {.across = t->left + 0.5 - (double)p[0]->x,
+                      .down = t->top + 0.5 - from_top};
+    for (int i = 0; i < 2; i++) {
+        f.dx[i] = (double)p[i + 1]->x - (double)p[0]->x;
+        f.dy[i] = (double)p[0]->y - (double)p[i + 1]->y;
+    }
+    const double area = f.dx[0] * f.dy[1] - f.dx[1] * f.dy[0];
+    const double share = area > 1.0 / 512 ? 1 / area : 0;
+    for (int i = 0; i < 2; i++) {
+        f.dx[i] *= share;
+        f.dy[i] *= share;
+    }
+    return f;
+}
+
+struct cs_slope cs_depth_of(const struct cs_corner *a, const struct cs_corner *b,
+                            const struct cs_corner *c) {
+    const float ab[3] = {a->x - b->x, a->y - b->y, a->z - b->z};
+    const float ca[3] = {c->x - a->x, c->y - a->y, c->z - a->z};
+    const float area = ab[0] * ca[1] - ca[0] * ab[1];
+    const float least = 1.0f / 512, share = area > least || area < -least ? 1 / area : 0;
+    const float x = ab[2] * (ca[1] * share) - (ab[1] * share) * ca[2];
+    const float y = ca[2] * (ab[0] * share) - ab[2] * (ca[0] * share);
+    return (struct cs_slope){a->z - (x * a->x + y * a->y), x, y};
+}
+
+static void set_depth(struct cs_triangle *t, const struct cs_corner *const corners[3]) {
+    const struct cs_corner *a = corners[t->back ? 0 : 1], *b = corners[t->back ? 1 : 0];
+    t->depth = cs_depth_of(a, b, corners[2]);
+    t->farthest = t->nearest = cs_nearness(a->z);
+    for (int i = 0; i < 3; i++) {
+        const float near = cs_nearness(corners[i]->z);
+        t->farthest = near < t->farthest ? near : t->farthest;
+        t->nearest = near > t->nearest ? near : t->nearest;
+    }
+}
+
+static void set_planes(struct cs_triangle *t, const struct cs_corner *const p[3], int n) {
+    const struct frame f = make_frame(t, p);
+    const float side = t->back ? -1 : 1;
+    t->inverse = slope(&f, (double)p[0]->inverse, (double)p[1]->inverse, (double)p[2]->inverse);
+    for (int k = 0; k < n; k++) {
+        double over[3];
+        for (int i = 0; i < 3; i++)
+            over[i] = (double)((k < 3 ? side : 1) * p[i]->attributes[k] * p[i]->inverse);
+        t->attributes[k] = slope(&f, over[0], over[1], over[2]);
+    }
+}
+
+// the corners on the grid, turned so that the inside is on one side; false where none is left
+static bool set_corners(struct cs_triangle *t, int height, const struct cs_corner *p[3]) {
+    int64_t x[3], y[3];
+    for (int i = 0; i < 3; i++) {
+        x[i] = snap((double)p[i]->x);
+        y[i] = snap(height - (double)p[i]->y);
+    }
+    const int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    t->back = area > 0; // y points down here
+    for (int i = 0; i < 3; i++) {
+        const int from = area < 0 && i ? 3 - i : i;
+        t->x[i] = (int32_t)x[from];
+        t->y[i] = (int32_t)y[from];
+    }
+    if (area < 0) {
+        const struct cs_corner *swap = p[1];
+        p[1] = p[2];
+        p[2] = swap;
+    }
+    return area != 0;
+}
+
+static bool set_box(struct cs_triangle *t, int width, int height) {
+    int left = t->x[0], right = left, top = t->y[0], bottom = top;
+    for (int i = 1; i < 3; i++) {
+        left = cs_least(left, t->x[i]);
+        right = cs_most(right, t->x[i]);
+        top = cs_least(top, t->y[i]);
+        bottom = cs_most(bottom, t->y[i]);
+    }
+    t->small = right - left < SMALL && bottom - top < SMALL;
+    t->left = cs_most(left >> 8, 0);
+    t->right = cs_least(right >> 8, width - 1);
+    t->top = cs_most(top >> 8, 0);
+    t->bottom = cs_least(bottom >> 8, height - 1);
+    return t->left <= t->right && t->top <= t->bottom;
+}
+
+static struct cs_triangle *next(struct cs_triangles *triangles) {
+    if (triangles->n == triangles->capacity) {
+        const size_t capacity = triangles->capacity ? 2 * triangles->capacity : 1024;
+        void *grown = realloc(triangles->items, capacity * sizeof *triangles->items);
+        if (!grown) {
+            triangles->failed = true;
+            return NULL;
+        }
+        triangles->items = grown;
+        triangles->capacity = capacity;
+    }
+    return triangles->items + triangles->n;
+}
+
+static void add(struct cs_triangles *triangles, const struct cs_lens *lens,
+                const struct cs_corner *a, const struct cs_corner *b, const struct cs_corner *c,
+                const struct cs_triangle_kind *kind) {
+    const struct cs_corner *const corners[3] = {a, b, c};
+    const struct cs_corner *p[3] = {a, b, c};
+    struct cs_triangle *t = next(triangles);
+    if (!t || !set_corners(t, lens->height, p) || (t->back && kind->front_only) ||
+        !set_box(t, lens->width, lens->height))
+        return;
+    t->surface = kind->surface;
+    t->bottom_row = lens->height - 1;
+    set_depth(t, corners);
+    set_planes(t, p, kind->attributes);
+    triangles->n++;
+}
+
+void cs_triangles_add(struct cs_triangles *triangles, const struct cs_lens *lens,
+                      const struct cs_corner *const corners[3],
+                      const struct cs_triangle_kind *kind) {
+    struct cs_corner polygon[CS_CLIP_MOST];
+    if (!(corners[0]->outside | corners[1]->outside | corners[2]->outside)) {
+        add(triangles, lens, corners[0], corners[1], corners[2], kind);
+        return;
+    }
+    if (corners[0]->outside & corners[1]->outside & corners[2]->outside)
+        return;
+    const int n = cs_lens_clip(lens, corners, polygon);
+    for (int i = 2; i < n; i++)
+        add(triangles, lens, polygon, polygon + i - 1, polygon + i, kind);
+}
+
+void cs_triangles_finish(struct cs_triangles *triangles) {
+    free(triangles->items);
+    *triangles = (struct cs_triangles){0};
+}

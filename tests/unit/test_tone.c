@@ -1,0 +1,122 @@
+/* Bytes of sRGB against the standard's formula, blending, and copies of textures. */
+#include "unit.h"
+
+#include "draw/cpu/mips.h"
+#include "draw/cpu/tone.h"
+
+#include <math.h>
+
+static struct cs_tone tone;
+
+static double encode(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+/* the nearest byte, but where the formula is within its own rounding of the middle of two */
+START_TEST(a_byte_is_the_nearest_of_the_curve) {
+    cs_tone_make(&tone);
+    for (int i = 0; i <= 1000000; i++) {
+        const float linear = (float)i / 1000000;
+        const double exact = 255 * encode((double)linear);
+        const uint32_t byte = cs_tone_encode(&tone, linear);
+        ck_assert_double_le(fabs(exact - byte), 0.5 + 1e-5);
+    }
+}
+END_TEST
+
+START_TEST(bytes_come_back) {
+    cs_tone_make(&tone);
+    for (uint32_t byte = 0; byte < 256; byte++) {
+        ck_assert_uint_eq(cs_tone_encode(&tone, tone.linear[byte]), byte);
+        ck_assert_double_le(fabs(255 * encode((double)tone.linear[byte]) - byte), 1e-4);
+    }
+    ck_assert_uint_eq(cs_tone_pack(&tone, 1, 0, 1), 0xff00ff);
+}
+END_TEST
+
+/* all or nothing is exact; between, at most one off the exact mean, and nothing overflows */
+START_TEST(blending_is_a_mean) {
+    for (uint32_t a = 0; a < 256; a += 3)
+        for (uint32_t b = 0; b < 256; b += 5)
+            for (uint32_t share = 0; share < 256; share += 5) {
+                const uint32_t under = a << 16 | b, over = b << 16 | a;
+                const uint32_t found = cs_tone_blend(under, over, share);
+                const double high = (b * share + a * (255.0 - share)) / 255;
+                const double low = (a * share + b * (255.0 - share)) / 255;
+                ck_assert_double_le(fabs(found / 65536 - high), 1);
+                ck_assert_double_le(fabs(found % 256 - low), 1);
+                ck_assert(share > 0 || found == under);
+                ck_assert(share < 255 || found == over);
+            }
+}
+END_TEST
+
+static void near(float found, float expected, double by) {
+    ck_assert_double_le(fabs((double)found - (double)expected), by);
+}
+
+enum { WIDE = 12, HIGH = 8 };
+
+static void make(struct cs_mips *mips, struct cs_arena *arena, int (*value)(int x, int y)) {
+    struct cs_error error = {0};
+    uint8_t rgb[3 * WIDE * HIGH];
+    const struct cs_image image = {WIDE, HIGH, rgb};
+    for (int i = 0; i < WIDE * HIGH; i++)
+        for (int k = 0; k < 3; k++)
+            rgb[3 * i + k] = (uint8_t)value(i % WIDE, i / WIDE);
+    ck_assert_int_eq(cs_mips_make(mips, &image, arena, &error), CS_OK);
+}
+
+static int columns(int x, int y) {
+    (void)y;
+    return x % 2 ? 200 : 100;
+}
+static int slope(int x, int y) {
+    return 10 * x + 5 * y;
+}
+
+/* 12 x 8, 6 x 4, 3 x 2, 1 x 1: each the mean of what it replaces */
+START_TEST(copies_are_means) {
+    struct cs_arena arena = {0};
+    struct cs_mips mips;
+    make(&mips, &arena, columns);
+    ck_assert_int_eq(mips.n, 4);
+    ck_assert_int_eq(mips.copies[2].width, 3);
+    ck_assert_int_eq(mips.copies[2].height, 2);
+    for (int copy = 1; copy < mips.n; copy++)
+        for (int i = 0; i < 3 * mips.copies[copy].width * mips.copies[copy].height; i++)
+            ck_assert_int_eq(mips.copies[copy].rgb[i], 150);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+/* in the middle of a texel its own colour, between two their mean, and the same a repeat on */
+START_TEST(a_texture_repeats_and_is_blended) {
+    struct cs_arena arena = {0};
+    struct cs_mips mips;
+    float rgb[3];
+    make(&mips, &arena, slope);
+    for (int turn = -2; turn <= 2; turn++) {
+        cs_mips_look(&mips, (4.5f / WIDE) + (float)turn, 2.5f / HIGH, 0.5f, rgb);
+        near(rgb[0], 50, 0.01);
+        cs_mips_look(&mips, 5.0f / WIDE, 3.0f / HIGH + (float)turn, 1, rgb);
+        near(rgb[1], 45 + 12.5f, 0.01);
+        // across the seam: between the last column and the first
+        cs_mips_look(&mips, (float)turn, 0.5f / HIGH, 1, rgb);
+        near(rgb[2], 55, 0.01);
+    }
+    // from afar: the mean of all, and nothing beyond the smallest copy
+    cs_mips_look(&mips, 0.3f, 0.4f, 1e6f, rgb);
+    near(rgb[0], 55 + 17.5f, 2);
+    cs_mips_look(&mips, 0.3f, 0.4f, NAN, rgb);
+    near(rgb[0], 128, 128);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {a_byte_is_the_nearest_of_the_curve, bytes_come_back,
+                                  blending_is_a_mean, copies_are_means,
+                                  a_texture_repeats_and_is_blended};
+    return unit_run("tone", tests, sizeof tests / sizeof *tests);
+}
