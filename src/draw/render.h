@@ -69,8 +69,8 @@ enum cs_renderer_kind {
 };
 extern const char *const cs_renderer_names[];
 
-/* Loads the module of a renderer from folder; auto takes OSMesa, else EGL without a display,
- * else the one that needs neither. Never unloaded. On failure CS_ERR_MODULE and the message
+/* Loads the module of a renderer from folder; auto takes the one that needs no OpenGL, else
+ * OSMesa, else EGL without a display. Never unloaded. On failure CS_ERR_MODULE and the message
  * says what to install. */
 enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
                                 const struct cs_renderer **renderer, struct cs_error *error);

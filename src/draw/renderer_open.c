@@ -66,17 +66,17 @@ static enum cs_status open_one(const char *folder, enum cs_renderer_kind kind,
 
 enum cs_status cs_renderer_open(const char *folder, enum cs_renderer_kind kind,
                                 const struct cs_renderer **renderer, struct cs_error *error) {
-    static const enum cs_renderer_kind order[] = {CS_RENDERER_OSMESA, CS_RENDERER_EGL,
-                                                  CS_RENDERER_CPU};
+    static const enum cs_renderer_kind order[] = {CS_RENDERER_CPU, CS_RENDERER_OSMESA,
+                                                  CS_RENDERER_EGL};
     *renderer = NULL;
     if (kind != CS_RENDERER_AUTO)
         return open_one(folder, kind, renderer, error);
-    struct cs_error last = {0};
+    struct cs_error first = {0};
     for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
-        last = (struct cs_error){0};
-        if (open_one(folder, order[i], renderer, &last) == CS_OK)
+        struct cs_error later = {0};
+        if (open_one(folder, order[i], renderer, i ? &later : &first) == CS_OK)
             return CS_OK;
     }
-    // the last one needs no library: why it cannot be had is what helps
-    return cs_fail(error, CS_ERR_MODULE, "%s", last.message);
+    // the first one needs no library: why it cannot be had is what helps
+    return cs_fail(error, CS_ERR_MODULE, "%s", first.message);
 }

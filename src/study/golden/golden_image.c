@@ -102,9 +102,10 @@ static enum cs_status bless(const struct cs_golden *golden, struct cs_golden_row
                             struct cs_error *error) {
     if (!strstr(cs_text_get(renderer), "caps=sse4.1") ||
         !strstr(cs_text_get(renderer), "llvmpipe"))
-        return cs_fail(error, CS_ERR_CHECK,
-                       "%s: only the pinned llvmpipe may accept images, found %s", row->image,
-                       cs_text_get(renderer));
+        return cs_fail(
+            error, CS_ERR_CHECK,
+            "%s: only the pinned llvmpipe may accept images (--renderer osmesa), found %s",
+            row->image, cs_text_get(renderer));
     if (!strcmp(row->found, row->hash) && !strcmp(row->note, cs_text_get(renderer)))
         return CS_OK;
     cs_text_add(&row->message, "accepted");
