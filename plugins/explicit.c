@@ -34,16 +34,37 @@ static const struct cs_option lossy_rows[] = {
         "above 0 is a drag that grows as dt shrinks"),
 };
 
-static double explicit_euler_limit(const struct cs_view *view) {
-    const double w = view->omega, r = 2 * view->delta;
+/* The largest stable step in s of each method, with bounds omega on the frequency and delta on
+ * half the damping rate. */
+typedef double step_limit(const struct fixed_step *loop, double omega, double delta);
+
+static double explicit_euler_limit(const struct fixed_step *loop, double w, double delta) {
+    (void)loop;
+    const double r = 2 * delta;
     if (w <= 0)
         return 2 / r;
     return r < 2 * w ? r / (w * w) : 4 / (r + sqrt(r * r - 4 * w * w));
 }
 
-static double averaged_euler_limit(const struct cs_view *view) {
-    const double w = view->omega, r = 2 * view->delta;
+static double averaged_euler_limit(const struct fixed_step *loop, double w, double delta) {
+    (void)loop;
+    const double r = 2 * delta;
     return w > r ? 2 * r / (w * w) : 2 / r;
+}
+
+static double symplectic_euler_limit(const struct fixed_step *loop, double w, double delta) {
+    (void)loop;
+    return leapfrog_limit(w, delta, 2, 4);
+}
+
+static double velocity_verlet_limit(const struct fixed_step *loop, double w, double delta) {
+    (void)loop;
+    return leapfrog_limit(w, delta, 4, 4);
+}
+
+static double position_verlet_limit(const struct fixed_step *loop, double w, double delta) {
+    return leapfrog_limit(w, delta, 2,
+                          4 - 2 * ((const struct explicit_method *)(const void *)loop)->loss);
 }
 
 /* Radius of the half disc in the left half plane that lies in rk4's stability region: the
@@ -51,8 +72,9 @@ static double averaged_euler_limit(const struct cs_view *view) {
  * in between. */
 #define RK4_REACH 2.6
 
-static double rk4_limit(const struct cs_view *view) {
-    const double w = view->omega, r = 2 * view->delta;
+static double rk4_limit(const struct fixed_step *loop, double w, double delta) {
+    (void)loop;
+    const double r = 2 * delta;
     return RK4_REACH / (w > r ? w : r);
 }
 
@@ -65,7 +87,7 @@ static void choose_dt(struct fixed_step *loop, double limit) {
         loop->dt = HUGE_VAL;
         host->note(host->ctx, "dt automatic: one step a frame, nothing swings or is damped");
     } else if (limit <= 0) {
-        loop->dt = 0.9 * leapfrog_limit(view, 2, 4);
+        loop->dt = 0.9 * symplectic_euler_limit(loop, view->omega, view->delta);
         host->note(host->ctx,
                    "dt automatic: no step is stable without damping; %.6g s is that of "
                    "symplectic-euler",
@@ -75,63 +97,68 @@ static void choose_dt(struct fixed_step *loop, double limit) {
                    loop->dt, view->omega, view->delta);
 }
 
-/* limit: the method's largest stable step; n_arrays: of (3,n) that it keeps. */
-static enum cs_step create(const struct cs_host *host, double dt, double limit,
-                           fixed_step_taker *step, int n_arrays, void **out) {
+/* n_arrays: of (3,n) that the method keeps. */
+static enum cs_step create(const struct cs_host *host, const struct lossy_options *asked,
+                           step_limit *limit, fixed_step_taker *step, int n_arrays,
+                           void **out) {
     const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
     struct explicit_method *self = host->alloc(host->ctx, sizeof *self);
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = (struct fixed_step){.host = host, .dt = dt, .fresh = true, .step = step};
+    self->loop =
+        (struct fixed_step){.host = host, .dt = asked->dt, .fresh = true, .step = step};
+    self->loss = asked->loss;
     if (!(self->a = host->alloc(host->ctx, bytes)))
         return CS_STEP_FAIL;
     self->n_kept = (size_t)n_arrays - 1;
     if (n_arrays > 1 && !(self->kept = host->alloc(host->ctx, bytes * self->n_kept)))
         return CS_STEP_FAIL;
-    if (dt <= 0)
-        choose_dt(&self->loop, limit);
-    return CS_STEP_OK;
+    if (asked->dt <= 0)
+        choose_dt(&self->loop, limit(&self->loop, host->view->omega, host->view->delta));
+    // without damping some methods have no stable step: then symplectic-euler's, as choose_dt
+    const bool stable = limit(&self->loop, host->view->omega, host->view->delta) > 0;
+    return fixed_step_guard(&self->loop, asked->dt > 0 ? NULL
+                                         : stable      ? limit
+                                                       : symplectic_euler_limit);
+}
+
+/* a method whose options are explicit_rows */
+static enum cs_step create_lossless(const struct cs_host *host, const void *options,
+                                    step_limit *limit, fixed_step_taker *step, int n_arrays,
+                                    void **self) {
+    const struct lossy_options asked = {.dt = ((const struct explicit_options *)options)->dt};
+    return create(host, &asked, limit, step, n_arrays, self);
 }
 
 static enum cs_step create_explicit_euler(const struct cs_host *host, const void *options,
                                           void **self) {
-    return create(host, ((const struct explicit_options *)options)->dt,
-                  explicit_euler_limit(host->view), step_explicit_euler, 1, self);
+    return create_lossless(host, options, explicit_euler_limit, step_explicit_euler, 1, self);
 }
 
 static enum cs_step create_symplectic_euler(const struct cs_host *host, const void *options,
                                             void **self) {
-    return create(host, ((const struct explicit_options *)options)->dt,
-                  leapfrog_limit(host->view, 2, 4), step_symplectic_euler, 1, self);
+    return create_lossless(host, options, symplectic_euler_limit, step_symplectic_euler, 1,
+                           self);
 }
 
 static enum cs_step create_averaged_euler(const struct cs_host *host, const void *options,
                                           void **self) {
-    return create(host, ((const struct explicit_options *)options)->dt,
-                  averaged_euler_limit(host->view), step_averaged_euler, 1, self);
+    return create_lossless(host, options, averaged_euler_limit, step_averaged_euler, 1, self);
 }
 
 static enum cs_step create_velocity_verlet(const struct cs_host *host, const void *options,
                                            void **self) {
-    return create(host, ((const struct explicit_options *)options)->dt,
-                  leapfrog_limit(host->view, 4, 4), step_velocity_verlet, 2, self);
+    return create_lossless(host, options, velocity_verlet_limit, step_velocity_verlet, 2, self);
 }
 
 static enum cs_step create_position_verlet(const struct cs_host *host, const void *options,
                                            void **self) {
-    const struct lossy_options *asked = options;
-    const enum cs_step status =
-        create(host, asked->dt, leapfrog_limit(host->view, 2, 4 - 2 * asked->loss),
-               step_position_verlet, 2, self);
-    if (status == CS_STEP_OK)
-        ((struct explicit_method *)*self)->loss = asked->loss;
-    return status;
+    return create(host, options, position_verlet_limit, step_position_verlet, 2, self);
 }
 
 static enum cs_step create_rk4(const struct cs_host *host, const void *options, void **self) {
-    return create(host, ((const struct explicit_options *)options)->dt, rk4_limit(host->view),
-                  step_rk4, 5, self);
+    return create_lossless(host, options, rk4_limit, step_rk4, 5, self);
 }
 
 #define EXPLICIT(struct_, rows_)                                                               \

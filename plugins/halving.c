@@ -9,7 +9,7 @@ struct halving *halving_create(const struct cs_host *host, size_t bytes, double 
     self->loop = fixed_step_of(host, dt, NULL);
     self->loop.fresh = true;
     self->step = step;
-    return self;
+    return fixed_step_guard(&self->loop, NULL) == CS_STEP_OK ? self : NULL;
 }
 
 struct newton_method *newton_method_create(const struct cs_host *host, size_t bytes, double dt,
@@ -31,6 +31,11 @@ enum cs_step halving_take(const struct cs_host *host, double **const arrays[], s
 
 static enum cs_step give_up(const struct halving *self, double t, double h) {
     const struct cs_host *host = self->loop.host;
+    if (self->passed)
+        return host->fail(host->ctx,
+                          "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
+                          "contact",
+                          h, t, HALVINGS_MAX);
     if (self->turned)
         return host->fail(host->ctx,
                           "a step of %.3g s at t = %.9g s, halved %d times, still turns a "
@@ -43,6 +48,25 @@ static enum cs_step give_up(const struct halving *self, double t, double h) {
                       self->newton->rtol);
 }
 
+/* The step, refused also where it passes over contact. */
+static enum cs_step take_step(struct halving *self, double t, double h, double *x, double *v,
+                              bool *accepted) {
+    const struct cs_host *host = self->loop.host;
+    const size_t bytes = 6 * sizeof *x * host->view->n;
+    double *saved = self->loop.saved;
+    if (saved)
+        memcpy(saved, x, bytes);
+    const enum cs_step status = self->step(self, t, h, x, v, accepted);
+    if (saved && status == CS_STEP_OK && *accepted &&
+        host->max_share(host->ctx, t, saved, t + h, x) < 1) {
+        memcpy(x, saved, bytes);
+        *accepted = false;
+        self->passed = true;
+        self->loop.fresh = true; // what the method kept is of the step that was taken back
+    }
+    return status;
+}
+
 /* One step of length h from t, whole or in parts; it ends at `end`. */
 static enum cs_step cross(struct halving *self, double t, double h, double end, double *x,
                           double *v) {
@@ -52,7 +76,8 @@ static enum cs_step cross(struct halving *self, double t, double h, double end, 
     while (depth > 0 || at == 0) {
         const double part = h / (double)(1u << depth), from = t + at * part;
         bool accepted = false, changed = false;
-        enum cs_step status = self->step(self, from, part, x, v, &accepted);
+        self->passed = false;
+        enum cs_step status = take_step(self, from, part, x, v, &accepted);
         if (status != CS_STEP_OK)
             return status;
         if (!accepted) {

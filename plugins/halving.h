@@ -1,9 +1,10 @@
 /* halving.h - the loop over steps that may be refused: a refused step is halved.
  *
  * As fixed_step.h, the span of an advance is cut into equal steps of at most dt. A step that
- * its method refuses (Newton does not converge, springs turn too far) is taken as two halves,
- * each of which may be refused in turn, at most HALVINGS_MAX times; then the run fails. Two
- * halves done, the next step is as long as both. Each part is committed by itself.
+ * its method refuses (Newton does not converge, springs turn too far), or that passes over
+ * contact by force (host->max_share), is taken as two halves, each of which may be refused in
+ * turn, at most HALVINGS_MAX times; then the run fails. Two halves done, the next step is as
+ * long as both. Each part is committed by itself.
  */
 #ifndef HALVING_H
 #define HALVING_H
@@ -11,7 +12,7 @@
 #include "fixed_step.h"
 #include "newton.h"
 
-#define HALVINGS_MAX 8
+#define HALVINGS_MAX 12
 
 /* A method's own struct starts with this. */
 struct halving {
@@ -19,6 +20,7 @@ struct halving {
     const struct newton *newton; /* NULL: the method has none */
     double before;               /* length of the last accepted step in s */
     uint64_t rejected;
+    bool passed; /* the last step was taken back, for it passed over contact */
     bool turned; /* the last step was refused by springs_turned */
     /* From (x, v) at t to t + h, without the commit; where *accepted stays false, x and v are
      * left as they were. */

@@ -242,7 +242,7 @@ static enum cs_step create_linearised(const struct cs_host *host, const void *op
         !(self->av = take(host, 3)) || !(self->dv = take(host, 3)) ||
         !(self->external = take(host, 3)))
         return CS_STEP_FAIL;
-    return CS_STEP_OK;
+    return fixed_step_guard(&self->loop, NULL);
 }
 
 static enum cs_step create_block(const struct cs_host *host, const void *options, void **out) {
@@ -255,7 +255,7 @@ static enum cs_step create_block(const struct cs_host *host, const void *options
     if (!(self->f = take(host, 3)) || !(self->kxx = take(host, 6)) ||
         !(self->dvv = take(host, 6)))
         return CS_STEP_FAIL;
-    return CS_STEP_OK;
+    return fixed_step_guard(&self->loop, NULL);
 }
 
 static const struct cs_integrator implicit_linearised = {

@@ -5,10 +5,10 @@
 #include <clothsim/integrator.h>
 #include <math.h>
 
-/* Root h of h^2 w^2 + q r h = s, with the view's bounds for the frequency w and the damping
- * rate r; HUGE_VAL where nothing limits the step. Symplectic Euler: q = 2, s = 4. */
-static inline double leapfrog_limit(const struct cs_view *view, double q, double s) {
-    const double w = view->omega, qr = q * 2 * view->delta;
+/* Root h of h^2 w^2 + q r h = s with the frequency w = omega and the damping rate r = 2 delta;
+ * HUGE_VAL where nothing limits the step. Symplectic Euler: q = 2, s = 4. */
+static inline double leapfrog_limit(double omega, double delta, double q, double s) {
+    const double w = omega, qr = q * 2 * delta;
     return 2 * s / (qr + sqrt(qr * qr + 4 * s * w * w));
 }
 

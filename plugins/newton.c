@@ -64,9 +64,11 @@ static double noise(const struct newton *newton, const struct newton_stage *stag
     const size_t n3 = 3 * (size_t)view->n;
     const double length = newton->host->vector->max_norm(n3, newton->x);
     const double speed = newton->host->vector->max_norm(n3, u);
+    double omega = view->omega, delta = view->delta;
+    if (CS_HAS(newton->host, rate) && newton->host->rate)
+        newton->host->rate(newton->host->ctx, stage->t, newton->x, newton->v, &omega, &delta);
     return 4 * DBL_EPSILON * sqrt(newton->mass) *
-           (stage->s * view->omega * view->omega * length +
-            (1 + 2 * stage->s * stage->gv * view->delta) * speed);
+           (stage->s * omega * omega * length + (1 + 2 * stage->s * stage->gv * delta) * speed);
 }
 
 /* du from A du = -r. A free fall has M du = -r, which is the better start of the linear solver
@@ -77,7 +79,8 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     /* far from the solution only the clamped matrix surely leads downhill */
-    const uint32_t flags = newton->norm < NEAR * newton->impulse ? 0 : CS_SOLVE_PSD;
+    const uint32_t flags =
+        newton->norm < NEAR * newton->impulse ? 0 : CS_SOLVE_PSD | CS_SOLVE_BOUND;
     enum cs_step status =
         host->solve_setup(host->ctx, stage->t, newton->x, newton->v, 1, -stage->s * stage->gv,
                           -stage->s * stage->gx, flags);

@@ -13,7 +13,8 @@
  * potential (Martin et al. 2011; Gast et al. 2015)
  *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (potential energy)(X) - s w.(u - u0)
  * falls by 1e-4 of what its slope r.du promises. Forces without energy, such as dampers, drag
- * and wind, have no potential: their force w is frozen at the start u0 of the search, where P then has the slope of r.
+ * and wind, have no potential: their force w is frozen at the start u0 of the search, where P
+ * then has the slope of r.
  *
  * Norms of r are |r|^2 = sum r_i^2 / m_i. Done: |r| <= rtol |M (u - ub)|, the impulse of the
  * stage, or |r| below what rounding of x and u alone may cause.

@@ -240,8 +240,14 @@ static void goals(const void *object, const double *x, double *g) {
         g[i] += x[i];
 }
 
+/* of symplectic Euler, which moves what no shape holds */
+static double limit_of(const struct fixed_step *loop, double omega, double delta) {
+    (void)loop;
+    return leapfrog_limit(omega, delta, 2, 4);
+}
+
 static void choose_dt(struct fixed_step *loop, double dt) {
-    const double limit = leapfrog_limit(loop->host->view, 2, 4);
+    const double limit = limit_of(loop, loop->host->view->omega, loop->host->view->delta);
     loop->chosen = dt <= 0;
     loop->dt = dt > 0 ? dt : 0.9 * limit;
     if (loop->chosen && loop->dt < HUGE_VAL)
@@ -275,7 +281,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     /* no rotation yet */
     for (uint32_t k = 0; k < view->n_clusters; k++)
         self->clusters[k].turn[3] = 1;
-    return CS_STEP_OK;
+    return fixed_step_guard(&self->loop, limit_of);
 }
 
 static const struct cs_integrator shape_matching = {

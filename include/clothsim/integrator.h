@@ -122,7 +122,10 @@ enum cs_trait {
     /* The bits are the same only with the same build of a foreign library. */
     CS_LIBRARY_BITS = 1u << 4,
     /* A uniform velocity changes the internal forces. */
-    CS_NOT_GALILEAN = 1u << 5
+    CS_NOT_GALILEAN = 1u << 5,
+    /* All forces but the springs are taken as they are where a step begins, whatever the step:
+     * scenes with stiff ones, such as contact by force, are refused. */
+    CS_EXPLICIT_OUTER = 1u << 6
 };
 
 /* What the method's result is, however small its own tolerances are. */
@@ -140,7 +143,11 @@ enum cs_fidelity {
 enum cs_solve_flag {
     /* Make A positive definite for any state: drop the transverse part of compressed springs
      * (Teran et al. 2005). */
-    CS_SOLVE_PSD = 1u << 0
+    CS_SOLVE_PSD = 1u << 0,
+    /* Take friction by an upper bound: at the slope that its force has now, instead of the
+     * smaller one that it grows by. Newton's iteration far from a solution needs it, or it
+     * overshoots; a linearised method must not have it, whose forces at rest would be wrong. */
+    CS_SOLVE_BOUND = 1u << 1
 };
 
 /* What the host offers. Pass ctx as the first argument of every call. */
@@ -205,6 +212,19 @@ struct cs_host {
      * blow-up, and counts. It may move x and v; then *changed is true, and a method that keeps
      * history starts anew. What is not CS_STEP_OK goes upwards at once. */
     enum cs_step (*commit)(void *ctx, double t, double dt, double *x, double *v, bool *changed);
+
+    /* Below: only where the scene has forces whose stiffness depends on the state (contact),
+     * else NULL; and not in hosts whose size ends before it: ask CS_HAS(host, rate) first. */
+
+    /* [restart, advance] Bounds at a state, for automatic steps: omega in 1/s on the angular
+     * frequency, delta in 1/s on half the damping rate. Those of the view hold for the springs
+     * alone. */
+    void (*rate)(void *ctx, double t, const double *x, const double *v, double *omega,
+                 double *delta);
+    /* [advance] The share of the move from x0 (3,n) at t0 to x1 at t1 that a step may take: 1,
+     * or less where it passes over contact that a step cannot see from where it begins. Then a
+     * method takes the step back and takes a shorter one. */
+    double (*max_share)(void *ctx, double t0, const double *x0, double t1, const double *x1);
 };
 
 /* What only the method can count. */

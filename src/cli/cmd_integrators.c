@@ -24,6 +24,7 @@ static const struct {
     {CS_SYMPLECTIC, "symplectic"},
     {CS_LIBRARY_BITS, "bits by a library"},
     {CS_NOT_GALILEAN, "not Galilean"},
+    {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
 };
 
 /* what the method's result is, in the words of clothsim-integrator(7) */

@@ -74,6 +74,7 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
         {"clamped", c->clamped},
         {"contacts", c->contacts},
         {"contact_tests", c->contact_tests},
+        {"contact_cut_steps", c->cut_steps},
         {"limit_moves", c->limit_moves},
         {"normals", c->normals},
     };

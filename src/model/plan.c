@@ -120,8 +120,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_VELOCITY_LOSS,
            forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"), 0,
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
-    decide(plan, CS_FEATURE_CONTACT, scene->colliders.n > 0, 0, "the scene has colliders",
-           "no colliders");
+    decide(plan, CS_FEATURE_CONTACT,
+           scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT, 0,
+           "the scene has colliders",
+           scene->colliders.n > 0 ? "contact is a force" : "no colliders");
     decide(plan, CS_FEATURE_STRAIN_LIMIT, s > 0 && any_body(scene, has_limit), 0,
            "a body has strain_limit", "no strain_limit");
     decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, cs_events_bytes(scene, plan->n),
@@ -155,20 +157,27 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "one does all the work");
 }
 
-enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uint32_t needs,
-                             struct cs_error *error) {
+enum cs_status cs_plan_check(const struct cs_scene *scene,
+                             const struct cs_integrator *method, struct cs_error *error) {
     const uint32_t matched = cs_scene_first_matched(scene);
-    if (matched < scene->bodies.n && !(needs & CS_NEED_CLUSTERS))
+    if (matched < scene->bodies.n && !(method->needs & CS_NEED_CLUSTERS))
         return cs_fail(error, CS_ERR_SCENE,
                        "bodies[%u].shape_matching: no force law, so integrator \"%s\" cannot "
                        "follow it, and no error can be measured; use clothsim run "
                        "--integrator shape-matching",
-                       matched, name);
-    if (matched == scene->bodies.n && needs & CS_NEED_CLUSTERS)
+                       matched, method->name);
+    if (matched == scene->bodies.n && method->needs & CS_NEED_CLUSTERS)
         return cs_fail(error, CS_ERR_SCENE,
                        "bodies: none has shape_matching, and without it integrator \"%s\" has "
                        "nothing to match",
-                       name);
+                       method->name);
+    if (scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n > 0 &&
+        method->traits & CS_EXPLICIT_OUTER)
+        return cs_fail(error, CS_ERR_SCENE,
+                       "contact.law: integrator \"%s\" takes contact as it is where a step "
+                       "begins and cannot follow a force as stiff; expected project, or another "
+                       "integrator",
+                       method->name);
     return CS_OK;
 }
 

@@ -6,16 +6,18 @@
 #include "model/system/feature.h"
 #include "scene/scene.h"
 
+#include <clothsim/integrator.h>
+
 /* Decides from a checked scene, the method's needs (enum cs_need) and whether frames are drawn.
  */
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
                   bool render);
 
-/* Whether a method with such needs can follow the scene: shape matching is no force law, and a
- * method that is made for it has nothing to do without. name: of the method, for the message,
- * which starts with the JSON path. CS_ERR_SCENE. */
-enum cs_status cs_plan_check(const struct cs_scene *scene, const char *name, uint32_t needs,
-                             struct cs_error *error);
+/* Whether a method can follow the scene: shape matching is no force law, and a
+ * method that is made for it has nothing to do without; and contact by force is stiff. The
+ * message starts with the JSON path. CS_ERR_SCENE. */
+enum cs_status cs_plan_check(const struct cs_scene *scene,
+                             const struct cs_integrator *method, struct cs_error *error);
 
 /* Prints it as aligned text, one feature a line. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);

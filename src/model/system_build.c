@@ -131,10 +131,14 @@ static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_er
     }
 }
 
-static void choose_terms(struct cs_system *system) {
-    for (uint32_t k = 0; k < cs_n_terms; k++)
-        if (system->plan.forces[k].built)
-            system->terms[system->n_terms++] = cs_terms[k];
+static void choose_terms(struct cs_system *system, struct cs_error *error) {
+    for (uint32_t k = 0; k < cs_n_terms && !error->status; k++) {
+        if (!system->plan.forces[k].built)
+            continue;
+        system->terms[system->n_terms++] = cs_terms[k];
+        if (cs_terms[k]->build)
+            cs_terms[k]->build(system, error);
+    }
 }
 
 static void take_arrays(struct cs_system *system, struct cs_error *error) {
@@ -188,7 +192,9 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
         return;
     /* events choose particles by where they start, so before them */
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
-    choose_terms(system);
+    choose_terms(system, error);
+    if (error->status)
+        return;
     if (!is_built(&system->plan, CS_FEATURE_EVENTS))
         cs_bounds_set(system, work);
     else if (!cs_events_build(system, error))

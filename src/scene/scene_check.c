@@ -214,12 +214,6 @@ static enum cs_status check_colliders(const struct place *at, struct cs_scene *s
     return CS_OK;
 }
 
-static enum cs_status check_contact(const struct place *at, const struct cs_scene *scene) {
-    if (scene->contact.law == CS_CONTACT_FORCE)
-        return refuse(at, "contact.law", "force is not there yet, expected project");
-    return CS_OK;
-}
-
 static enum cs_status check_camera(const struct place *at, const struct cs_camera *camera) {
     char path[64];
     const char *key, *fault = cs_viewpoint_fault(camera->eye, camera->target, camera->up, &key);
@@ -247,8 +241,7 @@ static enum cs_status check_render(const struct place *at, const struct cs_rende
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {
     const struct place at = {path_out, error};
     path_out[0] = 0;
-    if (check_bodies(&at, scene) || check_colliders(&at, scene) || check_contact(&at, scene) ||
-        (scene->forces.wind.present &&
+    if (check_bodies(&at, scene) || check_colliders(&at, scene) || (scene->forces.wind.present &&
          make_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||
         check_render(&at, &scene->render) || cs_events_check(scene, path_out, error))

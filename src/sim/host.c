@@ -4,6 +4,8 @@
 #include "base/vector.h"
 #include "model/commit/contact.h"
 #include "model/commit/limit.h"
+#include "model/contact/share.h"
+#include "model/force/bounds.h"
 #include "model/force/measure.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
@@ -144,7 +146,8 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
                                      .cm = cm,
                                      .cd = cd,
                                      .ck = ck,
-                                     .psd = host->clamped};
+                                     .psd = host->clamped,
+                                     .bound = flags & CS_SOLVE_BOUND};
     if (!cs_linear_setup(&host->linear, &matrix) && !host->clamped)
         clamp(host);
     stage_end(host, CS_STAGE_SOLVE, begin);
@@ -185,6 +188,39 @@ static void host_apply(void *ctx, const double *p, double *y) {
     cs_linear_mul(&host->linear, p, y);
     host->run->counts.jvps++;
     stage_end(host, CS_STAGE_SOLVE, begin);
+}
+
+static void host_rate(void *ctx, double t, const double *x, const double *v, double *omega,
+                      double *delta) {
+    struct cs_run_host *host = ctx;
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
+    move_values(host, t);
+    const double begin = stage_begin(host);
+    cs_bounds_rate(host->run->system, &at, host->rate_work, omega, delta);
+    stage_end(host, CS_STAGE_CONTACT, begin);
+}
+
+static double host_max_share(void *ctx, double t0, const double *x0, double t1,
+                             const double *x1) {
+    struct cs_run_host *host = ctx;
+    const double begin = stage_begin(host);
+    const bool seen = cs_contact_is_seen(host->run->system, t0, x0, t1, x1);
+    host->run->counts.cut_steps += !seen;
+    stage_end(host, CS_STAGE_CONTACT, begin);
+    return seen ? 1 : 0.5;
+}
+
+/* only where it is asked for: methods leave out what is NULL */
+static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
+    const struct cs_system *system = host->run->system;
+    if (!cs_bounds_have_rate(system))
+        return CS_OK;
+    host->rate_work =
+        cs_arena_take_n(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
+    host->calls.rate = host_rate;
+    if (system->pairings)
+        host->calls.max_share = host_max_share;
+    return error->status;
 }
 
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
@@ -283,6 +319,8 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .commit = host_commit,
     };
     cs_bound_set(&host->bound, system, 0);
+    if (add_rate(host, error))
+        return error->status;
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
     const size_t n3 = 3 * (size_t)system->view.n;

@@ -79,7 +79,7 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
     const bool render = session->settings.render;
     struct cs_error said = {0};
     if (!session->settings.method &&
-        cs_plan_check(&session->scene, method->name, method->needs, &said))
+        cs_plan_check(&session->scene, method, &said))
         return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,

@@ -26,6 +26,12 @@
     " \"pins\": [\"top-left\", 7]}],"                                                          \
     " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \
     "2, 3]}}],"                                                                                \
+    " \"colliders\": [{\"sphere\": {\"centre\": [0.1, -0.05, -0.5], \"radius\": 0.35},"        \
+    " \"thickness\": 0.3, \"friction\": 0.4}, {\"capsule\": {\"from\": [-0.5, 0, 0.4], "       \
+    "\"to\": "                                                                                 \
+    "[0.2, 0.1, 0.4], \"radius\": 0.2}, \"thickness\": 0.3, \"friction\": 0.7}],"              \
+    " \"contact\": {\"law\": \"force\", \"stiffness\": 50, \"damping\": 0.01,"                 \
+    " \"friction_speed\": 0.3},"                                                               \
     " \"forces\": {" FORCES "%s}}"
 
 enum { N = 20, VALUES = 3 * N };
@@ -115,10 +121,15 @@ START_TEST(events_can_change_the_keys) {
             char path[96];
             struct cs_event_key found;
             struct cs_error error = {0};
-            const bool of_body = !strncmp(*key, "bodies.", 7);
+            // what stands in a list is the first there
+            const size_t list = !strncmp(*key, "bodies.", 7)       ? 6
+                                : !strncmp(*key, "colliders.", 10) ? 9
+                                                                   : 0;
             const bool vector = !strcmp(*key, "forces.gravity");
-            snprintf(path, sizeof path, "%s%s%s", of_body ? "bodies[0]" : *key,
-                     of_body ? *key + 6 : "", vector ? "[1]" : "");
+            if (list)
+                snprintf(path, sizeof path, "%.*s[0]%s", (int)list, *key, *key + list);
+            else
+                snprintf(path, sizeof path, "%s%s", *key, vector ? "[1]" : "");
             cs_event_key_find(&cloth.session.scene, path, &found, &error);
             ck_assert_msg(!error.status, "%s: %s", cs_terms[k]->name, error.message);
         }

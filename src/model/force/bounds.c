@@ -6,11 +6,20 @@
 #include <math.h>
 #include <string.h>
 
+static void take_largest(const struct cs_system *system, const struct cs_row_sums *sums,
+                         double *squared, double *delta) {
+    *squared = *delta = 0;
+    for (size_t i = 0; i < system->view.n; i++) {
+        *squared = fmax(*squared, sums->stiffness[i] * system->inv_mass[i]);
+        *delta = fmax(*delta, 0.5 * sums->damping[i] * system->inv_mass[i]);
+    }
+}
+
 void cs_bounds_at(const struct cs_system *system, const struct cs_eval *at, double *work,
                   double *omega, double *delta) {
     const size_t n = system->view.n;
     const struct cs_row_sums sums = {work, work + n};
-    double squared = 0;
+    double squared;
     memset(work, 0, 2 * n * sizeof *work);
     for (uint32_t k = 0; k < system->n_terms; k++) {
         const struct cs_term *term = system->terms[k];
@@ -19,12 +28,34 @@ void cs_bounds_at(const struct cs_system *system, const struct cs_eval *at, doub
         else if (term->add_bound)
             term->add_bound(system, &sums);
     }
-    *delta = 0;
-    for (size_t i = 0; i < n; i++) {
-        squared = fmax(squared, sums.stiffness[i] * system->inv_mass[i]);
-        *delta = fmax(*delta, 0.5 * sums.damping[i] * system->inv_mass[i]);
-    }
+    take_largest(system, &sums, &squared, delta);
     *omega = sqrt(squared);
+}
+
+static bool has_rate(const struct cs_term *term) {
+    return term->add_bound_at && !term->add_bound;
+}
+
+bool cs_bounds_have_rate(const struct cs_system *system) {
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (has_rate(system->terms[k]))
+            return true;
+    return false;
+}
+
+void cs_bounds_rate(const struct cs_system *system, const struct cs_eval *at, double *work,
+                    double *omega, double *delta) {
+    const size_t n = system->view.n;
+    const struct cs_row_sums sums = {work, work + n};
+    double squared;
+    memset(work, 0, 2 * n * sizeof *work);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (has_rate(system->terms[k]))
+            system->terms[k]->add_bound_at(system, at, &sums);
+    take_largest(system, &sums, &squared, delta);
+    // norms of sums are at most the sums of norms
+    *omega = sqrt(system->view.omega * system->view.omega + squared);
+    *delta += system->view.delta;
 }
 
 void cs_bounds_set(struct cs_system *system, double *work) {

@@ -12,6 +12,13 @@
 void cs_bounds_at(const struct cs_system *system, const struct cs_eval *at, double *work,
                   double *omega, double *delta);
 
+/* The bounds of the view, and on top of them those of the forces that have bounds at a state
+ * alone (struct cs_term: add_bound_at without add_bound). work as above. */
+void cs_bounds_rate(const struct cs_system *system, const struct cs_eval *at, double *work,
+                    double *omega, double *delta);
+/* Whether the scene has such forces. */
+bool cs_bounds_have_rate(const struct cs_system *system);
+
 /* Sets view.omega and view.delta to those of the whole run. */
 void cs_bounds_set(struct cs_system *system, double *work);
 

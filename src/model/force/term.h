@@ -34,6 +34,9 @@ struct cs_term {
      * without `why` no line is printed. A force that is not built is not called again. */
     struct cs_plan_row (*plan)(const struct cs_scene *scene);
     uint32_t (*uses)(const struct cs_scene *scene); /* set of enum cs_term_use; NULL: nothing */
+    /* Takes and fills arrays of its own, the springs and the state there. NULL: it has none.
+     * CS_ERR_SCENE, CS_ERR_MEMORY. */
+    enum cs_status (*build)(struct cs_system *system, struct cs_error *error);
     const char *const *ramps; /* keys that events may change while it acts, closed by NULL */
 
     /* --- the force --- */

@@ -9,7 +9,8 @@
 #ifndef CS_TERM_LIST_MORE
 #define CS_TERM_LIST_MORE(X)
 #endif
-#define CS_TERM_LIST(X) X(springs) X(gravity) X(drag) X(wind) X(push) CS_TERM_LIST_MORE(X)
+#define CS_TERM_LIST(X)                                                                        \
+    X(springs) X(gravity) X(drag) X(wind) X(push) X(contact) CS_TERM_LIST_MORE(X)
 
 #define X(name) extern const struct cs_term cs_term_##name;
 CS_TERM_LIST(X)

@@ -68,7 +68,8 @@ struct cs_matrix {
     double t;
     const double *x, *v; /* (3,n) in m and m/s */
     double cm, cd, ck;
-    bool psd; /* each force's part is made positive semidefinite */
+    bool psd;   /* each force's part is made positive semidefinite */
+    bool bound; /* friction by an upper bound (CS_SOLVE_BOUND) */
 };
 
 /* Springs [begin, end) of a mesh's run whose forces one thread computes. As their ends lie

@@ -21,6 +21,7 @@ struct cs_body_range {
 };
 
 struct cs_events;
+struct cs_pairing;
 struct cs_obstacle_motion;
 
 struct cs_system {
@@ -40,6 +41,8 @@ struct cs_system {
     uint32_t n_terms;
     struct cs_obstacle_motion
         *motions;             /* (scene->colliders.n); NULL where no event moves one */
+    const struct cs_pairing
+        *pairings;            /* (scene->colliders.n); NULL without contact by force */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */
 };

@@ -1,0 +1,22 @@
+/* pairing.h - range and stiffness between the particles and each collider, made once. */
+#ifndef CS_CONTACT_PAIRING_H
+#define CS_CONTACT_PAIRING_H
+
+#include "model/system/system.h"
+
+/* Share of the shortest spring that the range is where a collider gives no thickness: springs
+ * at rest do not reach from one side of a thin obstacle to the other. */
+#define CS_RANGE_SHARE 0.4
+
+struct cs_pairing {
+    double k;     /* N/m a particle */
+    double range; /* m in front of the surface */
+};
+
+/* Fills system->pairings (one a collider), the springs there. k: contact.stiffness, or the
+ * softest stretch spring; range: the collider's thickness, or CS_RANGE_SHARE of the shortest
+ * spring. CS_ERR_SCENE where a value is neither given nor to be had from springs;
+ * CS_ERR_MEMORY. */
+enum cs_status cs_pairings_build(struct cs_system *system, struct cs_error *error);
+
+#endif

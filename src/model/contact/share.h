@@ -1,0 +1,21 @@
+/* share.h - whether a step has gone into contact further than it can know. */
+#ifndef CS_CONTACT_SHARE_H
+#define CS_CONTACT_SHARE_H
+
+#include "model/system/system.h"
+
+/* A step sees of contact at most its force and its stiffness where it begins. For a particle
+ * that goes straight from x0 at t0 to x1 at t1, with the approach s of its distance d to an
+ * obstacle,
+ *
+ *   e = |psi(d - s) - psi(d) - F s - K s^2/2|
+ *
+ * is the energy that the step does not see, at the worst of points along the way that lie half
+ * a range apart (so that nothing is jumped over). True if e is below CS_SHARE_UNSEEN of what
+ * the particle has: the kinetic energy of the move against the obstacle and psi(d). x0, x1
+ * (3,n) in m. Particles that are not finite are left for the blow-up test. */
+#define CS_SHARE_UNSEEN 0.02
+bool cs_contact_is_seen(const struct cs_system *system, double t0, const double *x0, double t1,
+                        const double *x1);
+
+#endif

@@ -1,0 +1,262 @@
+/* Contact as a force: against closed forms of the law, of the incline and of the belt, and by
+ * what holds for every method: its order, and that nothing gains energy at an obstacle. */
+#include "fixture.h"
+#include "model/contact/law.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define G         9.81
+#define LENGTH(a) (sizeof(a) / sizeof *(a))
+
+START_TEST(law_is_one_function) {
+    const double range = 0.02, k = 700, e = 1e-7;
+    for (double d = -0.01; d < 1.2 * range; d += 1.7e-4) {
+        const struct cs_law law = cs_law_at(d, range, k);
+        const double slope =
+            (cs_law_energy(d - e, range, k) - cs_law_energy(d + e, range, k)) / (2 * e);
+        const double bend =
+            (cs_law_at(d - e, range, k).force - cs_law_at(d + e, range, k).force) / (2 * e);
+        const double turn =
+            (cs_law_at(d + e, range, k).stiffness - cs_law_at(d - e, range, k).stiffness) /
+            (2 * e);
+        ck_assert_double_eq_tol(law.force, slope, 1e-6 * (law.force + 1e-3));
+        ck_assert_double_eq_tol(law.stiffness, bend, 1e-4 * law.stiffness + 1e-3);
+        // the stiffness has a bend where its core begins
+        if (fabs(d - CS_LAW_CORE * range) > 2 * e)
+            ck_assert_double_eq_tol(cs_law_slope(d, range, k), turn, 1e-4 * fabs(turn) + 1e-2);
+    }
+    ck_assert_double_eq_tol(cs_law_at(range / 2, range, k).stiffness, k * 11 / 12, 1e-9 * k);
+    ck_assert_double_eq(cs_law_at(range, range, k).force, 0);
+    ck_assert_double_eq(cs_law_energy(1.5 * range, range, k), 0);
+    // what it takes to cross: 1.36 k D^2
+    ck_assert_double_eq_tol(cs_law_energy(CS_LAW_CORE * range, range, k) / (k * range * range),
+                            1.36, 0.005);
+}
+END_TEST
+
+/* the distance at which the law carries a force, by bisection */
+static double distance_of(double force, double range, double k) {
+    double low = 0.05 * range, high = range;
+    for (int i = 0; i < 200; i++) {
+        const double d = (low + high) / 2;
+        *(cs_law_at(d, range, k).force > force ? &low : &high) = d;
+    }
+    return low;
+}
+
+/* A square of four particles of 25 g on a slope, or a belt; %g: tangent of the slope, ... */
+#define SLOPE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
+    " \"place\": {\"translate\": [%.17g, %.17g, 0], \"rotate\": [0, 0, %.17g, %.17g]}},"       \
+    " \"mass\": {\"total\": 0.1}, \"springs\": {\"stretch\": 1000, \"shear\": 500, \"bend\":"  \
+    " 0, \"damping\": 1}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\":"    \
+    " [%.17g, %.17g, 0]}, \"thickness\": 0.02, \"friction\": 0.3}], \"events\": [%s],"         \
+    " \"contact\": {\"law\": \"force\", \"stiffness\": 1000, \"damping\": 0.001}}"
+
+static void open_slope(struct fixture *block, const char *integrator, double tangent,
+                       const char *events) {
+    const double a = atan(tangent), n[2] = {sin(a), cos(a)};
+    const double d = distance_of(0.025 * G * cos(a), 0.02, 1000);
+    fixture_open(block, integrator, SLOPE, n[0] * d, n[1] * d, -sin(a / 2), cos(a / 2), n[0],
+                 n[1], events);
+    fixture_start(block);
+}
+
+/* mean velocity down the slope */
+static double sliding(const struct fixture *block, double tangent) {
+    double sum = 0;
+    for (size_t i = 0; i < block->n; i++)
+        sum += cos(atan(tangent)) * block->v[i] - sin(atan(tangent)) * block->v[block->n + i];
+    return sum / (double)block->n;
+}
+
+static const char *const all_able[] = {"symplectic-euler",
+                                       "velocity-verlet",
+                                       "rk4",
+                                       "dopri5:rtol=1e-6",
+                                       "implicit-linearised:dt=0.004",
+                                       "backward-euler:dt=0.004",
+                                       "implicit-midpoint:dt=0.004",
+                                       "bdf2:dt=0.004",
+                                       "tr-bdf2:dt=0.004",
+                                       "sdirk2:dt=0.004",
+                                       "ros2:dt=0.001",
+                                       "newmark:dt=0.004",
+                                       "cvode-bdf:rtol=1e-6",
+                                       "cvode-adams:rtol=1e-6",
+                                       "ark-erk:rtol=1e-6",
+                                       "ark-dirk:rtol=1e-6",
+                                       "ark-imex:rtol=1e-6"};
+
+START_TEST(blocks_slide_and_creep_as_the_law_says) {
+    const double ev = 1e-3, mu = 0.3;
+    for (size_t m = 0; m < LENGTH(all_able); m++)
+        for (double tangent = 0.1; tangent < 0.55; tangent += 0.1) {
+            if (fabs(tangent - mu) < 0.01)
+                continue;
+            struct fixture block;
+            open_slope(&block, all_able[m], tangent, "");
+            fixture_frames(&block, 15);
+            const double before = sliding(&block, tangent);
+            fixture_frames(&block, 15);
+            const double v = sliding(&block, tangent);
+            const double cosine = cos(atan(tangent));
+            if (tangent > mu)
+                ck_assert_msg(fabs((v - before) / 0.25 - G * cosine * (tangent - mu)) <
+                                  0.02 * G * mu,
+                              "%s: slope %.1f, acceleration %.4f", all_able[m], tangent,
+                              (v - before) / 0.25);
+            else
+                ck_assert_msg(fabs(v / (ev * tangent / sqrt(mu * mu - tangent * tangent)) - 1) <
+                                  0.05,
+                              "%s: slope %.1f, creep %.3g m/s", all_able[m], tangent, v);
+            fixture_close(&block);
+        }
+}
+END_TEST
+
+START_TEST(belts_carry_what_lies_on_them) {
+    struct fixture block;
+    open_slope(&block, "rk4", 0,
+               "{\"from\": 0, \"to\": 1, \"move\": {\"collider\": 0, \"path\": [{\"at\": 1, "
+               "\"point\": [0.5, 0, 0]}]}}");
+    fixture_frames(&block, 6);
+    // mu g t until it has the belt's 0.5 m/s
+    ck_assert_double_eq_tol(sliding(&block, 0), 0.3 * G * 0.1, 0.01 * 0.3 * G * 0.1);
+    fixture_frames(&block, 24);
+    ck_assert_double_eq_tol(sliding(&block, 0), 0.5, 1e-3);
+    fixture_close(&block);
+}
+END_TEST
+
+/* a sheet in the range of a plane, soft enough for a smooth motion over a step */
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"start\": \"flat\", \"place\": "            \
+    "{\"translate\": [0, 0.12, 0]}}, \"mass\": {\"particle\": 0.1}, \"springs\": "             \
+    "{\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": 0}}],"                         \
+    " \"colliders\": [{\"floor\": {\"height\": 0}, \"thickness\": 0.2}],"                      \
+    " \"contact\": {\"law\": \"force\", \"stiffness\": 40}, \"time\": {\"fps\": 10}}"
+
+enum { VALUES = 6 * 16 };
+
+static uint32_t end_state(const char *name, double h, double state[VALUES]) {
+    struct fixture sheet;
+    char integrator[128];
+    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
+             h);
+    fixture_open(&sheet, integrator, SHEET);
+    cs_perturb_smooth(sheet.system, 0.01, 0.2);
+    fixture_start(&sheet);
+    fixture_frames(&sheet, 3);
+    memcpy(state, sheet.x, VALUES * sizeof *state);
+    const uint32_t order = sheet.session.method.integrator->order;
+    fixture_close(&sheet);
+    return order;
+}
+
+START_TEST(orders_hold_in_contact) {
+    static const struct {
+        const char *name;
+        double h;
+    } methods[] = {{"symplectic-euler", 2.5e-4},
+                   {"velocity-verlet", 1e-3},
+                   {"rk4", 4e-3},
+                   {"implicit-linearised:rtol=1e-10", 2.5e-4},
+                   {"backward-euler:rtol=1e-12", 2.5e-4},
+                   {"implicit-midpoint:rtol=1e-12", 2e-3},
+                   {"bdf2:rtol=1e-12", 1e-3},
+                   {"tr-bdf2:rtol=1e-12", 2e-3},
+                   {"sdirk2:rtol=1e-12", 2e-3},
+                   {"newmark:rtol=1e-12", 2e-3}};
+    double reference[VALUES];
+    end_state("rk4", 2e-4, reference);
+    for (size_t m = 0; m < LENGTH(methods); m++) {
+        double state[VALUES], error[2];
+        uint32_t order = 0;
+        for (int k = 0; k < 2; k++) {
+            order = end_state(methods[m].name, methods[m].h / (1 + k), state);
+            error[k] = cs_rms_difference(state, reference, VALUES);
+        }
+        ck_assert_msg(fabs(log2(error[0] / error[1]) - order) < 0.2,
+                      "%s: order %.3f in contact, stated %u (errors %.3g, %.3g)",
+                      methods[m].name, log2(error[0] / error[1]), order, error[0], error[1]);
+    }
+}
+END_TEST
+
+/* a soft ball that falls 0.6 m on a floor, friction and damping 0 */
+#define BALL                                                                                   \
+    "{\"bodies\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": 3, \"scale\": [0.4, 0.4, "   \
+    "0.4], \"place\": {\"translate\": [0, 0.8, 0]}}, \"network\": {\"placement\": "            \
+    "\"nearest\", \"springs\": 4}, \"mass\": {\"total\": 1}, \"springs\": {\"stretch\": 400, " \
+    "\"bend\": 0, \"damping\": 0}}], \"colliders\": [{\"floor\": {\"height\": 0}, "            \
+    "\"thickness\": 0.02}], \"contact\": \"force\"}"
+
+START_TEST(bounces_make_no_energy) {
+    static const struct {
+        const char *name;
+        double most; // 1.01, and 1.05 for methods without damping of their own
+    } methods[] = {{"symplectic-euler", 1.05},
+                   {"velocity-verlet", 1.05},
+                   {"rk4", 1.05},
+                   {"dopri5:rtol=1e-3", 1.05},
+                   {"implicit-linearised:dt=0.016666666666666666", 1.01},
+                   {"implicit-linearised:dt=0.004166666666666667", 1.01},
+                   {"implicit-block:dt=0.004166666666666667", 1.01},
+                   {"backward-euler:dt=0.004166666666666667", 1.01},
+                   {"implicit-midpoint:dt=0.004166666666666667", 1.05},
+                   {"bdf2:dt=0.004166666666666667", 1.01},
+                   {"tr-bdf2:dt=0.004166666666666667", 1.01},
+                   {"sdirk2:dt=0.004166666666666667", 1.01},
+                   {"ros2:dt=0.004166666666666667", 1.05},
+                   {"newmark:dt=0.004166666666666667", 1.05},
+                   {"cvode-bdf:rtol=1e-3", 1.01},
+                   {"cvode-adams:rtol=1e-3", 1.05},
+                   {"ark-erk:rtol=1e-3", 1.05},
+                   {"ark-dirk:rtol=1e-3", 1.05},
+                   {"ark-imex:rtol=1e-3", 1.05}};
+    for (size_t m = 0; m < LENGTH(methods); m++) {
+        struct fixture ball;
+        fixture_open(&ball, methods[m].name, BALL);
+        fixture_start(&ball);
+        const double start = fixture_energy(&ball);
+        double largest = start;
+        for (int frame = 0; frame < 32; frame++) {
+            fixture_frames(&ball, 1);
+            largest = fmax(largest, fixture_energy(&ball));
+        }
+        ck_assert_msg(largest <= methods[m].most * start, "%s: %.4f of the start's energy",
+                      methods[m].name, largest / start);
+        // it touched the floor and came back up
+        double up = 0;
+        for (size_t i = 0; i < ball.n; i++)
+            up += ball.v[ball.n + i];
+        // implicit-block falls too slowly to be there yet
+        ck_assert_msg(up > 0 || strstr(methods[m].name, "block"), "%s: it still falls",
+                      methods[m].name);
+        fixture_close(&ball);
+    }
+}
+END_TEST
+
+START_TEST(methods_with_explicit_outer_forces_are_refused) {
+    struct cs_session session = {0};
+    struct cs_error error = {0};
+    char text[1200];
+    snprintf(text, sizeof text, BALL);
+    struct cs_session_settings settings = {.scene = "ball", .text = text, .integrator = "xpbd"};
+    ck_assert_int_eq(cs_session_open_plan(&session, &settings, &error), CS_ERR_SCENE);
+    ck_assert_ptr_nonnull(strstr(error.message, "contact.law"));
+    cs_session_close(&session);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {
+        law_is_one_function,           blocks_slide_and_creep_as_the_law_says,
+        belts_carry_what_lies_on_them, orders_hold_in_contact,
+        bounces_make_no_energy,        methods_with_explicit_outer_forces_are_refused};
+    return fixture_run("contact force", tests, LENGTH(tests));
+}
