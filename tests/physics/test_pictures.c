@@ -74,7 +74,7 @@ static uint8_t *draw_moved(const char *collider, const char *events) {
     ck_assert_ptr_nonnull(pixels);
     fixture_open(&cloth, "symplectic-euler", STILL, collider, events);
     fixture_start(&cloth);
-    cs_picture_open(&picture, cloth.system, CS_GL_AUTO, false, true, &error);
+    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, true, &error);
     fixture_frames(&cloth, 2);
     cs_picture_begin(&picture, &cloth.session.run, &image);
     cs_picture_end(&picture, &error);
