@@ -1,4 +1,4 @@
-/* The kernels one by one, each beside the limit that binds it.
+/* Times the kernels one by one, each beside the hardware limit that it cannot pass.
  *
  * The limit of a kernel is the larger of two times: that of the divider, a root and a quotient
  * (or a root alone) a spring, and that of the memory, each array that the kernel must read or

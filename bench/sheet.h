@@ -33,7 +33,7 @@ enum cs_status bench_sheet_open(struct cs_session *session,
                                 const struct bench_model *model, const char *integrator,
                                 uint32_t needs, struct cs_error *error);
 
-/* Moves the free particles out of their places, the same for every call: three waves of 2 cm
+/* Displaces the free particles, the same for every call: three waves of 2 cm
  * across the sheet, a shear of 5 %, and 2 % of the shortest spring at random; velocities up to
  * 0.1 m/s. No spring is then at its rest length, and some are compressed. */
 void bench_sheet_perturb(struct cs_system *system);

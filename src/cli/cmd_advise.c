@@ -52,7 +52,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         .progress = show_progress,
         .ctx = &progress,
     };
-    /* one flag stops the run at hand and keeps further ones from starting */
+    /* one flag stops the current run and keeps further ones from starting */
     study.session.run.stop = study.stop = cs_interrupt_catch();
     if (cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
         cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||

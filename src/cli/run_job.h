@@ -12,7 +12,7 @@
 struct cs_job_settings {
     struct cs_session_settings session;
     uint32_t frames;                    /* 0: one second of them */
-    uint32_t every;                     /* draw each so-many-th frame */
+    uint32_t every;                     /* draw every n-th frame */
     const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
     const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
     int renderer;                       /* enum cs_renderer_kind */

@@ -7,10 +7,10 @@
 
 /* Where the reading stands. All pointers are borrowed. */
 struct cs_reader {
-    const char *name, *text; /* of the file, for places */
+    const char *name, *text; /* of the file, for positions in messages */
     struct cs_arena *arena;  /* of lists */
     struct cs_error *error;
-    char path[384]; /* JSON path of the value at hand */
+    char path[384]; /* JSON path of the value being read */
     size_t path_length;
     const char *apart; /* key of the root that is read elsewhere, or NULL */
 };

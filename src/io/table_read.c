@@ -19,7 +19,7 @@ static enum cs_status fail_row(struct cs_reader *reader, const struct cs_json *v
     return status;
 }
 
-/* hands on what an option function said; its message starts with the ": " behind no place */
+/* passes on what an option function said, without the ": " that follows an empty position */
 static enum cs_status pass_on(struct cs_reader *reader, const struct cs_json *value,
                               const struct cs_error *said) {
     return said->status ? cs_reader_fail(reader, value, false, "%s", said->message + 2) : CS_OK;

@@ -1,4 +1,4 @@
-/* fate.h - the words of the cloth thesis for a run, made into numbers. */
+/* fate.h - verdicts on a run: the words of the cloth thesis, made into numbers. */
 #ifndef CS_FATE_H
 #define CS_FATE_H
 

@@ -31,9 +31,9 @@ struct cs_picture {
 };
 
 /* Loads the renderer and the textures. Scene and system must outlive the picture. beside: draw
- * on a thread of its own, unless the scene draws what prods see; else begin draws at once, and
- * the same. On failure the picture is
- * closed; CS_ERR_MODULE, CS_ERR_FILE (a texture) or CS_ERR_MEMORY. */
+ * on a thread of its own, unless the scene draws what viewpoint forces see; else begin draws at
+ * once, and the same. On failure the picture is closed; CS_ERR_MODULE, CS_ERR_FILE (a texture)
+ * or CS_ERR_MEMORY. */
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
                                enum cs_renderer_kind kind, bool fast, bool beside,
                                struct cs_error *error);

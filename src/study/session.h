@@ -24,7 +24,7 @@ struct cs_session_settings {
     const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */
     const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
-    /* instead of these: an integrator at hand with a copy of options (NULL: its defaults); it
+    /* instead of these: a given integrator with a copy of options (NULL: its defaults); it
      * is not asked whether it suits the scene */
     const struct cs_integrator *method;
     const void *options;

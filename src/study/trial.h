@@ -1,4 +1,4 @@
-/* trial.h - one run of a scene for a study: no pictures, only how it behaved.
+/* trial.h - a probe run of a scene for a study: no pictures, only how it behaved.
  *
  * The state is sampled at equal spaces of time, so
  * that runs with different steps can be held against each other.

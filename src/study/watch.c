@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* how far above what nature allows a number must be before it is called an instability */
+/* how far above what is physically possible a number must be to be called an instability */
 #define ENERGY_FACTOR 2
 #define SPEED_FACTOR  3
 /* fastest particle over the mean speed of all, in motions that are sound */

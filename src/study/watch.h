@@ -29,7 +29,7 @@ struct cs_watch {
     double held, gravity; /* J at the start: kinetic + elastic, of gravity */
     double released;      /* J, most that gravity gave until now */
     double start_speed;   /* m/s: largest, and what the springs at one particle could give it */
-    double pull, push;    /* m/s2, of gravity, and of wind and prods at most */
+    double pull, push;    /* m/s2, of gravity, and of wind and viewpoint forces at most */
     double mass, wind_mass;    /* kg that can move; of it times (wind/gravity) for its work */
     bool found;                /* a local instability was seen */
     struct cs_watch_row first; /* when it began */

@@ -89,8 +89,8 @@ static enum cs_status check_options(const struct cs_compare *compare, struct cs_
     return error->status;
 }
 
-/* What a row depends on: reference (with scene, overrides, length), then method and ways to
- * measure. The sweep has put the hash of the module there. */
+/* What a row depends on: reference (with scene, overrides, length), then method and number
+ * of timed runs. The sweep has put the hash of the module there. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_yardstick_settings asked = ask_reference(compare);
     struct cs_yardstick yardstick;

@@ -67,7 +67,7 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
     return try_safe(row, settings, reference, frame, error);
 }
 
-/* Where even a part of theory's limit does not live, what does is bisected: a motion that is
+/* If even a part of theory's limit is unstable, the stable step is bisected: a motion that is
  * large from the start passes the bound with less growth than theory allows. */
 static enum cs_status try_lower(struct cs_advice *row, const struct cs_trial_settings *settings,
                                 const struct cs_reference *reference, double frame,

@@ -1,4 +1,4 @@
-/* advise.h - which step each method takes safely on a scene, what binds it, what it costs. */
+/* advise.h - which step each method takes safely on a scene, what limits it, what it costs. */
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
 
@@ -6,7 +6,7 @@
 
 enum cs_advice_kind {
     CS_ADVICE_THEORY,   /* the limit of linear theory along a trusted run */
-    CS_ADVICE_LOWERED,  /* 0.9 of theory's limit was tried and does not live: bisected */
+    CS_ADVICE_LOWERED,  /* 0.9 of theory's limit was tried and is unstable: bisected */
     CS_ADVICE_MEASURED, /* theory knows no limit, but one was found by bisection */
     CS_ADVICE_FRAME,    /* one step a frame was tried and is stable */
     CS_ADVICE_NONE,     /* no step is stable without damping */
@@ -19,7 +19,7 @@ struct cs_advice {
     enum cs_advice_kind kind;
     double limit, safe;       /* s: largest stable step, and the one advised */
     double theory;            /* s, limit of linear theory; HUGE_VAL: none */
-    struct cs_mode mode;      /* that binds it, where theory has a limit */
+    struct cs_mode mode;      /* that limits it, where theory has a limit */
     enum cs_fate verdict;     /* of a run with the safe step */
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
@@ -31,7 +31,7 @@ struct cs_advise {
     const char *const *methods;         /* (n_methods); 0: all that can be used */
     uint32_t n_methods;
     double seconds,
-        budget; /* of the trusted run and the trials, at least; a trial's CPU time */
+        budget; /* of the trusted run and the probe runs, at least; CPU time of a probe run */
     bool check; /* bisect the limit too */
     uint32_t workers;
     const volatile sig_atomic_t *stop;

@@ -4,7 +4,7 @@
  *   "x-extreme": {"seconds": 0.5, "dt": 0.1, "explicit": "theory", "implicit": "bounded",
  *                 "adaptive": "bounded|refused"}
  * dt (0 or absent: the method's own) is that of methods with a fixed step. What is expected:
- *   bounded   the run ends, and its energy is what nature allows (watch.h)
+ *   bounded   the run ends, and its energy is physically possible (watch.h)
  *   finite    the run ends, and its state is finite
  *   blows up  the energy leaves all bound, and that is said
  *   refused   the method gives up and says why

@@ -1,4 +1,4 @@
-/* modes.h - the motions of a system that bind the step: how fast they swing and are damped.
+/* modes.h - the stiffest modes of a system, which limit the step: frequency and damping.
  *
  * With K = -df/dx and C = -df/dv of springs, dampers and drag at one state, and p of length 1
  * in the masses (p^T M p = 1), a motion along p swings with square = p^T K p and is damped at

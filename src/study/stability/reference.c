@@ -64,7 +64,8 @@ static double growth_of(const struct cs_system *system,
                : 0;
 }
 
-/* The step of the reference: half of what the row sums allow, and at least one a sample. */
+/* The step of the reference: half of what the Gershgorin bound allows, and at least one a
+ * sample. */
 static double choose_dt(const struct cs_system *system, double space) {
     const double w = system->view.omega, r = 2 * system->view.delta;
     const double limit = 4 / (r + sqrt(r * r + 4 * w * w));

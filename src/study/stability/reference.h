@@ -10,7 +10,7 @@ struct cs_reference {
     char message[320];
     double seconds;                 /* simulated: enough for 200 steps at the limit */
     struct cs_trial trial;          /* velocity-verlet with a small step */
-    double row_sums;                /* s, limit by row sums */
+    double row_sums;                /* s, limit by the Gershgorin bound (row sums) */
     struct cs_theory_limit at_rest; /* before the start is perturbed */
     struct cs_theory_limit worst;   /* along the way */
 };

@@ -107,8 +107,8 @@ static double share(double from, double to, uint32_t i, uint32_t n) {
     return n > 1 ? from * pow(to / from, (double)i / (n - 1)) : from;
 }
 
-/* From a quarter of the step that the row sums allow at the stiff end to eight times the one at
- * the soft end. */
+/* From a quarter of the step that the Gershgorin bound allows at the stiff end to eight times
+ * the one at the soft end. */
 static struct cs_range choose_dt(const struct cs_stability *map, struct cs_range values) {
     const struct cs_view *view = &map->session.system.view;
     double fast = view->omega > 0 ? view->omega : 60, slow = fast;

@@ -29,8 +29,8 @@ enum cs_status cs_theory_row_sums(struct cs_theory *theory, double *dt,
     return CS_OK;
 }
 
-/* The limit of one motion replaces a larger one. A motion that pushes itself away is unstable
- * in nature: it limits no step, but what its damping does counts. */
+/* The limit of one motion replaces a larger one. A motion that pushes itself away is
+ * physically unstable: it limits no step, but what its damping does counts. */
 static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
                                struct cs_theory_limit *limit, struct cs_error *error) {
     struct cs_theory_limit found = {HUGE_VAL, *mode};

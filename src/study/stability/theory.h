@@ -1,8 +1,8 @@
 /* theory.h - the largest stable step of a method on a system, as linear theory has it.
  *
  * Each motion of the linearised system is a damped oscillator (modes.h); the method's own 2x2
- * matrix says which steps are stable for one (amplify.h). The motion that binds the step is not
- * always the fastest: it is looked for along the normal of the method's stable set.
+ * matrix says which steps are stable for one (amplify.h). The mode that limits the step is not
+ * always the fastest: it is searched along the normal of the method's stable set.
  */
 #ifndef CS_THEORY_H
 #define CS_THEORY_H
@@ -29,8 +29,8 @@ enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *
                               double growth, struct cs_error *error);
 void cs_theory_finish(struct cs_theory *theory);
 
-/* From the row sums view.omega and view.delta: safe while no spring is shorter than half its
- * rest length. The smaller of the limits with and without damping. */
+/* From the Gershgorin bounds view.omega and view.delta: safe while no spring is shorter than
+ * half its rest length. The smaller of the limits with and without damping. */
 enum cs_status cs_theory_row_sums(struct cs_theory *theory, double *dt, struct cs_error *error);
 
 /* At the positions x: of all motions the one with the smallest limit. */
