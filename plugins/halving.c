@@ -29,22 +29,26 @@ enum cs_step halving_take(const struct cs_host *host, double **const arrays[], s
     return CS_STEP_OK;
 }
 
+static int most_halvings(const struct halving *self) {
+    return self->loop.saved ? HALVINGS_IN_CONTACT : HALVINGS_MAX;
+}
+
 static enum cs_step give_up(const struct halving *self, double t, double h) {
     const struct cs_host *host = self->loop.host;
     if (self->passed)
         return host->fail(host->ctx,
                           "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
                           "contact",
-                          h, t, HALVINGS_MAX);
+                          h, t, most_halvings(self));
     if (self->turned)
         return host->fail(host->ctx,
                           "a step of %.3g s at t = %.9g s, halved %d times, still turns a "
                           "spring by more than half its length",
-                          h, t, HALVINGS_MAX);
+                          h, t, most_halvings(self));
     return host->fail(host->ctx,
                       "Newton's iteration fails in a step of %.3g s at t = %.9g s, halved %d "
                       "times: the residual is %.3g of the impulse, asked %.3g",
-                      h, t, HALVINGS_MAX, self->newton->norm / self->newton->impulse,
+                      h, t, most_halvings(self), self->newton->norm / self->newton->impulse,
                       self->newton->rtol);
 }
 
@@ -82,7 +86,7 @@ static enum cs_step cross(struct halving *self, double t, double h, double end, 
             return status;
         if (!accepted) {
             self->rejected++;
-            if (depth == HALVINGS_MAX)
+            if ((int)depth == most_halvings(self))
                 return give_up(self, from, part);
             depth++, at *= 2;
             continue;

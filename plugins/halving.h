@@ -12,7 +12,8 @@
 #include "fixed_step.h"
 #include "newton.h"
 
-#define HALVINGS_MAX 12
+#define HALVINGS_MAX        8
+#define HALVINGS_IN_CONTACT 12 /* in scenes with contact by force */
 
 /* A method's own struct starts with this. */
 struct halving {

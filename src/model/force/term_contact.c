@@ -9,13 +9,16 @@
 
 #include <math.h>
 
+/* a scene with the other law has no line of it */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
-    const bool built = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n > 0;
+    const bool asked = scene->contact.law == CS_CONTACT_FORCE,
+               built = asked && scene->colliders.n;
     return (struct cs_plan_row){.built = built,
-                                .bytes = scene->colliders.n * sizeof(struct cs_pairing),
-                                .why = built                    ? "contact.law is force"
-                                       : scene->colliders.n > 0 ? "contact.law is project"
-                                                                : "no colliders"};
+                                .bytes =
+                                    built ? scene->colliders.n * sizeof(struct cs_pairing) : 0,
+                                .why = !asked  ? NULL
+                                       : built ? "contact.law is force"
+                                               : "no colliders"};
 }
 
 static const char *const ramps[] = {"colliders.friction", NULL};

@@ -139,6 +139,7 @@ X(force_damping)
 X(force_drag)
 X(force_wind)
 X(force_push)
+X(force_contact)
 X(unequal_masses)
 #undef X
 

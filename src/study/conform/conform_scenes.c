@@ -42,6 +42,16 @@
     times ", \"prod\": {\"viewpoint\": {\"eye\": [1, 0, 6], \"target\": [1, 0, 0], \"fov\":"   \
           " 60, \"aspect\": 1.5}, \"force\": 0.8, " more "}"
 
+/* A sheet that comes near a plane it is parallel to, and slides: all its particles feel the same.
+ * It stays in the range, where the force is smooth. */
+#define CONTACT(friction, events)                                                              \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0.2, -0.3]},"              \
+    " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY            \
+    "}, \"colliders\": [{\"plane\": {\"point\": [0, 0, -0.2], \"normal\": [0, 0, 1]},"           \
+    " \"thickness\": 0.4, \"friction\": " friction                                             \
+    "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"                 \
+    " \"friction_speed\": 0.2}, \"events\": [" events "], " FIVE_FRAMES "}"
+
 // ends of ramps lie between frames
 #define RAMP(key, value)                                                                       \
     "\"from\": 0.05, \"to\": 0.45, \"ramp\": {\"key\": \"" key "\", \"value\": " value "}"
@@ -84,6 +94,9 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"force-push", "a prod at once",
      SHEETS_WITH(NO_GRAVITY, PROD("\"at\": 0.25", "\"duration\": 0.2")), 4, false, false},
 
+    {"force-contact", "contact by force, without friction", CONTACT("0", ""), 9, true, false},
+    {"force-contact", "contact by force, with friction", CONTACT("0.5", ""), 9, true, false},
+
     {"unequal-masses", "two sheets in gravity, wind and drag",
      "{" SHEETS_OF("0.1", "0.3") ", \"forces\": {\"gravity\": [1, -3, 2], \"drag\": 0.4, "
      WIND("0.5", "N") "}, " FIVE_FRAMES "}", 4, true, false},
@@ -104,6 +117,8 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"time-dependence", "a gust",
      SHEETS_WITH(NO_GRAVITY ", " WIND("0.3", "N"), "\"from\": 0.05, \"to\": 0.45, \"wind\":"
                  " {\"direction\": [3, -1, 1], \"strength\": 1}"), 4, false, false},
+    {"time-dependence", "a ramp of an obstacle's friction",
+     CONTACT("0.1", "{" RAMP("colliders[0].friction", "0.9") "}"), 9, true, false},
     {"time-dependence", "ramps of springs and dampers",
      "{\"bodies\": [{" CLOTH ", \"springs\": {\"stretch\": 0.2, \"shear\": 0.5, \"bend\": 0.1,"
      " \"damping\": 0.03}}], \"forces\": {" NO_GRAVITY "}, \"events\": ["
