@@ -274,6 +274,7 @@ END_TEST
 
 /* samples of a pixel one by one are those that filling finds */
 START_TEST(one_pixel_is_as_in_a_row) {
+    uint32_t wrong = 0;
     const struct cs_lens lens = parallel();
     struct cs_triangles triangles = {0};
     for (int trial = 0; trial < 40; trial++) {
@@ -290,9 +291,10 @@ START_TEST(one_pixel_is_as_in_a_row) {
             const unsigned mask =
                 cs_raster_covers(triangles.items, &cs_pattern_four, i % SIZE, i / SIZE, &depth);
             for (int s = 0; s < 4; s++)
-                ck_assert_int_eq((int)(mask >> s & 1), field.shown[i][s] != CS_NOTHING);
+                wrong += (mask >> s & 1) != (field.shown[i][s] != CS_NOTHING);
         }
     }
+    ck_assert_uint_eq(wrong, 0);
     cs_triangles_finish(&triangles);
 }
 END_TEST
