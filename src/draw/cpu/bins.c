@@ -1,3 +1,4 @@
+/* bins.c - lists of items by band, one after the other in one block of memory. */
 #include "draw/cpu/bins.h"
 
 #include <stdlib.h>

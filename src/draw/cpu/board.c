@@ -1,3 +1,4 @@
+/* board.c - memory of a band, and the mean of its samples: of bytes, as OpenGL takes it. */
 #include "draw/cpu/board.h"
 
 static enum cs_status take_samples(struct cs_samples *samples, int width,

@@ -1,3 +1,4 @@
+/* bodies.c - vertices of bodies become corners, and their faces triangles. */
 #include "draw/cpu/bodies.h"
 
 #include "draw/overlay.h"

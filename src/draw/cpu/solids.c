@@ -1,3 +1,4 @@
+/* solids.c - colliders and the ground's square become triangles. */
 #include "draw/cpu/solids.h"
 
 #include "draw/ball.h"
