@@ -260,6 +260,27 @@ START_TEST(hessian_has_no_jump) {
 }
 END_TEST
 
+/* All that is near is found, and next to nothing else: of points whose distance is more than a
+ * billionth from the reach. */
+START_TEST(what_is_near_is_told_from_the_rest) {
+    static const double reaches[] = {0, 0.01, 0.2};
+    for (uint32_t k = 0; k < N_COLLIDERS; k++) {
+        struct cs_obstacle of;
+        uint64_t seed = 17;
+        cs_obstacle_at(&at_rest, k, 0, &of);
+        for (int trial = 0; trial < 30000; trial++) {
+            const double reach = reaches[trial % 3];
+            double p[3], n[3], h[6];
+            draw_point(&seed, &of, p);
+            const bool near = cs_obstacle_is_near(&of, reach, p);
+            const double d = cs_obstacle_distance(&of, p, n);
+            ck_assert(near || (d > reach && cs_obstacle_smooth(&of, p, n, h) > reach));
+            ck_assert(!near || d < reach + 3e-9);
+        }
+    }
+}
+END_TEST
+
 /* Lines against the least distance of 4001 points on them: it lies within the spacing times the
  * slope of the distance, 1, so that both agree unless it is that near to 0. A plane's line is
  * met as well where its other end is behind. */
@@ -375,6 +396,7 @@ int main(void) {
                                   faces_are_exact,
                                   smooth_distance_is_near_the_distance,
                                   hessian_has_no_jump,
+                                  what_is_near_is_told_from_the_rest,
                                   lines_meet_what_their_points_meet,
                                   quarter_turn_is_one,
                                   velocity_is_that_of_the_matter,

@@ -50,6 +50,7 @@ static struct cs_contact_counts resolve_range(const struct resolving *resolving,
                                               size_t end) {
     const size_t n = resolving->system->view.n;
     double *x = resolving->x, *v = resolving->v;
+    const double skin = obstacle->collider->thickness;
     struct cs_contact_counts counts = {0};
     for (size_t i = begin; i < end; i++) {
         if (resolving->system->inv_mass[i] == 0)
@@ -57,6 +58,8 @@ static struct cs_contact_counts resolve_range(const struct resolving *resolving,
         counts.tests++;
         const double p[3] = {x[i], x[n + i], x[2 * n + i]};
         double normal[3];
+        if (!cs_obstacle_is_near(obstacle, skin, p))
+            continue;
         const double distance = cs_obstacle_gap(obstacle, p, normal);
         /* a particle that is not finite is left for the blow-up test */
         if (!(distance < 0))

@@ -61,6 +61,29 @@ double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3
  * puts a particle. */
 double cs_obstacle_gap(const struct cs_obstacle *obstacle, const double p[3], double n[3]);
 
+/* true if p may be nearer to the surface than `reach` (m, 0 or more) or inside: a test of a few
+ * nanoseconds before a distance is asked for. False only where the distance, exact or smooth,
+ * is larger; what is not a number may be told either way. */
+static inline bool cs_obstacle_is_near(const struct cs_obstacle *obstacle, double reach,
+                                       const double p[3]) {
+    const double d[3] = {p[0] - obstacle->centre[0], p[1] - obstacle->centre[1],
+                         p[2] - obstacle->centre[2]};
+    // far above the rounding of either side
+    const double all = (obstacle->radius + reach) * (1 + 1e-9);
+    if (obstacle->kind == CS_OBSTACLE_SPHERE)
+        return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= all * all;
+    double squared = 0;
+    for (int k = 0; k < 3; k++) {
+        const double *axis = obstacle->axes[k];
+        const double x = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
+        const double out = (x < 0 ? -x : x) - obstacle->core[k];
+        if (obstacle->kind == CS_OBSTACLE_PLANE && k == 1)
+            return x <= all + 1e-9;
+        squared += out > 0 ? out * out : 0;
+    }
+    return squared <= all * all;
+}
+
 /* The distance as the force of contact takes it: never smaller than the distance outside, with
  * three continuous derivatives there. Sphere, plane and the flat faces of a box: exact. At the
  * ends of a capsule's axis and at the edges of a box the nearest point of the core moves over
