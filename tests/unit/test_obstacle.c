@@ -138,12 +138,18 @@ START_TEST(middle_has_a_normal) {
 }
 END_TEST
 
+/* what is not a number is the largest */
+static double larger(double a, double b) {
+    return a >= b || isnan(a) ? a : b;
+}
+
 /* Gradient and Hessian against central differences with a step of 1e-5 m. Third derivatives
  * reach 60 / band^2, which makes 1e-10 / 0.03^2 the scale of the truncation. Deep inside, where
  * the nearest face changes, the function has a bend: points there are left out. */
 START_TEST(derivatives_match_differences) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double step = 1e-5;
+    double worst[2] = {0, 0};
     for (uint32_t k = 0; k < N_COLLIDERS; k++) {
         struct cs_obstacle of;
         uint64_t seed = 3;
@@ -161,14 +167,17 @@ START_TEST(derivatives_match_differences) {
                 p[c] = kept - step;
                 const double low = cs_obstacle_smooth(&of, p, behind, unused);
                 p[c] = kept;
-                ck_assert_double_eq_tol((high - low) / (2 * step), g[c], 2e-7);
+                worst[0] = larger(worst[0], fabs((high - low) / (2 * step) - g[c]));
                 for (int e = 0; e < 6; e++)
                     if (column[e] == c)
-                        ck_assert_double_eq_tol((ahead[row[e]] - behind[row[e]]) / (2 * step),
-                                                h[e], 2e-5);
+                        worst[1] =
+                            larger(worst[1],
+                                   fabs((ahead[row[e]] - behind[row[e]]) / (2 * step) - h[e]));
             }
         }
     }
+    ck_assert_double_le(worst[0], 2e-7);
+    ck_assert_double_le(worst[1], 2e-5);
 }
 END_TEST
 
@@ -194,7 +203,8 @@ END_TEST
 /* never smaller than the distance, and larger by at most 0.01 radii outside */
 START_TEST(smooth_distance_is_near_the_distance) {
     static const int list[] = {BOX, CAPSULE, ROUND};
-    double excess = 0;
+    double excess = 0, shortest = HUGE_VAL;
+    bool below = false;
     for (size_t k = 0; k < 3; k++) {
         struct cs_obstacle of;
         uint64_t seed = 5;
@@ -205,12 +215,14 @@ START_TEST(smooth_distance_is_near_the_distance) {
             const double d = cs_obstacle_distance(&of, p, n);
             const double smooth = cs_obstacle_smooth(&of, p, n, h);
             if (d >= 0) {
-                ck_assert_double_ge(smooth, d - 1e-15);
+                below |= smooth < d - 1e-15;
                 excess = fmax(excess, (smooth - d) / of.radius);
             }
-            ck_assert_double_gt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 0.5);
+            shortest = fmin(shortest, n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         }
     }
+    ck_assert(!below);
+    ck_assert_double_gt(shortest, 0.5);
     ck_assert_double_le(excess, 0.01);
     ck_assert_double_ge(excess, 0.003); // it is not the distance itself
 }
@@ -224,7 +236,8 @@ static double largest_jump(const struct cs_obstacle *of, const double from[3],
         double p[3], g[3], h[6];
         for (int c = 0; c < 3; c++)
             p[c] = from[c] + (to[c] - from[c]) * ((double)k / n);
-        ck_assert_double_gt(cs_obstacle_smooth(of, p, g, h), 0);
+        if (cs_obstacle_smooth(of, p, g, h) <= 0)
+            ck_abort_msg("the way leads inside");
         for (int e = 0; e < 6 && k > 0; e++)
             largest = fmax(largest, fabs(h[e] - before[e]));
         memcpy(before, h, sizeof before);
@@ -264,6 +277,7 @@ END_TEST
  * billionth from the reach. */
 START_TEST(what_is_near_is_told_from_the_rest) {
     static const double reaches[] = {0, 0.01, 0.2};
+    bool missed = false, idle = false;
     for (uint32_t k = 0; k < N_COLLIDERS; k++) {
         struct cs_obstacle of;
         uint64_t seed = 17;
@@ -274,10 +288,11 @@ START_TEST(what_is_near_is_told_from_the_rest) {
             draw_point(&seed, &of, p);
             const bool near = cs_obstacle_is_near(&of, reach, p);
             const double d = cs_obstacle_distance(&of, p, n);
-            ck_assert(near || (d > reach && cs_obstacle_smooth(&of, p, n, h) > reach));
-            ck_assert(!near || d < reach + 3e-9);
+            missed |= !near && (d <= reach || cs_obstacle_smooth(&of, p, n, h) <= reach);
+            idle |= near && d > reach + 3e-9;
         }
     }
+    ck_assert(!missed && !idle);
 }
 END_TEST
 
