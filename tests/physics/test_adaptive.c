@@ -59,20 +59,22 @@ START_TEST(errors_follow_the_tolerance) {
         "ark-erk:order=3,",  "ark-erk:order=4,",  "ark-erk:order=5,",  "ark-erk:order=6,",
         "ark-erk:order=8,",  "ark-dirk:order=3,", "ark-dirk:order=4,", "ark-dirk:order=5,",
         "ark-imex:order=3,", "ark-imex:order=4,", "ark-imex:order=5,"};
-    static const double tolerances[] = {1e-4, 1e-6, 1e-8};
+    // a method of order 2 takes a hundred times the steps of the others at 1e-8
+    static const double tolerances[2][3] = {{1e-4, 1e-6, 1e-8}, {1e-3, 1e-5, 1e-7}};
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         struct error errors[3];
         for (int i = 0; i < 3; i++) {
+            const double tolerance = tolerances[strstr(methods[k], "order=2") != NULL][i];
             char integrator[64];
-            snprintf(integrator, sizeof integrator, "%srtol=%g", methods[k], tolerances[i]);
+            snprintf(integrator, sizeof integrator, "%srtol=%g", methods[k], tolerance);
             errors[i] = error_of(integrator);
-            ck_assert_msg(
-                errors[i].place < 2 * tolerances[i] && errors[i].speed < 60 * tolerances[i],
-                "%s: errors %.3g m, %.3g m/s", integrator, errors[i].place, errors[i].speed);
+            ck_assert_msg(errors[i].place < 2 * tolerance && errors[i].speed < 60 * tolerance,
+                          "%s: errors %.3g m, %.3g m/s", integrator, errors[i].place,
+                          errors[i].speed);
         }
         ck_assert_msg(errors[0].place > 300 * errors[2].place,
-                      "%s: errors %.3g m at rtol 1e-4, %.3g m at 1e-8", methods[k],
-                      errors[0].place, errors[2].place);
+                      "%s: errors %.3g m at the loosest rtol, %.3g m at the tightest",
+                      methods[k], errors[0].place, errors[2].place);
     }
 }
 END_TEST

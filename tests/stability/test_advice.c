@@ -23,7 +23,7 @@ static const struct row {
     struct cs_override overrides[2];
     double seconds;
     uint32_t n_methods; /* of the list below; 0: all */
-} rows[] = {{"hang", {{GRID}}, 0.5, 0},
+} rows[] = {{"hang", {{"bodies[0].cloth.grid", "[6, 6]"}}, 0.5, 0},
             {"mass_1", {{GRID}}, 0.5, 0},
             {"bear_springs", {{LIMBS}}, 0.5, 0},
             {"buckle", {{GRID}}, 0.1, 0},
