@@ -78,8 +78,7 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
     const struct cs_integrator *method = session->method.integrator;
     const bool render = session->settings.render;
     struct cs_error said = {0};
-    if (!session->settings.method &&
-        cs_plan_check(&session->scene, method, &said))
+    if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
         return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
     if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
@@ -140,8 +139,12 @@ static enum cs_status open_plan(struct cs_session *session,
 enum cs_status cs_session_build(struct cs_session *session, struct cs_error *error) {
     cs_run_finish(&session->run);
     cs_system_finish(&session->system);
-    if (cs_system_build(&session->system, &session->scene, &session->plan, error))
-        return error->status;
+    struct cs_error said = {0};
+    // what only the built springs tell is a fault of the scene too
+    if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
+        return said.status == CS_ERR_SCENE
+                   ? cs_fail(error, said.status, "%s: %s", session->scene.path, said.message)
+                   : cs_fail(error, said.status, "%s", said.message);
     if (session->settings.perturbation > 0)
         cs_perturb_random(&session->system, session->settings.perturbation, 0);
     return CS_OK;
