@@ -39,7 +39,10 @@ static bool is_unseen(const struct passing *passing, size_t i) {
         to[c] = passing->x1[c * n + i];
         squared += (to[c] - from[c]) * (to[c] - from[c]);
     }
-    const double move = sqrt(squared), d = distance_at(passing, from, to, 0);
+    const double move = sqrt(squared);
+    if (!cs_obstacle_is_near(&passing->after, range + move, to))
+        return false;
+    const double d = distance_at(passing, from, to, 0);
     if (!(d - move < range))
         return false;
     const struct cs_law law = cs_law_at(d, range, k);

@@ -5,6 +5,7 @@
 #include "model/contact/obstacle.h"
 #include "model/contact/pairing.h"
 #include "model/contact/touch.h"
+#include "model/force/contact_rows.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -23,19 +24,12 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
 
 static const char *const ramps[] = {"colliders.friction", NULL};
 
-/* An obstacle as it is at one time, and how it rubs. */
-struct near {
-    struct cs_obstacle pose;
-    struct cs_pairing pairing;
-    double mu, ev, tau;
-};
-
-static struct near near_of(const struct cs_system *system, uint32_t collider, double t) {
+static struct cs_near near_of(const struct cs_system *system, uint32_t collider, double t) {
     const struct cs_scene *scene = system->scene;
-    struct near near = {.pairing = system->pairings[collider],
-                        .mu = cs_scene_colliders(scene)[collider].friction,
-                        .ev = scene->contact.friction_speed,
-                        .tau = scene->contact.damping};
+    struct cs_near near = {.pairing = system->pairings[collider],
+                           .mu = cs_scene_colliders(scene)[collider].friction,
+                           .ev = scene->contact.friction_speed,
+                           .tau = scene->contact.damping};
     cs_obstacle_at(system, collider, t, &near.pose);
     return near;
 }
@@ -46,10 +40,12 @@ static struct cs_touch_parts parts_of(uint32_t parts) {
 }
 
 /* How particle i touches; false: it is out of range. v may be NULL: at rest. */
-static bool touch_of(const struct near *near, size_t n, const double *x, const double *v,
+static bool touch_of(const struct cs_near *near, size_t n, const double *x, const double *v,
                      size_t i, struct cs_touch *touch) {
     const double p[3] = {x[i], x[n + i], x[2 * n + i]};
     double surface[3] = {0};
+    if (!cs_obstacle_is_near(&near->pose, near->pairing.range, p))
+        return false;
     touch->d = cs_obstacle_smooth(&near->pose, p, touch->g, touch->h);
     if (!(touch->d < near->pairing.range))
         return false;
@@ -73,8 +69,12 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     const size_t n = system->view.n;
     const struct cs_touch_parts parts = parts_of(at->parts);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct near near = near_of(system, c, at->t);
+        const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;
+        if (cs_contact_has_rows(&near)) {
+            cs_contact_add_rows(&near, n, at, parts, f);
+            continue;
+        }
         for (size_t i = at->block->begin; i < at->block->end; i++)
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {
                 double a[3];
@@ -85,8 +85,8 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
 }
 
 /* what a direction does to a touching particle: it moves, and so does the surface below it */
-static struct cs_touch_move move_of(const struct near *near, size_t n, const struct cs_eval *at,
-                                    size_t i) {
+static struct cs_touch_move move_of(const struct cs_near *near, size_t n,
+                                    const struct cs_eval *at, size_t i) {
     struct cs_touch_move move;
     const double *spin = near->pose.spin;
     for (size_t c = 0; c < 3; c++) {
@@ -104,7 +104,7 @@ static void add_jvp(const struct cs_system *system, const struct cs_eval *at, do
     const size_t n = system->view.n;
     const struct cs_touch_parts parts = parts_of(at->parts);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct near near = near_of(system, c, at->t);
+        const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;
         for (size_t i = at->block->begin; i < at->block->end; i++)
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {
@@ -120,7 +120,7 @@ static double energy(const struct cs_system *system, const struct cs_eval *at) {
     const size_t n = system->view.n;
     double sum = 0;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct near near = near_of(system, c, at->t);
+        const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;
         for (size_t i = 0; i < n; i++)
             if (system->inv_mass[i] > 0 && touch_of(&near, n, at->x, NULL, i, &touch))
@@ -133,7 +133,7 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
                        size_t begin, size_t end, double *blocks) {
     const size_t n = system->view.n;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct near near = near_of(system, c, matrix->t);
+        const struct cs_near near = near_of(system, c, matrix->t);
         struct cs_touch touch;
         for (size_t i = begin; i < end; i++)
             if (touch_of(&near, n, matrix->x, matrix->v, i, &touch)) {
@@ -149,7 +149,7 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
                          const struct cs_row_sums *sums) {
     const size_t n = system->view.n;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        const struct near near = near_of(system, c, at->t);
+        const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;
         for (size_t i = 0; i < n; i++)
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {

@@ -99,7 +99,7 @@ void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, doub
 
 /* a term's share of the matrix as blocks (6,n) */
 static void add_share(const struct cs_system *system, const struct cs_matrix *matrix,
-                    const struct cs_term *term, double *blocks) {
+                      const struct cs_term *term, double *blocks) {
     if (term->add_blocks)
         term->add_blocks(system, matrix, 0, system->view.n, blocks);
     for (size_t c = 0; c < 6 && term->add_scalar; c += c ? 2 : 3)

@@ -1,0 +1,23 @@
+/* contact_rows.h - the force of contact on a row of particles at once, in vectors. */
+#ifndef CS_CONTACT_ROWS_H
+#define CS_CONTACT_ROWS_H
+
+#include "model/contact/obstacle.h"
+#include "model/contact/pairing.h"
+#include "model/contact/touch.h"
+
+/* An obstacle as it is at one time, and how it rubs. */
+struct cs_near {
+    struct cs_obstacle pose;
+    struct cs_pairing pairing;
+    double mu, ev, tau; /* as in touch.h */
+};
+
+/* Spheres and planes whose matter moves at one velocity: nothing else is as cheap. */
+bool cs_contact_has_rows(const struct cs_near *near);
+
+/* f (3,n) += the force of touch.h at the particles of at->block: the same but for rounding. */
+void cs_contact_add_rows(const struct cs_near *near, size_t n, const struct cs_eval *at,
+                         struct cs_touch_parts parts, double *f);
+
+#endif
