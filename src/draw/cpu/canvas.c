@@ -4,6 +4,7 @@
  * triangles on one thread; then stripes of the light's picture and bands of the picture are
  * shared out. */
 #include "draw/cpu/bodies.h"
+#include "draw/cpu/drawing.h"
 #include "draw/cpu/solids.h"
 #include "draw/extent.h"
 #include "draw/matrix.h"
@@ -45,15 +46,16 @@ static void init_rays(struct cs_rays *rays, const struct cs_scene *scene) {
 }
 
 static void init_ground(struct cs_canvas *canvas, const struct cs_ball *extent) {
-    struct cs_drawing *drawing = &canvas->drawing;
+    struct cs_grid *grid = &canvas->drawing.grid;
     const struct cs_scene *scene = canvas->settings.scene;
-    drawing->has_ground = scene->render.ground;
-    if (!drawing->has_ground)
+    grid->present = scene->render.ground;
+    if (!grid->present)
         return;
-    cs_ground_make(&drawing->ground, scene, extent);
-    cs_ground_add(&drawing->ground, &canvas->lens, &drawing->ground_square);
-    const float *ink = drawing->ground.ink;
-    drawing->ground_ink = cs_tone_pack(&canvas->tone, ink[0], ink[1], ink[2]);
+    grid->easel = &canvas->drawing.easel;
+    cs_ground_make(&grid->ground, scene, extent);
+    cs_ground_add(&grid->ground, &canvas->lens, &grid->square);
+    const float *ink = grid->ground.ink;
+    grid->ink = cs_tone_pack(&canvas->tone, ink[0], ink[1], ink[2]);
 }
 
 static void init_view(struct cs_canvas *canvas) {
@@ -117,7 +119,7 @@ static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *err
     canvas->boards = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->boards, error);
     for (uint32_t i = 0; i < n && error->status == CS_OK; i++)
         cs_board_init(canvas->boards + i, canvas->drawing.easel.width, has_fading(canvas),
-                      canvas->drawing.has_ground, &canvas->arena, error);
+                      canvas->drawing.grid.present, &canvas->arena, error);
     return error->status;
 }
 
@@ -139,7 +141,7 @@ static void destroy(struct cs_canvas *canvas) {
     cs_triangles_finish(&canvas->light_fixed);
     cs_triangles_finish(&canvas->light_moving);
     cs_triangles_finish(&canvas->drawing.triangles);
-    cs_triangles_finish(&canvas->drawing.ground_square);
+    cs_triangles_finish(&canvas->drawing.grid.square);
     cs_bins_finish(&canvas->drawing.bins);
     cs_strokes_finish(&canvas->drawing.strokes);
     cs_arena_finish(&canvas->arena);
@@ -225,7 +227,7 @@ static void draw_bands(void *arg, uint32_t board) {
 static bool ran_out(const struct cs_canvas *canvas) {
     const struct cs_drawing *drawing = &canvas->drawing;
     return canvas->light_fixed.failed || canvas->light_moving.failed ||
-           drawing->triangles.failed || drawing->ground_square.failed || drawing->bins.failed ||
+           drawing->triangles.failed || drawing->grid.square.failed || drawing->bins.failed ||
            drawing->strokes.failed || drawing->strokes.bins.failed;
 }
 

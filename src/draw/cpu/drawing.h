@@ -2,8 +2,8 @@
 #ifndef CS_DRAW_DRAWING_H
 #define CS_DRAW_DRAWING_H
 
+#include "draw/cpu/grid.h"
 #include "draw/cpu/strokes.h"
-#include "draw/ground.h"
 
 struct cs_drawing {
     struct cs_easel easel;
@@ -14,11 +14,7 @@ struct cs_drawing {
     size_t n_squares, n_fixed;     /* of them */
     struct cs_bins bins;
 
-    bool has_ground;
-    struct cs_ground ground;
-    uint32_t ground_ink;
-    struct cs_triangles ground_square;
-
+    struct cs_grid grid;
     struct cs_strokes strokes;
     struct cs_image *image; /* borrowed */
 };
@@ -28,8 +24,5 @@ void cs_drawing_sort(struct cs_drawing *drawing);
 
 /* Draws one band into the image. Any number of bands at the same time, on a board each. */
 void cs_drawing_band(const struct cs_drawing *drawing, uint32_t band, struct cs_board *board);
-
-/* Lays the grid over what is there but the triangles that move: a part of cs_drawing_band. */
-void cs_ground_draw(const struct cs_drawing *drawing, struct cs_board *board);
 
 #endif

@@ -2,7 +2,7 @@
  *
  * Lines are as wide as a pixel wherever they are: how far places of neighbours are apart is
  * measured in blocks of 2 x 2 pixels from the bottom, as OpenGL does. */
-#include "draw/cpu/drawing.h"
+#include "draw/cpu/grid.h"
 
 #include <math.h>
 
@@ -16,10 +16,10 @@ struct cells {
 };
 
 // where on the ground a pixel looks; false above the horizon
-static bool find_place(const struct cs_drawing *drawing, float x, float y, float place[3]) {
-    const float *eye = drawing->easel.rays.eye, height = drawing->ground.span[1];
+static bool find_place(const struct cs_grid *grid, float x, float y, float place[3]) {
+    const float *eye = grid->easel->rays.eye, height = grid->ground.span[1];
     float d[3];
-    cs_rays_through(&drawing->easel, x, y, d);
+    cs_rays_through(grid->easel, x, y, d);
     const float t = d[1] < 0 || d[1] > 0 ? (height - eye[1]) / d[1] : -1;
     for (int i = 0; i < 3; i++)
         place[i] = eye[i] + t * d[i];
@@ -46,14 +46,14 @@ static float cover(const float at[2], const float wide[2], float step, float hal
     return most;
 }
 
-static float lines_at(const struct cs_drawing *drawing, float x, float y, const float p[3]) {
-    const int size = drawing->easel.height;
+static float lines_at(const struct cs_grid *grid, float x, float y, const float p[3]) {
+    const int size = grid->easel->height;
     const float beside_x = (float)((int)x ^ 1);
     const float beside_y = (float)(size - 1 - ((size - 1 - (int)y) ^ 1));
-    const float pitch = drawing->ground.pitch, at[2] = {p[0], p[2]};
+    const float pitch = grid->ground.pitch, at[2] = {p[0], p[2]};
     float a[3], b[3];
-    find_place(drawing, beside_x, y, a);
-    find_place(drawing, x, beside_y, b);
+    find_place(grid, beside_x, y, a);
+    find_place(grid, x, beside_y, b);
     const float wide[2] = {away(a[0] - p[0]) + away(b[0] - p[0]),
                            away(a[2] - p[2]) + away(b[2] - p[2])};
     const float fine = 0.5f * cover(at, wide, pitch, 0.45f);
@@ -61,14 +61,14 @@ static float lines_at(const struct cs_drawing *drawing, float x, float y, const 
     return fine > coarse ? fine : coarse;
 }
 
-static void lay(const struct cs_drawing *drawing, struct cells *cells, struct cs_board *board) {
+static void lay(const struct cs_grid *grid, struct cells *cells, struct cs_board *board) {
     static const float up[N] = {0}; // x and z of the normals
     float places[3][N], ones[N], shares[N];
-    const float *span = drawing->ground.span;
+    const float *span = grid->ground.span;
     bool seen[N];
     for (int i = 0; i < cells->n; i++) {
         float p[3];
-        seen[i] = find_place(drawing, cells->x[i], cells->y[i], p);
+        seen[i] = find_place(grid, cells->x[i], cells->y[i], p);
         for (int k = 0; k < 3; k++)
             places[k][i] = p[k];
         ones[i] = 1;
@@ -78,31 +78,32 @@ static void lay(const struct cs_drawing *drawing, struct cells *cells, struct cs
                                .facing = ones,
                                .share = shares,
                                .n = cells->n};
-    cs_lightmap_look(drawing->easel.lightmap, &lit);
+    cs_lightmap_look(grid->easel->lightmap, &lit);
     for (int i = 0; i < cells->n; i++) {
         const float p[3] = {places[0][i], places[1][i], places[2][i]};
         const float dx = p[0] - span[0], dz = p[2] - span[2];
         const float near = cs_clamp(1 - sqrtf(dx * dx + dz * dz) / span[3], 0, 1);
-        const float dark = drawing->ground.shadow * (1 - shares[i]);
+        const float dark = grid->ground.shadow * (1 - shares[i]);
         if (!seen[i] || !(near > 0))
             continue;
-        const float lines = lines_at(drawing, cells->x[i], cells->y[i], p);
+        const float lines = lines_at(grid, cells->x[i], cells->y[i], p);
         const float share = near * near * (dark + (1 - dark) * 0.55f * lines);
-        cs_board_lay(board, cells->pixels[i], cells->masks[i], drawing->ground_ink,
+        cs_board_lay(board, cells->pixels[i], cells->masks[i], grid->ink,
                      (uint32_t)(share * 255 + 0.5f));
     }
     cells->n = 0;
 }
 
-void cs_ground_draw(const struct cs_drawing *drawing, struct cs_board *board) {
+void cs_grid_draw(const struct cs_grid *grid, int32_t moving, const struct cs_pattern *pattern,
+                  struct cs_board *board) {
     const struct cs_samples *on = &board->samples, *ground = &board->ground;
-    const int moving = (int)drawing->n_fixed;
     struct cells cells = {.n = 0};
-    for (size_t i = 0; i < drawing->ground_square.n; i++)
-        cs_raster_fill(drawing->ground_square.items + i, (int32_t)i, drawing->pattern, ground);
+    for (size_t i = 0; i < grid->square.n; i++)
+        cs_raster_fill(grid->square.items + i, (int32_t)i, pattern, ground);
     for (int row = 0; row < on->rows; row++)
         for (int x = 0; x < on->width; x++) {
             const size_t at = (size_t)row * (size_t)on->width + (size_t)x;
+            // samples where the square shows: before the sky or what never moves
             const cs_i4 lies = (ground->shown[at] >= 0) & (on->shown[at] < moving) &
                                (ground->depth[at] >= on->depth[at]);
             const unsigned mask = (unsigned)(lies[0] & 1) | (unsigned)(lies[1] & 2) |
@@ -114,7 +115,7 @@ void cs_ground_draw(const struct cs_drawing *drawing, struct cs_board *board) {
             cells.x[cells.n] = (float)x;
             cells.y[cells.n++] = (float)(on->top + row);
             if (cells.n == N)
-                lay(drawing, &cells, board);
+                lay(grid, &cells, board);
         }
-    lay(drawing, &cells, board);
+    lay(grid, &cells, board);
 }

@@ -2,7 +2,8 @@
 #ifndef CS_DRAW_SOLIDS_H
 #define CS_DRAW_SOLIDS_H
 
-#include "draw/cpu/drawing.h"
+#include "draw/cpu/shade.h"
+#include "draw/ground.h"
 #include "model/system/system.h"
 
 struct cs_solids {

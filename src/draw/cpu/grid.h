@@ -1,0 +1,21 @@
+/* grid.h - the grid on the ground, laid over a band. */
+#ifndef CS_DRAW_GRID_H
+#define CS_DRAW_GRID_H
+
+#include "draw/cpu/board.h"
+#include "draw/ground.h"
+
+struct cs_grid {
+    bool present; /* else the scene has none: the rest is not set */
+    struct cs_ground ground;
+    uint32_t ink;                 /* as the picture's colours */
+    struct cs_triangles square;   /* where it may show */
+    const struct cs_easel *easel; /* borrowed */
+};
+
+/* Lays it over what a board shows but triangles from number `moving` on, those that move. The
+ * board has room for the ground. */
+void cs_grid_draw(const struct cs_grid *grid, int32_t moving, const struct cs_pattern *pattern,
+                  struct cs_board *board);
+
+#endif
