@@ -90,27 +90,34 @@ static int32_t find_behind(const struct cs_drawing *drawing, int32_t id, int x, 
     return behind;
 }
 
-static void add_shown(const struct cs_drawing *drawing, int32_t id, int x, int y, int sample,
-                      uint32_t sky, uint32_t out, struct cs_board *board) {
+// a pixel of the picture
+struct spot {
+    int x, y;
+    size_t pixel; // its number on the board
+    uint32_t sky; // which of the board's colours the sky has in its row
+};
+
+static void add_shown(const struct cs_drawing *drawing, int32_t id, const struct spot *spot,
+                      int sample, uint32_t out, struct cs_board *board) {
     const struct cs_triangle *t = drawing->triangles.items + id;
     if (drawing->coats[t->surface].fade > 0) {
         const size_t most = 4 * (size_t)board->samples.width * CS_ROWS;
-        const int32_t behind = find_behind(drawing, id, x, y, sample);
-        uint32_t under = sky;
+        const int32_t behind = find_behind(drawing, id, spot->x, spot->y, sample);
+        uint32_t under = spot->sky;
         if (behind != CS_NOTHING && board->n_behind < most) {
             board->n_behind++;
             under = board->n_colours++;
-            add_shown(drawing, behind, x, y, sample, sky, under, board);
+            add_shown(drawing, behind, spot, sample, under, board);
         }
         board->glazes[board->n_glazes++] = (struct cs_glaze){out, under};
     }
-    add_fragment(drawing, t, x, y, out, board);
+    add_fragment(drawing, t, spot->x, spot->y, out, board);
 }
 
 // a pixel whose samples show several things: one fragment of each, their colours in a row
-static void add_mixed(const struct cs_drawing *drawing, cs_i4 shown, int x, int y, uint32_t sky,
-                      size_t pixel, struct cs_board *board) {
-    int samples[4];
+static void add_mixed(const struct cs_drawing *drawing, cs_i4 shown, const struct spot *spot,
+                      struct cs_board *board) {
+    int samples[4]; // the first that shows each thing
     uint32_t n = 0, code = 0;
     for (int s = 0; s < 4; s++) {
         uint32_t k = 0;
@@ -121,27 +128,27 @@ static void add_mixed(const struct cs_drawing *drawing, cs_i4 shown, int x, int 
         code |= k << 2 * s;
     }
     const uint32_t first = board->n_colours;
-    board->base[pixel] = first;
-    board->codes[pixel] = (uint8_t)code;
+    board->base[spot->pixel] = first;
+    board->codes[spot->pixel] = (uint8_t)code;
     board->n_colours += n;
     for (uint32_t k = 0; k < n; k++)
         if (shown[samples[k]] == CS_NOTHING)
-            board->colours[first + k] = board->colours[sky];
+            board->colours[first + k] = board->colours[spot->sky];
         else
-            add_shown(drawing, shown[samples[k]], x, y, samples[k], sky, first + k, board);
+            add_shown(drawing, shown[samples[k]], spot, samples[k], first + k, board);
 }
 
-static void add_pixel(const struct cs_drawing *drawing, cs_i4 shown, int x, int y, uint32_t sky,
-                      size_t pixel, struct cs_board *board) {
+static void add_pixel(const struct cs_drawing *drawing, cs_i4 shown, const struct spot *spot,
+                      struct cs_board *board) {
     const int32_t id = shown[0];
     if (((shown[1] ^ id) | (shown[2] ^ id) | (shown[3] ^ id)) != 0) {
-        add_mixed(drawing, shown, x, y, sky, pixel, board);
+        add_mixed(drawing, shown, spot, board);
         return;
     }
-    board->codes[pixel] = 0;
-    board->base[pixel] = id == CS_NOTHING ? sky : board->n_colours++;
+    board->codes[spot->pixel] = 0;
+    board->base[spot->pixel] = id == CS_NOTHING ? spot->sky : board->n_colours++;
     if (id != CS_NOTHING)
-        add_shown(drawing, id, x, y, 0, sky, board->base[pixel], board);
+        add_shown(drawing, id, spot, 0, board->base[spot->pixel], board);
 }
 
 // of a row: brighter above
@@ -167,7 +174,8 @@ static void show(const struct cs_drawing *drawing, uint32_t band, struct cs_boar
         board->colours[sky] = sky_colour(drawing, on->top + row);
         for (int x = 0; x < on->width; x++) {
             const size_t pixel = (size_t)row * (size_t)on->width + (size_t)x;
-            add_pixel(drawing, on->shown[pixel], x, on->top + row, sky, pixel, board);
+            const struct spot spot = {x, on->top + row, pixel, sky};
+            add_pixel(drawing, on->shown[pixel], &spot, board);
         }
     }
     for (int i = 0; i < CS_SLOTS; i++)

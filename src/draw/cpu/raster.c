@@ -9,6 +9,19 @@ struct edges {
     int32_t dx[3], dy[3], bias[3];
 };
 
+// what is the same for all samples of a triangle
+struct fill {
+    const struct cs_triangle *triangle;
+    struct edges edges;
+    const struct cs_pattern *pattern;
+    int32_t id;
+};
+
+// pixels of a row
+struct run {
+    int64_t left, right;
+};
+
 CS_INLINE struct edges edges_of(const struct cs_triangle *t) {
     struct edges e;
     for (int k = 0; k < 3; k++) {
@@ -49,9 +62,10 @@ CS_INLINE void put(cs_f4 *depth, cs_i4 *shown, cs_i4 mask, cs_f4 z, int32_t id) 
     *shown = cs_pick(mask, ids, *shown);
 }
 
-CS_INLINE void fill_small_row(const struct cs_triangle *t, const struct edges *e, int32_t id,
-                              const struct cs_pattern *pattern, int y, cs_f4 *depth,
-                              cs_i4 *shown) {
+CS_INLINE void fill_small_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
+    const struct cs_triangle *t = fill->triangle;
+    const struct edges *e = &fill->edges;
+    const struct cs_pattern *pattern = fill->pattern;
     cs_i4 inside[3];
     for (int k = 0; k < 3; k++)
         inside[k] = e->dx[k] * (pattern->y + (y * 256 - t->y[k])) -
@@ -59,7 +73,7 @@ CS_INLINE void fill_small_row(const struct cs_triangle *t, const struct edges *e
     const cs_f4 rise = up_at(t, pattern, y), across = across_at(pattern);
     for (int x = t->left; x <= t->right; x++, depth++, shown++) {
         const cs_i4 mask = (inside[0] | inside[1] | inside[2]) >= 0;
-        put(depth, shown, mask, nearness_at(t, across + (float)x, rise), id);
+        put(depth, shown, mask, nearness_at(t, across + (float)x, rise), fill->id);
         for (int k = 0; k < 3; k++)
             inside[k] -= 256 * e->dy[k];
     }
@@ -71,61 +85,61 @@ CS_INLINE int64_t divide_down(int64_t a, int64_t b) {
 }
 
 // first and last pixel of a row whose sample at (sx, sy) lies inside
-CS_INLINE void span(const struct cs_triangle *t, const struct edges *e, int sx, int sy, int y,
-                    int64_t *left, int64_t *right) {
-    *left = t->left;
-    *right = t->right;
+CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, int sx, int sy,
+                          int y) {
+    struct run run = {t->left, t->right};
     for (int k = 0; k < 3; k++) {
         // dx (y - y_k) - dy (256 x + sx - x_k) + bias >= 0
         const int64_t c = (int64_t)e->dx[k] * (sy + y * 256 - t->y[k]) -
                           (int64_t)e->dy[k] * (sx - t->x[k]) + e->bias[k];
         const int64_t step = (int64_t)e->dy[k] * 256;
         if (step == 0) {
-            *right = c < 0 ? *left - 1 : *right;
+            run.right = c < 0 ? run.left - 1 : run.right;
         } else if (step > 0) {
             const int64_t last = divide_down(c, step);
-            *right = last < *right ? last : *right;
+            run.right = last < run.right ? last : run.right;
         } else {
             const int64_t first = -divide_down(c, -step);
-            *left = first > *left ? first : *left;
+            run.left = first > run.left ? first : run.left;
         }
     }
+    return run;
 }
 
-CS_INLINE void fill_large_row(const struct cs_triangle *t, const struct edges *e, int32_t id,
-                              const struct cs_pattern *pattern, int y, cs_f4 *depth,
-                              cs_i4 *shown) {
+CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
+    const struct cs_triangle *t = fill->triangle;
+    const struct cs_pattern *pattern = fill->pattern;
     cs_i4 left, right;
     int from = t->right + 1, to = t->left - 1;
+    // each sample has a row of its own; 1..0 where none of it lies inside
     for (int s = 0; s < 4; s++) {
-        int64_t l, r;
-        span(t, e, pattern->x[s], pattern->y[s], y, &l, &r);
-        const bool some = l <= r;
-        left[s] = some ? (int)l : 1;
-        right[s] = some ? (int)r : 0;
-        from = some ? cs_least(from, (int)l) : from;
-        to = some ? cs_most(to, (int)r) : to;
+        const struct run run = span(t, &fill->edges, pattern->x[s], pattern->y[s], y);
+        const bool some = run.left <= run.right;
+        left[s] = some ? (int)run.left : 1;
+        right[s] = some ? (int)run.right : 0;
+        from = some ? cs_least(from, (int)run.left) : from;
+        to = some ? cs_most(to, (int)run.right) : to;
     }
     const cs_f4 rise = up_at(t, pattern, y), across = across_at(pattern);
     for (int x = from; x <= to; x++) {
         const cs_i4 at = {x, x, x, x};
         put(depth + (x - t->left), shown + (x - t->left), (at >= left) & (at <= right),
-            nearness_at(t, across + (float)x, rise), id);
+            nearness_at(t, across + (float)x, rise), fill->id);
     }
 }
 
 CS_CLONES void cs_raster_fill(const struct cs_triangle *t, int32_t id,
                               const struct cs_pattern *pattern,
                               const struct cs_samples *samples) {
-    const struct edges e = edges_of(t);
+    const struct fill fill = {t, edges_of(t), pattern, id};
     const int top = cs_most(t->top, samples->top);
     const int bottom = cs_least(t->bottom, samples->top + samples->rows - 1);
     for (int y = top; y <= bottom; y++) {
         const size_t at = (size_t)(y - samples->top) * (size_t)samples->width + (size_t)t->left;
         if (t->small)
-            fill_small_row(t, &e, id, pattern, y, samples->depth + at, samples->shown + at);
+            fill_small_row(&fill, y, samples->depth + at, samples->shown + at);
         else
-            fill_large_row(t, &e, id, pattern, y, samples->depth + at, samples->shown + at);
+            fill_large_row(&fill, y, samples->depth + at, samples->shown + at);
     }
 }
 
@@ -163,12 +177,12 @@ CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t s
     for (int y = cs_most(t->top, top); y <= last; y++) {
         const cs_f4 rise = up_at(t, &cs_pattern_one, y);
         float *at = map + (size_t)y * stride;
-        int64_t left = t->left, right = t->right;
-        if (!t->small)
-            span(t, &e, 128, 128, y, &left, &right);
-        for (int x = (int)left; x <= right; x += 4) {
+        // edges of a large triangle do not fit into the mask's 32 bits: its row is cut before
+        const struct run run =
+            t->small ? (struct run){t->left, t->right} : span(t, &e, 128, 128, y);
+        for (int x = (int)run.left; x <= run.right; x += 4) {
             const cs_i4 column = ramp + x;
-            cs_i4 mask = column <= (int)right;
+            cs_i4 mask = column <= (int)run.right;
             for (int k = 0; t->small && k < 3; k++)
                 mask &= e.dx[k] * (128 + y * 256 - t->y[k]) + e.bias[k] -
                             e.dy[k] * (column * 256 + (128 - t->x[k])) >=

@@ -55,12 +55,18 @@ static void sink(const struct cs_lens *lens, const float place[3], const float e
     cs_lens_move_depth(lens, moved, corner);
 }
 
-/* Triangles of three vertices each, placed by the style. eye NULL: a light's picture, without
- * sinking. */
+// who sees the triangles, and where they go
+struct projection {
+    const struct cs_lens *lens;
+    const float *eye; // NULL: nothing sinks, as for a light
+    struct cs_triangles *triangles;
+};
+
+// triangles of three vertices each, placed by the style
 static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
-                         const struct cs_surface_style *style, const struct cs_lens *lens,
-                         const float *eye, const struct cs_triangle_kind *kind,
-                         struct cs_triangles *triangles) {
+                         const struct cs_surface_style *style,
+                         const struct cs_triangle_kind *kind,
+                         const struct projection *projection) {
     for (uint32_t v = 0; v < n; v += 3) {
         struct cs_corner corners[3];
         const struct cs_corner *three[3] = {corners, corners + 1, corners + 2};
@@ -69,31 +75,31 @@ static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
             float place[3];
             for (int k = 0; k < 3; k++)
                 place[k] = (float)style->centre[k] + (float)style->scale * vertex->place[k];
-            cs_lens_corner(lens, place, corners + i);
+            cs_lens_corner(projection->lens, place, corners + i);
             memcpy(corners[i].attributes, vertex->normal, sizeof vertex->normal);
-            if (eye && style->sink > 0)
-                sink(lens, place, eye, (float)style->sink, corners + i);
+            if (projection->eye && style->sink > 0)
+                sink(projection->lens, place, projection->eye, (float)style->sink, corners + i);
         }
-        cs_triangles_add(triangles, lens, three, kind);
+        cs_triangles_add(projection->triangles, projection->lens, three, kind);
     }
 }
 
 static void add_obstacle(const struct cs_solids *solids, uint32_t i,
-                         const struct cs_surface_style *style, const struct cs_lens *lens,
-                         const float *eye, const struct cs_triangle_kind *kind,
-                         struct cs_triangles *triangles) {
+                         const struct cs_surface_style *style,
+                         const struct cs_triangle_kind *kind,
+                         const struct projection *projection) {
     const struct cs_obstacle *obstacle = solids->obstacles + i;
     const bool ball = obstacle->kind == CS_OBSTACLE_SPHERE;
     if (!ball)
         cs_solid_fill(obstacle, solids->cell, solids->vertices);
     add_vertices(ball ? solids->ball : solids->vertices,
-                 ball ? solids->n_ball : cs_solid_count(obstacle), style, lens, eye, kind,
-                 triangles);
+                 ball ? solids->n_ball : cs_solid_count(obstacle), style, kind, projection);
 }
 
 void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
                    const float eye[3], struct cs_coat *coats, struct cs_triangles *triangles,
                    size_t *n_squares) {
+    const struct projection projection = {lens, eye, triangles};
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < solids->n; i++) {
             const struct cs_obstacle *obstacle = solids->obstacles + i;
@@ -103,7 +109,7 @@ void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
             cs_style_solid(&style, obstacle, solids->cell);
             cs_coat_make(coats + i, &style);
             if (obstacle->collider->visible && square == (pass == 0))
-                add_obstacle(solids, i, &style, lens, eye, &kind, triangles);
+                add_obstacle(solids, i, &style, &kind, &projection);
         }
         if (pass == 0)
             *n_squares = triangles->n;
@@ -113,13 +119,14 @@ void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
 void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *lens,
                           struct cs_triangles *triangles) {
     const struct cs_triangle_kind kind = {.attributes = 0};
+    const struct projection projection = {lens, NULL, triangles};
     for (uint32_t i = 0; i < solids->n; i++) {
         const struct cs_obstacle *obstacle = solids->obstacles + i;
         struct cs_surface_style style;
         if (!obstacle->collider->visible || obstacle->kind == CS_OBSTACLE_PLANE)
             continue;
         cs_style_solid(&style, obstacle, solids->cell);
-        add_obstacle(solids, i, &style, lens, NULL, &kind, triangles);
+        add_obstacle(solids, i, &style, &kind, &projection);
     }
 }
 
@@ -128,6 +135,7 @@ void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,
     static const signed char signs[6][2] = {{-1, -1}, {1, -1}, {-1, 1},
                                             {1, -1},  {1, 1},  {-1, 1}};
     const struct cs_triangle_kind kind = {.attributes = 0};
+    const struct projection projection = {lens, NULL, triangles};
     const float *span = ground->span;
     const struct cs_surface_style style = {.scale = 1};
     struct cs_vertex square[6] = {{.value = 0}};
@@ -136,5 +144,5 @@ void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,
         square[i].place[1] = span[1];
         square[i].place[2] = span[2] + span[3] * signs[i][1];
     }
-    add_vertices(square, 6, &style, lens, NULL, &kind, triangles);
+    add_vertices(square, 6, &style, &kind, &projection);
 }
