@@ -1,3 +1,4 @@
+/* host.c - what the model does for a method, call by call: checked, timed and counted. */
 #include "sim/host.h"
 
 #include "base/clock.h"
@@ -137,6 +138,7 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     const double begin = stage_begin(host);
     host->run->counts.solve_setups++;
     host->clamped = flags & CS_SOLVE_PSD;
+    // kept, since a solve may have to set up again, and the method may have moved on by then
     memcpy(host->kept_x, x, bytes);
     if (host->kept_v)
         memcpy(host->kept_v, v, bytes);
@@ -164,6 +166,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     host->run->counts.solves++;
     enum cs_linear_end end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
     host->run->counts.solve_iterations += iterations;
+    // setup looks at diagonal blocks alone: that a matrix is indefinite may show only here
     if (end == CS_LINEAR_INDEFINITE && !host->clamped) {
         clamp(host);
         memset(u, 0, 3 * sizeof *u * host->run->system->view.n);
@@ -283,6 +286,8 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
     *changed = false;
     host->run->counts.steps++;
     move_values(host, t);
+    // the limit may move particles into obstacles, so contact comes after it; last are the
+    // grabbed ones, which stay on their path whatever moved them
     if (rows[CS_FEATURE_STRAIN_LIMIT].built)
         limit_strain(host, dt, x, v, changed);
     if (rows[CS_FEATURE_CONTACT].built)
@@ -292,6 +297,7 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
     const enum cs_step step = judge(host, t, x, v);
+    // a step that ends the run is observed too
     if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))
         *changed = true;
     return step;
@@ -321,6 +327,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     cs_bound_set(&host->bound, system, 0);
     if (add_rate(host, error))
         return error->status;
+    // only methods that solve pay for the solver's memory and the copies of the state
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
     const size_t n3 = 3 * (size_t)system->view.n;
