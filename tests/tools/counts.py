@@ -22,7 +22,7 @@ LIMITS = {
     "units in the largest folder": ("most", 25),
 }
 # not there yet: told, but no failure
-LATER = {".c files without head comment", "functions >= 20 lines without a comment inside [%]"}
+LATER = set()
 TREES = ("src", "plugins", "bench")
 NAME = re.compile(r"([A-Za-z_]\w*)\s*\($")
 BRACKETS = {"(": re.compile(r"[()]"), "{": re.compile(r"[{}]")}
