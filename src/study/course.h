@@ -1,7 +1,8 @@
 /* course.h - one method on the smooth form of a scene: opened, run, and recorded.
  *
- * Contact, strain limit and velocity loss act after steps and are no part of the equation of
- * motion; with them the result would depend on the step whatever the method. They are off.
+ * Contact by projection, strain limit and velocity loss act after steps and are no part of the
+ * equation of motion; with them the result would depend on the step whatever the method. They
+ * are off. Contact by force is a part of it, and stays.
  */
 #ifndef CS_COURSE_H
 #define CS_COURSE_H

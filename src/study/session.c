@@ -105,9 +105,11 @@ static enum cs_status start_threads(struct cs_session *session, struct cs_error 
                                      : cs_fail(error, refused.status, "%s", refused.message);
 }
 
-/* Contact, strain limit and velocity loss are no part of the equation of motion. */
+/* Contact by projection, strain limit and velocity loss are no part of the equation of motion;
+ * contact by force is. */
 static void make_smooth(struct cs_scene *scene) {
-    scene->colliders.n = 0;
+    if (scene->contact.law == CS_CONTACT_PROJECT)
+        scene->colliders.n = 0;
     scene->forces.velocity_loss = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         cs_scene_bodies(scene)[b].strain_limit = (double)NAN;

@@ -18,7 +18,8 @@ struct cs_session_settings {
     /* changes the scene once it was checked; may be NULL */
     void (*change)(struct cs_scene *scene, void *ctx);
     void *ctx;   /* of change */
-    bool smooth; /* leaves out what acts after steps: contact, strain limit, velocity loss */
+    bool smooth; /* leaves out what acts after steps: contact by projection, strain limit,
+                    velocity loss */
     double fps;  /* frames a second; 0: the scene's */
 
     const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */

@@ -31,6 +31,7 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
         /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
         compare->time = settings->frames / compare->fps;
+        compare->contact = course.session.scene.colliders.n > 0;
         compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;
     }
     cs_course_close(&course);
@@ -60,6 +61,33 @@ static void share_time(struct cs_compare *compare) {
                           : fmin(CS_COMPARE_SECONDS / (2 * fmax(n, 1)), CS_COMPARE_MOST);
 }
 
+/* A method that cannot follow the scene, which others can, is left out: one row says why. */
+static void refuse(struct cs_sweep *sweep, uint32_t first, struct cs_error *error) {
+    if (error->status != CS_ERR_SCENE)
+        return;
+    cs_sweep_refuse(sweep, first, error->message);
+    *error = (struct cs_error){0};
+}
+
+/* An option that a method does not have is known before anything runs. */
+static enum cs_status check_methods(struct cs_compare *compare, struct cs_error *error) {
+    struct cs_sweep *sweep = &compare->sweep;
+    struct cs_session_settings asked = compare->settings->course.session;
+    char integrator[320];
+    for (uint32_t k = 0; k < sweep->n && !error->status; k++) {
+        const struct cs_cell *cell = sweep->cells + k;
+        struct cs_session session = {0};
+        if (*cell->outcome || (k > 0 && !strcmp(cell->method, cell[-1].method)))
+            continue;
+        cs_cell_integrator(cell, integrator, sizeof integrator);
+        asked.integrator = integrator;
+        if (cs_session_open_plan(&session, &asked, error))
+            refuse(sweep, k, error);
+        cs_session_close(&session);
+    }
+    return error->status;
+}
+
 static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_session_settings *session = &compare->settings->course.session;
     const struct cs_sweep_settings asked = {.list = compare->settings->methods,
@@ -67,25 +95,8 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                             .n_plugins = session->n_plugins,
                                             .fps = compare->fps,
                                             .omega = compare->omega};
-    if (!cs_sweep_make(&compare->sweep, &asked, error))
+    if (!cs_sweep_make(&compare->sweep, &asked, error) && !check_methods(compare, error))
         share_time(compare);
-    return error->status;
-}
-
-/* An option that a method does not have is known before anything runs. */
-static enum cs_status check_options(const struct cs_compare *compare, struct cs_error *error) {
-    const struct cs_cell *cells = compare->sweep.cells;
-    struct cs_session_settings asked = compare->settings->course.session;
-    char integrator[320];
-    for (uint32_t k = 0; k < compare->sweep.n && !error->status; k++) {
-        struct cs_session session = {0};
-        if (*cells[k].outcome || (k > 0 && !strcmp(cells[k].method, cells[k - 1].method)))
-            continue;
-        cs_cell_integrator(cells + k, integrator, sizeof integrator);
-        asked.integrator = integrator;
-        cs_session_open_plan(&session, &asked, error);
-        cs_session_close(&session);
-    }
     return error->status;
 }
 
@@ -139,8 +150,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
     const struct cs_yardstick_settings reference = ask_reference(compare);
     // the folder is looked at before the reference, which may take long
     if (!look_at_scene(compare, error) && !make_cells(compare, error) &&
-        !check_options(compare, error) && !make_keys(compare, error) &&
-        !cs_ledger_open(&ledger, compare, error) &&
+        !make_keys(compare, error) && !cs_ledger_open(&ledger, compare, error) &&
         !cs_yardstick_get(&compare->yardstick, &reference, error)) {
         if (settings->begun)
             settings->begun(settings->ctx);

@@ -125,6 +125,8 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
     cs_text_add(out, ", ");
     add_json_real(out, "fps", compare->fps);
     cs_text_add(out, ",\n  ");
+    add_json_text(out, "contact", compare->contact ? "force" : "");
+    cs_text_add(out, ", ");
     add_json_text(out, "switched_off", cs_text_get(&compare->changes));
     cs_text_add(out, ",\n");
     add_machine(out);

@@ -37,6 +37,7 @@ struct cs_compare {
     struct cs_sweep sweep;
     char scene[256];                   /* path as given */
     struct cs_text changes;            /* what was switched off, "" nothing */
+    bool contact;                      /* by force: a part of the equation of motion */
     uint32_t particles, springs, cuts; /* cuts: times of events */
     double fps, omega, time, budget;
     uint32_t done, taken; /* cells; those of an earlier run */

@@ -8,9 +8,11 @@
 void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_yardstick *yardstick = &compare->yardstick;
     const struct cs_horizon *horizon = &yardstick->horizon;
-    cs_text_add(out, "%s: %u particles, %u springs, %.4g s in %u frames\n", compare->scene,
-                compare->particles, compare->springs, compare->time,
-                compare->settings->course.frames);
+    const char *changes = cs_text_get(&compare->changes);
+    cs_text_add(out, "%s: %u particles, %u springs, %.4g s in %u frames%s%s%s\n",
+                compare->scene, compare->particles, compare->springs, compare->time,
+                compare->settings->course.frames, compare->contact ? ", contact by force" : "",
+                *changes ? "; off: " : "", changes);
     cs_text_add(out, "reference  %s\n   against %s\n", yardstick->methods[1],
                 yardstick->methods[3]);
     /* without a reference the figures below have no meaning */
@@ -32,8 +34,6 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
                 yardstick->accuracy, horizon->amplification);
     if (!yardstick->pointwise)
         cs_text_add(out, "           statistics only: %s\n", yardstick->reason);
-    if (cs_text_get(&compare->changes)[0])
-        cs_text_add(out, "       off %s\n", cs_text_get(&compare->changes));
 }
 
 void cs_table_add_head(struct cs_text *out) {

@@ -4,7 +4,8 @@
 
 #include "study/compare/ranking.h"
 
-/* Adds the reference in a few lines: methods, error bar, horizon, what is switched off. */
+/* Adds the scene with its contact and what is switched off, and the reference in a few lines:
+ * methods, error bar, horizon. */
 void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out);
 
 /* Adds the names of the columns, or the row of a cell. */

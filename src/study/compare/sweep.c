@@ -72,13 +72,23 @@ static enum cs_status add_point(struct cs_sweep *sweep, const struct entry *entr
     return cs_sweep_insert(sweep, sweep->n, &cell, error);
 }
 
-static enum cs_status refuse(struct cs_sweep *sweep, const char *name, const char *why,
-                             struct cs_error *error) {
+static struct cs_cell refused(const char *name, const char *why) {
     struct cs_cell cell;
     cs_cell_init(&cell, name);
     snprintf(cell.outcome, sizeof cell.outcome, "refused");
     snprintf(cell.note, sizeof cell.note, "%.239s", why);
-    return cs_sweep_insert(sweep, sweep->n, &cell, error);
+    return cell;
+}
+
+void cs_sweep_refuse(struct cs_sweep *sweep, uint32_t first, const char *why) {
+    const struct cs_cell cell = refused(sweep->cells[first].method, why);
+    uint32_t next = first + 1;
+    while (next < sweep->n && !strcmp(sweep->cells[next].method, cell.method))
+        next++;
+    memmove(sweep->cells + first + 1, sweep->cells + next,
+            (sweep->n - next) * sizeof *sweep->cells);
+    sweep->n -= next - first - 1;
+    sweep->cells[first] = cell;
 }
 
 /* what the default sweep goes over, largest first */
@@ -100,11 +110,12 @@ static void default_range(const struct entry *entry, const struct cs_sweep_setti
 static enum cs_status expand(struct cs_sweep *sweep, const struct entry *entry,
                              const struct cs_sweep_settings *settings, struct cs_error *error) {
     double high = entry->high, low = entry->low;
-    if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER)
-        return refuse(sweep, entry->method.integrator->name,
-                      "another model than the equation of motion: an error against it has no "
-                      "meaning",
-                      error);
+    if (entry->method.integrator->fidelity == CS_FIDELITY_OTHER) {
+        const struct cs_cell cell = refused(entry->method.integrator->name,
+                                            "another model than the equation of "
+                                            "motion: an error against it has no meaning");
+        return cs_sweep_insert(sweep, sweep->n, &cell, error);
+    }
     if (!*entry->control)
         return add_point(sweep, entry, (double)NAN, error);
     if (isnan(high))

@@ -34,6 +34,9 @@ void cs_sweep_finish(struct cs_sweep *sweep);
 enum cs_status cs_sweep_insert(struct cs_sweep *sweep, uint32_t at, const struct cs_cell *cell,
                                struct cs_error *error);
 
+/* Makes one refused cell, which says why, of a method's cells; first is the first of them. */
+void cs_sweep_refuse(struct cs_sweep *sweep, uint32_t first, const char *why);
+
 /* "NAME:options" of a cell. */
 void cs_cell_integrator(const struct cs_cell *cell, char *out, size_t size);
 
