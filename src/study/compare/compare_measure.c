@@ -18,6 +18,10 @@ enum { MOST_RUNS = 101 };
  * the deviation of a normal distribution of it. */
 #define OUTLIER (3 * 1.4826)
 
+/* Steps that contact or a method itself cuts hardly depend on dt: below that ratio of mean
+ * steps, where dt is halved, there is no slope. */
+#define SHORTER 1.7
+
 /* Two successive slopes within that are steady. */
 #define STEADY 0.1
 
@@ -140,7 +144,8 @@ static bool is_usable(const struct cs_cell *cell, double bar, double scale) {
 static double slope(const struct cs_cell *a, const struct cs_cell *b, double bar,
                     double scale) {
     if (a->adaptive || b->adaptive || strcmp(a->method, b->method) ||
-        !is_usable(a, bar, scale) || !is_usable(b, bar, scale) || !(b->step < a->step))
+        !is_usable(a, bar, scale) || !is_usable(b, bar, scale) ||
+        !(SHORTER * b->step < a->step))
         return (double)NAN;
     return log(a->error / b->error) / log(a->step / b->step);
 }
