@@ -26,7 +26,8 @@ enum variant { FULL, UNDAMPED, RELATIVE, SLIM, VARIANTS };
 /* A system with all that a kernel may want. */
 struct bed {
     struct cs_session session;
-    struct cs_linear linear; /* only of FULL */
+    struct cs_linear linear;   /* only of FULL */
+    struct cs_contact contact; /* likewise */
     struct cs_arena arena;
     double *x, *v;         /* of the system */
     double *dx, *dv, *out; /* (3,n) */
@@ -92,7 +93,7 @@ static void normals(void *object) {
 /* both have moved what there was to move when they are first called */
 static void contact(void *object) {
     struct bed *bed = object;
-    cs_contact_resolve(&bed->session.system, 0, bed->x, bed->v);
+    cs_contact_resolve(&bed->contact, 0, 1 / 60.0, bed->x, bed->v);
 }
 
 static void limit(void *object) {
@@ -175,11 +176,13 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
     bed->dv = take(bed, 3 * n, error);
     bed->kxx = take(bed, 6 * n, error);
     bed->dvv = take(bed, 6 * n, error);
-    if (error->status || cs_linear_init(&bed->linear, system, &bed->arena, error))
+    if (error->status || cs_linear_init(&bed->linear, system, &bed->arena, error) ||
+        cs_contact_init(&bed->contact, system, &bed->arena, error))
         return error->status;
     memcpy(bed->dx, bed->v, 3 * n * sizeof *bed->dx);
     memcpy(bed->dv, bed->x, 3 * n * sizeof *bed->dv);
     setup(bed);
+    cs_contact_keep(&bed->contact, bed->x, bed->v, false);
     return CS_OK;
 }
 

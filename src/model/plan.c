@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
+#include "model/commit/contact.h"
 #include "model/event/events.h"
 #include "model/event/prods.h"
 #include "model/force/terms.h"
@@ -120,10 +121,6 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     decide(plan, CS_FEATURE_VELOCITY_LOSS,
            forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"), 0,
            "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
-    decide(plan, CS_FEATURE_CONTACT,
-           scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT, 0,
-           "the scene has colliders",
-           scene->colliders.n > 0 ? "contact is a force" : "no colliders");
     decide(plan, CS_FEATURE_STRAIN_LIMIT, s > 0 && any_body(scene, has_limit), 0,
            "a body has strain_limit", "no strain_limit");
     decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, cs_events_bytes(scene, plan->n),
@@ -146,8 +143,12 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     /* 3x3 blocks of forces at single particles need room in the solver too */
     const bool forced = has_blocks(plan);
     const size_t levels = cs_multigrid_bytes(scene, forced);
+    decide(plan, CS_FEATURE_CONTACT,
+           scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
+           cs_contact_bytes(scene, n, s, forced), "the scene has colliders",
+           scene->colliders.n > 0 ? "contact is a force" : "no colliders");
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
-           (4 * s + 22 * n + (forced ? 9 * n : 0)) * real + levels,
+           cs_linear_bytes(scene, n, s, forced) + (forced ? 6 : 3) * n * real,
            levels ? "the integrator asks for it; multigrid for stiff steps"
                   : "the integrator asks for it",
            "the integrator does not ask for it");

@@ -3,7 +3,6 @@
 
 #include "base/clock.h"
 #include "base/vector.h"
-#include "model/commit/contact.h"
 #include "model/commit/limit.h"
 #include "model/contact/share.h"
 #include "model/force/bounds.h"
@@ -235,13 +234,12 @@ static void limit_strain(struct cs_run_host *host, double dt, double *x, double 
     stage_end(host, CS_STAGE_LIMIT, begin);
 }
 
-static void resolve_contact(struct cs_run_host *host, double t, double *x, double *v,
+static void resolve_contact(struct cs_run_host *host, double t, double dt, double *x, double *v,
                             bool *changed) {
     const double begin = stage_begin(host);
-    const struct cs_contact_counts counts = cs_contact_resolve(host->run->system, t, x, v);
-    host->run->counts.contact_tests += counts.tests;
-    host->run->counts.contacts += counts.pushed;
-    *changed |= counts.pushed > 0;
+    *changed |= cs_contact_resolve(&host->contact, t, dt, x, v);
+    host->run->counts.contact_tests = host->contact.counts.tests;
+    host->run->counts.contacts = host->contact.counts.pushed;
     stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
@@ -291,15 +289,18 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
     if (rows[CS_FEATURE_STRAIN_LIMIT].built)
         limit_strain(host, dt, x, v, changed);
     if (rows[CS_FEATURE_CONTACT].built)
-        resolve_contact(host, t, x, v, changed);
+        resolve_contact(host, t, dt, x, v, changed);
     if (rows[CS_FEATURE_VELOCITY_LOSS].built)
         lose_velocity(host, v, changed);
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
     const enum cs_step step = judge(host, t, x, v);
+    bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
     // a step that ends the run is observed too
     if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))
-        *changed = true;
+        moved = *changed = true;
+    if (rows[CS_FEATURE_CONTACT].built)
+        cs_contact_keep(&host->contact, x, v, !moved);
     return step;
 }
 
@@ -327,6 +328,11 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     cs_bound_set(&host->bound, system, 0);
     if (add_rate(host, error))
         return error->status;
+    if (system->plan.rows[CS_FEATURE_CONTACT].built) {
+        if (cs_contact_init(&host->contact, system, &host->arena, error))
+            return error->status;
+        cs_contact_keep(&host->contact, run->x, run->v, false);
+    }
     // only methods that solve pay for the solver's memory and the copies of the state
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
@@ -351,5 +357,7 @@ bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     const bool changed = cs_events_apply(system, t);
     if (changed)
         cs_bound_follow_events(&host->bound, system, t);
+    if (changed && system->plan.rows[CS_FEATURE_CONTACT].built)
+        cs_contact_keep(&host->contact, host->run->x, host->run->v, false);
     return changed;
 }

@@ -2,6 +2,7 @@
 #ifndef CS_HOST_H
 #define CS_HOST_H
 
+#include "model/commit/contact.h"
 #include "model/event/events.h"
 #include "model/solver/linear.h"
 #include "sim/bound.h"
@@ -15,9 +16,10 @@ struct cs_run_host {
     struct cs_linear linear; /* only with CS_NEED_SOLVE */
     double *kept_x; /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
     double *kept_v; /* (3,n) its velocity; NULL: no force's share of the matrix depends on it */
-    double *rate_work; /* (2n); NULL where no force has bounds at a state alone */
-    bool clamped;      /* the matrix in use is positive definite by construction */
-    bool creating;     /* the method may take memory */
+    double *rate_work;         /* (2n); NULL where no force has bounds at a state alone */
+    bool clamped;              /* the matrix in use is positive definite by construction */
+    struct cs_contact contact; /* only with contact by projection */
+    bool creating;             /* the method may take memory */
     struct cs_run_settings settings;
     struct cs_budget budget;
     void *self;            /* the method's own */

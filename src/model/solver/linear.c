@@ -8,6 +8,11 @@
 #include <math.h>
 #include <string.h>
 
+size_t cs_linear_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced) {
+    const size_t own = 4 * n_springs + 19 * n + (forced ? 6 * n : 0);
+    return own * sizeof(double) + cs_multigrid_bytes(scene, forced);
+}
+
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;
@@ -154,7 +159,7 @@ static void mul_inverse(void *arg, size_t begin, size_t end) {
     }
 }
 
-static void precondition(struct cs_linear *linear, const double *r, double norm, double *z) {
+void cs_linear_precondition(struct cs_linear *linear, const double *r, double norm, double *z) {
     struct product product = {linear, r, z};
     if (linear->stiff)
         cs_multigrid_apply(&linear->multigrid, r, norm, z);
@@ -195,7 +200,7 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
             *residual = norm / size;
             return CS_LINEAR_LIMIT;
         }
-        precondition(linear, r, norm, z);
+        cs_linear_precondition(linear, r, norm, z);
         const double next = cs_vector_dot(n3, r, z);
         if (linear->stiff && (*iterations == CS_LINEAR_PATIENCE || !(next > 0))) {
             give_up_multigrid(linear);

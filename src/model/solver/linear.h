@@ -32,12 +32,18 @@ struct cs_linear {
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error);
 
+/* Bytes that init takes, of a scene with n particles; forced: forces have blocks in A. */
+size_t cs_linear_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced);
+
 /* Prepares A. cm > 0, cd <= 0, ck <= 0. false: a diagonal block is not positive definite (only
  * without psd). */
 bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix);
 
 /* y = A p for p that is 0 on pinned particles; y is 0 there too. */
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y);
+
+/* z = what stands for the inverse of A, times r; symmetric and positive. norm: of r. */
+void cs_linear_precondition(struct cs_linear *linear, const double *r, double norm, double *z);
 
 enum cs_linear_end { CS_LINEAR_DONE, CS_LINEAR_INDEFINITE, CS_LINEAR_LIMIT };
 

@@ -1,0 +1,63 @@
+/* touch.c - one particle against one obstacle: normal push, absorption and friction. */
+#include "model/commit/touch.h"
+
+#include <math.h>
+
+/* shortens the part of a that is across n by `lost`, or takes all of it */
+static void rub(double a[3], const double n[3], double lost) {
+    const double along = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
+    double across[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        across[c] = a[c] - along * n[c];
+        squared += across[c] * across[c];
+    }
+    const double length = sqrt(squared), kept = length > lost ? 1 - lost / length : 0;
+    for (int c = 0; c < 3; c++)
+        a[c] = kept * across[c] + along * n[c];
+}
+
+/* share of the inward velocity that is changed: above 1 it is turned round */
+static double share_of(const struct cs_collider *collider) {
+    const double ka = collider->absorption;
+    return ka < 0 ? 1 - ka : ka;
+}
+
+static void absorb(const struct cs_collider *collider, const double n[3], double v[3]) {
+    const double inward = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+    if (inward >= 0)
+        return;
+    const double changed = -inward * share_of(collider);
+    rub(v, n, collider->friction * changed);
+    for (int c = 0; c < 3; c++)
+        v[c] += changed * n[c];
+}
+
+bool cs_touch_resolve(const struct cs_obstacle *obstacle, double dt, const double last[3],
+                      double p[3], double v[3], struct cs_touch *touch) {
+    const struct cs_collider *collider = obstacle->collider;
+    double n[3], unused[3], carried[3], from[3];
+    const double gap = cs_obstacle_gap(obstacle, p, n);
+    if (!(gap < 0))
+        return false;
+
+    /* where the particle would be had it moved with the obstacle */
+    cs_obstacle_velocity(obstacle, p, carried);
+    for (int c = 0; c < 3; c++)
+        from[c] = last[c] + dt * carried[c];
+    const double gap_before = fmin(cs_obstacle_gap(obstacle, from, unused), 0);
+    touch->depth = -gap;
+    touch->fresh = fmax(gap_before - gap, 0);
+
+    double move[3];
+    for (int c = 0; c < 3; c++) {
+        v[c] -= carried[c];
+        move[c] = p[c] - from[c];
+    }
+    absorb(collider, n, v);
+    rub(move, n, collider->friction * fmin(share_of(collider), 1) * -gap);
+    for (int c = 0; c < 3; c++) {
+        v[c] += carried[c];
+        p[c] = from[c] + move[c] - gap * n[c];
+    }
+    return true;
+}
