@@ -4,13 +4,34 @@
 #include "model/contact/obstacle.h"
 #include "sheet.h"
 
+#include <string.h>
+
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1]}, \"mass\": {\"particle\": 2}, \"pins\": "    \
-    "[%s]}], \"colliders\": [%s]}"
+    "[%s]}], \"colliders\": [%s], \"forces\": {\"gravity\": [0, 0, 0]}}"
 #define FLOOR(more) "{\"floor\": {\"height\": 0.5}" more "}"
 
+/* a commit after a step of dt that began at `last` (6); without gravity and springs no energy
+ * is asked about */
+static struct cs_contact_counts commit(struct sheet *sheet, double dt, const double *last) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    struct cs_contact contact;
+    cs_contact_init(&contact, &sheet->system, &arena, &error);
+    UNIT_ASSERT_OK(&error);
+    cs_contact_keep(&contact, last, last + 3 * sheet->n, false);
+    const bool pushed = cs_contact_resolve(&contact, 0, dt, sheet->x, sheet->v);
+    ck_assert_int_eq(pushed, contact.counts.pushed > 0);
+    cs_arena_finish(&arena);
+    return contact.counts;
+}
+
+/* without a move there is nothing for friction to hold: velocities alone */
 static struct cs_contact_counts resolve(struct sheet *sheet) {
-    return cs_contact_resolve(&sheet->system, 0, sheet->x, sheet->v);
+    double last[6];
+    ck_assert_uint_eq(sheet->n, 1);
+    memcpy(last, sheet->x, sizeof last);
+    return commit(sheet, 0.01, last);
 }
 
 START_TEST(particle_is_put_on_the_floor_with_its_skin) {
@@ -183,6 +204,43 @@ START_TEST(friction_counts_the_bounce) {
 }
 END_TEST
 
+/* The tangential move of a step loses friction times the depth, all of it where that is more:
+ * 0.03 m down and (0.3, -0.4) m across here. */
+START_TEST(friction_holds_the_move) {
+    static const struct {
+        double friction, kept;
+    } rows[] = {{0, 1}, {5, 1 - 5 * 0.03 / 0.5}, {1e3, 0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const double last[6] = {1, 0.5, 2, 0, 0, 0};
+        struct sheet one;
+        char collider[128];
+        snprintf(collider, sizeof collider, FLOOR(", \"friction\": %g"), rows[k].friction);
+        sheet_open(&one, 0, SCENE, "", collider);
+        sheet_put(&one, 0, 1.3, 0.47, 1.6, 0, 0, 0);
+        ck_assert_uint_eq(commit(&one, 0.01, last).pushed, 1);
+        SHEET_ASSERT_AT(&one, one.x, 0, 1 + rows[k].kept * 0.3, 0.5, 2 - rows[k].kept * 0.4,
+                        1e-15);
+        sheet_close(&one);
+    }
+}
+END_TEST
+
+/* what a rising and sliding floor has taken along is no move against it */
+START_TEST(friction_takes_along) {
+    struct cs_obstacle_motion motion = {
+        .until = HUGE_VAL, .rate = {2, 1, 0}, .turn = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const double last[6] = {1, 0.49, 2, 0, 0, 0};
+    struct sheet one;
+    sheet_open(&one, 0, SCENE, "", FLOOR(", \"friction\": 1000"));
+    one.system.motions = &motion;
+    sheet_put(&one, 0, 1, 0.49, 2, 0, 0, 0);
+    ck_assert_uint_eq(commit(&one, 0.01, last).pushed, 1);
+    SHEET_ASSERT_AT(&one, one.x, 0, 1 + 2 * 0.01, 0.5, 2, 1e-15);
+    SHEET_ASSERT_AT(&one, one.v, 0, 2, 1, 0, 1e-15);
+    sheet_close(&one);
+}
+END_TEST
+
 START_TEST(pinned_particle_is_not_tested) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "0", FLOOR(""));
@@ -231,6 +289,8 @@ int main(void) {
                                   normal_velocity_is_absorbed,
                                   slope_is_slid_down_or_stuck_to,
                                   friction_counts_the_bounce,
+                                  friction_holds_the_move,
+                                  friction_takes_along,
                                   pinned_particle_is_not_tested,
                                   particle_that_is_not_finite_stays_so,
                                   corner_of_floor_and_wall_holds};

@@ -1,0 +1,185 @@
+/* Contact by projection: what friction holds stays where it is, and no commit makes energy,
+ * with any method. */
+#include "fixture.h"
+
+#include "scene/scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define PI     3.14159265358979323846
+#define MU     0.9
+#define DEGREE (PI / 180)
+
+/* those that follow the equation of motion; with equal steps of h each */
+static const char *const stepped[] = {"symplectic-euler",
+                                      "averaged-euler",
+                                      "position-verlet",
+                                      "velocity-verlet",
+                                      "rk4",
+                                      "explicit-euler",
+                                      "implicit-block",
+                                      "implicit-linearised",
+                                      "backward-euler",
+                                      "bdf2",
+                                      "tr-bdf2",
+                                      "sdirk2",
+                                      "implicit-midpoint",
+                                      "newmark",
+                                      "ros2",
+                                      "xpbd",
+                                      "fast-mass-spring"};
+enum { STEPPED = sizeof stepped / sizeof *stepped };
+static const char *const adaptive[] = {"dopri5",  "cvode-bdf", "cvode-adams",
+                                       "ark-erk", "ark-dirk",  "ark-imex"};
+enum { ADAPTIVE = sizeof adaptive / sizeof *adaptive };
+
+/* a sheet that lies on a slope, as soft as explicit methods want it at 1/60 s */
+#define SLOPE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"start\": \"flat\", \"size\": [0.3, 0.3],"  \
+    " \"place\": {\"rotate\": [0, 0, %.17g, %.17g]}}, \"mass\": {\"total\": 1},"               \
+    " \"springs\": {\"stretch\": 10, \"shear\": 5, \"bend\": 1, \"damping\": 0.01}}],"         \
+    " \"colliders\": [{\"plane\": {\"normal\": [%.17g, %.17g, 0]}, \"friction\": %g}]}"
+
+static void open_slope(struct fixture *sheet, const char *method, double degrees) {
+    const double a = degrees * DEGREE;
+    fixture_open(sheet, method, SLOPE, -sin(a / 2), cos(a / 2), sin(a), cos(a), MU);
+    fixture_start(sheet);
+}
+
+/* the furthest that a particle is from where it was at the start */
+static double drift(const struct fixture *sheet) {
+    double largest = 0;
+    for (size_t k = 0; k < 3 * sheet->n; k++)
+        largest = fmax(largest, fabs(sheet->x[k] - sheet->system->start[k]));
+    return largest;
+}
+
+/* tan 20 degrees = 0.36 is below mu: nothing moves by more than 1e-6 m in 10 s */
+START_TEST(block_below_the_angle_of_friction_stays) {
+    for (int k = 0; k < STEPPED + ADAPTIVE; k++) {
+        struct fixture sheet;
+        char method[64];
+        snprintf(method, sizeof method, k < STEPPED ? "%s:dt=0.016666666666666666" : "%s",
+                 k < STEPPED ? stepped[k] : adaptive[k - STEPPED]);
+        open_slope(&sheet, method, 20);
+        fixture_frames(&sheet, 600);
+        ck_assert_msg(drift(&sheet) <= 1e-6, "%s: %.3g m", method, drift(&sheet));
+        fixture_close(&sheet);
+    }
+}
+END_TEST
+
+/* tan 50 degrees is above it: g (sin - mu cos) t^2 / 2, to the first order in the step */
+START_TEST(block_above_it_slides) {
+    const double a = 50 * DEGREE, t = 0.5, g = 9.81 * (sin(a) - MU * cos(a));
+    static const char *const methods[] = {"symplectic-euler", "velocity-verlet", "rk4",
+                                          "implicit-linearised"};
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        struct fixture sheet;
+        char method[64];
+        snprintf(method, sizeof method, "%s:dt=0.002083333333333333", methods[k]);
+        open_slope(&sheet, method, 50);
+        fixture_frames(&sheet, 30);
+        for (size_t i = 0; i < sheet.n; i++) {
+            const double way =
+                (sheet.x[i] - sheet.system->start[i]) * cos(a) -
+                (sheet.x[sheet.n + i] - sheet.system->start[sheet.n + i]) * sin(a);
+            ck_assert_msg(fabs(way - g * t * t / 2) <= 2 * g * t / 480, "%s: %.6f m", method,
+                          way);
+        }
+        fixture_close(&sheet);
+    }
+}
+END_TEST
+
+/* A ball of 1 kg and 0.3 m, whose centre is 0.6 m above the floor: 5.886 J of gravity. */
+#define BALL                                                                                   \
+    "{\"bodies\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": %d, \"scale\": [0.6, 0.6, "  \
+    "0.6], \"place\": {\"translate\": [0, 0.6, 0]}}, \"network\": {\"placement\": "            \
+    "\"opposed-normals\", \"springs\": 5, \"surface\": 4, \"seed\": 7}, \"mass\": {\"total\":" \
+    " 1}, \"springs\": {\"stretch\": 400, \"bend\": 0, \"damping\": 0.02}}],"                  \
+    " \"colliders\": [{\"floor\": {\"height\": 0}, \"absorption\": %g, \"friction\": 0.2}],"   \
+    " \"time\": {\"fps\": %d}}"
+
+/* the largest energy at the end of a commit, and how low the body came */
+struct log {
+    const struct fixture *ball;
+    double largest, lowest;
+};
+
+static bool look(void *ctx, double t, double dt, double *x, double *v) {
+    struct log *log = ctx;
+    const struct cs_energy energy = cs_measure_energy(log->ball->system, t, x, v);
+    (void)dt;
+    log->largest = fmax(log->largest, cs_energy_whole(&energy));
+    log->lowest = fmin(log->lowest, energy.gravity);
+    return false;
+}
+
+static struct log drop(const char *method, double absorption, int fps, double seconds) {
+    struct fixture ball;
+    struct log log = {.ball = &ball, .lowest = HUGE_VAL};
+    fixture_open(&ball, method, BALL, 5, absorption, fps);
+    ball.session.settings.run.observe = look;
+    ball.session.settings.run.ctx = &log;
+    fixture_start(&ball);
+    fixture_frames(&ball, (uint32_t)(seconds * fps));
+    fixture_close(&ball);
+    return log;
+}
+
+static void check_drop(const char *method, double absorption, int fps) {
+    const struct log log = drop(method, absorption, fps, 0.8);
+    ck_assert_msg(log.largest <= 1.01 * 5.886, "%s, absorption %g, %d frames a second: %.4g J",
+                  method, absorption, fps, log.largest);
+    // it may be flattened to half its height, but not sink in
+    ck_assert_msg(log.lowest >= 0.15 * 9.81, "%s, absorption %g, %d frames a second: %.4g m",
+                  method, absorption, fps, log.lowest / 9.81);
+}
+
+START_TEST(ball_gets_no_energy_from_the_floor) {
+    static const double absorptions[] = {1, -0.6};
+    for (int a = 0; a < 2; a++)
+        for (int k = 0; k < STEPPED; k++)
+            for (int rate = 240; rate <= 960; rate *= 2) {
+                char method[64];
+                snprintf(method, sizeof method, "%s:dt=%.17g", stepped[k], 1.0 / rate);
+                check_drop(method, absorptions[a], 60);
+            }
+}
+END_TEST
+
+START_TEST(ball_gets_none_at_a_sixtieth) {
+    static const char *const methods[] = {"implicit-linearised",
+                                          "backward-euler",
+                                          "tr-bdf2",
+                                          "sdirk2",
+                                          "bdf2",
+                                          "xpbd",
+                                          "fast-mass-spring",
+                                          "ros2"};
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
+        check_drop(methods[k], 1, 60);
+}
+END_TEST
+
+START_TEST(ball_gets_none_at_a_tolerance) {
+    static const double tolerances[] = {1e-3, 1e-5};
+    for (int k = 0; k < ADAPTIVE; k++)
+        for (int r = 0; r < 2; r++)
+            for (int fps = 60; fps >= 5; fps /= 12) {
+                char method[64];
+                snprintf(method, sizeof method, "%s:rtol=%g", adaptive[k], tolerances[r]);
+                check_drop(method, 1, fps);
+            }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {block_below_the_angle_of_friction_stays,
+                                  block_above_it_slides, ball_gets_no_energy_from_the_floor,
+                                  ball_gets_none_at_a_sixtieth, ball_gets_none_at_a_tolerance};
+    return fixture_run("projection", tests, sizeof tests / sizeof *tests);
+}
