@@ -156,6 +156,7 @@ static enum cs_step create(const struct cs_host *host, const void *options,
     self->asked = *(const struct ark_options *)options;
     self->steps = (struct fixed_step){.host = host, .dt = self->asked.dt};
     self->base.max_steps = self->asked.max_steps;
+    self->base.equal_steps = self->asked.dt > 0;
     const struct ark_table *table = tables + self->asked.order;
     if (!table->stages)
         return host->fail(host->ctx, "SUNDIALS %s has no table of order %d: take another order",

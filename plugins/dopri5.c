@@ -171,6 +171,15 @@ static bool passes_contact(const struct dopri5 *self, double t, double h, const 
            host->max_share(host->ctx, t, x, t + h, self->next) < 1;
 }
 
+/* what contact that follows the steps asks for */
+static double longest_step(const struct dopri5 *self, double t, const double *x) {
+    const struct cs_host *host = self->host;
+    const double *v = x + 3 * (size_t)host->view->n;
+    return CS_HAS(host, longest_step) && host->longest_step
+               ? host->longest_step(host->ctx, t, x, v)
+               : HUGE_VAL;
+}
+
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct dopri5 *self = object;
     const struct cs_host *host = self->host;
@@ -183,7 +192,8 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
         prepare(self, t, t1 - t, x);
         struct step_control *control = &self->control;
         control->h = control->h < dt_max ? control->h : dt_max;
-        const double h = cut(control->h, t1 - t);
+        const double most = longest_step(self, t, x);
+        const double h = cut(control->h < most ? control->h : most, t1 - t);
         /* a shorter step is lost in the rounding of t; NaN is refused too */
         if (!(h > 4 * DBL_EPSILON * t1))
             return host->fail(host->ctx, "the step fell to %.3g s at t = %.9g s", h, t);

@@ -77,6 +77,16 @@ enum cs_step sundials_restart(void *object, double t, const double *x, const dou
     return code < 0 ? sundials_fail(self, code, t) : CS_STEP_OK;
 }
 
+/* A library ends a step at its stop time, here also where contact asks for it: it would hear of
+ * a longest step only when it chooses the one after the next. */
+static int set_stop(const struct sundials *self, bool limited, double t, double t1,
+                    const double *x) {
+    const struct cs_host *host = self->host;
+    const double *v = x + 3 * (size_t)host->view->n;
+    const double most = limited ? host->longest_step(host->ctx, t, x, v) : HUGE_VAL;
+    return self->library->set_stop(self->memory, most < t1 - t ? t + most : t1);
+}
+
 enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v) {
     struct sundials *self = object;
     const struct cs_host *host = self->host;
@@ -84,7 +94,8 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
     sundials_wrap(self->state, x);
     self->status = CS_STEP_OK;
     self->message[0] = 0;
-    int code = library->set_stop(self->memory, t1);
+    const bool limited = !self->equal_steps && CS_HAS(host, longest_step) && host->longest_step;
+    int code = set_stop(self, limited, t0, t1, x);
     if (code < 0)
         return sundials_fail(self, code, t0);
     double t = t0;
@@ -103,7 +114,7 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
         if (changed && (code = library->moved(self, t, t - before)) < 0)
             return sundials_fail(self, code, t);
         // with its history a library can forget where to stop
-        if (changed && t < t1 && (code = library->set_stop(self->memory, t1)) < 0)
+        if ((changed || limited) && t < t1 && (code = set_stop(self, limited, t, t1, x)) < 0)
             return sundials_fail(self, code, t);
     }
     return CS_STEP_OK;

@@ -42,6 +42,7 @@ struct sundials {
     double linear_rtol;  /* relative residual of the linear solves */
     double *b;           /* (3,n), right-hand side of the reduced system */
     int64_t max_steps;   /* in a frame */
+    bool equal_steps;    /* without error control: no step is cut but to meet a frame */
     enum cs_step status; /* of the host's solver within the running call */
     char message[256];   /* the library's last */
 };

@@ -225,6 +225,11 @@ struct cs_host {
      * or less where it passes over contact that a step cannot see from where it begins. Then a
      * method takes the step back and takes a shorter one. */
     double (*max_share)(void *ctx, double t0, const double *x0, double t1, const double *x1);
+
+    /* [advance] Only where contact follows each step in commit (contact by projection), else
+     * NULL; and not in hosts whose size ends before it. For methods that choose their step: the
+     * longest in s from (x, v) at t that leaves contact little to undo. HUGE_VAL: any does. */
+    double (*longest_step)(void *ctx, double t, const double *x, const double *v);
 };
 
 /* What only the method can count. */

@@ -225,6 +225,30 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     return error->status;
 }
 
+static double host_longest_step(void *ctx, double t, const double *x, const double *v) {
+    struct cs_run_host *host = ctx;
+    struct cs_contact *contact = &host->contact;
+    const double begin = stage_begin(host);
+    move_values(host, t);
+    cs_obstacles_at(contact->system, t, contact->obstacles);
+    const double step = cs_reach_step(contact->system, contact->obstacles, host->reach, x, v);
+    stage_end(host, CS_STAGE_CONTACT, begin);
+    return step;
+}
+
+static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
+    const struct cs_system *system = host->run->system;
+    if (!system->plan.rows[CS_FEATURE_CONTACT].built)
+        return CS_OK;
+    if (cs_contact_init(&host->contact, system, &host->arena, error))
+        return error->status;
+    cs_contact_keep(&host->contact, host->run->x, host->run->v, false);
+    host->reach = cs_reach_depth(system);
+    if (host->reach < HUGE_VAL)
+        host->calls.longest_step = host_longest_step;
+    return CS_OK;
+}
+
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
     const double begin = stage_begin(host);
@@ -326,13 +350,8 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .commit = host_commit,
     };
     cs_bound_set(&host->bound, system, 0);
-    if (add_rate(host, error))
+    if (add_rate(host, error) || add_contact(host, error))
         return error->status;
-    if (system->plan.rows[CS_FEATURE_CONTACT].built) {
-        if (cs_contact_init(&host->contact, system, &host->arena, error))
-            return error->status;
-        cs_contact_keep(&host->contact, run->x, run->v, false);
-    }
     // only methods that solve pay for the solver's memory and the copies of the state
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;

@@ -3,6 +3,7 @@
 #define CS_HOST_H
 
 #include "model/commit/contact.h"
+#include "model/commit/reach.h"
 #include "model/event/events.h"
 #include "model/solver/linear.h"
 #include "sim/bound.h"
@@ -19,7 +20,8 @@ struct cs_run_host {
     double *rate_work;         /* (2n); NULL where no force has bounds at a state alone */
     bool clamped;              /* the matrix in use is positive definite by construction */
     struct cs_contact contact; /* only with contact by projection */
-    bool creating;             /* the method may take memory */
+    double reach;  /* m, to which a step may go behind a surface, of contact by projection */
+    bool creating; /* the method may take memory */
     struct cs_run_settings settings;
     struct cs_budget budget;
     void *self;            /* the method's own */

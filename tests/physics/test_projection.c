@@ -130,6 +130,24 @@ static struct log drop(const char *method, double absorption, int fps, double se
     return log;
 }
 
+/* The longest step in s that a method takes of its own accord on the ball, by the bounds of its
+ * springs; the two of first order that add energy want h omega^2 / 2 below the damping of every
+ * mode, which is d / k times omega^2 / 2. */
+static double limit_of(const char *method) {
+    static const char *const bounded[] = {"symplectic-euler", "position-verlet",
+                                          "velocity-verlet", "rk4"};
+    struct fixture ball;
+    fixture_open(&ball, method, BALL, 5, 1.0, 60);
+    const double omega = ball.system->view.omega, delta = ball.system->view.delta;
+    fixture_close(&ball);
+    if (!strcmp(method, "explicit-euler") || !strcmp(method, "averaged-euler"))
+        return 0.1 * 0.02 / 400;
+    for (size_t k = 0; k < sizeof bounded / sizeof *bounded; k++)
+        if (!strcmp(method, bounded[k]))
+            return 1 / (omega + delta);
+    return HUGE_VAL;
+}
+
 static void check_drop(const char *method, double absorption, int fps) {
     const struct log log = drop(method, absorption, fps, 0.8);
     ck_assert_msg(log.largest <= 1.01 * 5.886, "%s, absorption %g, %d frames a second: %.4g J",
@@ -143,9 +161,12 @@ START_TEST(ball_gets_no_energy_from_the_floor) {
     static const double absorptions[] = {1, -0.6};
     for (int a = 0; a < 2; a++)
         for (int k = 0; k < STEPPED; k++)
-            for (int rate = 240; rate <= 960; rate *= 2) {
+            for (int rate = 240; rate <= 960; rate *= 4) {
                 char method[64];
-                snprintf(method, sizeof method, "%s:dt=%.17g", stepped[k], 1.0 / rate);
+                const double limit = limit_of(stepped[k]), h = fmin(1.0 / rate, limit);
+                if (limit < 1.0 / rate && rate < 960)
+                    continue; // the same as with the next
+                snprintf(method, sizeof method, "%s:dt=%.17g", stepped[k], h);
                 check_drop(method, absorptions[a], 60);
             }
 }
