@@ -3,6 +3,7 @@
 #include "cli/print.h"
 #include "io/scene_write.h"
 #include "model/plan.h"
+#include "study/company.h"
 #include "study/session.h"
 
 #include <string.h>
@@ -40,7 +41,8 @@ static void add_count(struct cs_text *out, const char *before, uint32_t n, const
 }
 
 /* FILE: ok, 4096 particles, ... */
-static void add_verdict(const struct cs_session *session, struct cs_text *out) {
+static enum cs_status add_verdict(const struct cs_session *session, struct cs_text *out,
+                                  struct cs_error *error) {
     const struct cs_scene *scene = &session->scene;
     const struct cs_plan *plan = &session->plan;
     cs_text_add(out, "%s: ok, ", scene->path);
@@ -50,6 +52,11 @@ static void add_verdict(const struct cs_session *session, struct cs_text *out) {
     add_count(out, ", ", plan->n_springs, "spring");
     add_count(out, ", ", scene->colliders.n, "collider");
     cs_text_add(out, ", %s\n", session->method.integrator->name);
+    struct cs_text warning = {0};
+    if (!cs_company_print(scene, 1, &warning, error) && warning.length)
+        cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
+    cs_text_finish(&warning);
+    return error->status;
 }
 
 /* What was decided, and what it came to once the method had taken its own. */
@@ -71,8 +78,10 @@ static enum cs_status print_scene(struct cs_args *args, const struct cs_session 
         cs_scene_print(&session->scene, &session->method.table, session->method.options, 0,
                        &out);
         cs_text_add(&out, "\n");
-    } else
-        add_verdict(session, &out);
+    } else if (add_verdict(session, &out, error)) {
+        cs_text_finish(&out);
+        return error->status;
+    }
     return cs_print_out(stdout, &out, error);
 }
 
@@ -91,7 +100,10 @@ static enum cs_status open_scene(struct cs_args *args, struct cs_error *error) {
     enum cs_status (*const open)(struct cs_session *, const struct cs_session_settings *,
                                  struct cs_error *) =
         cs_args_get(args, SCENE_PLAN) ? cs_session_open : cs_session_open_plan;
-    if (!open(&session, &settings, error))
+    /* what starts inside a collider shows in a system alone */
+    if (!open(&session, &settings, error) &&
+        (session.scene.colliders.n == 0 || session.system.arena.used ||
+         !cs_session_build(&session, error)))
         print_scene(args, &session, error);
     cs_session_close(&session);
     return error->status;

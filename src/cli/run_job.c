@@ -10,6 +10,7 @@
 #include "cli/run_output.h"
 #include "io/scene_hash.h"
 #include "io/scene_write.h"
+#include "study/company.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -274,8 +275,10 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (cs_session_open(&job->session, &settings->session, error) || describe(job, error) ||
         check_outputs(settings, error) || open_outputs(job, error))
         return error->status;
-    job->frames =
-        settings->frames ? settings->frames : frames_of_one_second(&job->session.scene);
+    const struct cs_scene *scene = &job->session.scene;
+    job->frames = settings->frames ? settings->frames : frames_of_one_second(scene);
+    if (cs_company_print(scene, job->frames / scene->time.fps, &job->warning, error))
+        return error->status;
 
     /* the start has a state and a hash but no picture */
     const uint32_t n = job->session.system.view.n;
@@ -298,6 +301,7 @@ void cs_job_finish(struct cs_job *job) {
     cs_frames_destroy(job->writer);
     cs_session_close(&job->session);
     cs_text_finish(&job->scene);
+    cs_text_finish(&job->warning);
     cs_text_finish(&job->method);
     cs_text_finish(&job->renderer);
     cs_text_finish(&job->watch_rows);

@@ -47,6 +47,7 @@ struct cs_job {
     struct cs_watch watch;           /* is it still sound */
     struct cs_text watch_rows;       /* CSV; empty unless asked for */
     struct cs_text scene;            /* the resolved scene, indented by two */
+    struct cs_text warning;          /* about bodies that nothing keeps apart; mostly empty */
     struct cs_text method;           /* "NAME:key=value,..." with every option */
     struct cs_text renderer;         /* description; empty unless pictures are drawn */
     char scene_hash[CS_HASH_DIGITS]; /* see io/scene_hash.h */

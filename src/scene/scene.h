@@ -173,9 +173,11 @@ struct cs_collider {
 };
 
 enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
+enum cs_contact_start { CS_CONTACT_START_REFUSE, CS_CONTACT_START_MOVE_OUT };
 /* between particles and all colliders */
 struct cs_contact_keys {
-    int32_t law; /* enum cs_contact_law */
+    int32_t law;   /* enum cs_contact_law */
+    int32_t start; /* enum cs_contact_start, of what starts inside a collider */
     /* of the law force: */
     double stiffness;      /* N/m a particle; NAN: that of the softest body's stretch springs */
     double damping;        /* s, times the stiffness of the contact: N s/m */

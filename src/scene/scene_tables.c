@@ -232,10 +232,14 @@ static const struct cs_table collider_table = {
     ROWS(collider_rows), .size = sizeof(struct cs_collider), .one_of = true};
 
 static const char *const contact_names[] = {"project", "force", NULL};
+static const char *const inside_names[] = {"refuse", "move-out", NULL};
 static const struct cs_option contact_rows[] = {
     CHOICE(struct cs_contact_keys, law, contact_names, CS_CONTACT_PROJECT,
            "project: after each step what is inside a collider is put on its surface; force: "
            "a force between surfaces that come near, part of the equation of motion"),
+    CHOICE(struct cs_contact_keys, start, inside_names, CS_CONTACT_START_REFUSE,
+           "a particle that starts inside a collider: refuse the scene, or move it out first, "
+           "which the report then says"),
     REAL(struct cs_contact_keys, stiffness, "N/m", ABSENT, 1e-9, 1e12,
          "of force, for each particle; absent: springs.stretch of the softest body that has "
          "such springs"),

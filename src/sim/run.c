@@ -7,6 +7,8 @@
 #include "sim/host.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -138,6 +140,15 @@ size_t cs_run_bytes(const struct cs_run *run) {
     const struct cs_system *system = run->system;
     return system->arena.used + system->plan.rows[CS_FEATURE_MESHES].bytes +
            run->host->arena.used;
+}
+
+void cs_run_note(struct cs_run *run, const char *format, ...) {
+    char message[sizeof run->notes[0]];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    run->host->calls.note(run->host, "%s", message);
 }
 
 void cs_run_finish(struct cs_run *run) {

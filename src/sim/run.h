@@ -40,6 +40,9 @@ void cs_run_goals(const struct cs_run *run, double *g);
  * not in it. */
 size_t cs_run_bytes(const struct cs_run *run);
 
+/* Adds a remark to the report, as the method's own calls of note do. */
+void cs_run_note(struct cs_run *run, const char *format, ...) CS_PRINTF(2, 3);
+
 void cs_run_finish(struct cs_run *run);
 
 #endif

@@ -142,8 +142,9 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     cs_run_finish(&session->run);
     cs_system_finish(&session->system);
     struct cs_error said = {0};
-    // what only the built springs tell is a fault of the scene too
-    if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
+    // what only the built system tells is a fault of the scene too
+    if (cs_system_build(&session->system, &session->scene, &session->plan, &said) ||
+        cs_inside_clear(&session->system, &session->inside, &said))
         return said.status == CS_ERR_SCENE
                    ? cs_fail(error, said.status, "%s: %s", session->scene.path, said.message)
                    : cs_fail(error, said.status, "%s", said.message);
@@ -158,8 +159,15 @@ enum cs_status cs_session_begin(struct cs_session *session, const double *start,
     cs_run_finish(&session->run);
     if (start)
         memcpy(system->state, start, 6 * (size_t)system->view.n * sizeof *start);
-    return cs_run_begin(&session->run, system, session->method.integrator,
-                        session->method.options, &session->settings.run, error);
+    const struct cs_inside *inside = &session->inside;
+    if (!cs_run_begin(&session->run, system, session->method.integrator,
+                      session->method.options, &session->settings.run, error) &&
+        inside->n && !start)
+        cs_run_note(&session->run,
+                    "%u particle%s started inside colliders, moved out by at "
+                    "most %.3g m",
+                    inside->n, inside->n == 1 ? "" : "s", inside->depth);
+    return error->status;
 }
 
 enum cs_status cs_session_open_plan(struct cs_session *session,

@@ -6,6 +6,7 @@
 #define CS_SESSION_H
 
 #include "io/scene_read.h"
+#include "model/commit/inside.h"
 #include "sim/method.h"
 #include "sim/run.h"
 
@@ -52,6 +53,7 @@ struct cs_session {
     struct cs_method method;
     struct cs_plan plan;
     struct cs_system system;
+    struct cs_inside inside; /* what was moved out of obstacles when the system was built */
     struct cs_run run;
     bool pooled; /* started threads */
 };

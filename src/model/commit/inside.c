@@ -1,0 +1,79 @@
+/* inside.c - what starts inside an obstacle is refused, or moved out once. */
+#include "model/commit/inside.h"
+
+#include "model/contact/obstacle.h"
+
+#include <math.h>
+
+/* m: particles put on a surface by the scene's numbers are not inside */
+#define TOLERANCE 1e-9
+enum { PASSES = 16 };
+
+/* the obstacle that p is deepest in, its normal n and the depth; NULL: none */
+static bool find(const struct cs_system *system, const double p[3], uint32_t *collider,
+                 double n[3], double *depth) {
+    *depth = TOLERANCE;
+    bool found = false;
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        struct cs_obstacle obstacle;
+        double normal[3];
+        cs_obstacle_at(system, k, 0, &obstacle);
+        const double gap = system->scene->contact.law == CS_CONTACT_PROJECT
+                               ? cs_obstacle_gap(&obstacle, p, normal)
+                               : cs_obstacle_distance(&obstacle, p, normal);
+        if (!(-gap > *depth))
+            continue;
+        *depth = -gap;
+        *collider = k;
+        for (int c = 0; c < 3; c++)
+            n[c] = normal[c];
+        found = true;
+    }
+    return found;
+}
+
+static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_t collider,
+                             double depth, struct cs_error *error) {
+    struct cs_text text = {0};
+    const bool asked = system->scene->contact.start == CS_CONTACT_START_MOVE_OUT;
+    cs_system_print_particle(system, i, &text);
+    cs_fail(error, CS_ERR_SCENE, "%s: %s starts %.3g m inside colliders[%u]%s",
+            system->scene->path, cs_text_get(&text), depth, collider,
+            asked ? ", and another leaves it no way out"
+                  : ": place it in front, or set contact.start to \"move-out\"");
+    cs_text_finish(&text);
+    return error->status;
+}
+
+static enum cs_status clear(struct cs_system *system, uint32_t i, struct cs_inside *inside,
+                            struct cs_error *error) {
+    const size_t size = system->view.n;
+    double *x = system->state;
+    double p[3] = {x[i], x[size + i], x[2 * size + i]}, n[3], depth, moved = 0;
+    uint32_t collider = 0;
+    for (int pass = 0; find(system, p, &collider, n, &depth); pass++) {
+        if (pass == PASSES || system->scene->contact.start == CS_CONTACT_START_REFUSE)
+            return refuse(system, i, collider, depth, error);
+        for (int c = 0; c < 3; c++)
+            p[c] += depth * n[c];
+        moved += depth;
+    }
+    if (moved == 0)
+        return CS_OK;
+    for (size_t c = 0; c < 3; c++)
+        x[c * size + i] = p[c];
+    inside->n++;
+    inside->depth = fmax(inside->depth, moved);
+    return CS_OK;
+}
+
+enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *inside,
+                               struct cs_error *error) {
+    *inside = (struct cs_inside){0};
+    if (system->scene->colliders.n == 0)
+        return CS_OK;
+    for (uint32_t i = 0; i < system->view.n && !error->status; i++)
+        if (system->inv_mass[i] > 0)
+            clear(system, i, inside, error);
+    return error->status;
+}

@@ -1,0 +1,20 @@
+/* inside.h - particles that start inside an obstacle. */
+#ifndef CS_INSIDE_H
+#define CS_INSIDE_H
+
+#include "model/system/system.h"
+
+struct cs_inside {
+    uint32_t n;   /* particles that were moved out */
+    double depth; /* m, the furthest of them */
+};
+
+/* Looks at every free particle of the state that a system starts from. One that is inside an
+ * obstacle - by the law project: behind its surface moved out by the thickness - would get the
+ * energy of its way out from nowhere. By contact.start it is moved out along the normals,
+ * and *inside says so; or CS_ERR_SCENE with the first particle, the obstacle and the depth, as
+ * also where a particle lies between obstacles that leave no room. */
+enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *inside,
+                               struct cs_error *error);
+
+#endif
