@@ -15,7 +15,8 @@
     ", \"forces\": {\"drag\": 0.01, \"wind\": {\"direction\": [0, 0, 1], \"strength\": 2}}"
 #define COLLIDERS                                                                              \
     ", \"colliders\": [{\"floor\": {\"height\": -0.45}, \"friction\": 0.3},"                   \
-    " {\"sphere\": {\"centre\": [0, 0, -0.3], \"radius\": 0.25}}]"
+    " {\"sphere\": {\"centre\": [0, 0, -0.3], \"radius\": 0.25}}], \"contact\": "              \
+    "{\"start\": \"move-out\"}"
 
 /* methods that ask for nothing, for the solver, and for own blocks */
 static const char *const methods[] = {"symplectic-euler", "velocity-verlet",

@@ -25,7 +25,8 @@
     " \"pins\": [3, 500]}"
 #define SCENE                                                                                  \
     "{\"bodies\": [" BODIES "], \"colliders\": [{\"floor\": {\"height\": -1}}, {\"sphere\":"   \
-    " {\"centre\": [0.3, -0.2, 0.1], \"radius\": 0.15}}], \"forces\": {\"drag\": 0.1,"         \
+    " {\"centre\": [0.3, -0.2, 0.1], \"radius\": 0.15}}], \"contact\": {\"start\": "           \
+    "\"move-out\"}, \"forces\": {\"drag\": 0.1,"                                               \
     " \"drag_unit\": \"Pa s/m\", \"velocity_loss\": 0.001, \"wind\": {\"direction\":"          \
     " [0.3, 0, 1], \"strength\": 2}}, \"time\": {\"fps\": 200}, \"events\": [{\"from\":"       \
     " 0.001, \"to\": 0.007, \"impact\": {\"direction\": [1, 0, 1], \"impulse\": 0.1}}]}"
