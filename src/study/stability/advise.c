@@ -1,6 +1,7 @@
 /* Finds a safe step for each method from linear theory, and confirms it by runs. */
 #include "study/stability/advise.h"
 
+#include "study/stability/contact_line.h"
 #include "study/workers.h"
 
 #include <math.h>
@@ -102,6 +103,7 @@ static enum cs_status advise_fixed(struct cs_advice *row,
                  reference.message);
         return CS_OK;
     }
+    row->speed = reference.trial.speed;
     row->limit = row->theory = reference.worst.dt;
     row->mode = reference.worst.mode;
     /* theory knows no limit */
@@ -245,6 +247,10 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
     else
         cs_text_add(out, " swings at %.4g /s, damped at %.3g /s", sqrt(fmax(mode->square, 0)),
                     mode->rate);
+    // the bounds of the view do not hold contact
+    if (mode->rate > 2 * system->view.delta ||
+        mode->square > system->view.omega * system->view.omega)
+        cs_text_add(out, " by contact");
     if (spring.stiffness > 0)
         cs_text_add(out, ": %.3g kg on %s springs of %.4g N/m", system->mass[mode->particle],
                     kinds[spring.kind], spring.stiffness);
@@ -289,7 +295,20 @@ static void add_number(struct cs_text *out, double value, int width) {
         cs_text_add(out, "%*s", width, "-");
 }
 
+static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
+    const struct cs_system *system = &advise->opened.system;
+    double speed = 0;
+    for (uint32_t k = 0; k < advise->n; k++)
+        speed = fmax(speed, advise->rows[k].speed);
+    if (!system->scene->colliders.n)
+        return;
+    cs_contact_line_add(system->scene, "", out);
+    cs_text_add(out, "\n");
+    cs_contact_line_add_crossing(system, speed, out);
+}
+
 void cs_advise_print(const struct cs_advise *advise, struct cs_text *out) {
+    add_contact(advise, out);
     cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",
                 advise->check ? "   found [s]" : "", "steps/frame", "ms a frame");
     for (uint32_t k = 0; k < advise->n; k++) {

@@ -22,6 +22,7 @@ struct cs_advice {
     struct cs_mode mode;      /* that limits it, where theory has a limit */
     enum cs_fate verdict;     /* of a run with the safe step */
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
+    double speed;             /* m/s, largest of a particle in the trusted run; 0: none */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
     char message[320];
 };

@@ -64,7 +64,8 @@ static void apply(struct cs_modes *modes, const double *x, double a, double b, c
         dv[i] = b * dx[i];
         dx[i] *= a;
     }
-    const struct cs_eval at = {.x = x,
+    const struct cs_eval at = {.t = modes->t,
+                               .x = x,
                                .v = modes->zero,
                                .parts = CS_PART_LINEARISED,
                                .dx = a != 0 ? dx : NULL,

@@ -1,6 +1,7 @@
 /* modes.h - the stiffest modes of a system, which limit the step: frequency and damping.
  *
- * With K = -df/dx and C = -df/dv of springs, dampers and drag at one state, and p of length 1
+ * With K = -df/dx and C = -df/dv of springs, dampers, drag and contact by force at
+ * one state, with every velocity 0 (friction as of what rests), and p of length 1
  * in the masses (p^T M p = 1), a motion along p swings with square = p^T K p and is damped at
  * rate = p^T C p, as in s'' + rate s' + square s = 0.
  */
@@ -19,6 +20,7 @@ struct cs_mode {
 /* Memory of the search; zeroed: empty. */
 struct cs_modes {
     const struct cs_system *system; /* borrowed */
+    double t;                       /* s, at which forces are taken */
     double *basis;                  /* (CS_MODES_BASIS + 1, 3n) */
     double *dx, *dv, *zero;         /* (3,n) each: arguments of the products */
     double *root;                   /* (n) root of 1/m */

@@ -19,8 +19,12 @@ struct way {
 static void look(void *ctx, const struct cs_run *run, const struct cs_energy *energy) {
     struct way *way = ctx;
     (void)energy;
-    if (way->theory && !way->error->status)
-        cs_theory_lower(way->theory, run->x, &way->reference->worst, way->error);
+    if (!way->theory || way->error->status)
+        return;
+    // of the run: its obstacles move, and its ramps go on
+    way->theory->modes.system = run->system;
+    way->theory->modes.t = run->t;
+    cs_theory_lower(way->theory, run->x, &way->reference->worst, way->error);
 }
 
 /* one run; false: it was not stable by what it can be judged without a reference */

@@ -2,6 +2,8 @@
  * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
 #include "study/stability/stability_report.h"
 
+#include "study/stability/contact_line.h"
+
 #include <math.h>
 
 /* --- text --- */
@@ -99,9 +101,11 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
 
 void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
     const struct cs_stability_settings *settings = map->settings;
-    cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]\n\n",
-                map->integrator->name, map->session.scene.path, settings->seconds,
-                cs_axis_names[settings->axis], cs_axis_unit(settings->axis));
+    cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]", map->integrator->name,
+                map->session.scene.path, settings->seconds, cs_axis_names[settings->axis],
+                cs_axis_unit(settings->axis));
+    cs_contact_line_add(&map->session.scene, "; ", out);
+    cs_text_add(out, "\n\n");
     cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
     for (uint32_t c = 0; c < map->n_columns; c++)
         cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].value);

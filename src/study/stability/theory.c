@@ -98,6 +98,18 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
     return error->status;
 }
 
+/* Friction comes and goes with contact, and no turning from a motion that swings leads to one
+ * that is only damped: the fastest of those is searched by itself. */
+static enum cs_status consider_friction(struct cs_theory *theory, const double *x,
+                                        struct cs_theory_limit *limit, struct cs_error *error) {
+    if (!theory->modes.system->pairings)
+        return CS_OK;
+    theory->modes.warm = false;
+    const struct cs_mode mode = cs_modes_largest(&theory->modes, x, 0, 1);
+    theory->modes.warm = false;
+    return consider(theory, &mode, limit, error);
+}
+
 enum cs_status cs_theory_lower(struct cs_theory *theory, const double *x,
                                struct cs_theory_limit *limit, struct cs_error *error) {
     if (!has_limit(limit))
@@ -107,5 +119,5 @@ enum cs_status cs_theory_lower(struct cs_theory *theory, const double *x,
     const double before = limit->dt;
     if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
         turn(theory, limit, error);
-    return error->status;
+    return error->status ? error->status : consider_friction(theory, x, limit, error);
 }
