@@ -143,11 +143,12 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     cs_system_finish(&session->system);
     struct cs_error said = {0};
     // what only the built system tells is a fault of the scene too
-    if (cs_system_build(&session->system, &session->scene, &session->plan, &said) ||
-        cs_inside_clear(&session->system, &session->inside, &said))
+    if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
         return said.status == CS_ERR_SCENE
                    ? cs_fail(error, said.status, "%s: %s", session->scene.path, said.message)
                    : cs_fail(error, said.status, "%s", said.message);
+    if (cs_inside_clear(&session->system, &session->inside, error))
+        return error->status;
     if (session->settings.perturbation > 0)
         cs_perturb_random(&session->system, session->settings.perturbation, 0);
     return CS_OK;
