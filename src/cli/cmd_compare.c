@@ -219,8 +219,8 @@ const struct cs_command cs_command_compare = {
     .operands = "SCENE",
     .summary = "error against run time of integrators on a scene",
     .notes = "Rows are kept in compare.csv as they finish: an interrupted comparison goes on\n"
-             "when it is run again, and other methods are added to it. Contact, strain limit\n"
-             "and velocity loss are switched off; events stay.\n\n"
+             "when it is run again, and other methods are added to it. Contact by force and\n"
+             "events stay; contact by projection, strain limit and velocity loss are off.\n\n"
              "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
     .rows = rows,
     .n_rows = COMPARE_ROWS,
