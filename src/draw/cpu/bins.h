@@ -34,7 +34,7 @@ CS_INLINE void cs_bins_put(struct cs_bins *bins, uint32_t item, int top, int bot
 CS_INLINE const uint32_t *cs_bins_of(const struct cs_bins *bins, uint32_t band, size_t *n) {
     const size_t begin = band ? bins->ends[band - 1] : 0;
     *n = bins->failed ? 0 : bins->ends[band] - begin;
-    return bins->list + begin;
+    return *n ? bins->list + begin : NULL; // an empty picture has no list
 }
 
 void cs_bins_finish(struct cs_bins *bins);
