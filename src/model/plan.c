@@ -158,8 +158,8 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "one does all the work");
 }
 
-enum cs_status cs_plan_check(const struct cs_scene *scene,
-                             const struct cs_integrator *method, struct cs_error *error) {
+enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
+                             struct cs_error *error) {
     const uint32_t matched = cs_scene_first_matched(scene);
     if (matched < scene->bodies.n && !(method->needs & CS_NEED_CLUSTERS))
         return cs_fail(error, CS_ERR_SCENE,
@@ -174,11 +174,12 @@ enum cs_status cs_plan_check(const struct cs_scene *scene,
                        method->name);
     if (scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n > 0 &&
         method->traits & CS_EXPLICIT_OUTER)
-        return cs_fail(error, CS_ERR_SCENE,
-                       "contact.law: integrator \"%s\" takes contact as it is where a step "
-                       "begins and cannot follow a force as stiff; expected project, or another "
-                       "integrator",
-                       method->name);
+        return cs_fail(
+            error, CS_ERR_SCENE,
+            "contact.law: integrator \"%s\" takes contact as it is where a step "
+            "begins and cannot follow a force as stiff; expected project, or another "
+            "integrator",
+            method->name);
     return CS_OK;
 }
 

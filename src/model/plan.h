@@ -16,8 +16,8 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
 /* Whether a method can follow the scene: shape matching is no force law, and a
  * method that is made for it has nothing to do without; and contact by force is stiff. The
  * message starts with the JSON path. CS_ERR_SCENE. */
-enum cs_status cs_plan_check(const struct cs_scene *scene,
-                             const struct cs_integrator *method, struct cs_error *error);
+enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
+                             struct cs_error *error);
 
 /* Prints it as aligned text, one feature a line. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);

@@ -241,7 +241,8 @@ static enum cs_status check_render(const struct place *at, const struct cs_rende
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {
     const struct place at = {path_out, error};
     path_out[0] = 0;
-    if (check_bodies(&at, scene) || check_colliders(&at, scene) || (scene->forces.wind.present &&
+    if (check_bodies(&at, scene) || check_colliders(&at, scene) ||
+        (scene->forces.wind.present &&
          make_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||
         check_render(&at, &scene->render) || cs_events_check(scene, path_out, error))

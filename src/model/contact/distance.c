@@ -8,15 +8,13 @@
  */
 #include "model/contact/obstacle.h"
 
+#include "base/vec3.h"
+
 #include <math.h>
 #include <string.h>
 
 /* share of the radius over which the core's features are blended, to both sides */
 #define BAND 0.5
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 void cs_soft_part(double t, double e, double out[3]) {
     if (t >= e || t <= -e) {
@@ -58,7 +56,7 @@ static void to_own(const struct cs_obstacle *obstacle, const double p[3], double
     const double from[3] = {p[0] - obstacle->centre[0], p[1] - obstacle->centre[1],
                             p[2] - obstacle->centre[2]};
     for (int k = 0; k < 3; k++)
-        x[k] = dot(obstacle->axes[k], from);
+        x[k] = cs_vec3_dot(obstacle->axes[k], from);
 }
 
 /* a vector of the own frame in that of the world */
@@ -137,7 +135,7 @@ static double smooth_own(const struct cs_obstacle *obstacle, const double x[3], 
         slope[k] = none ? 1 : soft[1];
         bend[k] = none ? 0 : copysign(soft[2], x[k]);
     }
-    const double length = sqrt(dot(q, q)), per_length = length > 0 ? 1 / length : 0;
+    const double length = sqrt(cs_vec3_dot(q, q)), per_length = length > 0 ? 1 / length : 0;
     for (int k = 0; k < 3; k++)
         g[k] = q[k] * per_length * slope[k];
     for (int i = 0; i < 3; i++)

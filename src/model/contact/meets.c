@@ -6,18 +6,16 @@
  */
 #include "model/contact/obstacle.h"
 
-#include <math.h>
+#include "base/vec3.h"
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include <math.h>
 
 /* the line comes nearer to the centre than the radius */
 static bool meets_sphere(const struct cs_obstacle *sphere, const double from[3],
                          const double way[3], double share) {
     const double to[3] = {sphere->centre[0] - from[0], sphere->centre[1] - from[1],
                           sphere->centre[2] - from[2]};
-    const double at = fmin(fmax(dot(to, way) / dot(way, way), 0), share);
+    const double at = fmin(fmax(cs_vec3_dot(to, way) / cs_vec3_dot(way, way), 0), share);
     double squared = 0;
     for (int c = 0; c < 3; c++)
         squared += (at * way[c] - to[c]) * (at * way[c] - to[c]);
@@ -31,7 +29,7 @@ static bool meets_plane(const struct cs_obstacle *plane, const double from[3],
     double distance = 0;
     for (int c = 0; c < 3; c++)
         distance += normal[c] * (from[c] - plane->centre[c]);
-    return distance < 0 || distance + share * dot(normal, way) < 0;
+    return distance < 0 || distance + share * cs_vec3_dot(normal, way) < 0;
 }
 
 /* a line in the obstacle's own frame */
@@ -100,8 +98,8 @@ bool cs_obstacle_meets_line(const struct cs_obstacle *obstacle, const double fro
                              from[2] - obstacle->centre[2]};
     struct line line = {.core = obstacle->core};
     for (int k = 0; k < 3; k++) {
-        line.from[k] = dot(obstacle->axes[k], shift);
-        line.way[k] = dot(obstacle->axes[k], way);
+        line.from[k] = cs_vec3_dot(obstacle->axes[k], shift);
+        line.way[k] = cs_vec3_dot(obstacle->axes[k], way);
     }
     return least_squared(&line, share) < obstacle->radius * obstacle->radius;
 }

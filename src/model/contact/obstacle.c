@@ -2,34 +2,19 @@
 #include "model/contact/obstacle.h"
 
 #include "base/sine.h"
+#include "base/vec3.h"
 #include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void normalise(double a[3]) {
-    const double length = sqrt(dot(a, a));
-    for (int c = 0; c < 3; c++)
-        a[c] /= length;
-}
-
 /* axes[1] is there; the others at right angles to it, right-handed */
 static void complete_axes(double axes[3][3]) {
     const double *along = axes[1];
     const double other[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
-    cross(other, along, axes[2]);
-    normalise(axes[2]);
-    cross(along, axes[2], axes[0]);
+    cs_vec3_cross(other, along, axes[2]);
+    cs_vec3_normalise(axes[2]);
+    cs_vec3_cross(along, axes[2], axes[0]);
 }
 
 static void pose_plane(struct cs_obstacle *out, const double point[3], const double normal[3]) {
@@ -59,8 +44,8 @@ static void pose_capsule(struct cs_obstacle *out, const struct cs_capsule *capsu
         out->centre[c] = 0.5 * (capsule->from[c] + capsule->to[c]);
         out->axes[1][c] = capsule->to[c] - capsule->from[c];
     }
-    out->core[1] = 0.5 * sqrt(dot(out->axes[1], out->axes[1]));
-    normalise(out->axes[1]);
+    out->core[1] = 0.5 * sqrt(cs_vec3_dot(out->axes[1], out->axes[1]));
+    cs_vec3_normalise(out->axes[1]);
     complete_axes(out->axes);
 }
 
@@ -92,7 +77,8 @@ static void multiply(const double a[9], const double b[9], double out[9]) {
 }
 
 void cs_obstacle_turn(const struct cs_obstacle_motion *motion, double t, double turn[9]) {
-    const double speed = sqrt(dot(motion->spin, motion->spin)), time = t - motion->since;
+    const double speed = sqrt(cs_vec3_dot(motion->spin, motion->spin)),
+                 time = t - motion->since;
     memcpy(turn, motion->turn, sizeof motion->turn);
     if (speed == 0)
         return;
@@ -136,7 +122,7 @@ static void move(struct cs_obstacle *out, const struct cs_obstacle_motion *motio
     for (int k = 0; k < 3 && is_turned(turn); k++) {
         const double axis[3] = {out->axes[k][0], out->axes[k][1], out->axes[k][2]};
         for (int c = 0; c < 3; c++)
-            out->axes[k][c] = dot(turn + 3 * (size_t)c, axis);
+            out->axes[k][c] = cs_vec3_dot(turn + 3 * (size_t)c, axis);
     }
     for (int c = 0; c < 3; c++) {
         out->centre[c] += shift[c];
@@ -163,7 +149,7 @@ void cs_obstacle_velocity(const struct cs_obstacle *obstacle, const double p[3],
     const double arm[3] = {p[0] - obstacle->pivot[0], p[1] - obstacle->pivot[1],
                            p[2] - obstacle->pivot[2]};
     double turned[3];
-    cross(w, arm, turned);
+    cs_vec3_cross(w, arm, turned);
     for (int c = 0; c < 3; c++)
         v[c] = obstacle->velocity[c] + turned[c];
 }

@@ -3,6 +3,7 @@
 #include "model/event/sight.h"
 
 #include "base/sine.h"
+#include "base/vec3.h"
 #include "model/contact/obstacle.h"
 #include "model/system/faces.h"
 
@@ -22,22 +23,6 @@ static inline double most(double a, double b) {
     return a > b ? a : b;
 }
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void normalise(double a[3]) {
-    const double length = sqrt(dot(a, a));
-    for (int c = 0; c < 3; c++)
-        a[c] /= length;
-}
-
 void cs_sight_make(struct cs_sight *sight, const struct cs_prod *prod) {
     const struct cs_viewpoint *from = &prod->viewpoint;
     const double slope =
@@ -48,10 +33,10 @@ void cs_sight_make(struct cs_sight *sight, const struct cs_prod *prod) {
         sight->eye[c] = from->eye[c];
         axes[2][c] = from->target[c] - from->eye[c];
     }
-    normalise(axes[2]);
-    cross(axes[2], from->up, axes[0]);
-    normalise(axes[0]);
-    cross(axes[0], axes[2], axes[1]);
+    cs_vec3_normalise(axes[2]);
+    cs_vec3_cross(axes[2], from->up, axes[0]);
+    cs_vec3_normalise(axes[0]);
+    cs_vec3_cross(axes[0], axes[2], axes[1]);
     sight->low[0] = (2 * rectangle[0] - 1) * (slope * from->aspect);
     sight->high[0] = (2 * rectangle[2] - 1) * (slope * from->aspect);
     sight->low[1] = (1 - 2 * rectangle[3]) * slope;
@@ -92,7 +77,7 @@ static void turn_places(const struct cs_sight *sight, const struct cs_sight_work
         const double from[3] = {x[i] - sight->eye[0], x[n + i] - sight->eye[1],
                                 x[2 * n + i] - sight->eye[2]};
         for (size_t c = 0; c < 3; c++)
-            work->places[c * n + i] = dot(sight->axes[c], from);
+            work->places[c * n + i] = cs_vec3_dot(sight->axes[c], from);
     }
 }
 
@@ -223,8 +208,8 @@ static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
 static bool hides(const struct face *face, const double p[3]) {
     if (p[2] <= face->nearest)
         return false;
-    const double a = dot(face->sides[0], p), b = dot(face->sides[1], p),
-                 c = dot(face->sides[2], p);
+    const double a = cs_vec3_dot(face->sides[0], p), b = cs_vec3_dot(face->sides[1], p),
+                 c = cs_vec3_dot(face->sides[2], p);
     const double sum = a + b + c; /* the line meets the plane at volume / sum of its length */
     if (a >= 0 && b >= 0 && c >= 0)
         return face->volume > 0 && face->volume < REACH * sum;
@@ -257,8 +242,8 @@ static void hide_behind(struct grid *grid, const struct cs_body_range *body, uin
     if (!bound(grid, p, &face))
         return;
     for (int k = 0; k < 3; k++)
-        cross(p[k], p[(k + 1) % 3], face.sides[k]);
-    face.volume = dot(p[0], face.sides[1]);
+        cs_vec3_cross(p[k], p[(k + 1) % 3], face.sides[k]);
+    face.volume = cs_vec3_dot(p[0], face.sides[1]);
     for (uint32_t row = face.from[1]; row <= face.to[1]; row++)
         for (uint32_t column = face.from[0]; column <= face.to[0]; column++)
             hide_cell(grid, &face, row * grid->cells + column);

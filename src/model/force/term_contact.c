@@ -1,7 +1,6 @@
 /* Contact with obstacles as a force: each particle feels the law of touch.h from each obstacle
  * whose range it is in. Particles touch one by one, so that the matrix has a block at each and
  * nothing between them. Obstacles come in the scene's order; that is the order of the sums. */
-#include "base/pool.h"
 #include "model/contact/obstacle.h"
 #include "model/contact/pairing.h"
 #include "model/contact/touch.h"

@@ -40,9 +40,8 @@ struct cs_system {
     const struct cs_term *terms[CS_TERMS_MOST]; /* the forces that this scene has */
     uint32_t n_terms;
     struct cs_obstacle_motion
-        *motions;             /* (scene->colliders.n); NULL where no event moves one */
-    const struct cs_pairing
-        *pairings;            /* (scene->colliders.n); NULL without contact by force */
+        *motions;                      /* (scene->colliders.n); NULL where no event moves one */
+    const struct cs_pairing *pairings; /* (scene->colliders.n); NULL without contact by force */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */
 };
