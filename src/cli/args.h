@@ -71,6 +71,11 @@ enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *va
 enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
                               const char *const *names, int *index, struct cs_error *error);
 
+/* The same of an option that may be given more than once: *set has the bit of each name given,
+ * and is left alone where there was none. */
+enum cs_status cs_args_choices(struct cs_args *args, uint32_t row, const char *const *names,
+                               uint32_t *set, struct cs_error *error);
+
 /* All PATH=VALUE of an option as overrides of a scene. */
 enum cs_status cs_args_overrides(struct cs_args *args, uint32_t row,
                                  const struct cs_override **overrides, uint32_t *n,

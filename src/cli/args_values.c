@@ -33,11 +33,9 @@ enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *va
     return CS_OK;
 }
 
-enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
-                              const char *const *names, int *index, struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    if (!text)
-        return CS_OK;
+/* *index = place of the text among the names */
+static enum cs_status find(const struct cs_args *args, uint32_t row, const char *const *names,
+                           const char *text, int *index, struct cs_error *error) {
     for (int i = 0; names[i]; i++)
         if (!strcmp(names[i], text)) {
             *index = i;
@@ -50,6 +48,29 @@ enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
             args->command->rows[row].name, cs_text_get(&list), text);
     cs_text_finish(&list);
     return error->status;
+}
+
+enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
+                              const char *const *names, int *index, struct cs_error *error) {
+    const char *text = cs_args_get(args, row);
+    return text ? find(args, row, names, text, index, error) : CS_OK;
+}
+
+enum cs_status cs_args_choices(struct cs_args *args, uint32_t row, const char *const *names,
+                               uint32_t *set, struct cs_error *error) {
+    const char *const *texts;
+    uint32_t n, found = 0;
+    if (cs_args_all(args, row, &texts, &n, error))
+        return error->status;
+    for (uint32_t i = 0; i < n; i++) {
+        int index = 0;
+        if (find(args, row, names, texts[i], &index, error))
+            return error->status;
+        found |= 1u << index;
+    }
+    if (found)
+        *set = found;
+    return CS_OK;
 }
 
 /* Splits PATH=VALUE; the copy lives in the arena. */

@@ -26,8 +26,8 @@ static const struct cs_arg rows[GOLDEN_ROWS] = {
     [GOLDEN_IMAGES] = {"images", 0, NULL, "images only", false},
     [GOLDEN_ONLY] = {"only", 0, "TEXT", "rows whose scene or integrator holds TEXT", false},
     [GOLDEN_FOLDER] = {"folder", 0, "DIR", "the golden folder (default: golden)", false},
-    [GOLDEN_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
-                         false},
+    [GOLDEN_RENDERER] = {"renderer", 0, "NAME",
+                         "cpu, osmesa, egl or auto (default: auto); may be repeated", true},
     [GOLDEN_THREADS] = {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",
                         false},
     [GOLDEN_QUIET] = {"quiet", 'q', NULL, "print only rows that differ, and the count", false},
@@ -53,12 +53,12 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
 }
 
 static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
-    int kind = CS_RENDERER_AUTO;
+    uint32_t renderers = 1u << CS_RENDERER_AUTO;
     const char *folder = cs_args_get(args, GOLDEN_FOLDER);
     const bool hashes = cs_args_get(args, GOLDEN_HASHES),
                images = cs_args_get(args, GOLDEN_IMAGES);
     uint32_t threads = 1;
-    if (cs_args_choice(args, GOLDEN_RENDERER, cs_renderer_names, &kind, error) ||
+    if (cs_args_choices(args, GOLDEN_RENDERER, cs_renderer_names, &renderers, error) ||
         cs_args_whole(args, GOLDEN_THREADS, 1, CS_POOL_MOST, &threads, error))
         return error->status;
     struct cs_golden check = {
@@ -68,7 +68,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
         .hashes = hashes || !images,
         .images = images || !hashes,
         .accept = cs_args_get(args, GOLDEN_ACCEPT),
-        .renderer = (enum cs_renderer_kind)kind,
+        .renderers = renderers,
         .threads = threads,
         .stop = cs_interrupt_catch(),
         .report = print_row,

@@ -17,12 +17,12 @@
     " \"springs\": {\"stretch\": 100, \"shear\": 30, \"bend\": 10, \"damping\": 0.02},"        \
     " \"pins\": [\"edges\"]}], \"forces\": {\"drag\": 1e-3}, \"time\": {\"fps\": 20}}"
 #define HANG                                                                                   \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [16, 16], \"size\": [1, 1], \"place\":"              \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [10, 10], \"size\": [1, 1], \"place\":"              \
     " {\"rotate\": [-0.38, 0, 0, 0.925]}}, \"mass\": {\"particle\": 0.0012}, \"springs\":"     \
     " {\"stretch\": 1000, \"shear\": 300, \"bend\": 5, \"damping\": 0.01},"                    \
     " \"pins\": [\"top-left\", \"top-right\"]}], \"forces\": {\"drag\": 1e-3}}"
 
-enum { FRAMES = 4, VALUES_MAX = 6 * 256 };
+enum { FRAMES = 3, VALUES_MAX = 6 * 256 };
 
 struct error {
     double place, speed; /* RMS in m and m/s */
@@ -68,7 +68,7 @@ START_TEST(errors_follow_the_tolerance) {
             char integrator[64];
             snprintf(integrator, sizeof integrator, "%srtol=%g", methods[k], tolerance);
             errors[i] = error_of(integrator);
-            ck_assert_msg(errors[i].place < 2 * tolerance && errors[i].speed < 60 * tolerance,
+            ck_assert_msg(errors[i].place < 2 * tolerance && errors[i].speed < 120 * tolerance,
                           "%s: errors %.3g m, %.3g m/s", integrator, errors[i].place,
                           errors[i].speed);
         }

@@ -6,8 +6,8 @@
 #include <string.h>
 
 enum {
-    FRAMES = 100
-}; /* ten seconds: a hundred periods of the fastest mode, 20 of the slowest */
+    FRAMES = 50
+}; /* five seconds: 50 periods of the fastest mode, 10 of the slowest */
 
 /* Runs to the end, turns all velocities round, and runs back. A symmetric method is at the
  * start again but for rounding. */
@@ -60,7 +60,7 @@ static double rest_energy(const struct cs_conform *card) {
 
 /* Without damping, energy may fall (many implicit methods) but not grow beyond what a step's
  * error makes of it; where the method is symplectic it stays near its start for good. The run
- * is thirty times as long as that of the tolerance: ten times the error are allowed there. */
+ * is about 17 times as long as that of the tolerance: ten times the error are allowed there. */
 void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     const bool both = method->traits & CS_SYMPLECTIC;
@@ -82,7 +82,7 @@ void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) 
         cs_row_fail(row, "%s", drum.error.message);
     else
         cs_row_state(row, worst, adaptive ? 10 * share : share,
-                     "of the motion's energy %s in ten seconds",
+                     "of the motion's energy %s in five seconds",
                      both ? "gained or lost at most" : "gained");
     cs_probe_close(&drum);
 }

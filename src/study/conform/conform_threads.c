@@ -41,7 +41,7 @@ static bool hash_with(uint32_t threads, const struct cs_conform *card,
 }
 
 void cs_check_threads(const struct cs_conform *card, struct cs_conform_row *row) {
-    static const uint32_t threads[] = {2, 3, 4, 7};
+    static const uint32_t threads[] = {2, 3, 7};
     char one[CS_HASH_DIGITS], several[CS_HASH_DIGITS];
     if (!hash_with(1, card, row, one))
         return;
@@ -51,5 +51,5 @@ void cs_check_threads(const struct cs_conform *card, struct cs_conform_row *row)
             return;
         differ += strcmp(one, several) != 0;
     }
-    cs_row_state(row, differ, 0, "of 4 numbers of threads with other bits than one has");
+    cs_row_state(row, differ, 0, "of 3 numbers of threads with other bits than one has");
 }

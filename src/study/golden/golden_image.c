@@ -19,26 +19,21 @@ static size_t bytes_of(const struct cs_image *image) {
     return 3 * (size_t)image->width * image->height;
 }
 
-static enum cs_status paint(const struct cs_golden *golden, const struct cs_golden_row *row,
+static enum cs_status paint(struct cs_session *session, enum cs_renderer_kind kind,
                             struct cs_image *image, struct cs_text *renderer,
                             struct cs_error *error) {
-    struct cs_session session;
     struct cs_picture picture;
-    if (cs_golden_step(golden, &row->run, true, &session, error))
-        return error->status;
-    image->width = (uint32_t)session.scene.render.size[0];
-    image->height = (uint32_t)session.scene.render.size[1];
+    image->width = (uint32_t)session->scene.render.size[0];
+    image->height = (uint32_t)session->scene.render.size[1];
     image->rgb = malloc(bytes_of(image));
-    if (!image->rgb) {
-        cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    } else if (!cs_picture_open(&picture, &session.system, golden->renderer, false, false,
-                                error)) {
-        cs_picture_begin(&picture, &session.run, image);
-        cs_picture_end(&picture, error);
-        cs_text_add(renderer, "%s", cs_picture_renderer(&picture));
-        cs_picture_close(&picture);
-    }
-    cs_session_close(&session);
+    if (!image->rgb)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    if (cs_picture_open(&picture, &session->system, kind, false, false, error))
+        return error->status;
+    cs_picture_begin(&picture, &session->run, image);
+    cs_picture_end(&picture, error);
+    cs_text_add(renderer, "%s", cs_picture_renderer(&picture));
+    cs_picture_close(&picture);
     return error->status;
 }
 
@@ -114,11 +109,12 @@ static enum cs_status bless(const struct cs_golden *golden, struct cs_golden_row
     return write_image(golden, row, ".png", found, error);
 }
 
-enum cs_status cs_golden_check_image(struct cs_golden *golden, struct cs_golden_row *row,
-                                     struct cs_error *error) {
+static enum cs_status check_with(const struct cs_golden *golden, enum cs_renderer_kind kind,
+                                 struct cs_session *session, struct cs_golden_row *row,
+                                 struct cs_error *error) {
     struct cs_image found = {0};
     struct cs_text renderer = {0};
-    if (!paint(golden, row, &found, &renderer, error)) {
+    if (!paint(session, kind, &found, &renderer, error)) {
         cs_hash_bytes(found.rgb, bytes_of(&found), row->found);
         if (golden->accept)
             bless(golden, row, &found, &renderer, error);
@@ -127,5 +123,17 @@ enum cs_status cs_golden_check_image(struct cs_golden *golden, struct cs_golden_
     }
     free(found.rgb);
     cs_text_finish(&renderer);
+    return error->status;
+}
+
+enum cs_status cs_golden_check_image(struct cs_golden *golden, struct cs_golden_row *row,
+                                     struct cs_error *error) {
+    struct cs_session session;
+    if (cs_golden_step(golden, &row->run, true, &session, error))
+        return error->status;
+    for (int kind = 0; cs_renderer_names[kind] && !error->status; kind++)
+        if (golden->renderers >> kind & 1)
+            check_with(golden, (enum cs_renderer_kind)kind, &session, row, error);
+    cs_session_close(&session);
     return error->status;
 }
