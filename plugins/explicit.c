@@ -167,7 +167,7 @@ static enum cs_step create_rk4(const struct cs_host *host, const void *options, 
     .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance
 
 /* the eigenvalues of a step lie outside the unit circle wherever nothing damps */
-static const char *const gains_energy[] = {"energy", NULL};
+static const char *const gains_energy[] = {"energy", "contact-energy", NULL};
 
 /* the v that is shown takes the old acceleration, as the new one is the next step's: the method
  * is symplectic and symmetric in (x - x_old)/h, not in this v */

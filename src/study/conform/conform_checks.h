@@ -38,6 +38,11 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("event", event, SPRINGS, "order through a change of the state at a known time")          \
     X("reversible", reversible, ANY, "forwards, turned round, and back to the start")          \
     X("energy", energy, SPRINGS, "no energy is gained; bounded where symplectic")              \
+    X("contact-order", contact_order, SPRINGS,                                                 \
+      "order, or tolerance, in contact with friction")                                         \
+    X("contact-incline", contact_incline, ANY, "a block slides and creeps as the law says")    \
+    X("contact-rest", contact_rest, SPRINGS, "a sheet comes to rest on a floor")               \
+    X("contact-energy", contact_energy, SPRINGS, "no energy is gained in a bounce")            \
     X("pins", pins, ANY, "pinned particles keep their bits")                                   \
     X("not-finite", not_finite, ANY, "numbers that are none are reported")                     \
     X("failed-solve", failed_solve, ANY, "a linear solve that fails ends the run")             \

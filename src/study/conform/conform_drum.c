@@ -15,7 +15,13 @@
     " \"velocity\": [0.05, 0.03, 0.4]}, \"mass\": {\"particle\": 0.1}, \"springs\":"           \
     " {\"stretch\": 40, \"shear\": 15, \"bend\": 5, \"damping\": %g, \"damping_model\":"       \
     " \"axial\"}, \"pins\": [\"edges\"]}], \"forces\": {\"gravity\": [0, 0, 0]},"              \
-    " \"time\": {\"fps\": 10}}"
+    " \"time\": {\"fps\": 10}%s}"
+
+/* no stiffer than the springs, so that the steps of the drum do */
+#define PLANE                                                                                  \
+    ", \"colliders\": [{\"plane\": {\"point\": [0, 0, -0.3], \"normal\": [0, 0, 1]},"          \
+    " \"thickness\": 0.6, \"friction\": 0.4}], \"contact\": {\"law\": \"force\","              \
+    " \"stiffness\": 15, \"damping\": 0.01, \"friction_speed\": 0.3}"
 
 /* error of the reference: (h w)^4 w T / 120, near 1e-12 of the motion */
 #define REFERENCE_STEP (CS_DRUM_FRAME / 4096)
@@ -35,7 +41,7 @@ static bool kick(struct cs_probe *probe, double t, double dt, double *x, double 
 
 bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
                   const struct cs_integrator *method, const struct cs_drum *drum) {
-    if (!cs_probe_open(probe, card, method, DRUM, drum->damping))
+    if (!cs_probe_open(probe, card, method, DRUM, drum->damping, drum->touches ? PLANE : ""))
         return false;
     if (drum->kicked)
         probe->watch = kick;
@@ -80,8 +86,8 @@ bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum
     enum { STATE = 2 * CS_DRUM_VALUES };
     double made[STATE + 2];
     char name[64];
-    snprintf(name, sizeof name, "drum, damping %g%s", drum->damping,
-             drum->kicked ? ", kicked" : "");
+    snprintf(name, sizeof name, "drum, damping %g%s%s", drum->damping,
+             drum->kicked ? ", kicked" : "", drum->touches ? ", touching" : "");
     const double *kept = cs_conform_cache_find(card->cache, name, STATE + 2);
     if (!kept) {
         if (!run_reference(card, drum, made, made + STATE, row))

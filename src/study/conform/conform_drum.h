@@ -12,6 +12,7 @@ struct cs_drum {
     double damping; /* N s/m, axial */
     bool fixed;     /* steps of dt, also of a method that can choose its own */
     bool kicked;    /* all velocities are turned and halved at the end of the first frame */
+    bool touches;   /* a plane behind it is in range all the time, with friction */
 };
 
 /* The longest step that orders are measured from: h w is a quarter. A whole part of a frame. */

@@ -153,6 +153,17 @@ void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
         measure_order(card, row, cs_probe_order(card, false), &kicked);
 }
 
+/* The law is smooth: contact costs no order, and no tolerance. */
+void cs_check_contact_order(const struct cs_conform *card, struct cs_conform_row *row) {
+    static const struct cs_drum drum = {.touches = true};
+    if (card->method->traits & CS_EXPLICIT_OUTER)
+        cs_row_skip(row, "it is refused with contact by force");
+    else if (cs_probe_can_be_set(card, row) && card->method->traits & CS_ADAPTIVE)
+        measure_tolerance(card, row, &drum);
+    else if (cs_method_has(card->method, "dt"))
+        measure_order(card, row, cs_probe_order(card, true), &drum);
+}
+
 /* Repeated extrapolation to h = 0: each column takes out one more power of h, from the order
  * on. states (LEVELS, values) is overwritten; the last row is the result. */
 enum { LEVELS = 6 };

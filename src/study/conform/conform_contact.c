@@ -1,0 +1,157 @@
+/* Checks contact by force against what is known of it in closed form: the incline, rest on a
+ * floor, and the energy of a bounce. Its order is measured in conform_order.c. */
+#include "model/contact/law.h"
+#include "study/conform/conform_checks.h"
+#include "study/conform/conform_probe.h"
+
+#include <math.h>
+
+#define G     9.81
+#define MU    0.3
+#define SPEED 0.02 /* m/s: friction_speed */
+#define RANGE 0.1  /* m */
+#define STIFF 95.0 /* N/m a particle */
+#define MASS  0.1  /* kg a particle */
+
+/* 1/s: friction of a block at rest decays at mu g/ev = 147/s, which the step must resolve */
+#define STEP (1.0 / 480)
+
+#define CONTACT                                                                                \
+    "\"contact\": {\"law\": \"force\", \"stiffness\": 95, \"damping\": 0.02,"                  \
+    " \"friction_speed\": 0.02}, \"time\": {\"fps\": 20}"
+
+/* Four particles that all feel the same: a rigid body in any model. Turned by an angle about z,
+ * and placed along the normal of the slope. */
+#define BLOCK                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
+    " \"place\": {\"translate\": [%.17g, %.17g, 0], \"rotate\": [0, 0, %.17g, %.17g]}},"       \
+    " \"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\": "   \
+    "0}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\": [%.17g, %.17g, 0]}," \
+    " \"thickness\": 0.1, \"friction\": 0.3}], " CONTACT "}"
+
+/* stretched, sliding, and above the height at which it will rest */
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"start\": \"flat\", \"stretch\": [1.05, "   \
+    "0.97], \"velocity\": [0.1, 0, 0.05], \"place\": {\"translate\": [0, 0.07, 0]}}, "         \
+    "\"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 20, \"shear\": 10, \"bend\": "  \
+    "2, \"damping\": 0.1}}], \"colliders\": [{\"floor\": {\"height\": 0}, \"thickness\": "     \
+    "0.1, \"friction\": 0.3}], " CONTACT "}"
+
+/* thrown at a plane and back, without loss; a bump, so that it does not touch all at once */
+#define BOUNCE                                                                                 \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"bump\": 0.05, \"velocity\": [0.2, 0, "     \
+    "-1]}, \"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 20, \"shear\": 10, "      \
+    "\"bend\": 2, \"damping\": 0}}], \"forces\": {\"gravity\": [0, 0, 0]}, \"colliders\": "    \
+    "[{\"plane\": {\"point\": [0, 0, -0.25], \"normal\": [0, 0, 1]}, \"thickness\": 0.2, "     \
+    "\"friction\": 0}], \"contact\": {\"law\": \"force\", \"stiffness\": 100}, \"time\": "     \
+    "{\"fps\": 50}}"
+#define BOUNCE_RATE 40 /* 1/s, of springs, and of contact where it is deepest */
+enum { BOUNCE_FRAMES = 25 };
+
+static bool takes_contact(const struct cs_conform *card, struct cs_conform_row *row) {
+    if (card->method->traits & CS_EXPLICIT_OUTER) {
+        cs_row_skip(row, "it is refused with contact by force");
+        return false;
+    }
+    return cs_probe_can_be_set(card, row);
+}
+
+/* where the law carries that force, by bisection */
+static double height_of(double force) {
+    double low = CS_LAW_CORE * RANGE, high = RANGE;
+    for (int k = 0; k < 60; k++) {
+        const double d = (low + high) / 2;
+        *(cs_law_at(d, RANGE, STIFF).force > force ? &low : &high) = d;
+    }
+    return low;
+}
+
+/* mean velocity down the slope, towards +x */
+static double sliding(const struct cs_probe *block, double a) {
+    double sum = 0;
+    for (size_t i = 0; i < block->n; i++)
+        sum += cos(a) * block->v[i] - sin(a) * block->v[block->n + i];
+    return sum / (double)block->n;
+}
+
+static void slide(const struct cs_conform *card, struct cs_conform_row *row, double tangent) {
+    const double a = atan(tangent), d = height_of(MASS * G * cos(a));
+    struct cs_probe block;
+    cs_probe_open(&block, card, card->method, BLOCK, sin(a) * d, cos(a) * d, -sin(a / 2),
+                  cos(a / 2), sin(a), cos(a));
+    cs_probe_set_level(&block, STEP, 1, 1, 0);
+    cs_probe_run(&block, 5);
+    const double before = block.ended ? 0 : sliding(&block, a);
+    if (!cs_probe_run(&block, 5))
+        cs_row_fail(row, "%s", block.error.message);
+    else if (tangent > MU) {
+        const double found = (sliding(&block, a) - before) / (5 * block.frame);
+        const double expected = G * (sin(a) - MU * cos(a));
+        cs_row_state(row, fabs(found - expected) / (MU * G), 0.02,
+                     "of g mu off on a slope of %g: %.4f m/s2, expected %.4f", tangent, found,
+                     expected);
+    } else {
+        const double found = sliding(&block, a);
+        const double expected = SPEED * tangent / sqrt(MU * MU - tangent * tangent);
+        cs_row_state(row, fabs(found / expected - 1), 0.05,
+                     "of the creep off on a slope of %g: %.5f m/s, expected %.5f", tangent,
+                     found, expected);
+    }
+    cs_probe_close(&block);
+}
+
+void cs_check_contact_incline(const struct cs_conform *card, struct cs_conform_row *row) {
+    if (!takes_contact(card, row))
+        return;
+    slide(card, row, 0.2);
+    slide(card, row, 0.5);
+}
+
+/* A stretched sheet dropped on a floor: friction and damping are all that can stop it, and a
+ * step too long for friction shows as chatter of the size of friction_speed. */
+void cs_check_contact_rest(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe sheet;
+    double squares = 0;
+    if (!takes_contact(card, row))
+        return;
+    cs_probe_open(&sheet, card, card->method, SHEET);
+    cs_probe_set_level(&sheet, STEP, 1, 1, 0);
+    if (!cs_probe_run(&sheet, 30))
+        cs_row_fail(row, "%s", sheet.error.message);
+    for (size_t i = 0; i < 3 * sheet.n && !sheet.ended; i++)
+        squares += sheet.v[i] * sheet.v[i];
+    if (!sheet.ended)
+        cs_row_state(row, sqrt(squares / (double)sheet.n) / SPEED, 0.1,
+                     "of friction_speed left on a floor after 1.5 s");
+    cs_probe_close(&sheet);
+}
+
+/* the lowest particle over the plane, as a share of the range */
+static double lowest(const struct cs_probe *sheet) {
+    double low = HUGE_VAL;
+    for (size_t i = 2 * sheet->n; i < 3 * sheet->n; i++)
+        low = fmin(low, sheet->x[i]);
+    return (low + 0.25) / 0.2;
+}
+
+void cs_check_contact_energy(const struct cs_conform *card, struct cs_conform_row *row) {
+    struct cs_probe sheet;
+    double start = (double)NAN, worst = 0, low = HUGE_VAL;
+    if (!takes_contact(card, row))
+        return;
+    if (cs_probe_open(&sheet, card, card->method, BOUNCE))
+        start = cs_probe_energy(&sheet);
+    const double share = cs_probe_set_level(&sheet, 0.05 / BOUNCE_RATE, BOUNCE_RATE,
+                                            card->method->order > 1 ? 2 : 1, 0);
+    for (int k = 0; k < BOUNCE_FRAMES && cs_probe_run(&sheet, 1); k++) {
+        worst = fmax(worst, (cs_probe_energy(&sheet) - start) / start);
+        low = fmin(low, lowest(&sheet));
+    }
+    if (sheet.ended)
+        cs_row_fail(row, "%s", sheet.error.message);
+    else if (low > 0.8)
+        cs_row_fail(row, "it came no nearer to the plane than %.2f of the range", low);
+    else
+        cs_row_state(row, worst, share / 2, "of the energy gained as it bounces off a plane");
+    cs_probe_close(&sheet);
+}
