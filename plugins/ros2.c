@@ -11,11 +11,17 @@
  * spring would be huge here and clamped there.
  *
  * A step that turns a spring by more than half its length, in a stage or in all, is refused and
- * halved: the linearisation knows nothing of a rotation of a radian.
+ * halved: the linearisation knows nothing of a rotation of a radian. So is one whose stage goes
+ * wild in contact: at h far above a rate of the system the stage overshoots by 1/0.29 - 1
+ * = 2.4, onto loads that are never there, and friction takes them for true.
  */
 #include "newton_methods.h"
 
 #include <string.h>
+
+#define GAMMA (1 - 1 / sqrt(2))
+/* share of the kinetic energy that friction may bring in unseen */
+#define UNSEEN 0.005
 
 struct ros2_options {
     double dt, rtol;
@@ -59,13 +65,36 @@ static enum cs_step solve(struct method *self, double *kv) {
     return host->solve(host->ctx, self->b, self->rtol, kv);
 }
 
+/* In contact: the move of the stage passes over it, or friction there is another than A knows,
+ * which has its slope by velocity and not that by its load. The impulse that is left out may
+ * have UNSEEN of the kinetic energy: that of the start and of v + g k1, which unlike the stage
+ * does not overshoot. b, k2: work. */
+static bool stage_is_wild(struct method *self, double t, double h, const double *x,
+                          const double *v) {
+    const struct cs_host *host = self->base.loop.host;
+    const size_t n = host->view->n;
+    double out = 0, has = 0;
+    if (host->max_share(host->ctx, t, x, t + h, self->xn) < 1)
+        return true;
+    host->force(host->ctx, t, x, self->vn, CS_PART_DISSIPATIVE, self->b);
+    host->force(host->ctx, t + h, self->xn, self->vn, CS_PART_DISSIPATIVE, self->k2);
+    for (size_t c = 0, k = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++, k++) {
+            const double impulse = 0.5 * h * (self->k2[k] - self->b[k]);
+            out += host->view->inv_mass[i] * impulse * impulse;
+            const double eased = v[k] + GAMMA * h * self->k1[k];
+            has += host->view->mass[i] * (v[k] * v[k] + eased * eased);
+        }
+    return out > UNSEEN * has;
+}
+
 static enum cs_step step(struct halving *base, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)base;
     const struct cs_host *host = base->loop.host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
-    const double g = (1 - 1 / sqrt(2)) * h;
+    const double g = GAMMA * h;
     double *k1 = self->k1, *k2 = self->k2, *bx = self->bx, *b = self->b;
     enum cs_step status = host->solve_setup(host->ctx, t, x, v, 1, -g, -g * g, CS_SOLVE_PSD);
     if (status != CS_STEP_OK)
@@ -83,6 +112,10 @@ static enum cs_step step(struct halving *base, double t, double h, double *x, do
     }
     if ((base->turned = springs_turned(view, x, self->xn)))
         return CS_STEP_OK;
+    if (base->loop.saved && stage_is_wild(self, t, h, x, v)) {
+        base->passed = true;
+        return CS_STEP_OK;
+    }
 
     /* second stage: F(t + h, y + h k1) - 2 k1, where kx of the first is v + g k1 */
     host->force(host->ctx, t + h, self->xn, self->vn, CS_PART_ALL, b);
