@@ -5,7 +5,7 @@
 #include "model/event/events.h"
 #include "study/compare/compare_ledger.h"
 #include "study/compare/compare_measure.h"
-#include "study/compare/yardstick.h"
+#include "study/compare/compare_reference.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -38,9 +38,9 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
     return error->status;
 }
 
-static struct cs_yardstick_settings ask_reference(const struct cs_compare *compare) {
+static struct cs_compare_reference_settings ask_reference(const struct cs_compare *compare) {
     const struct cs_compare_settings *settings = compare->settings;
-    return (struct cs_yardstick_settings){
+    return (struct cs_compare_reference_settings){
         .course = &settings->course,
         .methods = {settings->reference[0], settings->reference[1]},
         .accuracy = settings->accuracy,
@@ -103,10 +103,10 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
 /* What a row depends on: reference (with scene, overrides, length), then method and number
  * of timed runs. The sweep has put the hash of the module there. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
-    const struct cs_yardstick_settings asked = ask_reference(compare);
-    struct cs_yardstick yardstick;
+    const struct cs_compare_reference_settings asked = ask_reference(compare);
+    struct cs_compare_reference reference;
     char of_reference[CS_HASH_DIGITS], of_cell[CS_HASH_DIGITS];
-    cs_yardstick_plan(&yardstick, &asked, of_reference, error);
+    cs_compare_reference_plan(&reference, &asked, of_reference, error);
     for (uint32_t k = 0; k < compare->sweep.n && !error->status; k++) {
         struct cs_cell *cell = compare->sweep.cells + k;
         struct cs_text all = {0};
@@ -147,16 +147,16 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
                               struct cs_error *error) {
     struct cs_ledger ledger = {0};
     *compare = (struct cs_compare){.settings = settings};
-    const struct cs_yardstick_settings reference = ask_reference(compare);
+    const struct cs_compare_reference_settings reference = ask_reference(compare);
     // the folder is looked at before the reference, which may take long
     if (!look_at_scene(compare, error) && !make_cells(compare, error) &&
         !make_keys(compare, error) && !cs_ledger_open(&ledger, compare, error) &&
-        !cs_yardstick_get(&compare->yardstick, &reference, error)) {
+        !cs_compare_reference_get(&compare->reference, &reference, error)) {
         if (settings->begun)
             settings->begun(settings->ctx);
         if (!measure_cells(compare, &ledger, error)) {
             cs_compare_find_orders(compare->sweep.cells, compare->sweep.n,
-                                   compare->yardstick.bar, compare->yardstick.scale);
+                                   compare->reference.bar, compare->reference.scale);
             cs_ledger_rewrite(&ledger, compare, error);
         }
     }
@@ -165,7 +165,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
 }
 
 void cs_compare_finish(struct cs_compare *compare) {
-    cs_yardstick_finish(&compare->yardstick);
+    cs_compare_reference_finish(&compare->reference);
     cs_sweep_finish(&compare->sweep);
     cs_text_finish(&compare->changes);
     *compare = (struct cs_compare){0};

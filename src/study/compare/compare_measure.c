@@ -2,7 +2,7 @@
  * slopes of error against step. */
 #include "study/compare/compare_measure.h"
 
-#include "study/compare/yardstick.h"
+#include "study/compare/compare_reference.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -93,19 +93,19 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
 
 static void take_errors(const struct cs_compare *compare, const struct cs_course *course,
                         const struct cs_track *track, struct cs_cell *cell) {
-    const struct cs_yardstick *yardstick = &compare->yardstick;
+    const struct cs_compare_reference *reference = &compare->reference;
     struct cs_deviation deviation;
-    if (!yardstick->agree)
+    if (!reference->agree)
         return;
-    cs_deviation_take(&deviation, &course->session.system, track, &yardstick->track,
-                      track->frames, cs_yardstick_pointwise_frames(yardstick));
-    cell->bar = yardstick->bar;
+    cs_deviation_take(&deviation, &course->session.system, track, &reference->track,
+                      track->frames, cs_compare_reference_pointwise_frames(reference));
+    cell->bar = reference->bar;
     cell->error = deviation.end;
     cell->max_error = deviation.end_max;
     cell->path_error = deviation.path;
     cell->max_path_error = deviation.path_max;
     cell->velocity_error = deviation.velocity;
-    cell->energy_error = deviation.energy / yardstick->kinetic;
+    cell->energy_error = deviation.energy / reference->kinetic;
     cell->centre_error = deviation.centre;
     cell->box_error = deviation.box;
     cell->strain = deviation.strain;

@@ -38,27 +38,27 @@ static void add_machine(struct cs_text *out) {
     cs_text_add(out, "},\n");
 }
 
-static void add_reference(const struct cs_yardstick *yardstick, struct cs_text *out) {
+static void add_reference(const struct cs_compare_reference *reference, struct cs_text *out) {
     const struct {
         const char *key;
         double value;
-    } numbers[] = {{"bar", yardstick->bar},
-                   {"bar_max", yardstick->bar_max},
-                   {"motion", yardstick->scale},
-                   {"kinetic_energy", yardstick->kinetic},
-                   {"strain", yardstick->strain},
-                   {"accuracy", yardstick->accuracy},
-                   {"amplification", yardstick->horizon.amplification},
-                   {"horizon", yardstick->horizon.time}};
+    } numbers[] = {{"bar", reference->bar},
+                   {"bar_max", reference->bar_max},
+                   {"motion", reference->scale},
+                   {"kinetic_energy", reference->kinetic},
+                   {"strain", reference->strain},
+                   {"accuracy", reference->accuracy},
+                   {"amplification", reference->horizon.amplification},
+                   {"horizon", reference->horizon.time}};
     cs_text_add(out, "  \"reference\": {\"methods\": [");
     /* a family, its tighter twin, the other family, its tighter twin */
-    for (int k = 0; k < CS_YARDSTICK_RUNS; k++) {
+    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++) {
         cs_text_add(out, "%s", k ? ", " : "");
-        cs_text_add_json(out, yardstick->methods[k]);
+        cs_text_add_json(out, reference->methods[k]);
     }
     cs_text_add(out, "], \"agree\": %s, \"pointwise\": %s, ",
-                yardstick->agree ? "true" : "false", yardstick->pointwise ? "true" : "false");
-    add_json_text(out, "reason", yardstick->reason);
+                reference->agree ? "true" : "false", reference->pointwise ? "true" : "false");
+    add_json_text(out, "reason", reference->reason);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         cs_text_add(out, ", ");
         add_json_real(out, numbers[k].key, numbers[k].value);
@@ -130,7 +130,7 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
     add_json_text(out, "switched_off", cs_text_get(&compare->changes));
     cs_text_add(out, ",\n");
     add_machine(out);
-    add_reference(&compare->yardstick, out);
+    add_reference(&compare->reference, out);
     add_verdict(ranking, compare, out);
     /* in the order of the sweep: the verdict above refers to cells by index */
     cs_text_add(out, "  \"cells\": [");
@@ -229,7 +229,7 @@ static enum cs_status draw(const struct cs_compare *compare, const char *name, c
         .n = compare->sweep.n,
         .x = cs_column_find(x),
         // beyond the horizon there is energy to compare
-        .y = cs_column_find(compare->yardstick.pointwise ? "error" : "energy_error"),
+        .y = cs_column_find(compare->reference.pointwise ? "error" : "energy_error"),
         .title = title,
         .name = name};
     return cs_plot_write(&settings, compare->settings->folder, drawn, error);
@@ -255,7 +255,7 @@ enum cs_status cs_compare_write_report(const struct cs_compare *compare,
     if (cs_ranking_make(&ranking, compare, error))
         return error->status;
     // two families that disagree leave nothing to draw errors against
-    if (compare->yardstick.agree && !draw(compare, "error_time", "cpu", &drawn, error))
+    if (compare->reference.agree && !draw(compare, "error_time", "cpu", &drawn, error))
         draw(compare, "error_work", "work", &drawn, error);
     print_json(compare, &ranking, &json);
     print_markdown(compare, &ranking, drawn, &markdown);

@@ -140,7 +140,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
             !cs_course_run(&course, 0, &track, &end, error) && track.done == track.frames) {
             const double *x = cs_track_state(&track, track.frames);
             cs_distance_each(track.n, x,
-                             cs_track_state(&compare->yardstick.track, track.frames), distance);
+                             cs_track_state(&compare->reference.track, track.frames), distance);
             for (uint32_t i = 0; i < track.n; i++)
                 distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
             const struct cs_system *system = &course.session.system;
@@ -195,7 +195,7 @@ static void set_range(struct sheet *sheet, const struct cs_compare *compare) {
         least = fmin(least, sheet->cells[k]->error);
         most = fmax(most, sheet->cells[k]->max_error);
     }
-    sheet->range[0] = floor(log10(fmax(least, compare->yardstick.bar)));
+    sheet->range[0] = floor(log10(fmax(least, compare->reference.bar)));
     sheet->range[1] = fmax(ceil(log10(most)), sheet->range[0] + 1);
 }
 
@@ -225,7 +225,7 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
 enum cs_status cs_sheet_write(const struct cs_compare *compare, enum cs_renderer_kind kind,
                               struct cs_error *error) {
     struct sheet step = {.kind = "equal_step"}, cost = {.kind = "equal_cost"};
-    if (!compare->yardstick.pointwise)
+    if (!compare->reference.pointwise)
         return CS_OK;
     choose_step(&step, compare);
     choose_cost(&cost, compare);

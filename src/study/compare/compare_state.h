@@ -2,8 +2,8 @@
 #ifndef CS_COMPARE_STATE_H
 #define CS_COMPARE_STATE_H
 
+#include "study/compare/compare_reference_state.h"
 #include "study/compare/sweep.h"
-#include "study/compare/yardstick_state.h"
 
 /* The default budget: s that a comparison is to take without its reference, and the most that
  * a run may. */
@@ -17,7 +17,7 @@ struct cs_compare_settings {
     struct cs_course_settings course;
     const char *methods;      /* list as in sweep.h; NULL: all */
     const char *reference[2]; /* "NAME:options" of its families, or NULL */
-    double accuracy;          /* m, see yardstick.h */
+    double accuracy;          /* m, see compare_reference.h */
     double budget;            /* s of processor time that one run may take; 0: see below */
     uint32_t runs;            /* timed runs of a cell, at least */
     const char *folder;       /* for compare.csv */
@@ -33,7 +33,7 @@ struct cs_compare_settings {
 /* Zeroed: empty. */
 struct cs_compare {
     const struct cs_compare_settings *settings; /* borrowed */
-    struct cs_yardstick yardstick;
+    struct cs_compare_reference reference;
     struct cs_sweep sweep;
     char scene[256];                   /* path as given */
     struct cs_text changes;            /* what was switched off, "" nothing */

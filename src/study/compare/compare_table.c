@@ -6,34 +6,34 @@
 #include <string.h>
 
 void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out) {
-    const struct cs_yardstick *yardstick = &compare->yardstick;
-    const struct cs_horizon *horizon = &yardstick->horizon;
+    const struct cs_compare_reference *reference = &compare->reference;
+    const struct cs_horizon *horizon = &reference->horizon;
     const char *changes = cs_text_get(&compare->changes);
     cs_text_add(out, "%s: %u particles, %u springs, %.4g s in %u frames%s%s%s\n",
                 compare->scene, compare->particles, compare->springs, compare->time,
                 compare->settings->course.frames, compare->contact ? ", contact by force" : "",
                 *changes ? "; off: " : "", changes);
-    cs_text_add(out, "reference  %s\n   against %s\n", yardstick->methods[1],
-                yardstick->methods[3]);
+    cs_text_add(out, "reference  %s\n   against %s\n", reference->methods[1],
+                reference->methods[3]);
     /* without a reference the figures below have no meaning */
-    if (!yardstick->agree) {
-        cs_text_add(out, "  no reference: %s\n", yardstick->reason);
+    if (!reference->agree) {
+        cs_text_add(out, "  no reference: %s\n", reference->reason);
         return;
     }
     cs_text_add(out,
                 " error bar %.1e m (twins %.1e, %.1e; families %.1e); the motion is %.2g m%s\n",
-                yardstick->bar, yardstick->differences[0], yardstick->differences[1],
-                yardstick->differences[2], yardstick->scale,
-                yardstick->cached ? "; from the cache" : "");
+                reference->bar, reference->differences[0], reference->differences[1],
+                reference->differences[2], reference->scale,
+                reference->cached ? "; from the cache" : "");
     cs_text_add(out, "   horizon ");
     if (horizon->time <= compare->time)
         cs_text_add(out, "%.3g s", horizon->time);
     else
         cs_text_add(out, "beyond %.3g s", compare->time);
     cs_text_add(out, " for %.0e m; a displacement at the start grows %.3g times\n",
-                yardstick->accuracy, horizon->amplification);
-    if (!yardstick->pointwise)
-        cs_text_add(out, "           statistics only: %s\n", yardstick->reason);
+                reference->accuracy, horizon->amplification);
+    if (!reference->pointwise)
+        cs_text_add(out, "           statistics only: %s\n", reference->reason);
 }
 
 void cs_table_add_head(struct cs_text *out) {

@@ -51,7 +51,7 @@ static void choose(struct cs_rank *rank, const struct cs_compare *compare,
 static bool is_accurate(const struct cs_cell *cell, const struct cs_compare *compare,
                         int exponent) {
     return is_ranked(cell) &&
-           known_error(cell, compare->yardstick.bar) <= pow(10, exponent) * (1 + 1e-9);
+           known_error(cell, compare->reference.bar) <= pow(10, exponent) * (1 + 1e-9);
 }
 
 static bool is_at_frame_step(const struct cs_cell *cell, const struct cs_compare *compare,
@@ -64,17 +64,17 @@ static bool is_at_frame_step(const struct cs_cell *cell, const struct cs_compare
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error) {
-    const struct cs_yardstick *yardstick = &compare->yardstick;
+    const struct cs_compare_reference *reference = &compare->reference;
     *ranking = (struct cs_ranking){0};
     ranking->front = calloc(compare->sweep.n + 1, sizeof *ranking->front);
     if (!ranking->front)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the ranking");
     choose(&ranking->frame, compare, is_at_frame_step);
-    if (!yardstick->pointwise)
+    if (!reference->pointwise)
         return CS_OK;
-    mark_front(ranking, compare->sweep.cells, compare->sweep.n, yardstick->bar);
+    mark_front(ranking, compare->sweep.cells, compare->sweep.n, reference->bar);
     // an error as large as the motion says nothing
-    for (int exponent = (int)floor(log10(0.1 * yardstick->scale));
+    for (int exponent = (int)floor(log10(0.1 * reference->scale));
          exponent > -16 && ranking->n < CS_RANKS_MAX; exponent--) {
         struct cs_rank rank = {.exponent = exponent};
         choose(&rank, compare, is_accurate);
@@ -152,7 +152,7 @@ static struct tally count(const struct cs_compare *compare) {
             tally.brief += cell->cpu < 5e-3;
             tally.unquiet += cell->outliers > 0.2 * cell->runs;
             tally.spread += cell->cpu_high - cell->cpu_low > 0.1 * cell->cpu;
-            tally.below += cell->error < compare->yardstick.bar;
+            tally.below += cell->error < compare->reference.bar;
         }
         tally.over += !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
         tally.failed += !strcmp(cell->outcome, "failed");
@@ -172,9 +172,9 @@ void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
     const struct tally tally = count(compare);
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     double load = 0;
-    if (!compare->yardstick.pointwise)
-        cs_text_add(out, "%sno errors of position: %s%s\n", bullet, compare->yardstick.reason,
-                    compare->yardstick.agree ? " (a shorter --time, or a larger --accuracy)"
+    if (!compare->reference.pointwise)
+        cs_text_add(out, "%sno errors of position: %s%s\n", bullet, compare->reference.reason,
+                    compare->reference.agree ? " (a shorter --time, or a larger --accuracy)"
                                              : "");
     if (cs_text_get(&compare->changes)[0])
         cs_text_add(out, "%s%s switched off: no part of the equation of motion\n", bullet,

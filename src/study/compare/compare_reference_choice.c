@@ -1,5 +1,5 @@
 /* Chooses two families of methods for a reference, and tightens their settings. */
-#include "study/compare/yardstick_choice.h"
+#include "study/compare/compare_reference_choice.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,8 @@ static void fill_step(const char *pattern, double omega, char *out, size_t size)
     cs_text_finish(&number);
 }
 
-static bool is_there(const struct cs_yardstick_settings *settings, const char *integrator) {
+static bool is_there(const struct cs_compare_reference_settings *settings,
+                     const char *integrator) {
     struct cs_session session;
     struct cs_session_settings asked = settings->course->session;
     struct cs_error ignored = {0};
@@ -40,8 +41,8 @@ static bool is_there(const struct cs_yardstick_settings *settings, const char *i
 }
 
 /* omega of the smooth scene, by a method that asks for nothing */
-static enum cs_status measure_omega(const struct cs_yardstick_settings *settings, double *omega,
-                                    struct cs_error *error) {
+static enum cs_status measure_omega(const struct cs_compare_reference_settings *settings,
+                                    double *omega, struct cs_error *error) {
     struct cs_course course;
     if (!cs_course_open(&course, settings->course, "velocity-verlet", error))
         *omega = fmax(course.session.system.view.omega, 1);
@@ -49,8 +50,8 @@ static enum cs_status measure_omega(const struct cs_yardstick_settings *settings
     return error->status;
 }
 
-enum cs_status cs_yardstick_choose(const struct cs_yardstick_settings *settings,
-                                   char chosen[2][256], struct cs_error *error) {
+enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
+                                           char chosen[2][256], struct cs_error *error) {
     double omega = 1;
     if (settings->methods[0] && settings->methods[1]) {
         for (int k = 0; k < 2; k++)
@@ -94,8 +95,8 @@ static void tighten(const char *key, const char *text, struct cs_text *out) {
         cs_text_add(out, "%.6g", value / 10);
 }
 
-enum cs_status cs_yardstick_tighten(const char *integrator, char *out, size_t size,
-                                    struct cs_error *error) {
+enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, size_t size,
+                                            struct cs_error *error) {
     char *copy = strdup(integrator), *rest = copy;
     const char *name = copy ? strsep(&rest, ":") : "", *key, *value;
     struct cs_text text = {0};

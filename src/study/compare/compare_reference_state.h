@@ -1,13 +1,13 @@
-/* yardstick_state.h - what a reference is asked for, and what it came to. */
-#ifndef CS_YARDSTICK_STATE_H
-#define CS_YARDSTICK_STATE_H
+/* compare_reference_state.h - what a reference is asked for, and what it came to. */
+#ifndef CS_COMPARE_REFERENCE_STATE_H
+#define CS_COMPARE_REFERENCE_STATE_H
 
 #include "study/compare/horizon.h"
 #include "study/deviation.h"
 
-enum { CS_YARDSTICK_RUNS = 4 };
+enum { CS_COMPARE_REFERENCE_RUNS = 4 };
 
-struct cs_yardstick_settings {
+struct cs_compare_reference_settings {
     const struct cs_course_settings *course;
     const char *methods[2]; /* "NAME:options" of the two families; NULL: the best there are */
     double accuracy;        /* m to which pointwise errors are wanted: bounds the horizon */
@@ -18,9 +18,9 @@ struct cs_yardstick_settings {
 };
 
 /* Zeroed: none. */
-struct cs_yardstick {
+struct cs_compare_reference {
     struct cs_track track;
-    char methods[CS_YARDSTICK_RUNS][256]; /* family 1, its twin, family 2, its twin */
+    char methods[CS_COMPARE_REFERENCE_RUNS][256]; /* family 1, its twin, family 2, its twin */
     double differences[3]; /* m: 1 against its twin, 2 against its twin, 1 against 2 */
     double bar;            /* m, largest of them at any frame (RMS of particles) */
     double bar_max;        /* m, largest distance of a particle */

@@ -1,8 +1,8 @@
 /* The reference: its own error, a planted bug, the horizon, the cache. */
 #include "scene.h"
 
-#include "study/compare/yardstick.h"
-#include "study/compare/yardstick_choice.h"
+#include "study/compare/compare_reference.h"
+#include "study/compare/compare_reference_choice.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 enum { FRAMES = 6 };
 
 /* the reference of the small scene by two methods */
-static void get(struct cs_yardstick *yardstick, const char *first, const char *second,
+static void get(struct cs_compare_reference *reference, const char *first, const char *second,
                 const char *cache) {
     const char *const plugins[] = {BIASED};
     char path[64];
@@ -18,35 +18,35 @@ static void get(struct cs_yardstick *yardstick, const char *first, const char *s
     scene_write(path, SMALL_SCENE, "0.02");
     const struct cs_course_settings course = {
         .session = {.scene = path, .plugins = plugins, .n_plugins = 1}, .frames = FRAMES};
-    const struct cs_yardstick_settings settings = {
+    const struct cs_compare_reference_settings settings = {
         .course = &course, .methods = {first, second}, .accuracy = 1e-6, .cache = cache};
-    cs_yardstick_get(yardstick, &settings, &error);
+    cs_compare_reference_get(reference, &settings, &error);
     unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
 }
 
 START_TEST(two_families_agree) {
-    struct cs_yardstick yardstick;
-    get(&yardstick, "rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12", NULL);
-    ck_assert_msg(yardstick.agree, "%s", yardstick.reason);
-    ck_assert(yardstick.pointwise);
-    ck_assert_double_lt(yardstick.bar, 1e-9 * yardstick.scale);
-    ck_assert_double_gt(yardstick.bar, 0);
-    cs_yardstick_finish(&yardstick);
+    struct cs_compare_reference reference;
+    get(&reference, "rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12", NULL);
+    ck_assert_msg(reference.agree, "%s", reference.reason);
+    ck_assert(reference.pointwise);
+    ck_assert_double_lt(reference.bar, 1e-9 * reference.scale);
+    ck_assert_double_gt(reference.bar, 0);
+    cs_compare_reference_finish(&reference);
 }
 END_TEST
 
 START_TEST(planted_bug_is_found) {
-    struct cs_yardstick yardstick;
+    struct cs_compare_reference reference;
     for (int side = 0; side < 2; side++) {
         const char *good = "dopri5:rtol=1e-12,atol=1e-12", *bad = "biased-rk4:dt=2e-4";
-        get(&yardstick, side ? good : bad, side ? bad : good, NULL);
-        ck_assert_msg(!yardstick.agree, "found to agree: families %g, twins %g and %g",
-                      yardstick.differences[2], yardstick.differences[0],
-                      yardstick.differences[1]);
-        ck_assert_ptr_nonnull(strstr(yardstick.reason, "biased-rk4"));
-        ck_assert_ptr_nonnull(strstr(yardstick.reason, "another problem"));
-        cs_yardstick_finish(&yardstick);
+        get(&reference, side ? good : bad, side ? bad : good, NULL);
+        ck_assert_msg(!reference.agree, "found to agree: families %g, twins %g and %g",
+                      reference.differences[2], reference.differences[0],
+                      reference.differences[1]);
+        ck_assert_ptr_nonnull(strstr(reference.reason, "biased-rk4"));
+        ck_assert_ptr_nonnull(strstr(reference.reason, "another problem"));
+        cs_compare_reference_finish(&reference);
     }
 }
 END_TEST
@@ -54,18 +54,18 @@ END_TEST
 START_TEST(twin_is_tighter) {
     char twin[256];
     struct cs_error error = {0};
-    cs_yardstick_tighten("a:order=8,rtol=1e-12,atol=1e-10", twin, sizeof twin, &error);
+    cs_compare_reference_tighten("a:order=8,rtol=1e-12,atol=1e-10", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "a:order=8,rtol=1e-13,atol=1e-11");
-    cs_yardstick_tighten("b:dt=0.5", twin, sizeof twin, &error);
+    cs_compare_reference_tighten("b:dt=0.5", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "b:dt=0.25");
-    cs_yardstick_tighten("c", twin, sizeof twin, &error);
+    cs_compare_reference_tighten("c", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "c");
 }
 END_TEST
 
 START_TEST(cache_gives_the_same_states) {
     char folder[] = "/tmp/clothsim-cache-XXXXXX";
-    struct cs_yardstick first, second;
+    struct cs_compare_reference first, second;
     ck_assert_ptr_nonnull(mkdtemp(folder));
     get(&first, "rk4:dt=1e-3", "dopri5:rtol=1e-10,atol=1e-10", folder);
     get(&second, "rk4:dt=1e-3", "dopri5:rtol=1e-10,atol=1e-10", folder);
@@ -74,12 +74,12 @@ START_TEST(cache_gives_the_same_states) {
     ck_assert_double_eq(first.bar, second.bar);
     ck_assert_mem_eq(cs_track_state(&first.track, FRAMES),
                      cs_track_state(&second.track, FRAMES), 6 * 36 * sizeof(double));
-    cs_yardstick_finish(&first);
-    cs_yardstick_finish(&second);
+    cs_compare_reference_finish(&first);
+    cs_compare_reference_finish(&second);
     // other settings are another reference
     get(&second, "rk4:dt=2e-3", "dopri5:rtol=1e-10,atol=1e-10", folder);
     ck_assert(!second.cached);
-    cs_yardstick_finish(&second);
+    cs_compare_reference_finish(&second);
     char command[128];
     snprintf(command, sizeof command, "rm -r %s", folder);
     ck_assert_int_eq(system(command), 0);
@@ -135,26 +135,26 @@ END_TEST
 START_TEST(events_are_hit_again_in_every_run) {
     char path[64];
     struct cs_error error = {0};
-    struct cs_yardstick yardstick;
+    struct cs_compare_reference reference;
     struct cs_course course;
     struct cs_course_end end;
     struct cs_track tracks[2];
     scene_write(path, EVENTS, "0.02");
     const struct cs_course_settings asked = {.session = {.scene = path}, .frames = FRAMES};
-    const struct cs_yardstick_settings settings = {
+    const struct cs_compare_reference_settings settings = {
         .course = &asked,
         .methods = {"rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12"},
         .accuracy = 1e-6};
-    ck_assert(!cs_yardstick_get(&yardstick, &settings, &error));
-    ck_assert_msg(yardstick.pointwise, "%s", yardstick.reason);
-    ck_assert_double_lt(yardstick.bar, 1e-9);
+    ck_assert(!cs_compare_reference_get(&reference, &settings, &error));
+    ck_assert_msg(reference.pointwise, "%s", reference.reason);
+    ck_assert_double_lt(reference.bar, 1e-9);
     ck_assert(!cs_course_open(&course, &asked, "rk4:dt=1e-3", &error));
     for (int k = 0; k < 2; k++) {
         ck_assert(!cs_track_init(tracks + k, &course, &error));
         ck_assert(!cs_course_run(&course, 0, tracks + k, &end, &error));
         ck_assert_double_lt(cs_distance_rms(&course.session.system,
                                             cs_track_state(tracks + k, FRAMES),
-                                            cs_track_state(&yardstick.track, FRAMES)),
+                                            cs_track_state(&reference.track, FRAMES)),
                             1e-5);
     }
     const size_t bytes = (FRAMES + 1) * 6 * tracks->n * sizeof(double);
@@ -162,7 +162,7 @@ START_TEST(events_are_hit_again_in_every_run) {
     for (int k = 0; k < 2; k++)
         cs_track_finish(tracks + k);
     cs_course_close(&course);
-    cs_yardstick_finish(&yardstick);
+    cs_compare_reference_finish(&reference);
     unlink(path);
 }
 END_TEST
@@ -175,5 +175,5 @@ int main(void) {
                                   cache_gives_the_same_states,
                                   horizon_of_an_undamped_drape,
                                   horizon_of_a_damped_drape};
-    return scene_tests("yardstick", tests, sizeof tests / sizeof *tests);
+    return scene_tests("reference", tests, sizeof tests / sizeof *tests);
 }

@@ -1,5 +1,5 @@
 /* Keeps a reference in a file: its key, its header and its states. */
-#include "study/compare/yardstick_cache.h"
+#include "study/compare/compare_reference_cache.h"
 
 #include "base/file.h"
 #include "base/hash.h"
@@ -18,14 +18,14 @@ struct header {
     double one;
     uint32_t n, frames;
     double fps;
-    char hash[40];                 /* of the states */
-    struct cs_yardstick yardstick; /* pointers in it mean nothing */
+    char hash[40];                         /* of the states */
+    struct cs_compare_reference reference; /* pointers in it mean nothing */
 };
 
-enum cs_status cs_yardstick_key(const struct cs_yardstick *yardstick,
-                                const struct cs_course *course,
-                                const struct cs_yardstick_settings *settings, char *key,
-                                struct cs_error *error) {
+enum cs_status cs_compare_reference_key(const struct cs_compare_reference *reference,
+                                        const struct cs_course *course,
+                                        const struct cs_compare_reference_settings *settings,
+                                        char *key, struct cs_error *error) {
     const struct cs_session_settings *session = &settings->course->session;
     const struct cs_scene *scene = &course->session.scene;
     const size_t values = 6 * (size_t)course->session.system.view.n;
@@ -39,8 +39,8 @@ enum cs_status cs_yardstick_key(const struct cs_yardstick *yardstick,
     cs_text_add(&all, "%s|", start);
     cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
                 settings->course->frames, scene->time.fps, settings->accuracy);
-    for (int k = 0; k < CS_YARDSTICK_RUNS; k++)
-        cs_text_add(&all, "%s|", yardstick->methods[k]);
+    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
+        cs_text_add(&all, "%s|", reference->methods[k]);
     // where the methods are chosen here, a module that is added changes nothing
     for (uint32_t k = 0; k < session->n_plugins && settings->methods[0]; k++)
         cs_text_add(&all, "%s|", session->plugins[k]);
@@ -57,8 +57,8 @@ static void file_path(const char *folder, const char *key, char *path, size_t si
     snprintf(path, size, "%s/reference-%.16s.state", folder, key);
 }
 
-bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const char *key,
-                       const struct cs_course *course) {
+bool cs_compare_reference_read(struct cs_compare_reference *reference, const char *folder,
+                               const char *key, const struct cs_course *course) {
     char path[4096], *bytes, hash[CS_HASH_DIGITS];
     size_t length;
     struct cs_error missing = {0};
@@ -81,10 +81,10 @@ bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const
             good = !strcmp(hash, header.hash);
         }
         if (good) {
-            *yardstick = header.yardstick;
+            *reference = header.reference;
             track.done = track.frames;
-            yardstick->track = track;
-            yardstick->cached = true;
+            reference->track = track;
+            reference->cached = true;
         } else
             cs_track_finish(&track);
     }
@@ -92,9 +92,10 @@ bool cs_yardstick_read(struct cs_yardstick *yardstick, const char *folder, const
     return good;
 }
 
-enum cs_status cs_yardstick_write(const struct cs_yardstick *yardstick, const char *folder,
-                                  const char *key, struct cs_error *error) {
-    const struct cs_track *track = &yardstick->track;
+enum cs_status cs_compare_reference_write(const struct cs_compare_reference *reference,
+                                          const char *folder, const char *key,
+                                          struct cs_error *error) {
+    const struct cs_track *track = &reference->track;
     const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
     struct header *header = calloc(1, sizeof *header);
     struct cs_file_out out = {0};
@@ -106,9 +107,9 @@ enum cs_status cs_yardstick_write(const struct cs_yardstick *yardstick, const ch
     header->one = 1;
     header->n = track->n;
     header->frames = track->frames;
-    header->yardstick = *yardstick;
+    header->reference = *reference;
     /* an address means nothing to the next run */
-    header->yardstick.track.states = NULL;
+    header->reference.track.states = NULL;
     cs_hash_doubles(track->states, values, header->hash);
     if (!cs_folder_make(folder, error) && !cs_file_create(&out, path, error)) {
         /* failures of fwrite are seen by cs_file_finish */
