@@ -38,6 +38,15 @@ static const struct cs_option rows[] = {
     CS_OPTION(struct newmark_options, alpha_f, "", 0, 0, 0.9, "with set=own"),
 };
 
+enum { OWN = 1u << SET_OWN };
+static const struct cs_option_use uses[] = {
+    {"rho_inf", "set", 1u << SET_HHT | 1u << SET_ALPHA},
+    {"beta", "set", OWN},
+    {"gamma", "set", OWN},
+    {"alpha_m", "set", OWN},
+    {"alpha_f", "set", OWN},
+};
+
 struct method {
     struct newton_method base;
     double beta, gamma, am, af;
@@ -132,6 +141,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 
 const struct cs_integrator newmark = {
     HALVING_METHOD(struct newmark_options, rows),
+    .uses = uses,
+    .n_uses = sizeof uses / sizeof *uses,
     .name = "newmark",
     .summary = "Newmark's average acceleration, HHT or generalised-alpha, by Newton",
     .source = "Newmark 1959; Hilber et al. 1977; Chung, Hulbert 1993",

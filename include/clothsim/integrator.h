@@ -243,6 +243,15 @@ struct cs_stats {
     uint64_t setups;
 };
 
+/* Says of an option that it has an effect only where another one, a choice, has certain values.
+ * The host refuses an option that is given and has none. */
+struct cs_option_use {
+    /* Names of the option and of the choice. */
+    const char *option, *choice;
+    /* A bit for each value of the choice that the option has an effect with: 1u << number. */
+    uint32_t values;
+};
+
 /* A method: what it claims, and its calls. The host calls them in the order
  *   create, then for each stretch of time restart and any number of advance, then destroy.
  * Marks in brackets say when a call comes, and after which others. */
@@ -300,6 +309,11 @@ struct cs_integrator {
      * not change what the method remembers. May be NULL. Later than the first release: the host
      * asks CS_HAS(integrator, goals). */
     void (*goals)(const void *self, const double *x, double *g);
+
+    /* Options that depend on others, and how many; or NULL and 0. Later than the first release:
+     * the host asks CS_HAS(integrator, n_uses). */
+    const struct cs_option_use *uses;
+    uint32_t n_uses;
 };
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */

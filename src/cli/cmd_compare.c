@@ -94,7 +94,7 @@ static void show_begin(void *ctx) {
     cs_table_add_reference(&screen->compare, &text);
     if (!screen->quiet) {
         cs_text_add(&text, "\n");
-        cs_table_add_head(&text);
+        cs_table_add_head(&screen->compare, &text);
     }
     show(screen, &text);
     cs_progress_begin(&screen->progress, screen->quiet);
@@ -106,7 +106,7 @@ static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
     struct cs_text text = {0};
     if (screen->quiet)
         return;
-    cs_table_add_row(cell, &text);
+    cs_table_add_row(&screen->compare, cell, &text);
     show(screen, &text);
     if (!taken)
         cs_progress_show(&screen->progress, screen->compare.done, screen->compare.sweep.n);
@@ -178,7 +178,7 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     if (cs_ranking_make(&ranking, &screen->compare, error))
         return error->status;
     cs_text_add(&text, "\n");
-    cs_table_add_methods(&screen->compare, &text);
+    cs_table_add_series(&screen->compare, &text);
     cs_text_add(&text, "\n");
     cs_ranking_print(&ranking, "", &screen->compare, &text);
     cs_compare_warn(&screen->compare, "warning: ", &text);

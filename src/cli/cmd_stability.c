@@ -43,6 +43,37 @@ static enum cs_status run_extreme(struct cs_args *args,
     return error->status;
 }
 
+/* Two maps of one name would be one file. */
+static enum cs_status check_apart(const char *const *methods, uint32_t n,
+                                  struct cs_error *error) {
+    for (uint32_t k = 0; k < n; k++)
+        for (uint32_t i = 0; i < k; i++) {
+            char names[2][CS_SERIES_BYTES];
+            const char *of[] = {methods[i], methods[k]};
+            if (cs_series_take_name(of, names[0], error) ||
+                cs_series_take_name(of + 1, names[1], error))
+                return error->status;
+            if (*names[0] && !strcmp(names[0], names[1]) && strcmp(of[0], of[1]) != 0)
+                return cs_fail(error, CS_ERR_USAGE,
+                               "series \"%s\" is %.60s and %.60s: give one of them another "
+                               "name",
+                               names[0], of[0], of[1]);
+        }
+    return CS_OK;
+}
+
+/* One map, or those of all methods. */
+static enum cs_status map(const struct cs_args *args, struct cs_stability_settings *settings,
+                          const char *method, const char *folder, struct cs_error *error) {
+    char series[CS_SERIES_BYTES];
+    if (cs_series_take_name(&method, series, error))
+        return error->status;
+    settings->session.integrator = method;
+    settings->series = series;
+    return strcmp(method, "all") != 0 ? cs_stability_map_one(args, settings, folder, error)
+                                      : cs_stability_map_all(args, settings, folder, error);
+}
+
 static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
     struct cs_stability_settings settings;
     const char *folder = cs_args_get(args, STABILITY_OUT);
@@ -61,13 +92,9 @@ static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
     /* no method named: the scene's own */
     if (!n_methods)
         return cs_stability_map_one(args, &settings, folder, error);
-    for (uint32_t k = 0; k < n_methods && !error->status; k++) {
-        settings.session.integrator = methods[k];
-        if (!strcmp(methods[k], "all"))
-            cs_stability_map_all(args, &settings, folder, error);
-        else
-            cs_stability_map_one(args, &settings, folder, error);
-    }
+    check_apart(methods, n_methods, error);
+    for (uint32_t k = 0; k < n_methods && !error->status; k++)
+        map(args, &settings, methods[k], folder, error);
     return error->status;
 }
 

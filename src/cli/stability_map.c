@@ -36,8 +36,9 @@ static enum cs_status write_file(const struct cs_args *args, const char *folder,
 
 static enum cs_status write_files(const struct cs_args *args, const struct cs_stability *map,
                                   const char *folder, struct cs_error *error) {
-    const char *name = map->integrator->name;
+    char name[CS_SERIES_BYTES];
     struct cs_text cells = {0}, borders = {0}, json = {0}, plot = {0};
+    cs_series_file_name(map->series, name);
     cs_stability_print_csv(map, &cells);
     cs_stability_print_borders_csv(map, &borders);
     cs_stability_print_json(map, &json);
@@ -57,7 +58,7 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
 
 /* true where gnuplot made NAME.png of NAME.gp */
 static bool draw(const char *folder, const char *name) {
-    char script[128];
+    char script[CS_SERIES_BYTES + 8];
     bool drawn = false;
     struct cs_error ignored = {0};
     snprintf(script, sizeof script, "%s.gp", name);
@@ -80,11 +81,12 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
     if (!error->status && !cs_folder_make(folder, error) &&
         !write_files(args, &map, folder, error) && !quiet) {
         struct cs_text out = {0};
+        char name[CS_SERIES_BYTES];
+        cs_series_file_name(map.series, name);
         cs_stability_print_table(&map, &out);
         /* gnuplot may be missing: the line then says that there is no picture */
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                    folder, map.integrator->name,
-                    draw(folder, map.integrator->name) ? ", .png" : "; no gnuplot: no picture");
+                    folder, name, draw(folder, name) ? ", .png" : "; no gnuplot: no picture");
         cs_print_out(stdout, &out, error);
     }
     cs_stability_finish(&map);

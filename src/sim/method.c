@@ -66,7 +66,7 @@ enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
            !cs_method_set(method, key, value, NULL, CS_ERR_USAGE, error))
         ;
     free(copy);
-    return error->status;
+    return error->status ? error->status : cs_method_check(method, NULL, CS_ERR_USAGE, error);
 }
 
 static enum cs_status unknown_option(const struct cs_method *method, const char *where,
@@ -78,25 +78,83 @@ static enum cs_status unknown_option(const struct cs_method *method, const char 
                    nearest ? "\"?" : "", method->integrator->name);
 }
 
+static uint64_t bit_of(const struct cs_method *method, const struct cs_option *row) {
+    const ptrdiff_t k = row - method->table.rows;
+    return k < 64 ? UINT64_C(1) << k : 0;
+}
+
+bool cs_method_is_given(const struct cs_method *method, const struct cs_option *row) {
+    return method->given & bit_of(method, row);
+}
+
+static void add_place(const struct cs_method *method, const char *place, const char *key,
+                      struct cs_text *out) {
+    if (place)
+        cs_text_add(out, "%s%.60s", place, key);
+    else
+        cs_text_add(out, "integrator \"%s\": %.60s", method->integrator->name, key);
+}
+
 enum cs_status cs_method_set(struct cs_method *method, const char *key, const char *value,
                              const char *place, enum cs_status status, struct cs_error *error) {
     const struct cs_option *row = cs_option_find(&method->table, key);
     struct cs_text where = {0};
-    if (place)
-        cs_text_add(&where, "%s%.60s", place, key);
-    else
-        cs_text_add(&where, "integrator \"%s\": %.60s", method->integrator->name, key);
-    if (row)
-        cs_option_set(row, method->options, value, cs_text_get(&where), status, error);
-    else
+    add_place(method, place, key, &where);
+    if (!row)
         unknown_option(method, cs_text_get(&where), key, status, error);
+    else if (!cs_option_set(row, method->options, value, cs_text_get(&where), status, error))
+        method->given |= bit_of(method, row);
     cs_text_finish(&where);
     return error->status;
 }
 
+int32_t cs_method_choice(const struct cs_method *method, const struct cs_option *choice) {
+    int32_t value;
+    memcpy(&value, (const char *)method->options + choice->offset, sizeof value);
+    return value;
+}
+
+static enum cs_status refuse_idle(const struct cs_method *method,
+                                  const struct cs_option_use *use,
+                                  const struct cs_option *choice, const char *place,
+                                  enum cs_status status, struct cs_error *error) {
+    struct cs_text where = {0}, expected = {0};
+    add_place(method, place, use->option, &where);
+    for (uint32_t k = 0; k < 32 && choice->choices[k]; k++)
+        if (use->values >> k & 1)
+            cs_text_add(&expected, "%s%s=%s", *cs_text_get(&expected) ? " or " : "",
+                        choice->name, choice->choices[k]);
+    cs_fail(error, status, "%s: has no effect with %s=%s, expected %s", cs_text_get(&where),
+            choice->name, choice->choices[cs_method_choice(method, choice)],
+            cs_text_get(&expected));
+    cs_text_finish(&where);
+    cs_text_finish(&expected);
+    return error->status;
+}
+
+enum cs_status cs_method_check(const struct cs_method *method, const char *place,
+                               enum cs_status status, struct cs_error *error) {
+    const struct cs_integrator *integrator = method->integrator;
+    const uint32_t n = CS_HAS(integrator, n_uses) ? integrator->n_uses : 0;
+    for (uint32_t k = 0; k < n; k++) {
+        const struct cs_option_use *use = integrator->uses + k;
+        const struct cs_option *row = cs_option_find(&method->table, use->option),
+                               *choice = cs_option_find(&method->table, use->choice);
+        if (cs_method_is_given(method, row) &&
+            !(use->values >> cs_method_choice(method, choice) & 1))
+            return refuse_idle(method, use, choice, place, status, error);
+    }
+    return CS_OK;
+}
+
+const char *cs_method_behind_series(const char *token) {
+    const size_t name = strcspn(token, ",:=");
+    const char *method = token + name + 1;
+    return token[name] == '=' && method[strcspn(method, ",:=")] == ':' ? method : NULL;
+}
+
 static bool is_option(const char *token) {
-    const size_t length = strcspn(token, ",:=");
-    return token[length] == '=';
+    return token[strcspn(token, ",:=")] == '=' && !cs_method_behind_series(token);
 }
 
 char *cs_method_split(char **list) {

@@ -11,6 +11,7 @@ struct cs_method {
     const struct cs_integrator *integrator; /* borrowed from its module */
     struct cs_table table;                  /* of its options */
     void *options;                          /* filled; owned */
+    uint64_t given; /* a bit a row of the table: set by cs_method_set, not a default */
 };
 
 /* An integrator with a copy of options, NULL: its defaults. CS_ERR_MEMORY. */
@@ -36,8 +37,21 @@ enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
 enum cs_status cs_method_set(struct cs_method *method, const char *key, const char *value,
                              const char *place, enum cs_status status, struct cs_error *error);
 
+/* Refuses a given option that has no effect beside the others; place and status as above. To
+ * be called when all are set, which cs_method_read and cs_method_set_pairs do. */
+enum cs_status cs_method_check(const struct cs_method *method, const char *place,
+                               enum cs_status status, struct cs_error *error);
+
+/* Whether an option was set, to its default or not. */
+bool cs_method_is_given(const struct cs_method *method, const struct cs_option *row);
+/* The number of a CHOICE. */
+int32_t cs_method_choice(const struct cs_method *method, const struct cs_option *choice);
+
+/* Where NAME begins in "SERIES=NAME:..."; NULL: there is no SERIES. */
+const char *cs_method_behind_series(const char *text);
+
 /* Cuts the next method off a list NAME:key=value,key=value,NAME,...; NULL: none is left. A
- * comma stands between methods and between options: what holds no ':' before its '=' is an
+ * comma stands between methods and between options: what has no ':' round its '=' is an
  * option. */
 char *cs_method_split(char **list);
 

@@ -61,6 +61,28 @@ static enum cs_status check_option(const struct cs_integrator *integrator,
     return CS_OK;
 }
 
+static const struct cs_option *find_option(const struct cs_integrator *integrator,
+                                           const char *name) {
+    for (uint32_t k = 0; name && k < integrator->n_options; k++)
+        if (!strcmp(integrator->options[k].name, name))
+            return integrator->options + k;
+    return NULL;
+}
+
+static enum cs_status check_uses(const struct cs_integrator *integrator,
+                                 struct cs_error *error) {
+    const uint32_t n = CS_HAS(integrator, n_uses) ? integrator->n_uses : 0;
+    for (uint32_t k = 0; k < n; k++) {
+        const struct cs_option_use *use = integrator->uses ? integrator->uses + k : NULL;
+        const struct cs_option *choice = use ? find_option(integrator, use->choice) : NULL;
+        if (!choice || choice->type != CS_CHOICE || !find_option(integrator, use->option))
+            return cs_fail(error, CS_ERR_MODULE,
+                           "integrator \"%s\": use %u names no option and choice of its own",
+                           integrator->name, k);
+    }
+    return CS_OK;
+}
+
 /* of the structs that the first modules of this interface were built with; what came later is
  * read only where it is there */
 static const uint32_t least_size = offsetof(struct cs_integrator, goals);
@@ -86,7 +108,7 @@ static enum cs_status check_integrator(const struct cs_integrator *integrator,
     for (uint32_t k = 0; k < integrator->n_options; k++)
         if (check_option(integrator, integrator->options + k, error))
             return error->status;
-    return CS_OK;
+    return check_uses(integrator, error);
 }
 
 static enum cs_status check_module(const struct cs_module *module, struct cs_error *error) {

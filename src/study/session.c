@@ -21,7 +21,8 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
                               settings->n_overrides, error);
 }
 
-static enum cs_status set_options_of_scene(struct cs_session *session, struct cs_error *error) {
+static enum cs_status set_options_of_scene(struct cs_session *session, const char *pairs,
+                                           struct cs_error *error) {
     const struct cs_setting *options = session->scene.integrator_settings.items;
     char place[512];
     snprintf(place, sizeof place, "%s: integrator.", session->scene.path);
@@ -29,7 +30,10 @@ static enum cs_status set_options_of_scene(struct cs_session *session, struct cs
         if (cs_method_set(&session->method, options[k].name, options[k].value, place,
                           CS_ERR_SCENE, error))
             return error->status;
-    return CS_OK;
+    // what the command line gives may make an option of the scene idle: that is no mistake
+    if (pairs)
+        session->method.given = 0;
+    return cs_method_check(&session->method, place, CS_ERR_SCENE, error);
 }
 
 /* the scene's own method, or the one that is asked for; the scene's options are those of the
@@ -47,7 +51,7 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
                        missing.message);
     }
     if (!strcmp(method->integrator->name, scene->integrator) &&
-        set_options_of_scene(session, error))
+        set_options_of_scene(session, pairs, error))
         return error->status;
     return cs_method_set_pairs(method, pairs, error);
 }

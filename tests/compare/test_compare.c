@@ -141,13 +141,47 @@ START_TEST(list_is_read) {
     ck_assert_str_eq(sweep.cells[2].options, "dt=0.001");
     ck_assert_double_le(sweep.cells[3].value, 1 / 60.0);
     ck_assert_double_gt(sweep.cells[3].value, 2 / settings.omega);
-    ck_assert_str_eq(sweep.cells[11].options, "atol=1e-9,rtol=0.001");
+    ck_assert_str_eq(sweep.cells[11].options, "atol=1e-09,rtol=0.001");
     cs_sweep_finish(&sweep);
 }
 END_TEST
 
+/* The cells of a list, "series options" each, between semicolons. */
+static const char *cells_of(const char *list, char *out, size_t size) {
+    struct cs_sweep sweep;
+    struct cs_error error = {0};
+    const struct cs_sweep_settings settings = {.list = list, .fps = 60, .omega = 1000};
+    *out = 0;
+    if (cs_sweep_make(&sweep, &settings, &error))
+        snprintf(out, size, "%s", error.message);
+    for (uint32_t k = 0; k < sweep.n; k++)
+        snprintf(out + strlen(out), size - strlen(out), "%s%s %s", k ? "; " : "",
+                 sweep.cells[k].series, sweep.cells[k].options);
+    cs_sweep_finish(&sweep);
+    return out;
+}
+
+START_TEST(series_are_named_apart) {
+    char out[2000];
+    // the same method and options are one series, however they are written
+    ck_assert_str_eq(cells_of("rk4:dt=1e-3..2e-3,rk4:dt=5e-4..1e-3", out, sizeof out),
+                     "rk4 dt=0.002; rk4 dt=0.001; rk4 dt=0.0005");
+    ck_assert_str_eq(cells_of("newmark:beta=0.3,set=own,dt=1e-3,"
+                              "newmark:set=own,dt=2e-3,beta=0.300,newmark:set=newmark,dt=1e-3",
+                              out, sizeof out),
+                     "newmark:set=own,beta=0.3 set=own,beta=0.3,dt=0.002; "
+                     "newmark:set=own,beta=0.3 set=own,beta=0.3,dt=0.001; newmark dt=0.001");
+    ck_assert_str_eq(cells_of("a=rk4:dt=1e-3,b=rk4:dt=1e-3", out, sizeof out),
+                     "a dt=0.001; b dt=0.001");
+    // an atol of one's own, even the default one, is not the one that follows rtol
+    ck_assert_str_eq(cells_of("dopri5:rtol=1e-3,dopri5:rtol=1e-3,atol=0", out, sizeof out),
+                     "dopri5 rtol=0.001,atol=0.001; dopri5:atol=0 atol=0,rtol=0.001");
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {orders_are_seen, file_reads_back, quotes_read_back,
-                                  ranking_takes_the_cheapest, list_is_read};
+    const TTest *const tests[] = {orders_are_seen,  file_reads_back,
+                                  quotes_read_back, ranking_takes_the_cheapest,
+                                  list_is_read,     series_are_named_apart};
     return scene_tests("compare", tests, sizeof tests / sizeof *tests);
 }

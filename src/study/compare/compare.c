@@ -73,11 +73,11 @@ static void refuse(struct cs_sweep *sweep, uint32_t first, struct cs_error *erro
 static enum cs_status check_methods(struct cs_compare *compare, struct cs_error *error) {
     struct cs_sweep *sweep = &compare->sweep;
     struct cs_session_settings asked = compare->settings->course.session;
-    char integrator[320];
+    char integrator[CS_CELL_INTEGRATOR];
     for (uint32_t k = 0; k < sweep->n && !error->status; k++) {
         const struct cs_cell *cell = sweep->cells + k;
         struct cs_session session = {0};
-        if (*cell->outcome || (k > 0 && !strcmp(cell->method, cell[-1].method)))
+        if (*cell->outcome || (k > 0 && cs_cell_same_series(cell, cell - 1)))
             continue;
         cs_cell_integrator(cell, integrator, sizeof integrator);
         asked.integrator = integrator;

@@ -14,7 +14,9 @@
     { #field, label, CS_CELL_NUMBER, offsetof(struct cs_cell, field), sizeof(double) }
 
 const struct cs_column cs_columns[] = {
+    TEXT(series),
     TEXT(method),
+    TEXT(fixed),
     TEXT(options),
     TEXT(family),
     TEXT(control),
@@ -97,6 +99,11 @@ void cs_cell_init(struct cs_cell *cell, const char *method) {
         if (cs_columns[c].type == CS_CELL_NUMBER)
             memcpy((char *)cell + cs_columns[c].offset, &(double){(double)NAN}, sizeof(double));
     snprintf(cell->method, sizeof cell->method, "%s", method);
+    snprintf(cell->series, sizeof cell->series, "%s", method);
+}
+
+bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b) {
+    return !strcmp(a->series, b->series);
 }
 
 bool cs_cell_is_finished(const struct cs_cell *cell) {

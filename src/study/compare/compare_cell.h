@@ -5,12 +5,15 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "sim/run.h"
+#include "sim/series.h"
 
 /* Numbers that do not apply are NAN: an error beyond the horizon, an order that is not steady.
  */
 struct cs_cell {
+    char series[CS_SERIES_BYTES]; /* its curve: a method with its options, under one name */
     char method[64];
-    char options[192]; /* "dt=0.001", as behind the method's name; "" where nothing is set */
+    char fixed[192];   /* options that all cells of the series share */
+    char options[256]; /* all: "dt=0.001", as behind the method's name; "": nothing is set */
     char control[16];  /* "dt", "rtol", or "" */
     char
         outcome[48]; /* "finished", "blew up: not finite", "over budget", "failed", "refused" */
@@ -58,8 +61,10 @@ const struct cs_column *cs_column_find(const char *name);
 const char *const *cs_column_axes(void);
 double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column);
 
-/* A cell of which nothing is known yet. */
+/* A cell of which nothing is known yet; its series is the plain method. */
 void cs_cell_init(struct cs_cell *cell, const char *method);
+/* Whether two cells stand on one curve. */
+bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
 bool cs_cell_is_finished(const struct cs_cell *cell);
 
 #endif

@@ -93,7 +93,7 @@ static enum cs_status read_rows(const char *path, char *rest, struct cs_cell *ce
     rest = cut_line(rest, fields, &n_columns);
     for (uint32_t c = 0; c < n_columns; c++)
         columns[c] = cs_column_find(fields[c]);
-    if (!rest || strcmp(fields[0], cs_columns[0].name))
+    if (!rest || !cs_column_find(fields[0]))
         return cs_fail(error, CS_ERR_FILE,
                        "%s: the first line does not name the columns of a comparison", path);
     while (*rest) {
@@ -106,6 +106,9 @@ static enum cs_status read_rows(const char *path, char *rest, struct cs_cell *ce
         for (uint32_t c = 0; c < n_fields && c < n_columns; c++)
             if (columns[c])
                 set_field(cell, columns[c], fields[c]);
+        // files of before there were series
+        if (!*cell->series)
+            memcpy(cell->series, cell->method, sizeof cell->method);
         *n += n_fields == n_columns;
     }
     return CS_OK;

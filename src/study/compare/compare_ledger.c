@@ -52,23 +52,12 @@ static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare
     return *old->outcome && (!is_over_budget(old) || old->cpu > 0.9 * compare->budget);
 }
 
-static bool is_same(const struct cs_cell *a, const struct cs_cell *b) {
-    return !strcmp(a->method, b->method) && !strcmp(a->options, b->options);
-}
-
-/* Puts a cell of an earlier list behind those of its method that have longer steps. */
-static enum cs_status insert(struct cs_sweep *sweep, const struct cs_cell *cell,
-                             struct cs_error *error) {
-    uint32_t at = sweep->n;
+static struct cs_cell *find(const struct cs_sweep *sweep, const struct cs_cell *cell) {
     for (uint32_t k = 0; k < sweep->n; k++)
-        if (!strcmp(sweep->cells[k].method, cell->method)) {
-            at = k + 1;
-            if (sweep->cells[k].value < cell->value) {
-                at = k;
-                break;
-            }
-        }
-    return cs_sweep_insert(sweep, at, cell, error);
+        if (cs_cell_same_series(sweep->cells + k, cell) &&
+            !strcmp(sweep->cells[k].options, cell->options))
+            return sweep->cells + k;
+    return NULL;
 }
 
 static enum cs_status take_over(struct cs_ledger *ledger, struct cs_compare *compare,
@@ -76,12 +65,9 @@ static enum cs_status take_over(struct cs_ledger *ledger, struct cs_compare *com
     struct cs_sweep *sweep = &compare->sweep;
     for (uint32_t i = 0; i < ledger->n_old && !error->status; i++) {
         const struct cs_cell *old = ledger->old + i;
-        struct cs_cell *found = NULL;
-        for (uint32_t k = 0; k < sweep->n && !found; k++)
-            if (is_same(sweep->cells + k, old))
-                found = sweep->cells + k;
+        struct cs_cell *found = find(sweep, old);
         if (!found)
-            insert(sweep, old, error);
+            cs_sweep_add(sweep, old, error);
         else if (!strcmp(found->key, old->key) && is_valid(old, compare))
             *found = *old;
         else

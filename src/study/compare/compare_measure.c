@@ -114,7 +114,7 @@ static void take_errors(const struct cs_compare *compare, const struct cs_course
 
 enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
                                   struct cs_error *error) {
-    char integrator[320];
+    char integrator[CS_CELL_INTEGRATOR];
     struct cs_course course = {0};
     struct cs_track track = {0};
     struct cs_course_end end;
@@ -143,9 +143,8 @@ static bool is_usable(const struct cs_cell *cell, double bar, double scale) {
 /* NAN where there is none */
 static double slope(const struct cs_cell *a, const struct cs_cell *b, double bar,
                     double scale) {
-    if (a->adaptive || b->adaptive || strcmp(a->method, b->method) ||
-        !is_usable(a, bar, scale) || !is_usable(b, bar, scale) ||
-        !(SHORTER * b->step < a->step))
+    if (a->adaptive || b->adaptive || !cs_cell_same_series(a, b) || !is_usable(a, bar, scale) ||
+        !is_usable(b, bar, scale) || !(SHORTER * b->step < a->step))
         return (double)NAN;
     return log(a->error / b->error) / log(a->step / b->step);
 }

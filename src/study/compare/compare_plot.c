@@ -10,7 +10,7 @@
 
 enum { COLOURS = 8 };
 
-/* A hue a family, a shade and a marker a method; open markers where matrices are solved. */
+/* A hue a family, a shade and a marker a series; open markers where matrices are solved. */
 static const struct style {
     const char *colours[COLOURS];
     int points[COLOURS];
@@ -110,7 +110,7 @@ static int family_of(const struct cs_cell *cell) {
     return 0;
 }
 
-/* The cells of one method stand together: first and how many. */
+/* The cells of one series stand together: first and how many. */
 struct group {
     uint32_t first, n, drawn;
     int family, style;
@@ -125,7 +125,7 @@ static uint32_t find_groups(const struct cs_plot_settings *settings,
     for (uint32_t k = 0; k < settings->n; k++) {
         const struct cs_cell *cell = settings->cells + k;
         double x, y;
-        if (k == 0 || strcmp(cell->method, cell[-1].method) != 0) {
+        if (k == 0 || !cs_cell_same_series(cell, cell - 1)) {
             if (n == GROUPS_MAX)
                 break;
             const int family = family_of(cell);
@@ -166,7 +166,7 @@ static void print_plot(const struct cs_plot_settings *settings, const struct gro
         bool named = false;
         for (uint32_t k = 0; k < n; k++) {
             const struct style *style = styles + family;
-            const char *method = settings->cells[groups[k].first].method;
+            const char *series = settings->cells[groups[k].first].series;
             const char *colour = style->colours[groups[k].style];
             if (groups[k].family != family)
                 continue;
@@ -177,10 +177,11 @@ static void print_plot(const struct cs_plot_settings *settings, const struct gro
                     cs_family_names[family]);
             named |= groups[k].drawn > 0;
             if (groups[k].drawn > 0)
-                cs_text_add(out,
-                            " $points%u with linespoints linewidth 1.8 dashtype %d pointtype "
-                            "%d pointsize 1.1 linecolor rgb \"%s\" title \"%s\", \\\n",
-                            k, style->dash, style->points[groups[k].style], colour, method);
+                cs_text_add(
+                    out,
+                    " $points%u with linespoints linewidth 1.8 dashtype %d pointtype "
+                    "%d pointsize 1.1 linecolor rgb \"%s\" title \"%s\" noenhanced, \\\n",
+                    k, style->dash, style->points[groups[k].style], colour, series);
             if (groups[k].drawn < groups[k].n)
                 cs_text_add(out,
                             " $crosses%u with points pointtype 2 pointsize 0.9 linewidth 1.5 "

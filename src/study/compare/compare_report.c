@@ -169,7 +169,7 @@ static void add_field(struct cs_text *out, const char *format, double value) {
 }
 
 static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out) {
-    cs_text_add(out, "| %s%s%s | %s", front ? "**" : "", cell->method, front ? "**" : "",
+    cs_text_add(out, "| %s%s%s | %s", front ? "**" : "", cell->series, front ? "**" : "",
                 cell->options);
     add_field(out, "%e", cell->error);
     add_field(out, "%e", cell->max_path_error);
@@ -190,7 +190,7 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
                 "## All cells\n\nBold: nothing is both cheaper and more accurate. Errors in m "
                 "(RMS at the end; largest of all\nframes) and m/s; energy as a share of the "
                 "largest kinetic energy; time in s.\n\n"
-                "| method | options | error | largest | velocity | energy | order | error / "
+                "| series | options | error | largest | velocity | energy | order | error / "
                 "rtol | force evaluations | solves | iterations | time | |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (uint32_t k = 0; k < compare->sweep.n; k++)
@@ -211,7 +211,7 @@ static void print_markdown(const struct cs_compare *compare, const struct cs_ran
         cs_text_add(out, "## Diagrams\n\n![error against time](error_time.png)\n\n"
                          "![error against work](error_work.png)\n\n");
     cs_text_add(&methods, "```\n");
-    cs_table_add_methods(compare, &methods);
+    cs_table_add_series(compare, &methods);
     cs_text_add(&methods, "```\n");
     add_lines("Methods", &methods, out);
     add_table(compare, ranking, out);

@@ -16,7 +16,7 @@
 enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, MARGIN = 92, TILES_MAX = 64, COLUMNS = 5 };
 enum { DRAWN_WIDTH = TILE_WIDTH + 2 * MARGIN };
 
-/* The cells of one sheet, one a method at most. */
+/* The cells of one sheet, one a series at most. */
 struct sheet {
     const char *kind;
     const struct cs_cell *cells[TILES_MAX];
@@ -24,9 +24,9 @@ struct sheet {
     double range[2]; /* log10 m */
 };
 
-static bool is_first_of_method(const struct cs_compare *compare, uint32_t k) {
+static bool is_first_of_series(const struct cs_compare *compare, uint32_t k) {
     const struct cs_cell *cells = compare->sweep.cells;
-    return k == 0 || strcmp(cells[k].method, cells[k - 1].method) != 0;
+    return k == 0 || !cs_cell_same_series(cells + k, cells + k - 1);
 }
 
 static bool has_step(const struct cs_cell *cell, double step) {
@@ -57,7 +57,7 @@ static double common_cost(const struct cs_compare *compare) {
     const struct cs_sweep *sweep = &compare->sweep;
     double cost = 0, least = HUGE_VAL;
     for (uint32_t k = 0; k <= sweep->n; k++) {
-        if (k == sweep->n || is_first_of_method(compare, k)) {
+        if (k == sweep->n || is_first_of_series(compare, k)) {
             cost = least < HUGE_VAL ? fmax(cost, least) : cost;
             least = HUGE_VAL;
         }
@@ -72,7 +72,7 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
     const double cost = common_cost(compare);
     const struct cs_cell *best = NULL;
     for (uint32_t k = 0; k <= sweep->n; k++) {
-        if ((k == sweep->n || is_first_of_method(compare, k)) && best && sheet->n < TILES_MAX) {
+        if ((k == sweep->n || is_first_of_series(compare, k)) && best && sheet->n < TILES_MAX) {
             sheet->cells[sheet->n++] = best;
             best = NULL;
         }
@@ -124,15 +124,16 @@ static enum cs_status paint(struct cs_course *course, const struct cs_frame *fra
 static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
                                 const struct cs_compare *compare, enum cs_renderer_kind kind,
                                 struct cs_error *error) {
-    char integrator[320], path[4200];
+    char integrator[CS_CELL_INTEGRATOR], file[CS_SERIES_BYTES], path[4400];
     struct cs_course course;
     struct cs_track track = {0};
     struct cs_course_end end;
     double *distance = calloc(compare->particles, sizeof *distance);
     struct cs_obstacle *obstacles = NULL;
     cs_cell_integrator(cell, integrator, sizeof integrator);
+    cs_series_file_name(cell->series, file);
     snprintf(path, sizeof path, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind,
-             cell->method);
+             file);
     if (!distance)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
     else if (!cs_course_open(&course, &compare->settings->course, integrator, error)) {
@@ -180,11 +181,13 @@ static void print_script(const struct sheet *sheet, const struct cs_compare *com
     /* paths are relative: gnuplot runs in the folder of the script */
     for (uint32_t k = 0; k < sheet->n; k++) {
         const struct cs_cell *cell = sheet->cells[k];
+        char file[CS_SERIES_BYTES];
+        cs_series_file_name(cell->series, file);
         cs_text_add(out,
                     "set title \"%s\\n%s %.3g, %.3g ms, error %.1e m\" noenhanced\n"
                     "plot \"pictures/%s_%s.png\" binary filetype=png with rgbimage\n",
-                    cell->method, cell->control, cell->value, 1e3 * cell->cpu, cell->error,
-                    sheet->kind, cell->method);
+                    cell->series, cell->control, cell->value, 1e3 * cell->cpu, cell->error,
+                    sheet->kind, file);
     }
     cs_text_add(out, "unset multiplot\n");
 }

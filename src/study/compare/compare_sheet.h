@@ -6,7 +6,7 @@
 #include "draw/render.h"
 #include "study/compare/compare_state.h"
 
-/* Writes FOLDER/pictures/KIND_METHOD.png and, where gnuplot is found, FOLDER/KIND.png with all
+/* Writes FOLDER/pictures/KIND_SERIES.png and, where gnuplot is found, FOLDER/KIND.png with all
  * of them, for the kinds equal_step (the step that most methods got through with) and
  * equal_cost (what each method does within the time that all of them can keep). Colours stand
  * for powers of ten from the reference's bar to the largest error. Without errors of position

@@ -36,19 +36,29 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
         cs_text_add(out, "           statistics only: %s\n", reference->reason);
 }
 
-void cs_table_add_head(struct cs_text *out) {
-    cs_text_add(out, "%-20s %-14s %8s %8s %8s %9s %18s  %s\n", "method", "", "error m",
-                "largest", "energy", "work", "processor time", "");
+/* of the column of names: as wide as the longest, within reason */
+static int name_width(const struct cs_compare *compare) {
+    size_t width = 20;
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        const size_t length = strlen(compare->sweep.cells[k].series);
+        width = length > width ? length : width;
+    }
+    return width < 48 ? (int)width : 48;
 }
 
-static void add_control(const struct cs_cell *cell, struct cs_text *out) {
+void cs_table_add_head(const struct cs_compare *compare, struct cs_text *out) {
+    cs_text_add(out, "%-*s %-14s %8s %8s %8s %9s %18s  %s\n", name_width(compare), "series", "",
+                "error m", "largest", "energy", "work", "processor time", "");
+}
+
+static void add_control(const struct cs_cell *cell, int width, struct cs_text *out) {
     char control[32] = "";
     if (!strcmp(cell->control, "dt"))
         snprintf(control, sizeof control, "dt %.3g ms",
                  1e3 * (isfinite(cell->step) ? cell->step : cell->value));
     else if (*cell->control)
         snprintf(control, sizeof control, "%s %.1e", cell->control, cell->value);
-    cs_text_add(out, "%-20s %-14s", cell->method, control);
+    cs_text_add(out, "%-*s %-14s", width, cell->series, control);
 }
 
 static void add_number(struct cs_text *out, double value) {
@@ -58,8 +68,9 @@ static void add_number(struct cs_text *out, double value) {
         cs_text_add(out, " %8s", "-");
 }
 
-void cs_table_add_row(const struct cs_cell *cell, struct cs_text *out) {
-    add_control(cell, out);
+void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *cell,
+                      struct cs_text *out) {
+    add_control(cell, name_width(compare), out);
     add_number(out, cell->error);
     add_number(out, cell->max_error);
     add_number(out, cell->energy_error);
@@ -77,8 +88,9 @@ void cs_table_add_row(const struct cs_cell *cell, struct cs_text *out) {
     cs_text_add(out, "\n");
 }
 
-/* what is said of one method: the cells from..to */
-static void add_method(const struct cs_cell *cells, uint32_t n, struct cs_text *out) {
+/* what is said of one series: its cells */
+static void add_series(const struct cs_cell *cells, uint32_t n, int width,
+                       struct cs_text *out) {
     double least = HUGE_VAL, most = 0, step = 0, low = HUGE_VAL, high = 0;
     uint32_t finished = 0;
     for (uint32_t k = 0; k < n; k++) {
@@ -95,7 +107,7 @@ static void add_method(const struct cs_cell *cells, uint32_t n, struct cs_text *
             most = fmax(most, cells[k].achieved);
         }
     }
-    cs_text_add(out, "%-20s %2u of %2u", cells->method, finished, n);
+    cs_text_add(out, "%-*s %2u of %2u", width, cells->series, finished, n);
     /* one figure for a steady order, a range for one that varies with the step */
     if (high > 0)
         cs_text_add(out, high - low > 0.1 ? "  order %.2f to %.2f" : "  order %.2f", low, high);
@@ -108,11 +120,11 @@ static void add_method(const struct cs_cell *cells, uint32_t n, struct cs_text *
     cs_text_add(out, "\n");
 }
 
-void cs_table_add_methods(const struct cs_compare *compare, struct cs_text *out) {
+void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_sweep *sweep = &compare->sweep;
     for (uint32_t first = 0, k = 1; k <= sweep->n; k++)
-        if (k == sweep->n || strcmp(sweep->cells[k].method, sweep->cells[first].method) != 0) {
-            add_method(sweep->cells + first, k - first, out);
+        if (k == sweep->n || !cs_cell_same_series(sweep->cells + k, sweep->cells + first)) {
+            add_series(sweep->cells + first, k - first, name_width(compare), out);
             first = k;
         }
 }

@@ -9,10 +9,11 @@
 void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out);
 
 /* Adds the names of the columns, or the row of a cell. */
-void cs_table_add_head(struct cs_text *out);
-void cs_table_add_row(const struct cs_cell *cell, struct cs_text *out);
+void cs_table_add_head(const struct cs_compare *compare, struct cs_text *out);
+void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *cell,
+                      struct cs_text *out);
 
-/* Adds one line a method: its observed order, largest step that held, tolerance kept. */
-void cs_table_add_methods(const struct cs_compare *compare, struct cs_text *out);
+/* Adds one line a series: its observed order, largest step that held, tolerance kept. */
+void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out);
 
 #endif

@@ -39,7 +39,7 @@ static void choose(struct cs_rank *rank, const struct cs_compare *compare,
             rank->best = cells + k;
     for (uint32_t k = 0; k < compare->sweep.n && rank->best; k++)
         if (passes(cells + k, compare, rank->exponent) && is_cheaper(cells + k, rank->next) &&
-            strcmp(cells[k].method, rank->best->method) != 0)
+            !cs_cell_same_series(cells + k, rank->best))
             rank->next = cells + k;
     if (!rank->next)
         return;
@@ -93,9 +93,9 @@ void cs_ranking_finish(struct cs_ranking *ranking) {
 /* "rk4 (dt 1.04 ms), 3.21 ms" */
 static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
     if (!strcmp(cell->control, "dt"))
-        cs_text_add(out, "%s (dt %.3g ms)", cell->method, 1e3 * cell->step);
+        cs_text_add(out, "%s (dt %.3g ms)", cell->series, 1e3 * cell->step);
     else
-        cs_text_add(out, "%s (%s %.1e)", cell->method, cell->control, cell->value);
+        cs_text_add(out, "%s (%s %.1e)", cell->series, cell->control, cell->value);
 }
 
 static void add_factor(const struct cs_rank *rank, struct cs_text *out) {
@@ -134,7 +134,7 @@ void cs_ranking_print(const struct cs_ranking *ranking, const char *bullet,
         return;
     }
     cs_text_add(out, "%sstable with one step a frame (%.3g ms): %s, %.3g ms", bullet,
-                1e3 / compare->fps, frame->best->method, 1e3 * frame->best->cpu);
+                1e3 / compare->fps, frame->best->series, 1e3 * frame->best->cpu);
     if (isfinite(frame->best->energy_error))
         cs_text_add(out, ", with an energy error of %.0f %%", 100 * frame->best->energy_error);
     add_factor(frame, out);

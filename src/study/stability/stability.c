@@ -5,6 +5,7 @@
 #include "study/workers.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { SAMPLES = 32, TRIALS_OF_BORDER = 7 };
@@ -103,6 +104,16 @@ static enum cs_status share_out(struct cs_stability *map, struct cs_error *error
     return error->status;
 }
 
+/* under the name that was given, or its own: dt is what the map varies */
+static enum cs_status name_series(struct cs_stability *map, struct cs_error *error) {
+    const char *given = map->settings->series;
+    if (given && *given) {
+        snprintf(map->series, sizeof map->series, "%s", given);
+        return cs_series_check_name(&map->session.registry, given, &map->session.method, error);
+    }
+    return cs_series_name(&map->session.method, "dt", map->series, error);
+}
+
 static double share(double from, double to, uint32_t i, uint32_t n) {
     return n > 1 ? from * pow(to / from, (double)i / (n - 1)) : from;
 }
@@ -171,7 +182,8 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                        map->integrator->name,
                        map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                              : "has no option dt");
-    if (cs_session_build(&map->session, error) || lay_out(map, error) || share_out(map, error))
+    if (name_series(map, error) || cs_session_build(&map->session, error) ||
+        lay_out(map, error) || share_out(map, error))
         return error->status;
     map->wall = cs_clock_wall() - begin;
     return CS_OK;

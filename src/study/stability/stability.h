@@ -3,11 +3,13 @@
 #ifndef CS_STABILITY_H
 #define CS_STABILITY_H
 
+#include "sim/series.h"
 #include "study/stability/stability_axis.h"
 #include "study/stability/stability_border.h"
 
 struct cs_stability_settings {
     struct cs_session_settings session; /* integrator: NAME or NAME:key=value,... */
+    const char *series; /* what the map is called; NULL or "": by the method and its options */
     enum cs_axis axis;
     struct cs_range values, dt; /* of the axis, of the rows */
     uint32_t columns, rows;
@@ -30,8 +32,9 @@ struct cs_stability_column {
 struct cs_stability {
     const struct cs_stability_settings *settings; /* borrowed */
     const struct cs_integrator *integrator;       /* of the session below */
-    struct cs_session session;                    /* the scene as it is given */
-    struct cs_stability_column *columns;          /* (n_columns); workers see them */
+    char series[CS_SERIES_BYTES];
+    struct cs_session session;           /* the scene as it is given */
+    struct cs_stability_column *columns; /* (n_columns); workers see them */
     uint32_t n_columns, n_rows;
     double own;  /* the scene's own value on the axis */
     double *dt;  /* (n_rows) rising */

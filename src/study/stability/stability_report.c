@@ -101,7 +101,7 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
 
 void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
     const struct cs_stability_settings *settings = map->settings;
-    cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]", map->integrator->name,
+    cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]", map->series,
                 map->session.scene.path, settings->seconds, cs_axis_names[settings->axis],
                 cs_axis_unit(settings->axis));
     cs_contact_line_add(&map->session.scene, "; ", out);
@@ -226,8 +226,9 @@ void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out
     const struct cs_stability_settings *settings = map->settings;
     cs_text_add(out, "{\n  \"scene\": ");
     cs_text_add_json(out, map->session.scene.path);
-    cs_text_add(out, ",\n  \"integrator\": \"%s\",\n  \"axis\": \"%s\",\n",
-                map->integrator->name, cs_axis_names[settings->axis]);
+    cs_text_add(out, ",\n  \"series\": \"%s\",\n  \"integrator\": \"%s\",\n", map->series,
+                map->integrator->name);
+    cs_text_add(out, "  \"axis\": \"%s\",\n", cs_axis_names[settings->axis]);
     add_member(out, "  \"seconds\": ", settings->seconds);
     cs_text_add(out, ",\n  \"columns\": [\n");
     for (uint32_t c = 0; c < map->n_columns; c++)
@@ -254,7 +255,7 @@ static void add_head(const struct cs_stability *map, const char *name, struct cs
     cs_text_add(out,
                 "set title \"%s: which steps survive, %s\\n%g s of motion a cell\" "
                 "font 'sans,16' noenhanced\n",
-                map->integrator->name, map->session.scene.path, map->settings->seconds);
+                map->series, map->session.scene.path, map->settings->seconds);
     cs_text_add(out, "set xlabel '%s  [%s]'\nset ylabel 'dt  [s]' offset 1,0\n",
                 cs_axis_names[axis], cs_axis_unit(axis));
     /* columns of a grid span no decades: plain numbers serve them better */

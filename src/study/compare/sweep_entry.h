@@ -1,0 +1,22 @@
+/* sweep_entry.h - one method of a list on its way to cells. */
+#ifndef CS_SWEEP_ENTRY_H
+#define CS_SWEEP_ENTRY_H
+
+#include "base/hash.h"
+#include "study/compare/sweep.h"
+
+struct cs_sweep_entry {
+    struct cs_method method;
+    char series[CS_SERIES_BYTES];
+    char fixed[sizeof((struct cs_cell *)0)->fixed]; /* options without the swept one */
+    const char *control;                            /* "dt", "rtol" or "" */
+    double low, high;                               /* of the control; NAN: the default sweep */
+    char module[CS_HASH_DIGITS]; /* hash of the file: a module built anew is another one */
+};
+
+/* Adds the cells of the entry: its range, or the default sweep. */
+enum cs_status cs_sweep_expand(struct cs_sweep *sweep, const struct cs_sweep_entry *entry,
+                               const struct cs_sweep_settings *settings,
+                               struct cs_error *error);
+
+#endif
