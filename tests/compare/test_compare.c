@@ -3,6 +3,7 @@
 #include "study/compare/compare_csv.h"
 #include "study/compare/compare_plot.h"
 #include "study/compare/ranking.h"
+#include "study/compare/sweep_list.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,6 +6,7 @@
 #include "study/compare/compare_ledger.h"
 #include "study/compare/compare_measure.h"
 #include "study/compare/compare_reference.h"
+#include "study/compare/sweep_list.h"
 
 #include <math.h>
 #include <stdio.h>

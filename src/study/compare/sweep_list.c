@@ -1,5 +1,5 @@
 /* Reads a list of methods with options and ranges, and makes the cells of each. */
-#include "study/compare/sweep_entry.h"
+#include "study/compare/sweep_list.h"
 
 #include "base/file.h"
 #include "base/options.h"

@@ -1,9 +1,16 @@
-/* sweep_entry.h - one method of a list on its way to cells. */
-#ifndef CS_SWEEP_ENTRY_H
-#define CS_SWEEP_ENTRY_H
+/* sweep_expand.h - one method of a list on its way to cells. */
+#ifndef CS_SWEEP_EXPAND_H
+#define CS_SWEEP_EXPAND_H
 
 #include "base/hash.h"
 #include "study/compare/sweep.h"
+
+struct cs_sweep_settings {
+    const char *list;           /* NULL: every method there is */
+    const char *const *plugins; /* (n_plugins) module files */
+    uint32_t n_plugins;
+    double fps, omega; /* of the scene: the default steps come from them */
+};
 
 struct cs_sweep_entry {
     struct cs_method method;

@@ -1,0 +1,19 @@
+/* sweep_list.h - a list of methods, read into the cells of a comparison.
+ *
+ * A list is "NAME,NAME:key=value,key=low..high,SERIES=NAME:key=value,...". The cells of one
+ * entry are a series, called SERIES or, where none is given, by the method and the options that
+ * are not at their defaults; entries of the same method and options are one series. A range of
+ * dt goes from high down by factors of 2, one of rtol by half decades. Without a range, a
+ * method of fixed step takes steps of 1/fps divided by powers of 2 (explicit ones from just
+ * beyond their stability limit on), an adaptive one rtol = atol from 1e-2 to 1e-9.
+ */
+#ifndef CS_SWEEP_LIST_H
+#define CS_SWEEP_LIST_H
+
+#include "study/compare/sweep_expand.h"
+
+/* CS_ERR_USAGE for a list that cannot be read or a method that is not there; CS_ERR_MODULE. */
+enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_settings *settings,
+                             struct cs_error *error);
+
+#endif
