@@ -23,6 +23,7 @@ struct cs_body_range {
 struct cs_events;
 struct cs_pairing;
 struct cs_obstacle_motion;
+struct cs_surfaces;
 
 struct cs_system {
     struct cs_view view;          /* what integrators see */
@@ -42,6 +43,7 @@ struct cs_system {
     struct cs_obstacle_motion
         *motions;                      /* (scene->colliders.n); NULL where no event moves one */
     const struct cs_pairing *pairings; /* (scene->colliders.n); NULL without contact by force */
+    const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */
 };

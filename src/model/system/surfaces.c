@@ -1,0 +1,138 @@
+/* Triangles and unique edges of all bodies, and which triangles an edge belongs to. */
+#include "model/system/surfaces.h"
+
+#include "model/system/faces.h"
+
+/* edges of a grid: along rows, along columns, one across each cell */
+static size_t grid_edges(size_t columns, size_t rows) {
+    return (columns - 1) * rows + columns * (rows - 1) + (columns - 1) * (rows - 1);
+}
+
+static uint32_t count_edges(const struct cs_body_range *body) {
+    return body->mesh ? body->mesh->n_edges : (uint32_t)grid_edges(body->columns, body->rows);
+}
+
+static void add_edge(uint32_t *edges, uint32_t *n, uint32_t a, uint32_t b) {
+    edges[2 * (size_t)*n] = a;
+    edges[2 * (size_t)*n + 1] = b;
+    ++*n;
+}
+
+/* ascending by both ends; a cell's diagonal runs from top right to bottom left, as in faces.h
+ */
+static void list_grid_edges(const struct cs_body_range *body, uint32_t *edges) {
+    uint32_t n = 0;
+    for (uint32_t r = 0; r < body->rows; r++)
+        for (uint32_t c = 0; c < body->columns; c++) {
+            const uint32_t i = body->first + r * body->columns + c;
+            if (c + 1 < body->columns)
+                add_edge(edges, &n, i, i + 1);
+            if (r + 1 < body->rows && c > 0)
+                add_edge(edges, &n, i, i + body->columns - 1);
+            if (r + 1 < body->rows)
+                add_edge(edges, &n, i, i + body->columns);
+        }
+}
+
+static void list_edges(const struct cs_body_range *body, uint32_t *edges) {
+    if (!body->mesh) {
+        list_grid_edges(body, edges);
+        return;
+    }
+    for (size_t e = 0; e < 2 * (size_t)body->mesh->n_edges; e++)
+        edges[e] = body->first + body->mesh->edges[e];
+}
+
+/* the edge between two particles, which there is, among edges [first, end) */
+static uint32_t find_edge(const uint32_t *edges, uint32_t first, uint32_t end, uint32_t a,
+                          uint32_t b) {
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    while (end - first > 1) {
+        const uint32_t middle = first + (end - first) / 2;
+        const uint32_t *edge = edges + 2 * (size_t)middle;
+        if (edge[0] < low || (edge[0] == low && edge[1] <= high))
+            first = middle;
+        else
+            end = middle;
+    }
+    return first;
+}
+
+/* triangles come ascending, so that the first free place is the right one */
+static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
+    for (uint32_t t = surfaces->first_triangle[body]; t < surfaces->first_triangle[body + 1];
+         t++)
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t *corner = surfaces->triangles + 3 * (size_t)t;
+            const uint32_t edge =
+                find_edge(surfaces->edges, surfaces->first_edge[body],
+                          surfaces->first_edge[body + 1], corner[k], corner[(k + 1) % 3]);
+            uint32_t *owners = surfaces->owners + 2 * (size_t)edge;
+            owners[owners[0] == CS_NO_TRIANGLE ? 0 : 1] = t;
+        }
+}
+
+static void fill_body(const struct cs_system *system, uint32_t body,
+                      struct cs_surfaces *surfaces) {
+    const struct cs_body_range *range = system->bodies + body;
+    const uint32_t first = surfaces->first_triangle[body];
+    for (uint32_t t = 0; t < cs_faces_count(range); t++) {
+        uint32_t *corners = surfaces->triangles + 3 * (size_t)(first + t);
+        cs_face_corners(range, t, corners);
+        for (size_t k = 0; k < 3; k++)
+            corners[k] += range->first;
+    }
+    list_edges(range, surfaces->edges + 2 * (size_t)surfaces->first_edge[body]);
+    own_edges(surfaces, body);
+}
+
+static void count(const struct cs_system *system, struct cs_surfaces *surfaces) {
+    for (uint32_t b = 0; b < surfaces->n_bodies; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        surfaces->first_triangle[b + 1] = surfaces->first_triangle[b] + cs_faces_count(range);
+        surfaces->first_edge[b + 1] = surfaces->first_edge[b] + count_edges(range);
+    }
+    surfaces->n_triangles = surfaces->first_triangle[surfaces->n_bodies];
+    surfaces->n_edges = surfaces->first_edge[surfaces->n_bodies];
+}
+
+enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *error) {
+    struct cs_arena *arena = &system->arena;
+    const uint32_t n_bodies = system->scene->bodies.n;
+    if (system->surfaces)
+        return CS_OK;
+    struct cs_surfaces *surfaces = cs_arena_take(arena, sizeof *surfaces, error);
+    uint32_t *firsts =
+        cs_arena_take_n(arena, 2 * ((size_t)n_bodies + 1), sizeof *firsts, error);
+    if (error->status)
+        return error->status;
+    surfaces->n_bodies = n_bodies;
+    surfaces->first_triangle = firsts;
+    surfaces->first_edge = firsts + n_bodies + 1;
+    count(system, surfaces);
+    const size_t corners = 3 * (size_t)surfaces->n_triangles,
+                 ends = 2 * (size_t)surfaces->n_edges;
+    surfaces->triangles = cs_arena_take_n(arena, corners, sizeof(uint32_t), error);
+    surfaces->edges = cs_arena_take_n(arena, ends, sizeof(uint32_t), error);
+    surfaces->owners = cs_arena_take_n(arena, ends, sizeof(uint32_t), error);
+    if (error->status)
+        return error->status;
+    for (size_t e = 0; e < ends; e++)
+        surfaces->owners[e] = CS_NO_TRIANGLE;
+    for (uint32_t b = 0; b < n_bodies; b++)
+        fill_body(system, b, surfaces);
+    system->surfaces = surfaces;
+    return CS_OK;
+}
+
+size_t cs_surfaces_bytes(const struct cs_scene *scene) {
+    size_t words = 2 * ((size_t)scene->bodies.n + 1);
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        const struct cs_trimesh *mesh = body->mesh.geometry;
+        const size_t columns = (size_t)body->cloth.grid[0], rows = (size_t)body->cloth.grid[1];
+        words += mesh ? 3 * (size_t)mesh->n_triangles + 4 * (size_t)mesh->n_edges
+                      : 6 * (columns - 1) * (rows - 1) + 4 * grid_edges(columns, rows);
+    }
+    return words * sizeof(uint32_t) + sizeof(struct cs_surfaces);
+}
