@@ -9,25 +9,13 @@
 #include "model/contact/obstacle.h"
 
 #include "base/vec3.h"
+#include "model/contact/soft.h"
 
 #include <math.h>
 #include <string.h>
 
 /* share of the radius over which the core's features are blended, to both sides */
 #define BAND 0.5
-
-void cs_soft_part(double t, double e, double out[3]) {
-    if (t >= e || t <= -e) {
-        out[0] = t >= e ? t : 0;
-        out[1] = t >= e;
-        out[2] = 0;
-        return;
-    }
-    const double z = (t + e) / (2 * e), left = 1 - z;
-    out[0] = 2 * e * (z * z) * (z * z) * (z * z - 3 * z + 2.5);
-    out[1] = z * z * z * (10 - 15 * z + 6 * z * z);
-    out[2] = 15 / e * (z * z) * (left * left);
-}
 
 /* distance from a point; n = unit vector away from it, up where there is none */
 static double from_point(const double p[3], const double centre[3], double n[3]) {

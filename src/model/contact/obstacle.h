@@ -88,7 +88,7 @@ static inline bool cs_obstacle_is_near(const struct cs_obstacle *obstacle, doubl
  * three continuous derivatives there. Sphere, plane and the flat faces of a box: exact. At the
  * ends of a capsule's axis and at the edges of a box the nearest point of the core moves over
  * from one feature to the next within a band of half the radius to both sides, by a quintic
- * (cs_soft_part); the distance is at most 0.005 of the radius too large on an edge and 0.01 on
+ * (soft.h); the distance is at most 0.005 of the radius too large on an edge and 0.01 on
  * a corner.
  * gradient  of that function; its length is 1 where the distance is exact, never 0
  * hessian   1/m, of that function: xx, xy, xz, yy, yz, zz; 0 where n points up by default
@@ -96,11 +96,6 @@ static inline bool cs_obstacle_is_near(const struct cs_obstacle *obstacle, doubl
  * nearest face changes. */
 double cs_obstacle_smooth(const struct cs_obstacle *obstacle, const double p[3],
                           double gradient[3], double hessian[6]);
-
-/* The positive part of t made smooth over -e..e: 0 below, t above, else
- * 2e z^4 (z^2 - 3z + 5/2) with z = (t + e)/2e; three continuous derivatives. out: value, first
- * and second derivative. e may be 0. */
-void cs_soft_part(double t, double e, double out[3]);
 
 /* true if the line from `from` to from + share way comes into the obstacle. */
 bool cs_obstacle_meets_line(const struct cs_obstacle *obstacle, const double from[3],

@@ -1,0 +1,229 @@
+/* Smooth distances of a point and a triangle, and of two edges: against the true distance,
+ * against differences, and against the laws of momentum. */
+#include "model/pair/stencil.h"
+#include "unit.h"
+
+#include <math.h>
+
+enum { PAIRS = 50000 };
+
+/* a number in -1..1, always the same ones */
+static double draw(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+/* points of size 1, and every third pair at a hard place: edges almost parallel, a point over
+ * the rim of a triangle, or all points in one plane, next to each other */
+static void place(uint64_t *state, int pair, enum cs_stencil_kind kind, double p[4][3]) {
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            p[k][c] = draw(state);
+    const double share = draw(state), shift = 0.1 * draw(state), tilt = 1e-3 * draw(state);
+    if (pair % 3 == 0)
+        return;
+    if (kind == CS_STENCIL_EDGES)
+        for (int c = 0; c < 3; c++) { // parallel, beside each other
+            p[2][c] = p[0][c] + (c == 1 ? 0.3 : share * (p[1][c] - p[0][c]));
+            p[3][c] = p[2][c] + p[1][c] - p[0][c] + tilt * p[3][c];
+        }
+    else
+        for (int c = 0; c < 3; c++) // over the middle of an edge, a little aside
+            p[0][c] = (p[1][c] + p[2][c]) / 2 + shift * (p[3][c] - p[1][c]) + 0.2 * p[0][c];
+    for (int k = 0; k < 4 && pair % 3 == 2; k++) // flat, almost
+        p[k][2] *= 1e-3;
+}
+
+static double distance_at(enum cs_stencil_kind kind, double p[4][3], double g[4][3]) {
+    struct cs_stencil s;
+    cs_stencil_set(&s, kind, p);
+    cs_stencil_gradient(&s, g);
+    return s.d;
+}
+
+static double size(double g[4][3]) {
+    double squared = 0;
+    for (int k = 0; k < 4; k++)
+        squared += cs_vec3_dot(g[k], g[k]);
+    return sqrt(squared);
+}
+
+/* least distance of p from the segment a b, squared */
+static double from_segment(const double p[3], const double a[3], const double b[3]) {
+    double u[3], w[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        u[c] = b[c] - a[c];
+        w[c] = p[c] - a[c];
+    }
+    const double t = fmin(fmax(cs_vec3_dot(w, u) / cs_vec3_dot(u, u), 0), 1);
+    for (int c = 0; c < 3; c++)
+        squared += (w[c] - t * u[c]) * (w[c] - t * u[c]);
+    return squared;
+}
+
+/* the true distance: the crossing of perpendiculars where it is inside, else the best rim */
+static double true_distance(enum cs_stencil_kind kind, double p[4][3]) {
+    double u[3], v[3], w[3], squared = 0;
+    cs_stencil_differences(kind, p, u, v, w);
+    const double a = cs_vec3_dot(u, u), b = cs_vec3_dot(u, v), c = cs_vec3_dot(v, v);
+    const double d = cs_vec3_dot(u, w), e = cs_vec3_dot(v, w), det = a * c - b * b;
+    const double l = (c * d - b * e) / det, m = (a * e - b * d) / det;
+    for (int k = 0; k < 3; k++)
+        squared += (w[k] - l * u[k] - m * v[k]) * (w[k] - l * u[k] - m * v[k]);
+    if (kind == CS_STENCIL_EDGES) {
+        if (l >= 0 && l <= 1 && m >= 0 && m <= 1)
+            return sqrt(squared);
+        return sqrt(fmin(fmin(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
+                         fmin(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1]))));
+    }
+    if (l >= 0 && m >= 0 && l + m <= 1)
+        return sqrt(squared);
+    return sqrt(fmin(from_segment(p[0], p[1], p[2]),
+                     fmin(from_segment(p[0], p[2], p[3]), from_segment(p[0], p[3], p[1]))));
+}
+
+static bool is_inside(const struct cs_stencil *s) {
+    bool inside = true;
+    for (int i = 0; i < 2; i++)
+        inside = inside && s->l[i] >= CS_STENCIL_RIM && s->l[i] <= 1 - CS_STENCIL_RIM;
+    return inside && (s->kind == CS_STENCIL_EDGES || s->l[0] + s->l[1] <= 1 - CS_STENCIL_RIM);
+}
+
+/* Never below the true distance. Inside the rim it is that of the point to the plane; of edges
+ * it exceeds it by what pulling to the middles does. */
+START_TEST(distance_is_never_too_small) {
+    uint64_t state = 1;
+    int inside = 0;
+    for (int pair = 0; pair < PAIRS; pair++)
+        for (int kind = 0; kind < 2; kind++) {
+            struct cs_stencil s;
+            double p[4][3];
+            place(&state, 0, kind, p);
+            cs_stencil_set(&s, kind, p);
+            const double least = true_distance(kind, p);
+            const double more = 1e-9 + s.q * (s.a + s.c) / 4;
+            UNIT_ASSERT_OFTEN(s.d >= least * (1 - 1e-9));
+            inside += is_inside(&s);
+            UNIT_ASSERT_OFTEN(!is_inside(&s) || s.a * s.c - s.b * s.b < 0.1 * s.a * s.c ||
+                              s.d * s.d <= least * least + more);
+        }
+    ck_assert_int_gt(inside, PAIRS / 50);
+}
+END_TEST
+
+/* at right angles over the inside of both it is the height itself */
+START_TEST(distance_inside_is_the_height) {
+    double triangle[4][3] = {{0.3, 0.3, -0.25}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    double edges[4][3] = {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0.25}, {0.5, 1, 0.25}};
+    double g[4][3];
+    ck_assert_double_eq_tol(distance_at(CS_STENCIL_TRIANGLE, triangle, g), 0.25, 1e-11);
+    ck_assert_double_eq_tol(g[0][2], -1, 1e-11);
+    ck_assert_double_eq_tol(distance_at(CS_STENCIL_EDGES, edges, g), 0.25, 1e-11);
+    ck_assert_double_eq_tol(g[0][2], -0.5, 1e-9);
+    // three quarters along, the nearer end has three quarters of the weight, but for q
+    double aside[4][3] = {{0, 0, 0}, {1, 0, 0}, {0.75, -1, 0.25}, {0.75, 1, 0.25}};
+    distance_at(CS_STENCIL_EDGES, aside, g);
+    ck_assert_double_eq_tol(g[1][2], -0.75, 1e-3);
+}
+END_TEST
+
+/* slopes by differences of fourth order against the gradient, and of the gradient against the
+ * tangent; both relative to the largest */
+static void check_derivatives(uint64_t *state, int pair, enum cs_stencil_kind kind,
+                              double worst[2]) {
+    static const double at[4] = {-2, -1, 1, 2},
+                        share[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+    double p[4][3], g[4][3], dp[4][3], dg[4][3], dweights[4], by_difference[4][3] = {{0}};
+    struct cs_stencil s;
+    place(state, pair, kind, p);
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            dp[k][c] = draw(state);
+    cs_stencil_set(&s, kind, p);
+    // differences are poor where the plane of a triangle is not known, and by short edges
+    if (s.d < 0.02 || s.a < 0.25 || s.c < 0.25 ||
+        (kind == CS_STENCIL_TRIANGLE && s.a * s.c - s.b * s.b < 0.1 * s.a * s.c))
+        return;
+    cs_stencil_gradient(&s, g);
+    cs_stencil_tangent(&s, dp, dg, dweights);
+    const double step = 3e-7;
+    double slope = 0, along = 0;
+    for (int j = 0; j < 4; j++) {
+        double moved[4][3], there[4][3];
+        for (int k = 0; k < 4; k++)
+            for (int c = 0; c < 3; c++)
+                moved[k][c] = p[k][c] + at[j] * step * dp[k][c];
+        slope += share[j] / step * distance_at(kind, moved, there);
+        for (int k = 0; k < 4; k++)
+            for (int c = 0; c < 3; c++)
+                by_difference[k][c] += share[j] / step * there[k][c];
+    }
+    for (int k = 0; k < 4; k++)
+        along += cs_vec3_dot(g[k], dp[k]);
+    worst[0] = fmax(worst[0], fabs(slope - along) / size(g));
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            by_difference[k][c] -= dg[k][c];
+    worst[1] = fmax(worst[1], size(by_difference) / (size(dg) + size(g)));
+}
+
+/* for edges that are almost parallel, differences of the gradient are known to 1e-5 */
+START_TEST(derivatives_are_those_of_differences) {
+    uint64_t state = 2;
+    for (int kind = 0; kind < 2; kind++) {
+        double worst[2] = {0, 0};
+        for (int pair = 0; pair < PAIRS; pair++)
+            check_derivatives(&state, pair, kind, worst);
+        ck_assert_msg(worst[0] < 1e-6 && worst[1] < (kind ? 2e-5 : 1e-6), "kind %d: %g %g",
+                      kind, worst[0], worst[1]);
+    }
+}
+END_TEST
+
+/* a force along the gradient moves and turns nothing as a whole */
+START_TEST(gradient_keeps_momentum) {
+    uint64_t state = 3;
+    double worst = 0;
+    for (int pair = 0; pair < PAIRS; pair++)
+        for (int kind = 0; kind < 2; kind++) {
+            double p[4][3], g[4][3], sum[3] = {0}, torque[3] = {0};
+            place(&state, pair, kind, p);
+            distance_at(kind, p, g);
+            for (int k = 0; k < 4; k++) {
+                double turn[3];
+                cs_vec3_cross(p[k], g[k], turn);
+                for (int c = 0; c < 3; c++) {
+                    sum[c] += g[k][c];
+                    torque[c] += turn[c];
+                }
+            }
+            worst = fmax(worst, sqrt(cs_vec3_dot(sum, sum)) / size(g));
+            worst = fmax(worst, sqrt(cs_vec3_dot(torque, torque)) / size(g));
+        }
+    ck_assert_msg(worst < 1e-11, "%g", worst);
+}
+END_TEST
+
+/* points in one place, edges without length: numbers, not NAN */
+START_TEST(degenerate_pairs_stay_finite) {
+    for (int kind = 0; kind < 2; kind++)
+        for (int same = 1; same <= 4; same++) {
+            double p[4][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, g[4][3], dg[4][3],
+                   dw[4];
+            struct cs_stencil s;
+            for (int k = 0; k < same; k++)
+                p[k][0] = 1;
+            cs_stencil_set(&s, kind, p);
+            cs_stencil_gradient(&s, g);
+            cs_stencil_tangent(&s, p, dg, dw);
+            ck_assert(isfinite(s.d) && isfinite(size(g)) && isfinite(size(dg)));
+        }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {distance_is_never_too_small, distance_inside_is_the_height,
+                                  derivatives_are_those_of_differences, gradient_keeps_momentum,
+                                  degenerate_pairs_stay_finite};
+    return unit_run("stencil", tests, sizeof tests / sizeof *tests);
+}
