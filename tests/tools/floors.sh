@@ -7,7 +7,7 @@
 cd "$1" || exit 1
 awk '
     BEGIN {
-        n = split("base mesh scene model/spring model/system model/contact model/pair model/force" \
+        n = split("base mesh scene model/spring model/system model/contact model/pair model/cross model/force" \
             " model/solver,model/event model/commit model io,draw,sim draw/gl,draw/cpu study" \
             " study/compare,study/stability,study/conform,study/golden,study/soft cli", floors, " ")
         for (i = 1; i <= n; i++) {

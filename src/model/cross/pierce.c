@@ -1,0 +1,58 @@
+/* An edge against a triangle: five signs of determinants. */
+#include "model/cross/pierce.h"
+
+#include "base/vec3.h"
+#include "model/cross/orient.h"
+
+#include <float.h>
+
+/* Whether an edge and a triangle surely lie apart along an axis, whatever axis it is: rounding
+ * of the projections is below the margin. */
+static bool are_apart(const double edge[2][3], const double triangle[3][3],
+                      const double axis[3]) {
+    double low[2] = {DBL_MAX, DBL_MAX}, high[2] = {-DBL_MAX, -DBL_MAX}, size = 0;
+    for (int k = 0; k < 5; k++) {
+        const double *p = k < 2 ? edge[k] : triangle[k - 2];
+        double at = 0, sum = 0;
+        for (int c = 0; c < 3; c++) {
+            const double product = axis[c] * (p[c] - triangle[0][c]);
+            at += product;
+            sum += fabs(product);
+        }
+        low[k >= 2] = fmin(low[k >= 2], at);
+        high[k >= 2] = fmax(high[k >= 2], at);
+        size = fmax(size, sum);
+    }
+    const double margin = 8 * DBL_EPSILON * size;
+    return low[0] > high[1] + margin || low[1] > high[0] + margin;
+}
+
+/* A flat body has no other certain answer than this for edges beside a triangle: every
+ * determinant of points in a plane is 0 but for rounding. */
+static bool are_beside(const double edge[2][3], const double triangle[3][3]) {
+    double sides[3][3], along[3], normal[3], axis[3];
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            sides[k][c] = triangle[(k + 1) % 3][c] - triangle[k][c];
+    cs_vec3_cross(sides[0], sides[1], normal);
+    for (int k = 0; k < 3; k++) {
+        cs_vec3_cross(normal, sides[k], axis);
+        if (are_apart(edge, triangle, axis))
+            return true;
+    }
+    for (int c = 0; c < 3; c++)
+        along[c] = edge[1][c] - edge[0][c];
+    cs_vec3_cross(normal, along, axis);
+    return are_apart(edge, triangle, axis);
+}
+
+bool cs_pierces(const double edge[2][3], const double triangle[3][3]) {
+    if (are_beside(edge, triangle))
+        return false;
+    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
+    const double *p = edge[0], *q = edge[1];
+    if (cs_orient(a, b, c, p) * cs_orient(a, b, c, q) >= 0)
+        return false;
+    const int side = cs_orient_moved(a, b, p, q);
+    return side == cs_orient_moved(b, c, p, q) && side == cs_orient_moved(c, a, p, q);
+}
