@@ -125,14 +125,19 @@ enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *erro
     return CS_OK;
 }
 
+void cs_surfaces_count(const struct cs_body *body, size_t *n_triangles, size_t *n_edges) {
+    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const size_t columns = (size_t)body->cloth.grid[0], rows = (size_t)body->cloth.grid[1];
+    *n_triangles = mesh ? mesh->n_triangles : 2 * (columns - 1) * (rows - 1);
+    *n_edges = mesh ? mesh->n_edges : grid_edges(columns, rows);
+}
+
 size_t cs_surfaces_bytes(const struct cs_scene *scene) {
     size_t words = 2 * ((size_t)scene->bodies.n + 1);
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(scene) + b;
-        const struct cs_trimesh *mesh = body->mesh.geometry;
-        const size_t columns = (size_t)body->cloth.grid[0], rows = (size_t)body->cloth.grid[1];
-        words += mesh ? 3 * (size_t)mesh->n_triangles + 4 * (size_t)mesh->n_edges
-                      : 6 * (columns - 1) * (rows - 1) + 4 * grid_edges(columns, rows);
+        size_t n_triangles, n_edges;
+        cs_surfaces_count(cs_scene_bodies(scene) + b, &n_triangles, &n_edges);
+        words += 3 * n_triangles + 4 * n_edges;
     }
     return words * sizeof(uint32_t) + sizeof(struct cs_surfaces);
 }

@@ -23,6 +23,9 @@ struct cs_surfaces {
 /* Takes and fills system->surfaces; does nothing where it is there. CS_ERR_MEMORY. */
 enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *error);
 
+/* Triangles and edges of a body of a scene. */
+void cs_surfaces_count(const struct cs_body *body, size_t *n_triangles, size_t *n_edges);
+
 /* Bytes that it takes, for a plan; triangles and edges as a scene's bodies have them. */
 size_t cs_surfaces_bytes(const struct cs_scene *scene);
 

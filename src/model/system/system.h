@@ -24,6 +24,7 @@ struct cs_events;
 struct cs_pairing;
 struct cs_obstacle_motion;
 struct cs_surfaces;
+struct cs_crossings;
 
 struct cs_system {
     struct cs_view view;          /* what integrators see */
@@ -44,6 +45,7 @@ struct cs_system {
         *motions;                      /* (scene->colliders.n); NULL where no event moves one */
     const struct cs_pairing *pairings; /* (scene->colliders.n); NULL without contact by force */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
+    struct cs_crossings *crossings;     /* NULL unless asked for (crossings.h) */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */
 };

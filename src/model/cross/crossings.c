@@ -1,0 +1,209 @@
+/* Counts crossings, and finds the first of a move, over the pairs of parts that may meet. */
+#include "model/cross/crossings.h"
+
+#include "base/pool.h"
+#include "model/cross/gap.h"
+#include "model/cross/pierce.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What one job found; the jobs are put together in their order. */
+struct found {
+    struct cs_crossing_count count;
+    double share;
+};
+
+struct cs_crossings {
+    struct cs_parts parts;
+    struct found *found; /* (CS_BOX_JOBS_MOST) */
+};
+
+enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
+    struct cs_crossings *crossings = cs_arena_take(&system->arena, sizeof *crossings, error);
+    if (error->status)
+        return error->status;
+    crossings->found =
+        cs_arena_take_n(&system->arena, CS_BOX_JOBS_MOST, sizeof *crossings->found, error);
+    if (!error->status && !cs_parts_build(system, &crossings->parts, error))
+        system->crossings = crossings;
+    return error->status;
+}
+
+size_t cs_crossings_bytes(const struct cs_scene *scene) {
+    return sizeof(struct cs_crossings) + CS_BOX_JOBS_MOST * sizeof(struct found) +
+           cs_parts_bytes(scene);
+}
+
+/* One question to all pairs, and where the job at work puts its answer. */
+struct question {
+    const struct cs_parts *parts;
+    const double *x0, *x1;
+    uint8_t *marks; /* NULL: none are asked for */
+    struct found *found;
+    cs_box_visit *visit;
+};
+struct asking {
+    const struct question *question;
+    struct found *found;
+};
+
+static void run_job(void *arg, uint32_t job) {
+    const struct question *question = arg;
+    struct asking asking = {question, question->found + job};
+    asking.found->count = (struct cs_crossing_count){0};
+    asking.found->share = 1;
+    cs_box_tree_visit(&question->parts->tree, job, question->visit, &asking);
+}
+
+static void read_points(const struct cs_parts *parts, const double *x, const uint32_t *items,
+                        uint32_t n, double p[][3]) {
+    for (uint32_t k = 0; k < n; k++)
+        for (size_t c = 0; c < 3; c++)
+            p[k][c] = x[c * parts->n_particles + items[k]];
+}
+
+/* --- counting --- */
+
+static void mark_triangle(uint8_t *marks, uint32_t t) {
+    // several threads may mark the same triangle
+    if (t != CS_NO_TRIANGLE)
+        __atomic_store_n(marks + t, (uint8_t)1, __ATOMIC_RELAXED);
+}
+
+static void count_pair(const struct asking *asking, uint32_t e, uint32_t t) {
+    const struct question *question = asking->question;
+    const struct cs_parts *parts = question->parts;
+    const uint32_t *ends = cs_parts_ends(parts, e), *corners = cs_parts_corners(parts, t);
+    struct cs_crossing_count *count = &asking->found->count;
+    double edge[2][3], triangle[3][3];
+    for (int k = 0; k < 6; k++)
+        if (ends[k / 3] == corners[k % 3])
+            return;
+    read_points(parts, question->x0, ends, 2, edge);
+    read_points(parts, question->x0, corners, 3, triangle);
+    if (!cs_pierces((const double(*)[3])edge, (const double(*)[3])triangle))
+        return;
+    if (!count->n++ || e < count->edge || (e == count->edge && t < count->triangle)) {
+        count->edge = e;
+        count->triangle = t;
+    }
+    if (!question->marks)
+        return;
+    mark_triangle(question->marks, t);
+    mark_triangle(question->marks, parts->surfaces->owners[2 * (size_t)e]);
+    mark_triangle(question->marks, parts->surfaces->owners[2 * (size_t)e + 1]);
+}
+
+/* own edges of one part against the triangle of the other */
+static void count_edges(const struct asking *asking, uint32_t part, uint32_t other) {
+    const struct cs_parts *parts = asking->question->parts;
+    const uint32_t t = parts->triangles[other];
+    if (t == CS_NO_TRIANGLE)
+        return;
+    for (uint32_t k = parts->first_edge[part]; k < parts->first_edge[part + 1]; k++)
+        count_pair(asking, parts->edges[k], t);
+}
+
+static void count_parts(void *arg, uint32_t i, uint32_t j) {
+    count_edges(arg, i, j);
+    count_edges(arg, j, i);
+}
+
+struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, const double *x,
+                                           uint8_t *marks) {
+    struct cs_crossings *crossings = system->crossings;
+    struct cs_crossing_count all = {0};
+    if (marks)
+        memset(marks, 0, crossings->parts.surfaces->n_triangles);
+    struct question question = {.parts = &crossings->parts,
+                                .x0 = x,
+                                .marks = marks,
+                                .found = crossings->found,
+                                .visit = count_parts};
+    cs_parts_place(&crossings->parts, x, NULL, 0);
+    cs_pool_run(crossings->parts.tree.n_jobs, run_job, &question);
+    for (uint32_t k = 0; k < crossings->parts.tree.n_jobs; k++) {
+        const struct cs_crossing_count *one = &crossings->found[k].count;
+        const bool first = one->n && (!all.n || one->edge < all.edge ||
+                                      (one->edge == all.edge && one->triangle < all.triangle));
+        if (first) {
+            all.edge = one->edge;
+            all.triangle = one->triangle;
+        }
+        all.n += one->n;
+    }
+    return all;
+}
+
+struct cs_crossing_count cs_crossings_count(const struct cs_system *system, const double *x) {
+    return cs_crossings_mark(system, x, NULL);
+}
+
+/* --- the first of a move --- */
+
+static void try_pair(const struct asking *asking, enum cs_gap_kind kind,
+                     const uint32_t particles[4]) {
+    const struct question *question = asking->question;
+    const size_t n = question->parts->n_particles, side = kind == CS_GAP_POINT ? 1 : 2;
+    double p[4][3], moves[4][3];
+    struct cs_sweep sweeps[2] = {cs_sweep_none(), cs_sweep_none()};
+    for (size_t k = 0; k < 4; k++)
+        for (size_t l = 0; l < side; l++)
+            if (k >= side && particles[k] == particles[l])
+                return;
+    for (size_t k = 0; k < 4; k++)
+        cs_sweep_add(sweeps + (k >= side), n, particles[k], question->x0, question->x1);
+    if (!cs_sweeps_meet(sweeps, sweeps + 1, CS_GAP_LEAST))
+        return;
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++) {
+            p[k][c] = question->x0[c * n + particles[k]];
+            moves[k][c] = question->x1[c * n + particles[k]] - p[k][c];
+        }
+    asking->found->share = cs_gap_share(kind, (const double(*)[3])p, (const double(*)[3])moves,
+                                        asking->found->share);
+}
+
+/* own points of one part against the triangle of the other */
+static void try_points(const struct asking *asking, uint32_t part, uint32_t other) {
+    const struct cs_parts *parts = asking->question->parts;
+    const uint32_t t = parts->triangles[other];
+    if (t == CS_NO_TRIANGLE)
+        return;
+    const uint32_t *corners = cs_parts_corners(parts, t);
+    for (uint32_t k = parts->first_point[part]; k < parts->first_point[part + 1]; k++)
+        try_pair(asking, CS_GAP_POINT,
+                 (const uint32_t[4]){parts->points[k], corners[0], corners[1], corners[2]});
+}
+
+static void try_edges(const struct asking *asking, uint32_t part, uint32_t other) {
+    const struct cs_parts *parts = asking->question->parts;
+    for (uint32_t k = parts->first_edge[part]; k < parts->first_edge[part + 1]; k++)
+        for (uint32_t l = parts->first_edge[other]; l < parts->first_edge[other + 1]; l++) {
+            const uint32_t *e = cs_parts_ends(parts, parts->edges[k]);
+            const uint32_t *f = cs_parts_ends(parts, parts->edges[l]);
+            try_pair(asking, CS_GAP_EDGES, (const uint32_t[4]){e[0], e[1], f[0], f[1]});
+        }
+}
+
+static void try_parts(void *arg, uint32_t i, uint32_t j) {
+    try_points(arg, i, j);
+    try_points(arg, j, i);
+    try_edges(arg, i, j);
+}
+
+double cs_crossings_share(const struct cs_system *system, const double *x0, const double *x1) {
+    struct cs_crossings *crossings = system->crossings;
+    struct question question = {.parts = &crossings->parts,
+                                .x0 = x0,
+                                .x1 = x1,
+                                .found = crossings->found,
+                                .visit = try_parts};
+    double share = 1;
+    cs_parts_place(&crossings->parts, x0, x1, CS_GAP_LEAST);
+    cs_pool_run(crossings->parts.tree.n_jobs, run_job, &question);
+    for (uint32_t k = 0; k < crossings->parts.tree.n_jobs; k++)
+        share = fmin(share, crossings->found[k].share);
+    return share;
+}
