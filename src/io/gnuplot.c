@@ -1,26 +1,16 @@
 /* Runs gnuplot on a script if the program is installed. */
 #include "io/gnuplot.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
+#include "io/program.h"
 
-extern char **environ;
+#include <stddef.h>
 
 enum cs_status cs_gnuplot_run(const char *folder, const char *script, bool *drawn,
                               struct cs_error *error) {
-    char *arguments[] = {"gnuplot", (char *)script, NULL};
-    posix_spawn_file_actions_t actions;
-    pid_t child;
-    int status = -1;
-    *drawn = false;
-    if (posix_spawn_file_actions_init(&actions))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a program to run");
-    /* its warnings about fonts would only confuse the user */
-    if (!posix_spawn_file_actions_addchdir_np(&actions, folder) &&
-        !posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", 1, 0) &&
-        !posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ) &&
-        waitpid(child, &status, 0) == child)
-        *drawn = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    posix_spawn_file_actions_destroy(&actions);
-    return CS_OK;
+    struct cs_program_end end;
+    /* quiet: its warnings about fonts would only confuse the user */
+    const enum cs_status status = cs_program_run(
+        folder, (const char *const[]){"gnuplot", script, NULL}, true, &end, error);
+    *drawn = end.done;
+    return status;
 }
