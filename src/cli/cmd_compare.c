@@ -6,6 +6,8 @@
 #include "study/compare/compare.h"
 #include "study/compare/compare_report.h"
 #include "study/compare/compare_sheet.h"
+#include "study/compare/compare_table.h"
+#include "study/compare/verdict.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +21,7 @@ enum {
     COMPARE_PLUGIN,
     COMPARE_OUT,
     COMPARE_RUNS,
+    COMPARE_RANK,
     COMPARE_BUDGET,
     COMPARE_ACCURACY,
     COMPARE_REFERENCE,
@@ -44,11 +47,17 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                      "folder of compare.csv, compare.json, compare.md and the diagrams "
                      "(default: compare)",
                      false},
-    [COMPARE_RUNS] = {"runs", 0, "N", "timed runs of each cell, at least (default: 5)", false},
+    [COMPARE_RUNS] = {"runs", 0, "N",
+                      "rounds in which the cells of the verdict are timed, at most; fewer are "
+                      "enough where factors are known to 2 % (default: 40)",
+                      false},
+    [COMPARE_RANK] = {"rank", 0, "NAME",
+                      "what the verdict goes by: error, path, largest, velocity or energy "
+                      "(default: error)",
+                      false},
     [COMPARE_BUDGET] = {"budget", 0, "SECONDS",
-                        "processor time that one run may take (default: 50 s shared by the "
-                        "cells, at most 4 s each, so that all of them take up to about two "
-                        "minutes)",
+                        "processor time that one run may take; a series ends at its first row "
+                        "over it (default: 25 s shared by the cells, at most 4 s each)",
                         false},
     [COMPARE_ACCURACY] = {"accuracy", 0, "METRES",
                           "error that must still mean something (default: 1e-6)", false},
@@ -112,6 +121,12 @@ static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
         cs_progress_show(&screen->progress, screen->compare.done, screen->compare.sweep.n);
 }
 
+static void show_round(void *ctx, uint32_t done, uint32_t most) {
+    struct screen *screen = ctx;
+    screen->progress.what = "round";
+    cs_progress_show(&screen->progress, done, most);
+}
+
 static enum cs_status read_reference(struct cs_args *args, struct cs_compare_settings *settings,
                                      struct cs_error *error) {
     const char *const *methods;
@@ -153,14 +168,16 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     *settings = (struct cs_compare_settings){
         .methods = cs_args_get(args, COMPARE_INTEGRATORS),
         .accuracy = 1e-6,
-        .runs = 5,
+        .runs = 40,
         .folder = folder ? folder : "compare",
         .fresh = cs_args_get(args, COMPARE_FRESH),
     };
     settings->cache = cache ? cache : settings->folder;
+    int rank = CS_NORM_END;
     session->scene = args->operands[0];
     session->run.stop = cs_interrupt_catch();
-    if (cs_args_whole(args, COMPARE_RUNS, 1, 100, &settings->runs, error) ||
+    if (cs_args_choice(args, COMPARE_RANK, cs_norm_names, &rank, error) ||
+        cs_args_whole(args, COMPARE_RUNS, 1, CS_ROUNDS_MOST, &settings->runs, error) ||
         cs_args_real(args, COMPARE_BUDGET, &settings->budget, error) ||
         cs_args_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||
         read_reference(args, settings, error) ||
@@ -168,6 +185,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
                           error) ||
         cs_args_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error))
         return error->status;
+    settings->rank = (enum cs_norm)rank;
     /* last: the length of a frame may come from --set */
     return read_frames(args, settings, error);
 }
@@ -180,7 +198,7 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     cs_text_add(&text, "\n");
     cs_table_add_series(&screen->compare, &text);
     cs_text_add(&text, "\n");
-    cs_ranking_print(&ranking, "", &screen->compare, &text);
+    cs_verdict_print(&ranking, "", &screen->compare, &text);
     cs_compare_warn(&screen->compare, "warning: ", &text);
     cs_ranking_finish(&ranking);
     return cs_print_out(stdout, &text, error);
@@ -196,6 +214,7 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     settings.reference_progress = show_reference;
     settings.begun = show_begin;
     settings.row = show_row;
+    settings.round = show_round;
     settings.ctx = &screen;
     cs_progress_begin(&screen.progress, screen.quiet);
     if (!cs_compare_run(&screen.compare, &settings, error)) {

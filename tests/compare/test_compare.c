@@ -118,9 +118,8 @@ START_TEST(ranking_takes_the_cheapest) {
             ck_assert(!(cell->error <= pow(10, rank->exponent)) ||
                       !(cell->cpu < rank->best->cpu));
         }
-        ck_assert(!rank->next || (rank->factor >= 1 && rank->low <= rank->factor &&
-                                  rank->factor <= rank->high));
-        ck_assert(!rank->next || strcmp(rank->next->method, rank->best->method) != 0);
+        ck_assert(!rank->next || rank->ratio.factor >= 1);
+        ck_assert(!rank->next || strcmp(rank->next->series, rank->best->series) != 0);
         ck_assert(ranking.front[rank->best - compare.sweep.cells]);
     }
     cs_ranking_finish(&ranking);
@@ -135,7 +134,8 @@ START_TEST(list_is_read) {
     const struct cs_sweep_settings settings = {
         .list = "rk4:dt=1e-3..4e-3,velocity-verlet,dopri5:rtol=1e-4..1e-3,atol=1e-9",
         .fps = 60,
-        .omega = 1000};
+        .omega = 1000,
+        .size = 1};
     ck_assert_msg(!cs_sweep_make(&sweep, &settings, &error), "%s", error.message);
     ck_assert_uint_eq(sweep.n, 3 + 8 + 3);
     ck_assert_str_eq(sweep.cells[0].options, "dt=0.004");
@@ -151,7 +151,8 @@ END_TEST
 static const char *cells_of(const char *list, char *out, size_t size) {
     struct cs_sweep sweep;
     struct cs_error error = {0};
-    const struct cs_sweep_settings settings = {.list = list, .fps = 60, .omega = 1000};
+    const struct cs_sweep_settings settings = {
+        .list = list, .fps = 60, .omega = 1000, .size = 1};
     *out = 0;
     if (cs_sweep_make(&sweep, &settings, &error))
         snprintf(out, size, "%s", error.message);
@@ -180,9 +181,48 @@ START_TEST(series_are_named_apart) {
 }
 END_TEST
 
+/* The small scene in another unit of length; forces scale with it. */
+static void write_scaled(char path[64], double unit) {
+    char scaled[1000];
+    snprintf(
+        scaled, sizeof scaled,
+        "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"size\": [%g, %g], \"velocity\":"
+        " [0, 0, %g]}, \"mass\": {\"total\": 0.2}, \"springs\": {\"stretch\": 40,"
+        " \"shear\": 15, \"bend\": 5, \"damping\": 0.02}, \"pins\": [\"top-left\","
+        " \"top-right\"]}], \"forces\": {\"gravity\": [0, %g, 0]}, \"time\": {\"fps\": %%s}}",
+        unit, unit, 0.5 * unit, -9.81 * unit);
+    scene_write(path, scaled, "20");
+}
+
+START_TEST(tolerances_have_no_unit) {
+    static const char *const methods = "dopri5:rtol=1e-6..1e-3,ark-erk:rtol=1e-6..1e-3";
+    struct cs_compare compare[2];
+    struct cs_compare_settings settings[2];
+    struct place place;
+    for (int k = 0; k < 2; k++) {
+        struct watch watch = {0};
+        const double unit = k ? 1000 : 1;
+        place_make(&place, "0.02");
+        write_scaled(place.scene, unit);
+        run_in(compare + k, settings + k, &place, methods, &watch, 0.5, unit);
+        place_remove(&place);
+    }
+    ck_assert_uint_eq(compare[0].sweep.n, compare[1].sweep.n);
+    for (uint32_t k = 0; k < compare[0].sweep.n; k++) {
+        const struct cs_cell *one = compare[0].sweep.cells + k,
+                             *other = compare[1].sweep.cells + k;
+        ck_assert_double_eq_tol(other->achieved / one->achieved, 1, 0.01);
+        ck_assert_double_eq_tol(other->error / one->error / 1000, 1, 0.01);
+    }
+    cs_compare_finish(compare);
+    cs_compare_finish(compare + 1);
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {orders_are_seen,  file_reads_back,
-                                  quotes_read_back, ranking_takes_the_cheapest,
-                                  list_is_read,     series_are_named_apart};
+    const TTest *const tests[] = {orders_are_seen,        file_reads_back,
+                                  quotes_read_back,       ranking_takes_the_cheapest,
+                                  list_is_read,           series_are_named_apart,
+                                  tolerances_have_no_unit};
     return scene_tests("compare", tests, sizeof tests / sizeof *tests);
 }

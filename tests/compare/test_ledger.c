@@ -75,14 +75,14 @@ START_TEST(over_budget_runs_again_with_more) {
     struct cs_compare compare;
     struct cs_compare_settings settings;
     place_make(&place, "0.02");
-    run_for(&compare, &settings, &place, "rk4:dt=2e-6", &first, 0.01);
+    run_for(&compare, &settings, &place, "rk4:dt=5e-5", &first, 1e-3);
     ck_assert_str_eq(compare.sweep.cells->outcome, cs_outcome_text(CS_OVER_BUDGET));
     cs_compare_finish(&compare);
-    run_for(&compare, &settings, &place, "rk4:dt=2e-6", &second, 0.01);
+    run_for(&compare, &settings, &place, "rk4:dt=5e-5", &second, 1e-3);
     ck_assert_uint_eq(second.taken, 1);
     cs_compare_finish(&compare);
     // without one, a single cell has the most that there is
-    run_for(&compare, &settings, &place, "rk4:dt=2e-6", &third, 0);
+    run_for(&compare, &settings, &place, "rk4:dt=5e-5", &third, 0);
     ck_assert_uint_eq(third.taken, 0);
     ck_assert_double_eq(compare.budget, CS_COMPARE_MOST);
     cs_compare_finish(&compare);

@@ -6,11 +6,27 @@
 #include "study/compare/compare_ledger.h"
 #include "study/compare/compare_measure.h"
 #include "study/compare/compare_reference.h"
+#include "study/compare/compare_time.h"
 #include "study/compare/sweep_list.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* m: the longest side of the scene's box, as a power of 10 */
+static double size_of(const struct cs_course *course) {
+    const size_t n = course->session.system.view.n;
+    double longest = 0;
+    for (size_t c = 0; c < 3; c++) {
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        for (size_t i = 0; i < n; i++) {
+            least = fmin(least, course->start[c * n + i]);
+            most = fmax(most, course->start[c * n + i]);
+        }
+        longest = fmax(longest, most - least);
+    }
+    return longest > 0 ? pow(10, floor(log10(longest) + 0.5)) : 1;
+}
 
 /* The scene as it is, and what its smooth form comes to. */
 static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error *error) {
@@ -31,6 +47,7 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
         compare->fps = course.session.scene.time.fps;
         /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
+        compare->size = size_of(&course);
         compare->time = settings->frames / compare->fps;
         compare->contact = course.session.scene.colliders.n > 0;
         compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;
@@ -51,15 +68,17 @@ static struct cs_compare_reference_settings ask_reference(const struct cs_compar
 }
 
 /* Without a budget of the user's own, all cells together get a time. Steps are halved, so the
- * runs of one method that get through, each timed several times, come to about as much again
- * as those that do not. */
+ * last run of a series that gets through takes as long as all before it; one more may be over
+ * budget, and what got through is run once more in a round. */
 static void share_time(struct cs_compare *compare) {
+    const struct cs_sweep *sweep = &compare->sweep;
     uint32_t n = 0;
-    for (uint32_t k = 0; k < compare->sweep.n; k++)
-        n += !*compare->sweep.cells[k].outcome;
+    for (uint32_t k = 0; k < sweep->n; k++)
+        n += k == 0 || !cs_cell_same_series(sweep->cells + k, sweep->cells + k - 1);
     compare->budget = compare->settings->budget > 0
                           ? compare->settings->budget
-                          : fmin(CS_COMPARE_SECONDS / (2 * fmax(n, 1)), CS_COMPARE_MOST);
+                          : fmin(CS_COMPARE_SECONDS / (5 * fmax(n, 1)), CS_COMPARE_MOST);
+    compare->rounds_for = fmax(CS_COMPARE_ROUND_SECONDS, 5 * compare->settings->budget);
 }
 
 /* A method that cannot follow the scene, which others can, is left out: one row says why. */
@@ -95,14 +114,15 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                             .plugins = session->plugins,
                                             .n_plugins = session->n_plugins,
                                             .fps = compare->fps,
-                                            .omega = compare->omega};
+                                            .omega = compare->omega,
+                                            .size = compare->size};
     if (!cs_sweep_make(&compare->sweep, &asked, error) && !check_methods(compare, error))
         share_time(compare);
     return error->status;
 }
 
-/* What a row depends on: reference (with scene, overrides, length), then method and number
- * of timed runs. The sweep has put the hash of the module there. */
+/* What a row depends on: reference (with scene, overrides, length), then method. The sweep has
+ * put the hash of the module there. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_compare_reference_settings asked = ask_reference(compare);
     struct cs_compare_reference reference;
@@ -111,8 +131,7 @@ static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *err
     for (uint32_t k = 0; k < compare->sweep.n && !error->status; k++) {
         struct cs_cell *cell = compare->sweep.cells + k;
         struct cs_text all = {0};
-        cs_text_add(&all, "%s|%s|%s|%u", cell->key, cell->method, cell->options,
-                    compare->settings->runs);
+        cs_text_add(&all, "%s|%s|%s", cell->key, cell->method, cell->options);
         cs_hash_bytes(cs_text_get(&all), all.length, of_cell);
         snprintf(cell->key, sizeof cell->key, "%.*s-%.16s", CS_COMPARE_DIGITS, of_reference,
                  of_cell);
@@ -127,6 +146,11 @@ static void report_row(struct cs_compare *compare, const struct cs_cell *cell, b
         compare->settings->row(compare->settings->ctx, cell, taken);
 }
 
+/* Shorter steps and tighter tolerances take longer still: nothing behind it is run. */
+static bool is_ended(const struct cs_cell *cell) {
+    return !*cell->outcome || !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
+}
+
 static enum cs_status measure_cells(struct cs_compare *compare, struct cs_ledger *ledger,
                                     struct cs_error *error) {
     for (uint32_t k = 0; k < compare->sweep.n; k++)
@@ -136,10 +160,15 @@ static enum cs_status measure_cells(struct cs_compare *compare, struct cs_ledger
         struct cs_cell *cell = compare->sweep.cells + k;
         if (*cell->outcome)
             continue;
+        if (k > 0 && cs_cell_same_series(cell, cell - 1) && is_ended(cell - 1)) {
+            compare->done++;
+            continue;
+        }
         if (cs_compare_measure(compare, cell, error) || cs_ledger_append(ledger, cell, error))
             return error->status;
         report_row(compare, cell, false);
     }
+    compare->left_out = cs_sweep_drop_open(&compare->sweep, &compare->ended);
     return CS_OK;
 }
 
@@ -155,7 +184,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
         !cs_compare_reference_get(&compare->reference, &reference, error)) {
         if (settings->begun)
             settings->begun(settings->ctx);
-        if (!measure_cells(compare, &ledger, error)) {
+        if (!measure_cells(compare, &ledger, error) && !cs_compare_time(compare, error)) {
             cs_compare_find_orders(compare->sweep.cells, compare->sweep.n,
                                    compare->reference.bar, compare->reference.scale);
             cs_ledger_rewrite(&ledger, compare, error);
@@ -168,6 +197,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
 void cs_compare_finish(struct cs_compare *compare) {
     cs_compare_reference_finish(&compare->reference);
     cs_sweep_finish(&compare->sweep);
+    cs_rounds_finish(&compare->rounds);
     cs_text_finish(&compare->changes);
     *compare = (struct cs_compare){0};
 }

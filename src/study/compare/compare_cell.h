@@ -21,10 +21,10 @@ struct cs_cell {
     char key[40];    /* hash of everything that the row depends on */
     char family[24]; /* see cs_family_names */
     bool adaptive;
-    double value;                      /* of control */
-    double step;                       /* mean length of an internal step in s */
-    double time;                       /* reached, in s */
-    double error, max_error;           /* m at the end: mass-weighted RMS, largest */
+    double value;            /* of control */
+    double step;             /* mean length of an internal step in s */
+    double time;             /* reached, in s */
+    double error, max_error; /* m at the end: mass-weighted RMS, largest of a particle */
     double path_error, max_path_error; /* m over all frames */
     double velocity_error;             /* m/s at the end, mass-weighted RMS */
     double energy_error; /* largest |E - E_ref| over frames / largest kinetic energy */
@@ -32,11 +32,11 @@ struct cs_cell {
     double strain;                  /* largest over frames */
     double bar;                     /* m, error of the reference itself */
     double order;                   /* slope from the row before, where it is steady */
-    double achieved;                /* error / rtol of an adaptive method */
+    double achieved;                /* error / (rtol x motion) of an adaptive method */
     double work; /* force evaluations, Jacobian products and solver iterations */
     double evals, jvps, solves, iterations, setups, steps, rejected, newton, clamped;
-    double cpu, cpu_low, cpu_high; /* s: median and quartiles */
-    double wall;                   /* s, median */
+    double cpu, cpu_low, cpu_high; /* s: median and quartiles of rounds */
+    double wall;                   /* s, of the first run */
     double runs, outliers;         /* timed ones; those far above the median */
 };
 

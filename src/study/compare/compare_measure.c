@@ -1,5 +1,5 @@
-/* Measures one cell by a recorded run and then timed runs, and finds observed orders, the
- * slopes of error against step. */
+/* Measures one cell by a recorded run, and finds observed orders, the slopes of error against
+ * step. */
 #include "study/compare/compare_measure.h"
 
 #include "study/compare/compare_reference.h"
@@ -9,67 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_RUNS = 101 };
-
-/* Short runs are repeated until they fill that time. */
-#define LEAST_SECONDS 0.03
-
-/* Times further from the median than that many median deviations are outliers; 1.4826 makes
- * the deviation of a normal distribution of it. */
-#define OUTLIER (3 * 1.4826)
-
 /* Steps that contact or a method itself cuts hardly depend on dt: below that ratio of mean
  * steps, where dt is halved, there is no slope. */
 #define SHORTER 1.7
 
 /* Two successive slopes within that are steady. */
 #define STEADY 0.1
-
-static int by_size(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double quantile(const double *sorted, uint32_t n, double share) {
-    const double at = share * (n - 1);
-    const uint32_t k = (uint32_t)at;
-    return k + 1 < n ? sorted[k] + (at - k) * (sorted[k + 1] - sorted[k]) : sorted[k];
-}
-
-static void take_times(struct cs_cell *cell, double *cpu, double *wall, uint32_t n) {
-    double away[MOST_RUNS];
-    qsort(cpu, n, sizeof *cpu, by_size);
-    qsort(wall, n, sizeof *wall, by_size);
-    cell->cpu = quantile(cpu, n, 0.5);
-    cell->cpu_low = quantile(cpu, n, 0.25);
-    cell->cpu_high = quantile(cpu, n, 0.75);
-    cell->wall = quantile(wall, n, 0.5);
-    cell->runs = n;
-    for (uint32_t k = 0; k < n; k++)
-        away[k] = fabs(cpu[k] - cell->cpu);
-    qsort(away, n, sizeof *away, by_size);
-    const double bound = OUTLIER * quantile(away, n, 0.5);
-    cell->outliers = 0;
-    for (uint32_t k = 0; k < n; k++)
-        // a twentieth of the median is the clock's own unrest
-        cell->outliers += fabs(cpu[k] - cell->cpu) > fmax(bound, 0.05 * cell->cpu);
-}
-
-static enum cs_status time_runs(const struct cs_compare *compare, struct cs_course *course,
-                                struct cs_cell *cell, struct cs_error *error) {
-    double cpu[MOST_RUNS], wall[MOST_RUNS], total = 0;
-    uint32_t n = 0;
-    while (n < MOST_RUNS && (n < compare->settings->runs || total < LEAST_SECONDS)) {
-        struct cs_course_end end;
-        if (cs_course_run(course, 0, NULL, &end, error))
-            return error->status;
-        cpu[n] = end.cpu;
-        wall[n++] = end.wall;
-        total += end.wall;
-    }
-    take_times(cell, cpu, wall, n);
-    return CS_OK;
-}
 
 static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     const struct cs_counts *counts = &end->counts;
@@ -83,6 +28,10 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->rejected = (double)counts->method.rejected;
     cell->newton = (double)counts->method.newton;
     cell->work = cell->evals + cell->jvps + cell->iterations;
+    cell->cpu = cell->cpu_low = cell->cpu_high = end->cpu;
+    cell->wall = end->wall;
+    cell->runs = 1;
+    cell->outliers = 0;
     cell->time = end->time;
     cell->step =
         end->outcome == CS_RUNNING && !end->failed ? end->time / cell->steps : (double)NAN;
@@ -109,7 +58,8 @@ static void take_errors(const struct cs_compare *compare, const struct cs_course
     cell->centre_error = deviation.centre;
     cell->box_error = deviation.box;
     cell->strain = deviation.strain;
-    cell->achieved = cell->adaptive ? cell->error / cell->value : (double)NAN;
+    cell->achieved =
+        cell->adaptive ? cell->error / (cell->value * reference->scale) : (double)NAN;
 }
 
 enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
@@ -123,12 +73,8 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
         !cs_track_init(&track, &course, error) &&
         !cs_course_run(&course, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
-        // what did not get through is timed once, until it was known
-        take_times(cell, &(double){end.cpu}, &(double){end.wall}, 1);
-        if (cs_cell_is_finished(cell)) {
+        if (cs_cell_is_finished(cell))
             take_errors(compare, &course, &track, cell);
-            time_runs(compare, &course, cell, error);
-        }
     }
     cs_track_finish(&track);
     cs_course_close(&course);

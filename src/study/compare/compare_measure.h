@@ -1,10 +1,10 @@
-/* compare_measure.h - what one cell costs, how wrong it is, and the order of a method. */
+/* compare_measure.h - how wrong one cell is, what it counts, and the order of a method. */
 #ifndef CS_COMPARE_MEASURE_H
 #define CS_COMPARE_MEASURE_H
 
 #include "study/compare/compare_state.h"
 
-/* Runs, measures and times one cell. */
+/* Runs and measures one cell. Its time is that of this one run. */
 enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
                                   struct cs_error *error);
 

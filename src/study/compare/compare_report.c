@@ -4,6 +4,8 @@
 
 #include "base/file.h"
 #include "study/compare/compare_plot.h"
+#include "study/compare/compare_table.h"
+#include "study/compare/verdict.h"
 #include "study/machine.h"
 
 #include <math.h>
@@ -71,20 +73,25 @@ static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
     cs_text_add(out, "{\"best\": %td", rank->best - cells);
     if (rank->next) {
         cs_text_add(out, ", \"next\": %td, ", rank->next - cells);
-        add_json_real(out, "factor", rank->factor);
+        add_json_real(out, "factor", rank->ratio.factor);
         cs_text_add(out, ", \"interval\": [");
-        cs_text_add_real(out, rank->low);
+        cs_text_add_real(out, rank->ratio.low);
         cs_text_add(out, ", ");
-        cs_text_add_real(out, rank->high);
-        cs_text_add(out, "]");
+        cs_text_add_real(out, rank->ratio.high);
+        cs_text_add(out, "], \"pairs\": %u, \"told_apart\": %s", rank->ratio.pairs,
+                    rank->apart ? "true" : "false");
     }
+    for (enum cs_norm norm = 0; norm < CS_NORMS; norm++)
+        if (rank->others[norm])
+            cs_text_add(out, ", \"by_%s\": %td", cs_norm_names[norm],
+                        rank->others[norm] - cells);
 }
 
 /* best and next are indices of cells */
 static void add_verdict(const struct cs_ranking *ranking, const struct cs_compare *compare,
                         struct cs_text *out) {
     const struct cs_cell *cells = compare->sweep.cells;
-    cs_text_add(out, "  \"verdict\": [");
+    cs_text_add(out, "  \"rank\": \"%s\",\n  \"verdict\": [", cs_norm_names[ranking->norm]);
     for (uint32_t k = 0; k < ranking->n; k++) {
         cs_text_add(out, "%s\n    ", k ? "," : "");
         add_rank(ranking->ranks + k, cells, out);
@@ -150,11 +157,13 @@ static void add_setting(const struct cs_compare *compare, struct cs_text *out) {
     cs_table_add_reference(compare, out);
     cs_text_add(
         out,
-        "```\n\nMachine: %s, %ld processors, load %.1f. clothsim %s, %s, %s. Cells were "
-        "timed one\nafter the other: processor time of stepping only, a run before "
-        "that is not timed,\nmedians of at least %u runs.\n\n",
+        "```\n\nMachine: %s, %ld processors, load %.1f. clothsim %s, %s, %s. Times are "
+        "processor\ntime of stepping only. The cells that the verdict rests on were timed in "
+        "turns, "
+        "in %u\nrounds: medians; factors are those of pairs of one round, with their 95 %% "
+        "interval.\n\n",
         *machine.processor ? machine.processor : "unknown", machine.processors, machine.load,
-        machine.version, machine.compiler, machine.flags, compare->settings->runs);
+        machine.version, machine.compiler, machine.flags, compare->rounds.n);
 }
 
 static void add_lines(const char *title, struct cs_text *lines, struct cs_text *out) {
@@ -172,7 +181,7 @@ static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out
     cs_text_add(out, "| %s%s%s | %s", front ? "**" : "", cell->series, front ? "**" : "",
                 cell->options);
     add_field(out, "%e", cell->error);
-    add_field(out, "%e", cell->max_path_error);
+    add_field(out, "%e", cell->max_error);
     add_field(out, "%e", cell->velocity_error);
     add_field(out, "%e", cell->energy_error);
     add_field(out, "%o", cell->order);
@@ -188,10 +197,10 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
                       struct cs_text *out) {
     cs_text_add(out,
                 "## All cells\n\nBold: nothing is both cheaper and more accurate. Errors in m "
-                "(RMS at the end; largest of all\nframes) and m/s; energy as a share of the "
+                "at the end (RMS; largest of a\nparticle) and m/s; energy as a share of the "
                 "largest kinetic energy; time in s.\n\n"
                 "| series | options | error | largest | velocity | energy | order | error / "
-                "rtol | force evaluations | solves | iterations | time | |\n"
+                "(rtol x motion) | force evaluations | solves | iterations | time | |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (uint32_t k = 0; k < compare->sweep.n; k++)
         add_line(compare->sweep.cells + k, ranking->front[k], out);
@@ -201,7 +210,7 @@ static void print_markdown(const struct cs_compare *compare, const struct cs_ran
                            bool drawn, struct cs_text *out) {
     struct cs_text verdict = {0}, warnings = {0}, methods = {0};
     add_setting(compare, out);
-    cs_ranking_print(ranking, "- ", compare, &verdict);
+    cs_verdict_print(ranking, "- ", compare, &verdict);
     add_lines("Verdict", &verdict, out);
     cs_compare_warn(compare, "- ", &warnings);
     if (*cs_text_get(&warnings))
@@ -229,7 +238,9 @@ static enum cs_status draw(const struct cs_compare *compare, const char *name, c
         .n = compare->sweep.n,
         .x = cs_column_find(x),
         // beyond the horizon there is energy to compare
-        .y = cs_column_find(compare->reference.pointwise ? "error" : "energy_error"),
+        .y = cs_norm_column(cs_norm_is_known(compare->settings->rank, &compare->reference)
+                                ? compare->settings->rank
+                                : CS_NORM_ENERGY),
         .title = title,
         .name = name};
     return cs_plot_write(&settings, compare->settings->folder, drawn, error);

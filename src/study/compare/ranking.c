@@ -1,27 +1,54 @@
-/* Finds the Pareto front and ranks of cells, and prints verdict and warnings in words. */
+/* Finds the Pareto front and ranks of cells. */
 #include "study/compare/ranking.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-/* below the bar nothing is known: an error counts as the bar there */
-static double known_error(const struct cs_cell *cell, double bar) {
-    return fmax(cell->error, bar);
+/* A cell that much dearer than the best, by its first times, is no contender; the next series
+ * is one up to the second. */
+#define FAR      1.5
+#define FAR_NEXT 3
+
+/* Whom a rank is chosen from. */
+struct choice {
+    const struct cs_compare *compare;
+    enum cs_norm norm;
+    double bound; /* of the error */
+};
+
+typedef bool passes(const struct cs_cell *cell, const struct choice *choice);
+
+static bool is_ranked(const struct cs_cell *cell, const struct choice *choice) {
+    return cs_cell_is_finished(cell) && cell->cpu > 0 &&
+           isfinite(cs_norm_of(choice->norm, cell, &choice->compare->reference));
 }
 
-static bool is_ranked(const struct cs_cell *cell) {
-    return cs_cell_is_finished(cell) && isfinite(cell->error) && cell->cpu > 0;
+static bool is_accurate(const struct cs_cell *cell, const struct choice *choice) {
+    return is_ranked(cell, choice) &&
+           cs_norm_of(choice->norm, cell, &choice->compare->reference) <=
+               choice->bound * (1 + 1e-9);
 }
 
-static void mark_front(struct cs_ranking *ranking, const struct cs_cell *cells, uint32_t n,
-                       double bar) {
-    for (uint32_t k = 0; k < n; k++) {
-        ranking->front[k] = is_ranked(cells + k);
-        for (uint32_t i = 0; i < n && ranking->front[k]; i++)
-            if (is_ranked(cells + i) && cells[i].cpu < cells[k].cpu &&
-                known_error(cells + i, bar) <= known_error(cells + k, bar))
+static bool takes_frames(const struct cs_cell *cell, const struct choice *choice) {
+    return cs_cell_is_finished(cell) && !cell->adaptive &&
+           cell->steps <= choice->compare->settings->course.frames + choice->compare->cuts;
+}
+
+/* where energies are not known, getting through is all that can be asked for */
+static bool keeps_energy(const struct cs_cell *cell, const struct choice *choice) {
+    return takes_frames(cell, choice) && !(cell->energy_error > CS_FRAME_ENERGY);
+}
+
+static void mark_front(struct cs_ranking *ranking, const struct choice *choice) {
+    const struct cs_compare *compare = choice->compare;
+    const struct cs_cell *cells = compare->sweep.cells;
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        const double error = cs_norm_of(choice->norm, cells + k, &compare->reference);
+        ranking->front[k] = is_ranked(cells + k, choice);
+        for (uint32_t i = 0; i < compare->sweep.n && ranking->front[k]; i++)
+            if (is_ranked(cells + i, choice) && cells[i].cpu < cells[k].cpu &&
+                cs_norm_of(choice->norm, cells + i, &compare->reference) <= error)
                 ranking->front[k] = false;
     }
 }
@@ -30,171 +57,150 @@ static bool is_cheaper(const struct cs_cell *cell, const struct cs_cell *than) {
     return !than || cell->cpu < than->cpu;
 }
 
-/* cheapest, and cheapest of another method, of the cells that pass */
-static void choose(struct cs_rank *rank, const struct cs_compare *compare,
-                   bool (*passes)(const struct cs_cell *, const struct cs_compare *, int)) {
+/* How many times dearer, and whether that is told apart from 1. */
+static bool relate(const struct cs_compare *compare, const struct cs_cell *cell,
+                   const struct cs_cell *base, struct cs_ratio *ratio) {
     const struct cs_cell *cells = compare->sweep.cells;
+    *ratio = (struct cs_ratio){cell->cpu / base->cpu, (double)NAN, (double)NAN, 0};
+    if (compare->rounds.n == 0 || !cs_rounds_ratio(&compare->rounds, (uint32_t)(cell - cells),
+                                                   (uint32_t)(base - cells), ratio))
+        return ratio->factor >= CS_APART_UNPAIRED;
+    return ratio->low > 1;
+}
+
+static const struct cs_cell *cheapest(const struct choice *choice, passes *pass,
+                                      const struct cs_cell *but) {
+    const struct cs_sweep *sweep = &choice->compare->sweep;
+    const struct cs_cell *found = NULL;
+    for (uint32_t k = 0; k < sweep->n; k++)
+        if (pass(sweep->cells + k, choice) && is_cheaper(sweep->cells + k, found) &&
+            !(but && cs_cell_same_series(sweep->cells + k, but)))
+            found = sweep->cells + k;
+    return found;
+}
+
+/* The best, the cheapest of each series that is not far from it, and the next. */
+static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *rank,
+                            const struct choice *choice, passes *pass) {
+    const struct cs_sweep *sweep = &choice->compare->sweep;
+    const struct cs_cell *least = NULL;
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        const struct cs_cell *cell = sweep->cells + k;
+        if (k > 0 && !cs_cell_same_series(cell, cell - 1))
+            least = NULL;
+        if (pass(cell, choice) && is_cheaper(cell, least))
+            least = cell;
+        const bool last = k + 1 == sweep->n || !cs_cell_same_series(cell, cell + 1);
+        if (last && least && least->cpu <= FAR * rank->best->cpu)
+            ranking->contends[least - sweep->cells] = true;
+    }
+    if (rank->next && rank->next->cpu <= FAR_NEXT * rank->best->cpu)
+        ranking->contends[rank->next - sweep->cells] = true;
+}
+
+/* cheapest, and cheapest of another series, of the cells that pass */
+static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
+                   const struct choice *choice, passes *pass) {
+    rank->best = cheapest(choice, pass, NULL);
+    rank->next = rank->best ? cheapest(choice, pass, rank->best) : NULL;
+    if (rank->next)
+        rank->apart = relate(choice->compare, rank->next, rank->best, &rank->ratio);
+    if (rank->best)
+        mark_contenders(ranking, rank, choice, pass);
+}
+
+/* whether the winner changes with the error that is looked at */
+static void look_at_others(struct cs_rank *rank, const struct choice *choice) {
+    const struct cs_compare *compare = choice->compare;
+    for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
+        struct choice by = {compare, norm, 0};
+        struct cs_ratio ratio;
+        if (norm == choice->norm || !cs_norm_is_known(norm, &compare->reference) ||
+            !is_ranked(rank->best, &by))
+            continue;
+        by.bound = cs_norm_of(norm, rank->best, &compare->reference);
+        const struct cs_cell *found = cheapest(&by, is_accurate, rank->best);
+        if (found && found->cpu < rank->best->cpu && relate(compare, rank->best, found, &ratio))
+            rank->others[norm] = found;
+    }
+}
+
+/* the decade from which on an error says something */
+static int first_exponent(const struct choice *choice) {
+    const struct cs_compare *compare = choice->compare;
+    double most = 0;
     for (uint32_t k = 0; k < compare->sweep.n; k++)
-        if (passes(cells + k, compare, rank->exponent) && is_cheaper(cells + k, rank->best))
-            rank->best = cells + k;
-    for (uint32_t k = 0; k < compare->sweep.n && rank->best; k++)
-        if (passes(cells + k, compare, rank->exponent) && is_cheaper(cells + k, rank->next) &&
-            !cs_cell_same_series(cells + k, rank->best))
-            rank->next = cells + k;
-    if (!rank->next)
-        return;
-    rank->factor = rank->next->cpu / rank->best->cpu;
-    rank->low = rank->next->cpu_low / rank->best->cpu_high;
-    rank->high = rank->next->cpu_high / rank->best->cpu_low;
+        if (is_ranked(compare->sweep.cells + k, choice))
+            most = fmax(
+                most, cs_norm_of(choice->norm, compare->sweep.cells + k, &compare->reference));
+    // one as large as the motion says nothing
+    const double scale = cs_norm_scale(choice->norm, &compare->reference);
+    return (int)floor(log10(fmax(isfinite(scale) ? 0.1 * scale : most, 1e-300)) + 1e-9);
 }
 
-static bool is_accurate(const struct cs_cell *cell, const struct cs_compare *compare,
-                        int exponent) {
-    return is_ranked(cell) &&
-           known_error(cell, compare->reference.bar) <= pow(10, exponent) * (1 + 1e-9);
+static void make_ranks(struct cs_ranking *ranking, struct choice *choice) {
+    for (int exponent = first_exponent(choice); exponent > -16 && ranking->n < CS_RANKS_MAX;
+         exponent--) {
+        struct cs_rank rank = {.exponent = exponent};
+        choice->bound = pow(10, exponent);
+        choose(ranking, &rank, choice, is_accurate);
+        if (!rank.best)
+            break;
+        look_at_others(&rank, choice);
+        ranking->ranks[ranking->n++] = rank;
+    }
 }
 
-static bool is_at_frame_step(const struct cs_cell *cell, const struct cs_compare *compare,
-                             int exponent) {
-    (void)exponent;
-    // events cut steps; more energy wrong than there ever is in the motion is no stability
-    return cs_cell_is_finished(cell) && !cell->adaptive && !(cell->energy_error > 1) &&
-           cell->steps <= compare->settings->course.frames + compare->cuts;
+static void make_frame(struct cs_ranking *ranking, const struct choice *choice) {
+    const struct cs_compare *compare = choice->compare;
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        const struct cs_cell *cell = compare->sweep.cells + k;
+        const bool through = takes_frames(cell, choice);
+        ranking->frame_through += through;
+        ranking->frame_tried +=
+            through || (!strcmp(cell->control, "dt") && cell->value * compare->fps >= 1 - 1e-9);
+        if (through && (!ranking->frame_nearest ||
+                        cell->energy_error < ranking->frame_nearest->energy_error))
+            ranking->frame_nearest = cell;
+    }
+    choose(ranking, &ranking->frame, choice, keeps_energy);
 }
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error) {
-    const struct cs_compare_reference *reference = &compare->reference;
-    *ranking = (struct cs_ranking){0};
+    struct choice choice = {.compare = compare, .norm = compare->settings->rank};
+    *ranking = (struct cs_ranking){.norm = choice.norm};
     ranking->front = calloc(compare->sweep.n + 1, sizeof *ranking->front);
-    if (!ranking->front)
+    ranking->contends = calloc(compare->sweep.n + 1, sizeof *ranking->contends);
+    if (!ranking->front || !ranking->contends) {
+        cs_ranking_finish(ranking);
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the ranking");
-    choose(&ranking->frame, compare, is_at_frame_step);
-    if (!reference->pointwise)
-        return CS_OK;
-    mark_front(ranking, compare->sweep.cells, compare->sweep.n, reference->bar);
-    // an error as large as the motion says nothing
-    for (int exponent = (int)floor(log10(0.1 * reference->scale));
-         exponent > -16 && ranking->n < CS_RANKS_MAX; exponent--) {
-        struct cs_rank rank = {.exponent = exponent};
-        choose(&rank, compare, is_accurate);
-        if (!rank.best)
-            break;
-        ranking->ranks[ranking->n++] = rank;
+    }
+    make_frame(ranking, &choice);
+    if (cs_norm_is_known(choice.norm, &compare->reference)) {
+        mark_front(ranking, &choice);
+        make_ranks(ranking, &choice);
     }
     return CS_OK;
 }
 
 void cs_ranking_finish(struct cs_ranking *ranking) {
     free(ranking->front);
+    free(ranking->contends);
     *ranking = (struct cs_ranking){0};
 }
 
-/* "rk4 (dt 1.04 ms), 3.21 ms" */
-static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
-    if (!strcmp(cell->control, "dt"))
-        cs_text_add(out, "%s (dt %.3g ms)", cell->series, 1e3 * cell->step);
-    else
-        cs_text_add(out, "%s (%s %.1e)", cell->series, cell->control, cell->value);
+static bool is_narrow(const struct cs_rank *rank, double share) {
+    const struct cs_ratio *ratio = &rank->ratio;
+    if (!rank->next || ratio->factor > FAR_NEXT)
+        return true;
+    return ratio->pairs > 0 && ratio->high <= ratio->factor * (1 + share) &&
+           ratio->low >= ratio->factor / (1 + share);
 }
 
-static void add_factor(const struct cs_rank *rank, struct cs_text *out) {
-    if (!rank->next) {
-        cs_text_add(out, "; no other method gets there\n");
-        return;
-    }
-    if (rank->low > 1)
-        cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", rank->factor, rank->low,
-                    rank->high);
-    else
-        cs_text_add(out, "; not told apart from ");
-    add_cell(rank->next, out);
-    cs_text_add(out, "\n");
-}
-
-void cs_ranking_print(const struct cs_ranking *ranking, const char *bullet,
-                      const struct cs_compare *compare, struct cs_text *out) {
-    for (uint32_t k = 0, last; k < ranking->n; k = last + 1) {
-        const struct cs_rank *rank = ranking->ranks + k;
-        // what the next decades share is said once
-        for (last = k; last + 1 < ranking->n && rank[last + 1 - k].best == rank->best &&
-                       rank[last + 1 - k].next == rank->next;)
-            last++;
-        cs_text_add(out, "%serror below 1e%03d", bullet, rank->exponent);
-        if (last > k)
-            cs_text_add(out, " down to 1e%03d", ranking->ranks[last].exponent);
-        cs_text_add(out, " m: ");
-        add_cell(rank->best, out);
-        cs_text_add(out, ", %.3g ms", 1e3 * rank->best->cpu);
-        add_factor(rank, out);
-    }
-    const struct cs_rank *frame = &ranking->frame;
-    if (!frame->best) {
-        cs_text_add(out, "%sno method gets through with one step a frame\n", bullet);
-        return;
-    }
-    cs_text_add(out, "%sstable with one step a frame (%.3g ms): %s, %.3g ms", bullet,
-                1e3 / compare->fps, frame->best->series, 1e3 * frame->best->cpu);
-    if (isfinite(frame->best->energy_error))
-        cs_text_add(out, ", with an energy error of %.0f %%", 100 * frame->best->energy_error);
-    add_factor(frame, out);
-}
-
-struct tally {
-    uint32_t brief, unquiet, spread, over, failed, blown, below;
-};
-
-static struct tally count(const struct cs_compare *compare) {
-    struct tally tally = {0};
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        const struct cs_cell *cell = compare->sweep.cells + k;
-        if (cs_cell_is_finished(cell)) {
-            tally.brief += cell->cpu < 5e-3;
-            tally.unquiet += cell->outliers > 0.2 * cell->runs;
-            tally.spread += cell->cpu_high - cell->cpu_low > 0.1 * cell->cpu;
-            tally.below += cell->error < compare->reference.bar;
-        }
-        tally.over += !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
-        tally.failed += !strcmp(cell->outcome, "failed");
-        tally.blown += !strncmp(cell->outcome, "blew up", 7);
-    }
-    return tally;
-}
-
-static void add(struct cs_text *out, const char *bullet, uint32_t n, const char *what,
-                const char *advice) {
-    if (n > 0)
-        cs_text_add(out, "%s%u cell%s %s%s\n", bullet, n, n == 1 ? "" : "s", what, advice);
-}
-
-void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
-                     struct cs_text *out) {
-    const struct tally tally = count(compare);
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    double load = 0;
-    if (!compare->reference.pointwise)
-        cs_text_add(out, "%sno errors of position: %s%s\n", bullet, compare->reference.reason,
-                    compare->reference.agree ? " (a shorter --time, or a larger --accuracy)"
-                                             : "");
-    if (cs_text_get(&compare->changes)[0])
-        cs_text_add(out, "%s%s switched off: no part of the equation of motion\n", bullet,
-                    cs_text_get(&compare->changes));
-    /* one line for all cells of a kind, however many there are */
-    add(out, bullet, tally.below, "below the reference's own error",
-        ": not drawn, and ranked as if at it");
-    add(out, bullet, tally.blown, "blew up", ": the step is beyond the stable one");
-    add(out, bullet, tally.over, "over budget",
-        ": stopped (a larger --budget lets them finish)");
-    add(out, bullet, tally.failed, "failed", ": the notes in compare.csv say why");
-    add(out, bullet, tally.brief, "ran for less than 5 ms",
-        ": trust the counts rather than the times, or take a longer --time");
-    add(out, bullet, tally.spread, "with quartiles further apart than 10 %",
-        ": close other programs, or take more --runs");
-    add(out, bullet, tally.unquiet, "with outliers in more than a fifth of the runs",
-        ": something else used the processor now and then");
-    if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)
-        cs_text_add(out,
-                    "%sthe machine is busy (load %.1f on %ld processors): factors near 1 "
-                    "mean nothing\n",
-                    bullet, load, processors);
+bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share) {
+    bool narrow = is_narrow(&ranking->frame, share);
+    for (uint32_t k = 0; k < ranking->n; k++)
+        narrow &= is_narrow(ranking->ranks + k, share);
+    return narrow;
 }

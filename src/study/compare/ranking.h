@@ -1,4 +1,4 @@
-/* ranking.h - what a comparison says: for each error the cheapest method, and by how much. */
+/* ranking.h - of the rows of a comparison: for each error the cheapest, and by how much. */
 #ifndef CS_RANKING_H
 #define CS_RANKING_H
 
@@ -6,31 +6,41 @@
 
 enum { CS_RANKS_MAX = 24 };
 
-/* The cheapest cell with an error of at most 10^exponent m, and that of the next method. */
+/* Of two cells that were not timed in pairs, that many times the time is a difference. */
+#define CS_APART_UNPAIRED 1.5
+
+/* What one step a frame may do to the energy, as a share of the largest kinetic one, and still
+ * be called stable. */
+#define CS_FRAME_ENERGY 0.1
+
+/* The cheapest cell with an error of at most 10^exponent, and that of the next series. */
 struct cs_rank {
     int exponent;
-    const struct cs_cell *best, *next; /* borrowed; next NULL: no other method gets there */
-    double factor, low, high;          /* next / best: medians, and from quartile to quartile */
+    const struct cs_cell *best, *next; /* borrowed; next NULL: no other series was run to it */
+    struct cs_ratio ratio;             /* next over best */
+    bool apart;                        /* the two are told apart */
+    /* by another error: the cheapest cell that is no worse than best, where it is another
+     * series and told apart from it; NULL: best wins by that one too */
+    const struct cs_cell *others[CS_NORMS];
 };
 
 struct cs_ranking {
+    enum cs_norm norm;
     struct cs_rank ranks[CS_RANKS_MAX]; /* from large errors to small ones */
     uint32_t n;
-    bool *front; /* (cells) nothing is both cheaper and more accurate; owned */
-    /* the cheapest fixed step of one frame that got through, and the next; NULL: none */
+    bool *front;    /* (cells) nothing is both cheaper and more accurate; owned */
+    bool *contends; /* (cells) the verdict rests on them: to be timed in rounds; owned */
+    /* one step a frame: the cheapest that keeps the energy and the next; best NULL: none */
     struct cs_rank frame;
+    const struct cs_cell *frame_nearest; /* with the least energy error of them; or NULL */
+    uint32_t frame_tried, frame_through; /* cells with a dt of a frame; of these to the end */
 };
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error);
 void cs_ranking_finish(struct cs_ranking *ranking);
 
-/* Adds it in words, a line each behind `bullet`. */
-void cs_ranking_print(const struct cs_ranking *ranking, const char *bullet,
-                      const struct cs_compare *compare, struct cs_text *out);
-
-/* The closed list of warnings, each with advice; adds one line a warning, each behind `bullet`.
- */
-void cs_compare_warn(const struct cs_compare *compare, const char *bullet, struct cs_text *out);
+/* Whether each ratio of contenders is known to that share. */
+bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share);
 
 #endif

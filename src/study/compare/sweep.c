@@ -71,6 +71,21 @@ void cs_sweep_refuse(struct cs_sweep *sweep, uint32_t first, const char *why) {
     sweep->cells[first] = cell;
 }
 
+uint32_t cs_sweep_drop_open(struct cs_sweep *sweep, uint32_t *series) {
+    uint32_t kept = 0;
+    *series = 0;
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        const struct cs_cell *cell = sweep->cells + k;
+        if (*cell->outcome)
+            sweep->cells[kept++] = *cell;
+        else
+            *series += k > 0 && *cell[-1].outcome;
+    }
+    const uint32_t dropped = sweep->n - kept;
+    sweep->n = kept;
+    return dropped;
+}
+
 void cs_sweep_finish(struct cs_sweep *sweep) {
     free(sweep->cells);
     *sweep = (struct cs_sweep){0};

@@ -19,6 +19,9 @@ void cs_sweep_finish(struct cs_sweep *sweep);
 enum cs_status cs_sweep_add(struct cs_sweep *sweep, const struct cs_cell *cell,
                             struct cs_error *error);
 
+/* Takes out the cells that were not run; returns how many, and of how many series. */
+uint32_t cs_sweep_drop_open(struct cs_sweep *sweep, uint32_t *series);
+
 /* Makes it a row that says why there are no figures. */
 void cs_cell_refuse(struct cs_cell *cell, const char *why);
 /* Makes one refused cell, which says why, of a series; first is the first of its cells. */

@@ -34,7 +34,7 @@ static void init_cell(struct cs_cell *cell, const struct cs_sweep_entry *entry) 
 }
 
 static enum cs_status add_point(struct cs_sweep *sweep, const struct cs_sweep_entry *entry,
-                                double value, struct cs_error *error) {
+                                double value, double size, struct cs_error *error) {
     struct cs_cell cell;
     init_cell(&cell, entry);
     snprintf(cell.control, sizeof cell.control, "%s", entry->control);
@@ -45,7 +45,7 @@ static enum cs_status add_point(struct cs_sweep *sweep, const struct cs_sweep_en
     const struct cs_option *atol = cs_option_find(&entry->method.table, "atol");
     if (cell.adaptive && *entry->control && atol && !strstr(entry->fixed, "atol="))
         add_option(cell.options, sizeof cell.options, "atol",
-                   fmin(fmax(value, atol->min), atol->max));
+                   fmin(fmax(value * size, atol->min), atol->max));
     return cs_sweep_add(sweep, &cell, error);
 }
 
@@ -77,7 +77,7 @@ enum cs_status cs_sweep_expand(struct cs_sweep *sweep, const struct cs_sweep_ent
         return cs_sweep_add(sweep, &cell, error);
     }
     if (!*entry->control)
-        return add_point(sweep, entry, (double)NAN, error);
+        return add_point(sweep, entry, (double)NAN, settings->size, error);
     if (isnan(high))
         default_range(entry, settings, &high, &low);
     const bool adaptive = entry->method.integrator->traits & CS_ADAPTIVE;
@@ -85,7 +85,7 @@ enum cs_status cs_sweep_expand(struct cs_sweep *sweep, const struct cs_sweep_ent
         // powers, so that 1e-3 is 1e-3 to the bit and a step halves exactly
         const double value =
             adaptive ? high * pow(10, -0.5 * k) : high / (double)(UINT64_C(1) << k);
-        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, error))
+        if (value < low * (1 - 1e-9) || add_point(sweep, entry, value, settings->size, error))
             break;
     }
     return error->status;

@@ -10,6 +10,7 @@ struct cs_sweep_settings {
     const char *const *plugins; /* (n_plugins) module files */
     uint32_t n_plugins;
     double fps, omega; /* of the scene: the default steps come from them */
+    double size;       /* m: atol is rtol times it, so that another unit changes nothing */
 };
 
 struct cs_sweep_entry {

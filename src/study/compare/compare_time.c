@@ -1,0 +1,150 @@
+/* Times cells in rounds, in an order that is new in every round. */
+#include "study/compare/compare_time.h"
+
+#include "base/clock.h"
+#include "study/compare/ranking.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Short runs are repeated in a round until they fill that time; one before them warms the
+ * caches where it is short against them. */
+#define LEAST_SECONDS 0.01
+#define WARM_SECONDS  0.05
+
+/* Rounds that there are at least, where so many are allowed. */
+enum { LEAST_ROUNDS = 7 };
+
+/* A ratio is known well enough where its interval reaches no further to either side. */
+#define NARROW 0.02
+
+/* Times further from the median than that many median deviations are outliers; 1.4826 makes
+ * the deviation of a normal distribution of it. A twentieth of the median is the clock's own
+ * unrest. */
+#define OUTLIER (3 * 1.4826)
+#define UNREST  0.05
+
+/* Memory of that many bytes or less is taken before a cell is opened, so that its arrays lie
+ * elsewhere in every round: where they lie has an effect of its own. */
+enum { SHIFT_BYTES = 1 << 16 };
+
+static enum cs_status run_warm(struct cs_course *course, double expected, double *seconds,
+                               struct cs_error *error) {
+    struct cs_course_end end;
+    double total = 0;
+    uint32_t n = 0;
+    if (expected < WARM_SECONDS && cs_course_run(course, 0, NULL, &end, error))
+        return error->status;
+    do {
+        if (cs_course_run(course, 0, NULL, &end, error))
+            return error->status;
+        total += end.cpu;
+        n++;
+    } while (total < LEAST_SECONDS && n < 1000);
+    *seconds = total / n;
+    return CS_OK;
+}
+
+/* s of one run of a cell in this round */
+static enum cs_status time_cell(const struct cs_compare *compare, const struct cs_cell *cell,
+                                uint32_t shift, double *seconds, struct cs_error *error) {
+    char integrator[CS_CELL_INTEGRATOR];
+    struct cs_course course = {0};
+    char *volatile memory = malloc(shift + 1);
+    cs_cell_integrator(cell, integrator, sizeof integrator);
+    if (!cs_course_open(&course, &compare->settings->course, integrator, error))
+        run_warm(&course, cell->cpu, seconds, error);
+    cs_course_close(&course);
+    free(memory);
+    return error->status;
+}
+
+static void take_times(struct cs_cell *cell, const double *sorted, uint32_t n) {
+    double away[CS_ROUNDS_MOST];
+    cell->cpu = cs_quantile(sorted, n, 0.5);
+    cell->cpu_low = cs_quantile(sorted, n, 0.25);
+    cell->cpu_high = cs_quantile(sorted, n, 0.75);
+    cell->runs = n;
+    cell->outliers = 0;
+    for (uint32_t k = 0; k < n; k++)
+        away[k] = fabs(sorted[k] - cell->cpu);
+    cs_sort(away, n);
+    const double bound = fmax(OUTLIER * cs_quantile(away, n, 0.5), UNREST * cell->cpu);
+    for (uint32_t k = 0; k < n; k++)
+        cell->outliers += away[k] > bound;
+}
+
+static void shuffle(uint32_t *order, uint32_t n, uint64_t *state) {
+    for (uint32_t k = n; k > 1; k--) {
+        const uint32_t other = cs_rounds_draw(state, k), kept = order[k - 1];
+        order[k - 1] = order[other];
+        order[other] = kept;
+    }
+}
+
+/* Times the cells of the list once. */
+static enum cs_status make_round(struct cs_compare *compare, const uint32_t *order, uint32_t n,
+                                 uint64_t *state, struct cs_error *error) {
+    struct cs_rounds *rounds = &compare->rounds;
+    double times[CS_ROUNDS_MOST];
+    double *round = rounds->seconds + (size_t)rounds->n++ * rounds->n_cells;
+    for (uint32_t k = 0; k < n; k++) {
+        struct cs_cell *cell = compare->sweep.cells + order[k];
+        if (time_cell(compare, cell, cs_rounds_draw(state, SHIFT_BYTES), round + order[k],
+                      error))
+            return error->status;
+        take_times(cell, times, cs_rounds_times(rounds, order[k], times));
+    }
+    return CS_OK;
+}
+
+/* Whom this round is for; the first one is for cells of a single run too. */
+static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, uint32_t *n,
+                             bool *narrow, struct cs_error *error) {
+    struct cs_ranking ranking;
+    *n = 0;
+    if (cs_ranking_make(&ranking, compare, error))
+        return error->status;
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        const struct cs_cell *cell = compare->sweep.cells + k;
+        const bool once = compare->rounds.n == 0 && cs_cell_is_finished(cell) && cell->runs < 2;
+        if (ranking.contends[k] || once)
+            order[(*n)++] = k;
+    }
+    *narrow = cs_ranking_is_narrow(&ranking, NARROW);
+    cs_ranking_finish(&ranking);
+    return CS_OK;
+}
+
+static enum cs_status make_rounds(struct cs_compare *compare, uint32_t *order,
+                                  struct cs_error *error) {
+    const double begin = cs_clock_cpu();
+    const uint32_t most = compare->settings->runs;
+    const uint32_t least = most < LEAST_ROUNDS ? most : LEAST_ROUNDS;
+    uint64_t state = 1;
+    for (uint32_t k = 0, n; k < most; k++) {
+        bool narrow;
+        if (choose(compare, order, &n, &narrow, error))
+            return error->status;
+        if (n == 0 || (k >= least && (narrow || cs_clock_cpu() - begin > compare->rounds_for)))
+            break;
+        if (compare->settings->round)
+            compare->settings->round(compare->settings->ctx, k, most);
+        shuffle(order, n, &state);
+        if (make_round(compare, order, n, &state, error))
+            return error->status;
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_compare_time(struct cs_compare *compare, struct cs_error *error) {
+    uint32_t *order = calloc(compare->sweep.n + 1, sizeof *order);
+    if (!order)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the order of a round");
+    if (!cs_rounds_init(&compare->rounds, compare->sweep.n, error))
+        make_rounds(compare, order, error);
+    free(order);
+    return error->status;
+}

@@ -1,0 +1,172 @@
+/* Prints the verdict and the warnings of a comparison in words. */
+#include "study/compare/verdict.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* "rk4 (dt 1.04 ms)" */
+static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
+    if (!strcmp(cell->control, "dt"))
+        cs_text_add(out, "%s (dt %.3g ms)", cell->series, 1e3 * cell->step);
+    else if (*cell->control)
+        cs_text_add(out, "%s (%s %.1e)", cell->series, cell->control, cell->value);
+    else
+        cs_text_add(out, "%s", cell->series);
+}
+
+static void add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
+    const struct cs_ratio *ratio = &rank->ratio;
+    if (!rank->next) {
+        cs_text_add(out, "; %s\n", none);
+        return;
+    }
+    if (!rank->apart)
+        cs_text_add(out, "; not told apart from ");
+    else if (ratio->pairs > 0)
+        cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", ratio->factor, ratio->low,
+                    ratio->high);
+    else
+        cs_text_add(out, "; about %.1f times cheaper than ", ratio->factor);
+    add_cell(rank->next, out);
+    cs_text_add(out, "\n");
+}
+
+/* what wins where another error is looked at; cells that win by several are said once */
+static void add_others(const struct cs_rank *rank, const char *bullet, struct cs_text *out) {
+    for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
+        const struct cs_cell *other = rank->others[norm];
+        bool said = false;
+        for (enum cs_norm before = 0; before < norm; before++)
+            said |= rank->others[before] == other;
+        if (!other || said)
+            continue;
+        cs_text_add(out, "%s  no worse by ", bullet);
+        for (enum cs_norm also = norm; also < CS_NORMS; also++)
+            if (rank->others[also] == other)
+                cs_text_add(out, "%s%s", also > norm ? ", " : "", cs_norm_words(also));
+        cs_text_add(out, ", and cheaper: ");
+        add_cell(other, out);
+        cs_text_add(out, ", %.3g ms\n", 1e3 * other->cpu);
+    }
+}
+
+static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *rank, int last,
+                     const char *bullet, struct cs_text *out) {
+    const char *unit = cs_norm_unit(ranking->norm);
+    cs_text_add(out, "%s%s below 1e%03d", bullet, cs_norm_words(ranking->norm), rank->exponent);
+    if (last < rank->exponent)
+        cs_text_add(out, " down to 1e%03d", last);
+    cs_text_add(out, "%s%s: ", *unit ? " " : "", unit);
+    add_cell(rank->best, out);
+    cs_text_add(out, ", %.3g ms", 1e3 * rank->best->cpu);
+    add_factor(rank, "no other series was run to that error", out);
+    add_others(rank, bullet, out);
+}
+
+/* A method that gets through is not praised where its motion is another one. */
+static void add_frame(const struct cs_ranking *ranking, const char *bullet,
+                      const struct cs_compare *compare, struct cs_text *out) {
+    const struct cs_cell *best = ranking->frame.best, *nearest = ranking->frame_nearest;
+    cs_text_add(out, "%sone step a frame (%.3g ms): ", bullet, 1e3 / compare->fps);
+    if (ranking->frame_tried == 0)
+        cs_text_add(out, "no row has that step\n");
+    else if (ranking->frame_through == 0)
+        cs_text_add(out, "of %u row%s with that step none got through with it\n",
+                    ranking->frame_tried, ranking->frame_tried == 1 ? "" : "s");
+    else if (!best) {
+        cs_text_add(out,
+                    "%u of %u rows got through, none with an energy error of %.0f %% or "
+                    "less; the least is %.0f %%, of ",
+                    ranking->frame_through, ranking->frame_tried, 100 * CS_FRAME_ENERGY,
+                    100 * nearest->energy_error);
+        add_cell(nearest, out);
+        cs_text_add(out, "\n");
+    } else {
+        add_cell(best, out);
+        cs_text_add(out, ", %.3g ms", 1e3 * best->cpu);
+        if (isfinite(best->error))
+            cs_text_add(out, ", error %.1e m", best->error);
+        if (isfinite(best->energy_error))
+            cs_text_add(out, ", energy error %.2g %%", 100 * best->energy_error);
+        else
+            cs_text_add(out, ", energy error not known");
+        add_factor(&ranking->frame, "no other series was seen to do as well", out);
+    }
+}
+
+void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
+                      const struct cs_compare *compare, struct cs_text *out) {
+    for (uint32_t k = 0, last; k < ranking->n; k = last + 1) {
+        const struct cs_rank *rank = ranking->ranks + k;
+        // what the next decades share is said once
+        for (last = k; last + 1 < ranking->n && rank[last + 1 - k].best == rank->best &&
+                       rank[last + 1 - k].next == rank->next;)
+            last++;
+        add_rank(ranking, rank, ranking->ranks[last].exponent, bullet, out);
+    }
+    add_frame(ranking, bullet, compare, out);
+}
+
+struct tally {
+    uint32_t brief, unquiet, spread, over, failed, blown, below;
+};
+
+static struct tally count(const struct cs_compare *compare) {
+    struct tally tally = {0};
+    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+        const struct cs_cell *cell = compare->sweep.cells + k;
+        if (cs_cell_is_finished(cell)) {
+            tally.brief += cell->cpu < 5e-3;
+            tally.unquiet += cell->runs > 4 && cell->outliers > 0.2 * cell->runs;
+            tally.spread += cell->cpu_high - cell->cpu_low > 0.1 * cell->cpu;
+            tally.below += cell->error < compare->reference.bar;
+        }
+        tally.over += !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
+        tally.failed += !strcmp(cell->outcome, "failed");
+        tally.blown += !strncmp(cell->outcome, "blew up", 7);
+    }
+    return tally;
+}
+
+static void add(struct cs_text *out, const char *bullet, uint32_t n, const char *what,
+                const char *advice) {
+    if (n > 0)
+        cs_text_add(out, "%s%u cell%s %s%s\n", bullet, n, n == 1 ? "" : "s", what, advice);
+}
+
+void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
+                     struct cs_text *out) {
+    const struct tally tally = count(compare);
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    double load = 0;
+    if (!compare->reference.pointwise)
+        cs_text_add(out, "%sno errors of position: %s%s\n", bullet, compare->reference.reason,
+                    compare->reference.agree ? " (a shorter --time, or a larger --accuracy)"
+                                             : "");
+    if (cs_text_get(&compare->changes)[0])
+        cs_text_add(out, "%s%s switched off: no part of the equation of motion\n", bullet,
+                    cs_text_get(&compare->changes));
+    /* one line for all cells of a kind, however many there are */
+    add(out, bullet, tally.below, "below the reference's own error",
+        ": not drawn, and ranked as if at it");
+    add(out, bullet, tally.blown, "blew up", ": the step is beyond the stable one");
+    add(out, bullet, tally.over, "over budget",
+        ": stopped (a larger --budget lets them finish)");
+    if (compare->left_out > 0)
+        cs_text_add(out, "%s%u series ended there, %u cells were not run\n", bullet,
+                    compare->ended, compare->left_out);
+    add(out, bullet, tally.failed, "failed", ": the notes in compare.csv say why");
+    add(out, bullet, tally.brief, "ran for less than 5 ms",
+        ": trust the counts rather than the times, or take a longer --time");
+    add(out, bullet, tally.spread, "with quartiles further apart than 10 %",
+        ": close other programs, or take more --runs");
+    add(out, bullet, tally.unquiet, "with outliers in more than a fifth of the runs",
+        ": something else used the processor now and then");
+    if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)
+        cs_text_add(out,
+                    "%sthe machine is busy (load %.1f on %ld processors): factors near 1 "
+                    "mean nothing\n",
+                    bullet, load, processors);
+}
