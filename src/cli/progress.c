@@ -1,4 +1,5 @@
-/* Shows a progress line with the time that is left. */
+/* Shows a progress line with the time that is left: one that changes on a terminal, else one
+ * now and then. */
 #include "cli/progress.h"
 
 #include "base/clock.h"
@@ -8,9 +9,13 @@
 #include <unistd.h>
 
 void cs_progress_begin(struct cs_progress *progress, bool quiet) {
-    *progress = (struct cs_progress){.shown = !quiet && isatty(STDERR_FILENO), .what = "frame"};
+    *progress = (struct cs_progress){
+        .shown = !quiet, .terminal = isatty(STDERR_FILENO), .what = "frame"};
     progress->start = progress->last = cs_clock_wall();
 }
+
+/* s between two lines of a log */
+#define OFF_TERMINAL 30
 
 static void write_line(struct cs_progress *progress, const char *line) {
     const int width = (int)strlen(line);
@@ -22,14 +27,18 @@ static void write_line(struct cs_progress *progress, const char *line) {
 
 void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total) {
     const double now = cs_clock_wall();
-    if (!progress->shown || !done || now - progress->last < 0.1)
+    if (!progress->shown || !done ||
+        now - progress->last < (progress->terminal ? 0.1 : OFF_TERMINAL))
         return;
     const double left = (now - progress->start) / done * (total - done);
     char line[80];
     snprintf(line, sizeof line, "%s %u of %u, %u %%, %.0f:%02u left", progress->what, done,
              total, (uint32_t)(100.0 * done / total), (left - (uint32_t)left % 60) / 60,
              (uint32_t)left % 60);
-    write_line(progress, line);
+    if (progress->terminal)
+        write_line(progress, line);
+    else
+        fprintf(stderr, "%s\n", line);
     progress->last = now;
 }
 

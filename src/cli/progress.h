@@ -6,7 +6,8 @@
 #include <stdint.h>
 
 struct cs_progress {
-    bool shown;         /* stderr is a terminal, and nobody asked for quiet */
+    bool shown;         /* nobody asked for quiet */
+    bool terminal;      /* stderr is one */
     const char *what;   /* is counted: "frame" */
     double start, last; /* s */
     int width;          /* of the line that is there */
@@ -14,7 +15,7 @@ struct cs_progress {
 
 void cs_progress_begin(struct cs_progress *progress, bool quiet);
 
-/* Rewrites the line, at most ten times a second. */
+/* Rewrites the line, at most ten times a second; off a terminal, adds one every half minute. */
 void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total);
 
 /* Takes the line away. */

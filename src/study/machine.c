@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 static void read_processor(char *name, size_t size) {
@@ -32,7 +33,16 @@ void cs_machine_look(struct cs_machine *machine) {
                                    .flags = "NOT optimised, -ffp-contract=off",
 #endif
                                    .processors = sysconf(_SC_NPROCESSORS_ONLN)};
+    struct utsname system;
+    if (!uname(&system))
+        snprintf(machine->host, sizeof machine->host, "%.63s", system.nodename);
     read_processor(machine->processor, sizeof machine->processor);
     if (getloadavg(&machine->load, 1) != 1)
         machine->load = 0;
+}
+
+void cs_machine_name(char name[CS_MACHINE_NAME]) {
+    struct cs_machine machine;
+    cs_machine_look(&machine);
+    snprintf(name, CS_MACHINE_NAME, "%s: %s", machine.host, machine.processor);
 }

@@ -1,6 +1,9 @@
 /* The folder of a comparison: what an interrupt leaves, and what another run adds. */
 #include "place.h"
 #include "study/compare/compare_csv.h"
+#include "study/compare/ranking.h"
+
+#include <sys/wait.h>
 
 static const char *const METHODS =
     "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"
@@ -90,8 +93,81 @@ START_TEST(over_budget_runs_again_with_more) {
 }
 END_TEST
 
+/* The number of rows of a series in the file of a comparison. */
+static uint32_t rows_of(const struct place *place, const char *series) {
+    struct cs_cell *cells;
+    struct cs_error error = {0};
+    char path[128];
+    uint32_t n, found = 0;
+    snprintf(path, sizeof path, "%s/compare.csv", place->folder);
+    ck_assert(!cs_csv_read(path, &cells, &n, &error));
+    for (uint32_t k = 0; k < n; k++)
+        found += !strcmp(cells[k].series, series) && !strcmp(cells[k].outcome, "finished");
+    free(cells);
+    return found;
+}
+
+START_TEST(two_processes_fill_one_folder) {
+    static const char *const lists[] = {"a=rk4:dt=5e-4..8e-3", "b=rk4:dt=5e-4..8e-3",
+                                        "c=rk4:dt=5e-4..8e-3", "d=rk4:dt=5e-4..8e-3"};
+    struct place place;
+    struct watch watch = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    pid_t children[4];
+    place_make(&place, "0.02");
+    for (int k = 0; k < 4; k++) {
+        children[k] = fork();
+        ck_assert_int_ge(children[k], 0);
+        if (children[k] == 0)
+            _exit(run(&compare, &settings, &place, lists[k], &watch) != CS_OK);
+    }
+    for (int k = 0; k < 4; k++) {
+        int status;
+        ck_assert_int_eq(waitpid(children[k], &status, 0), children[k]);
+        ck_assert_int_eq(status, 0);
+    }
+    for (int k = 0; k < 4; k++)
+        ck_assert_uint_eq(rows_of(&place, (char[]){(char)('a' + k), 0}), 5);
+    place_remove(&place);
+}
+END_TEST
+
+START_TEST(other_machines_are_told_apart) {
+    struct place place;
+    struct watch first = {0}, second = {0};
+    struct cs_compare compare;
+    struct cs_compare_settings settings;
+    struct cs_ranking ranking;
+    struct cs_error error = {0};
+    char command[400];
+    place_make(&place, "0.02");
+    run(&compare, &settings, &place, "rk4:dt=1e-3..2e-3", &first);
+    ck_assert_str_ne(compare.machine, "");
+    ck_assert_str_eq(compare.sweep.cells->machine, compare.machine);
+    cs_compare_finish(&compare);
+    snprintf(command, sizeof command,
+             "sed -i 's/,[^,]*: [^,]*,\\([^,]*\\)$/,far: away,\\1/' %s/compare.csv",
+             place.folder);
+    ck_assert_int_eq(system(command), 0);
+    // what is of another machine stays, and is run here as well
+    run(&compare, &settings, &place, "rk4:dt=1e-3..2e-3", &second);
+    ck_assert_uint_eq(compare.sweep.n, 4);
+    ck_assert_str_eq(compare.sweep.cells[0].series, "rk4");
+    ck_assert_str_eq(compare.sweep.cells[2].series, "rk4@far");
+    ck_assert_double_eq(compare.sweep.cells[0].error, compare.sweep.cells[2].error);
+    ck_assert(!cs_ranking_make(&ranking, &compare, &error));
+    for (uint32_t k = 0; k < ranking.n; k++)
+        ck_assert(ranking.ranks[k].best < compare.sweep.cells + 2 && !ranking.ranks[k].next);
+    cs_ranking_finish(&ranking);
+    cs_compare_finish(&compare);
+    place_remove(&place);
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {interrupted_comparison_goes_on, other_methods_are_added,
-                                  over_budget_runs_again_with_more};
+                                  over_budget_runs_again_with_more,
+                                  two_processes_fill_one_folder, other_machines_are_told_apart};
     return scene_tests("ledger", tests, sizeof tests / sizeof *tests);
 }

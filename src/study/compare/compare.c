@@ -177,6 +177,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
                               struct cs_error *error) {
     struct cs_ledger ledger = {0};
     *compare = (struct cs_compare){.settings = settings};
+    cs_machine_name(compare->machine);
     const struct cs_compare_reference_settings reference = ask_reference(compare);
     // the folder is looked at before the reference, which may take long
     if (!look_at_scene(compare, error) && !make_cells(compare, error) &&
@@ -184,7 +185,8 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
         !cs_compare_reference_get(&compare->reference, &reference, error)) {
         if (settings->begun)
             settings->begun(settings->ctx);
-        if (!measure_cells(compare, &ledger, error) && !cs_compare_time(compare, error)) {
+        if (!measure_cells(compare, &ledger, error) &&
+            !cs_ledger_refresh(&ledger, compare, error) && !cs_compare_time(compare, error)) {
             cs_compare_find_orders(compare->sweep.cells, compare->sweep.n,
                                    compare->reference.bar, compare->reference.scale);
             cs_ledger_rewrite(&ledger, compare, error);

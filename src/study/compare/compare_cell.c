@@ -55,6 +55,8 @@ const struct cs_column cs_columns[] = {
     NUMBER(outliers, NULL),
     TEXT(note),
     TEXT(key),
+    TEXT(machine),
+    TEXT(version),
 };
 const uint32_t cs_n_columns = sizeof cs_columns / sizeof *cs_columns;
 
@@ -100,6 +102,15 @@ void cs_cell_init(struct cs_cell *cell, const char *method) {
             memcpy((char *)cell + cs_columns[c].offset, &(double){(double)NAN}, sizeof(double));
     snprintf(cell->method, sizeof cell->method, "%s", method);
     snprintf(cell->series, sizeof cell->series, "%s", method);
+}
+
+void cs_cell_name_machine(struct cs_cell *cell, const char *here) {
+    char *end = cell->series + strcspn(cell->series, "@");
+    const size_t room = sizeof cell->series - (size_t)(end - cell->series);
+    const int host = (int)strcspn(cell->machine, ":");
+    *end = 0;
+    if (*cell->machine && strcmp(cell->machine, here) != 0)
+        snprintf(end, room, "@%.*s", host < 40 ? host : 40, cell->machine);
 }
 
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b) {

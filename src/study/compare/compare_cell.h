@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "sim/run.h"
 #include "sim/series.h"
+#include "study/machine.h"
 
 /* Numbers that do not apply are NAN: an error beyond the horizon, an order that is not steady.
  */
@@ -18,8 +19,9 @@ struct cs_cell {
     char
         outcome[48]; /* "finished", "blew up: not finite", "over budget", "failed", "refused" */
     char note[240];  /* the method's reason, or its remarks */
-    char key[40];    /* hash of everything that the row depends on */
-    char family[24]; /* see cs_family_names */
+    char key[40];    /* hash of everything that the row depends on, but for the machine */
+    char machine[CS_MACHINE_NAME], version[24]; /* that it was timed on and with */
+    char family[24];                            /* see cs_family_names */
     bool adaptive;
     double value;            /* of control */
     double step;             /* mean length of an internal step in s */
@@ -63,6 +65,9 @@ double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column
 
 /* A cell of which nothing is known yet; its series is the plain method. */
 void cs_cell_init(struct cs_cell *cell, const char *method);
+/* Rows of another machine are a series of their own, "NAME@HOST": no time of theirs is held
+ * against one of here. */
+void cs_cell_name_machine(struct cs_cell *cell, const char *here);
 /* Whether two cells stand on one curve. */
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
 bool cs_cell_is_finished(const struct cs_cell *cell);

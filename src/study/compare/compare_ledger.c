@@ -2,6 +2,7 @@
 #include "study/compare/compare_ledger.h"
 
 #include "base/file.h"
+#include "base/lock.h"
 #include "study/compare/compare_csv.h"
 
 #include <errno.h>
@@ -10,13 +11,26 @@
 #include <string.h>
 #include <unistd.h>
 
+static struct cs_cell *find(const struct cs_sweep *sweep, const struct cs_cell *cell) {
+    for (uint32_t k = 0; k < sweep->n; k++)
+        if (cs_cell_same_series(sweep->cells + k, cell) &&
+            !strcmp(sweep->cells[k].options, cell->options))
+            return sweep->cells + k;
+    return NULL;
+}
+
+/* The cells, and behind them rows of the file that are none of them. */
 static enum cs_status write_rows(const struct cs_ledger *ledger,
-                                 const struct cs_compare *compare, struct cs_error *error) {
+                                 const struct cs_compare *compare, bool others,
+                                 struct cs_error *error) {
     struct cs_text text = {0};
     cs_csv_add_head(&text);
     for (uint32_t k = 0; k < compare->sweep.n; k++)
         if (*compare->sweep.cells[k].outcome)
             cs_csv_add_cell(&text, compare->sweep.cells + k);
+    for (uint32_t k = 0; k < ledger->n_old && others; k++)
+        if (!find(&compare->sweep, ledger->old + k))
+            cs_csv_add_cell(&text, ledger->old + k);
     if (text.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", ledger->path);
     else
@@ -25,12 +39,24 @@ static enum cs_status write_rows(const struct cs_ledger *ledger,
     return error->status;
 }
 
-/* A file that is none of ours, or of another comparison, is not written over. */
-static enum cs_status read_old(struct cs_ledger *ledger, const struct cs_compare *compare,
-                               struct cs_error *error) {
+static enum cs_status read_rows(struct cs_ledger *ledger, const struct cs_compare *compare,
+                                struct cs_error *error) {
+    free(ledger->old);
+    ledger->old = NULL;
+    ledger->n_old = 0;
     if (access(ledger->path, F_OK))
         return CS_OK;
     if (cs_csv_read(ledger->path, &ledger->old, &ledger->n_old, error))
+        return error->status;
+    for (uint32_t i = 0; i < ledger->n_old; i++)
+        cs_cell_name_machine(ledger->old + i, compare->machine);
+    return CS_OK;
+}
+
+/* A file that is none of ours, or of another comparison, is not written over. */
+static enum cs_status read_old(struct cs_ledger *ledger, const struct cs_compare *compare,
+                               struct cs_error *error) {
+    if (read_rows(ledger, compare, error))
         return error->status;
     if (compare->settings->fresh)
         ledger->n_old = 0;
@@ -52,14 +78,6 @@ static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare
     return *old->outcome && (!is_over_budget(old) || old->cpu > 0.9 * compare->budget);
 }
 
-static struct cs_cell *find(const struct cs_sweep *sweep, const struct cs_cell *cell) {
-    for (uint32_t k = 0; k < sweep->n; k++)
-        if (cs_cell_same_series(sweep->cells + k, cell) &&
-            !strcmp(sweep->cells[k].options, cell->options))
-            return sweep->cells + k;
-    return NULL;
-}
-
 static enum cs_status take_over(struct cs_ledger *ledger, struct cs_compare *compare,
                                 struct cs_error *error) {
     struct cs_sweep *sweep = &compare->sweep;
@@ -68,6 +86,8 @@ static enum cs_status take_over(struct cs_ledger *ledger, struct cs_compare *com
         struct cs_cell *found = find(sweep, old);
         if (!found)
             cs_sweep_add(sweep, old, error);
+        else if (*found->outcome)
+            continue;
         else if (!strcmp(found->key, old->key) && is_valid(old, compare))
             *found = *old;
         else
@@ -79,38 +99,69 @@ static enum cs_status take_over(struct cs_ledger *ledger, struct cs_compare *com
 
 enum cs_status cs_ledger_open(struct cs_ledger *ledger, struct cs_compare *compare,
                               struct cs_error *error) {
+    struct cs_lock lock;
     *ledger = (struct cs_ledger){0};
     snprintf(ledger->path, sizeof ledger->path, "%s/compare.csv", compare->settings->folder);
-    if (cs_folder_make(compare->settings->folder, error) || read_old(ledger, compare, error) ||
-        take_over(ledger, compare, error) || write_rows(ledger, compare, error))
+    snprintf(ledger->lock, sizeof ledger->lock, "%s/.lock", compare->settings->folder);
+    if (cs_folder_make(compare->settings->folder, error) ||
+        cs_lock_take(&lock, ledger->lock, error))
         return error->status;
-    ledger->file = fopen(ledger->path, "ae");
-    if (!ledger->file)
-        return cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", ledger->path, strerror(errno));
-    return CS_OK;
+    if (!read_old(ledger, compare, error) && !take_over(ledger, compare, error))
+        write_rows(ledger, compare, false, error);
+    cs_lock_give(&lock);
+    return error->status;
+}
+
+static enum cs_status append(const struct cs_ledger *ledger, const struct cs_text *line,
+                             struct cs_error *error) {
+    FILE *file = fopen(ledger->path, "ae");
+    const bool written =
+        file && fwrite(line->bytes, 1, line->length, file) == line->length && !fflush(file);
+    if (!written)
+        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", ledger->path, strerror(errno));
+    if (file)
+        fclose(file);
+    return error->status;
 }
 
 enum cs_status cs_ledger_append(struct cs_ledger *ledger, const struct cs_cell *cell,
                                 struct cs_error *error) {
     struct cs_text line = {0};
+    struct cs_lock lock;
     cs_csv_add_cell(&line, cell);
     if (line.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
-    else if (fwrite(line.bytes, 1, line.length, ledger->file) != line.length ||
-             fflush(ledger->file))
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", ledger->path, strerror(errno));
+    else if (!cs_lock_take(&lock, ledger->lock, error)) {
+        append(ledger, &line, error);
+        cs_lock_give(&lock);
+    }
     cs_text_finish(&line);
+    return error->status;
+}
+
+enum cs_status cs_ledger_refresh(struct cs_ledger *ledger, struct cs_compare *compare,
+                                 struct cs_error *error) {
+    struct cs_lock lock;
+    if (cs_lock_take(&lock, ledger->lock, error))
+        return error->status;
+    if (!read_rows(ledger, compare, error))
+        take_over(ledger, compare, error);
+    cs_lock_give(&lock);
     return error->status;
 }
 
 enum cs_status cs_ledger_rewrite(struct cs_ledger *ledger, const struct cs_compare *compare,
                                  struct cs_error *error) {
-    return write_rows(ledger, compare, error);
+    struct cs_lock lock;
+    if (cs_lock_take(&lock, ledger->lock, error))
+        return error->status;
+    if (!read_rows(ledger, compare, error))
+        write_rows(ledger, compare, true, error);
+    cs_lock_give(&lock);
+    return error->status;
 }
 
 void cs_ledger_close(struct cs_ledger *ledger) {
-    if (ledger->file)
-        fclose(ledger->file);
     free(ledger->old);
     *ledger = (struct cs_ledger){0};
 }

@@ -28,6 +28,8 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->rejected = (double)counts->method.rejected;
     cell->newton = (double)counts->method.newton;
     cell->work = cell->evals + cell->jvps + cell->iterations;
+    cs_machine_name(cell->machine);
+    snprintf(cell->version, sizeof cell->version, "%s", CS_VERSION);
     cell->cpu = cell->cpu_low = cell->cpu_high = end->cpu;
     cell->wall = end->wall;
     cell->runs = 1;

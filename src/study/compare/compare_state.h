@@ -40,8 +40,9 @@ struct cs_compare {
     const struct cs_compare_settings *settings; /* borrowed */
     struct cs_compare_reference reference;
     struct cs_sweep sweep;
-    struct cs_rounds rounds;           /* of the sweep's cells */
-    char scene[256];                   /* path as given */
+    struct cs_rounds rounds; /* of the sweep's cells */
+    char scene[256];         /* path as given */
+    char machine[CS_MACHINE_NAME];
     struct cs_text changes;            /* what was switched off, "" nothing */
     bool contact;                      /* by force: a part of the equation of motion */
     uint32_t particles, springs, cuts; /* cuts: times of events */

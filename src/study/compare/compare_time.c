@@ -109,7 +109,8 @@ static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, 
         return error->status;
     for (uint32_t k = 0; k < compare->sweep.n; k++) {
         const struct cs_cell *cell = compare->sweep.cells + k;
-        const bool once = compare->rounds.n == 0 && cs_cell_is_finished(cell) && cell->runs < 2;
+        const bool once = compare->rounds.n == 0 && cs_cell_is_finished(cell) &&
+                          cell->runs < 2 && !strcmp(cell->machine, compare->machine);
         if (ranking.contends[k] || once)
             order[(*n)++] = k;
     }

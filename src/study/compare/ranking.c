@@ -19,8 +19,12 @@ struct choice {
 
 typedef bool passes(const struct cs_cell *cell, const struct choice *choice);
 
+static bool is_timed_here(const struct cs_cell *cell, const struct choice *choice) {
+    return cs_cell_is_finished(cell) && !strcmp(cell->machine, choice->compare->machine);
+}
+
 static bool is_ranked(const struct cs_cell *cell, const struct choice *choice) {
-    return cs_cell_is_finished(cell) && cell->cpu > 0 &&
+    return is_timed_here(cell, choice) && cell->cpu > 0 &&
            isfinite(cs_norm_of(choice->norm, cell, &choice->compare->reference));
 }
 
@@ -31,7 +35,7 @@ static bool is_accurate(const struct cs_cell *cell, const struct choice *choice)
 }
 
 static bool takes_frames(const struct cs_cell *cell, const struct choice *choice) {
-    return cs_cell_is_finished(cell) && !cell->adaptive &&
+    return is_timed_here(cell, choice) && !cell->adaptive &&
            cell->steps <= choice->compare->settings->course.frames + choice->compare->cuts;
 }
 
