@@ -76,8 +76,15 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
     asked.ctx = &screen;
     cs_progress_begin(&screen.progress, quiet);
     screen.progress.what = "cell";
+    asked.folder = folder;
     cs_stability_run(&map, &asked, error);
     cs_progress_end(&screen.progress);
+    if (error->status == CS_ERR_INTERRUPT) {
+        *error = (struct cs_error){0};
+        cs_fail(error, CS_ERR_INTERRUPT,
+                "interrupted; what was found is in %s, and the same command goes on from it",
+                map.journal.path);
+    }
     if (!error->status && !cs_folder_make(folder, error) &&
         !write_files(args, &map, folder, error) && !quiet) {
         struct cs_text out = {0};

@@ -2,6 +2,7 @@
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
+#include "study/stability/stability_journal.h"
 #include "study/workers.h"
 
 #include <math.h>
@@ -52,9 +53,12 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     /* springs get shorter as columns are added, and so must the perturbation */
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
         trial.session.perturbation *= map->own / column->value;
+    const uint32_t number = (uint32_t)(column - map->columns);
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
-                          &trial.session, error) ||
-        cs_reference_run(&column->reference, &trial, error))
+                          &trial.session, error))
+        return error->status;
+    if (!column->has_reference && (cs_reference_run(&column->reference, &trial, error) ||
+                                   cs_journal_keep_reference(map, number, error)))
         return error->status;
     if (!column->reference.found)
         return cs_fail(error, CS_ERR_USAGE,
@@ -63,11 +67,15 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
                        cs_axis_names[map->settings->axis], column->value,
                        column->reference.message);
     for (uint32_t r = 0; r < map->n_rows; r++) {
-        if (cs_stability_try(&trial, &column->reference, map->dt[r], column->cells + r, error))
+        if (!(column->cells[r].dt > 0) &&
+            (cs_stability_try(&trial, &column->reference, map->dt[r], column->cells + r,
+                              error) ||
+             cs_journal_keep_cell(map, number, r, error)))
             return error->status;
         cs_workers_tick(&work->workers, 1);
     }
-    find_border(column, map->n_rows, &trial, error);
+    if (!column->has_border && !find_border(column, map->n_rows, &trial, error))
+        cs_journal_keep_border(map, number, error);
     cs_workers_tick(&work->workers, TRIALS_OF_BORDER);
     return error->status;
 }
@@ -183,8 +191,11 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                        map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                              : "has no option dt");
     if (name_series(map, error) || cs_session_build(&map->session, error) ||
-        lay_out(map, error) || share_out(map, error))
+        lay_out(map, error) || cs_journal_open(map, error) || share_out(map, error)) {
+        cs_journal_close(map, false);
         return error->status;
+    }
+    cs_journal_close(map, true);
     map->wall = cs_clock_wall() - begin;
     return CS_OK;
 }

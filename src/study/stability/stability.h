@@ -3,44 +3,7 @@
 #ifndef CS_STABILITY_H
 #define CS_STABILITY_H
 
-#include "sim/series.h"
-#include "study/stability/stability_axis.h"
-#include "study/stability/stability_border.h"
-
-struct cs_stability_settings {
-    struct cs_session_settings session; /* integrator: NAME or NAME:key=value,... */
-    const char *series; /* what the map is called; NULL or "": by the method and its options */
-    enum cs_axis axis;
-    struct cs_range values, dt; /* of the axis, of the rows */
-    uint32_t columns, rows;
-    double seconds; /* simulated by every cell, but not more than CS_CELL_STEPS steps */
-    double budget;  /* s of processor time for a cell */
-    uint32_t workers;
-    /* about ten times a second, with the cells done; may be NULL */
-    void (*progress)(void *ctx, uint32_t done, uint32_t total);
-    void *ctx;
-};
-enum { CS_MAP_MOST = 64 };
-
-struct cs_stability_column {
-    double value;                  /* of the axis */
-    struct cs_reference reference; /* with the curves of theory */
-    double border; /* s; 0: below all that was tried; HUGE_VAL: above; NAN: unknown */
-    struct cs_stability_cell *cells; /* (rows), by rising dt */
-};
-
-struct cs_stability {
-    const struct cs_stability_settings *settings; /* borrowed */
-    const struct cs_integrator *integrator;       /* of the session below */
-    char series[CS_SERIES_BYTES];
-    struct cs_session session;           /* the scene as it is given */
-    struct cs_stability_column *columns; /* (n_columns); workers see them */
-    uint32_t n_columns, n_rows;
-    double own;  /* the scene's own value on the axis */
-    double *dt;  /* (n_rows) rising */
-    double wall; /* s */
-    struct cs_arena arena;
-};
+#include "study/stability/stability_state.h"
 
 /* Makes the map. CS_ERR_USAGE where the integrator has no fixed dt or the axis no meaning in
  * the scene. settings outlive the map; cs_stability_finish is to be called either way. */

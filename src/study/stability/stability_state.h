@@ -1,0 +1,54 @@
+/* stability_state.h - what a map is asked for, and what it has found so far. */
+#ifndef CS_STABILITY_STATE_H
+#define CS_STABILITY_STATE_H
+
+#include "base/hash.h"
+#include "sim/series.h"
+#include "study/stability/stability_axis.h"
+#include "study/stability/stability_border.h"
+
+struct cs_stability_settings {
+    struct cs_session_settings session; /* integrator: NAME or NAME:key=value,... */
+    const char *folder; /* where an unfinished map is kept to go on from; NULL: nowhere */
+    const char *series; /* what the map is called; NULL or "": by the method and its options */
+    enum cs_axis axis;
+    struct cs_range values, dt; /* of the axis, of the rows */
+    uint32_t columns, rows;
+    double seconds; /* simulated by every cell, but not more than CS_CELL_STEPS steps */
+    double budget;  /* s of processor time for a cell */
+    uint32_t workers;
+    /* about ten times a second, with the cells done; may be NULL */
+    void (*progress)(void *ctx, uint32_t done, uint32_t total);
+    void *ctx;
+};
+enum { CS_MAP_MOST = 64 };
+
+struct cs_stability_column {
+    double value;                   /* of the axis */
+    struct cs_reference reference;  /* with the curves of theory */
+    bool has_reference, has_border; /* found already */
+    double border; /* s; 0: below all that was tried; HUGE_VAL: above; NAN: unknown */
+    struct cs_stability_cell *cells; /* (rows), by rising dt; dt 0: not tried yet */
+};
+
+/* The file of an unfinished map; descriptor below 0: none. */
+struct cs_journal {
+    char path[4096], key[CS_HASH_DIGITS];
+    int descriptor;
+};
+
+struct cs_stability {
+    const struct cs_stability_settings *settings; /* borrowed */
+    const struct cs_integrator *integrator;       /* of the session below */
+    char series[CS_SERIES_BYTES];
+    struct cs_session session;           /* the scene as it is given */
+    struct cs_stability_column *columns; /* (n_columns); workers see them */
+    uint32_t n_columns, n_rows;
+    double own;  /* the scene's own value on the axis */
+    double *dt;  /* (n_rows) rising */
+    double wall; /* s */
+    struct cs_journal journal;
+    struct cs_arena arena;
+};
+
+#endif
