@@ -124,7 +124,7 @@ static inline enum cs_step fixed_step_cross(struct fixed_step *self, double t, d
         if (cut && depth == FIXED_STEP_CUTS)
             return host->fail(host->ctx,
                               "a step of %.3g s at t = %.9g s, halved %d times, still passes "
-                              "over contact",
+                              "over contact or through a surface",
                               part, from, FIXED_STEP_CUTS);
         if (cut) {
             depth++, at *= 2;

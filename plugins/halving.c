@@ -38,7 +38,7 @@ static enum cs_step give_up(const struct halving *self, double t, double h) {
     if (self->passed)
         return host->fail(host->ctx,
                           "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
-                          "contact",
+                          "contact or through a surface",
                           h, t, most_halvings(self));
     if (self->turned)
         return host->fail(host->ctx,

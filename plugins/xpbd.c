@@ -197,7 +197,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     /* three multipliers a spring, which only relative dampers need */
     if (has_relative_dampers(view) && !(self->damper = host->alloc(host->ctx, 3 * springs)))
         return CS_STEP_FAIL;
-    return CS_STEP_OK;
+    return fixed_step_guard(&self->loop, NULL);
 }
 
 static void stats(const void *object, struct cs_stats *out) {

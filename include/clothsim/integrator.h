@@ -213,8 +213,9 @@ struct cs_host {
      * history starts anew. What is not CS_STEP_OK goes upwards at once. */
     enum cs_step (*commit)(void *ctx, double t, double dt, double *x, double *v, bool *changed);
 
-    /* Below: only where the scene has forces whose stiffness depends on the state (contact),
-     * else NULL; and not in hosts whose size ends before it: ask CS_HAS(host, rate) first. */
+    /* Below: only where the scene has forces whose stiffness depends on the state (contact), or
+     * steps must not carry surfaces through each other, else NULL; and not in hosts whose size
+     * ends before it: ask CS_HAS(host, rate) first. */
 
     /* [restart, advance] Bounds at a state, for automatic steps: omega in 1/s on the angular
      * frequency, delta in 1/s on half the damping rate. Those of the view hold for the springs
@@ -222,8 +223,9 @@ struct cs_host {
     void (*rate)(void *ctx, double t, const double *x, const double *v, double *omega,
                  double *delta);
     /* [advance] The share of the move from x0 (3,n) at t0 to x1 at t1 that a step may take: 1,
-     * or less where it passes over contact that a step cannot see from where it begins. Then a
-     * method takes the step back and takes a shorter one. */
+     * or less where it passes over contact that a step cannot see from where it begins, or
+     * carries surfaces through each other. Then a method takes the step back and takes a
+     * shorter one. 0: no share is good. */
     double (*max_share)(void *ctx, double t0, const double *x0, double t1, const double *x1);
 
     /* [advance] Only where contact follows each step in commit (contact by projection), else

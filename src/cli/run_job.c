@@ -231,6 +231,8 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
     memcpy(frame.hash, job->hash, sizeof frame.hash);
     if (watch_frame(job, error))
         return error->status;
+    cs_tally_take(&job->tally, run);
+    frame.crossings = job->tally.last;
     if (settings->states &&
         cs_output_state(settings->states, run->frame, run->x, run->v, n, error))
         return error->status;
@@ -285,6 +287,7 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
     if (settings->states && cs_output_state(settings->states, 0, run->x, run->v, n, error))
         return error->status;
+    cs_tally_take(&job->tally, run);
     if (!begin_watch(job, error))
         run_frames(job, error);
     /* also after a failure: rows and frames that were finished are kept */

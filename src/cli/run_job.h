@@ -7,6 +7,7 @@
 #include "io/frames.h"
 #include "study/picture.h"
 #include "study/session.h"
+#include "study/tally.h"
 #include "study/watch.h"
 
 struct cs_job_settings {
@@ -24,7 +25,8 @@ struct cs_job_settings {
 struct cs_job_frame {
     char hash[CS_HASH_DIGITS];
     bool drawn;
-    double range[2]; /* of the colours, where drawn by a value */
+    double range[2];    /* of the colours, where drawn by a value */
+    uint64_t crossings; /* where they are counted */
 };
 
 /* The frame whose picture is being drawn while the run goes on. */
@@ -45,6 +47,7 @@ struct cs_job {
     struct cs_job_frame *kept; /* (run.frame), owned; only where JSON is written */
     size_t kept_capacity;
     struct cs_watch watch;           /* is it still sound */
+    struct cs_tally tally;           /* of crossings, where the scene asks for it */
     struct cs_text watch_rows;       /* CSV; empty unless asked for */
     struct cs_text scene;            /* the resolved scene, indented by two */
     struct cs_text warning;          /* about bodies that nothing keeps apart; mostly empty */

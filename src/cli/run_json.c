@@ -85,6 +85,24 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
     cs_text_add(out, "},\n");
 }
 
+/* Only where they were counted. */
+static void add_crossings(const struct cs_job *job, struct cs_text *out) {
+    const struct cs_tally *tally = &job->tally;
+    if (!tally->counted)
+        return;
+    cs_text_add(out, "  \"crossings\": {\"start\": %llu, \"most\": %llu, \"end\": %llu",
+                (unsigned long long)tally->start, (unsigned long long)tally->most,
+                (unsigned long long)tally->last);
+    if (tally->most) {
+        const uint32_t *ends =
+            job->session.system.surfaces->edges + 2 * (size_t)tally->first.edge;
+        add_real(out, ", \"most_at\": ", tally->most_time);
+        add_real(out, ", \"first\": {\"time\": ", tally->first_time);
+        cs_text_add(out, ", \"edge\": [%u, %u]}", ends[0], ends[1]);
+    }
+    cs_text_add(out, "},\n");
+}
+
 static void add_measures(const struct cs_run *run, struct cs_text *out) {
     const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
     add_real(out, "  \"energy\": {\"kinetic\": ", energy.kinetic);
@@ -128,6 +146,8 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
         const struct cs_job_frame *frame = job->kept + i;
         cs_text_add(out, "%s\n    {\"number\": %u, \"hash\": \"%s\", \"drawn\": %s",
                     i ? "," : "", i + 1, frame->hash, frame->drawn ? "true" : "false");
+        if (job->tally.counted)
+            cs_text_add(out, ", \"crossings\": %llu", (unsigned long long)frame->crossings);
         if (coloured && frame->drawn) {
             add_real(out, ", \"range\": [", frame->range[0]);
             add_real(out, ", ", frame->range[1]);
@@ -150,6 +170,7 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
                 run->system->springs.n);
     add_outcome(job, out);
     add_counts(&run->counts, out);
+    add_crossings(job, out);
     add_measures(run, out);
     cs_text_add(out, "  \"state_hash\": \"%s\",\n", job->hash);
     add_seconds(job, out);

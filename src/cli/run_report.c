@@ -57,6 +57,16 @@ static void add_watch(const struct cs_job *job, struct cs_text *out) {
     cs_text_finish(&found);
 }
 
+/* Only where they were counted. */
+static void add_crossings(const struct cs_job *job, struct cs_text *out) {
+    struct cs_text found = {0};
+    if (!job->tally.counted)
+        return;
+    cs_tally_print(&job->tally, &job->session.system, &found);
+    cs_print_hanging("crossings", cs_text_get(&found), VALUE_COLUMN, out);
+    cs_text_finish(&found);
+}
+
 /* Only what was at work has a row. */
 static void add_counts(const struct cs_job *job, struct cs_text *out) {
     const struct cs_counts *c = &job->session.run.counts;
@@ -131,6 +141,7 @@ void cs_report_print_table(const struct cs_job *job, struct cs_text *out) {
     cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
     add_frames(job, out);
     add_watch(job, out);
+    add_crossings(job, out);
     add_counts(job, out);
     add_measures(job, out);
     if (job->settings->session.run.timed) {

@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "mesh/trimesh.h"
 #include "model/commit/contact.h"
+#include "model/cross/crossings.h"
 #include "model/event/events.h"
 #include "model/event/prods.h"
 #include "model/force/terms.h"
@@ -12,6 +13,7 @@
 #include "model/spring/springs.h"
 #include "model/system/clusters.h"
 #include "model/system/system.h"
+#include "scene/crossings.h"
 #include "scene/event_key.h"
 #include "scene/shape.h"
 
@@ -147,6 +149,9 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
            cs_contact_bytes(scene, n, s, forced), "the scene has colliders",
            scene->colliders.n > 0 ? "contact is a force" : "no colliders");
+    decide(plan, CS_FEATURE_CROSSINGS, cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE,
+           cs_surfaces_bytes(scene) + cs_crossings_bytes(scene), "crossings is not ignore",
+           "crossings is ignore");
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
            cs_linear_bytes(scene, n, s, forced) + (forced ? 6 : 3) * n * real,
            levels ? "the integrator asks for it; multigrid for stiff steps"

@@ -1,6 +1,7 @@
 /* A scene made into arrays: counted, taken from one arena, filled, by the plan. */
 #include "model/system_build.h"
 
+#include "model/cross/crossings.h"
 #include "model/event/events.h"
 #include "model/force/bounds.h"
 #include "model/force/terms.h"
@@ -193,6 +194,8 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     /* events choose particles by where they start, so before them */
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
     choose_terms(system, error);
+    if (!error->status && is_built(&system->plan, CS_FEATURE_CROSSINGS))
+        cs_crossings_build(system, error);
     if (error->status)
         return;
     if (!is_built(&system->plan, CS_FEATURE_EVENTS))

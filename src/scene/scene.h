@@ -328,6 +328,7 @@ struct cs_scene {
     struct cs_list bodies;    /* struct cs_body, at least one */
     struct cs_list colliders; /* struct cs_collider */
     struct cs_contact_keys contact;
+    int32_t crossings; /* enum cs_crossings_policy, -1: absent: see crossings.h */
     struct cs_forces forces;
     struct cs_list events; /* struct cs_event */
     struct cs_time time;

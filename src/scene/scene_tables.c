@@ -253,6 +253,8 @@ static const struct cs_option contact_rows[] = {
 static const struct cs_table contact_table = {
     ROWS(contact_rows), .size = sizeof(struct cs_contact_keys), .shorthand_text = "law"};
 
+static const char *const crossings_names[] = {"ignore", "count", "limit", "stop", NULL};
+
 static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {
     VECTOR(struct cs_wind, direction, 3, "", NULL, -BIG, BIG,
@@ -335,6 +337,10 @@ static const struct cs_option scene_rows[] = {
     LIST(struct cs_scene, bodies, body_table, "what moves; at least one"),
     LIST(struct cs_scene, colliders, collider_table, "what bodies rest on and slide off"),
     TABLE(struct cs_scene, contact, contact_table, "how bodies meet colliders"),
+    CHOICE(struct cs_scene, crossings, crossings_names, -1,
+           "edges of bodies that go through triangles: ignore, as where it is absent; count: "
+           "after each frame; limit: "
+           "steps that would make one are cut too; stop: the first one ends the run"),
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
     LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),

@@ -4,11 +4,11 @@
 #include "base/clock.h"
 #include "base/vector.h"
 #include "model/commit/limit.h"
-#include "model/contact/share.h"
 #include "model/force/bounds.h"
 #include "model/force/measure.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
+#include "sim/passage.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -206,22 +206,24 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
                              const double *x1) {
     struct cs_run_host *host = ctx;
     const double begin = stage_begin(host);
-    const bool seen = cs_contact_is_seen(host->run->system, t0, x0, t1, x1);
-    host->run->counts.cut_steps += !seen;
+    const double share = cs_passage_share(host->run->system, t0, x0, t1, x1);
+    host->run->counts.cut_steps += share < 1;
     stage_end(host, CS_STAGE_CONTACT, begin);
-    return seen ? 1 : 0.5;
+    return share;
 }
 
 /* only where it is asked for: methods leave out what is NULL */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
-    if (!cs_bounds_have_rate(system))
+    const bool judged = cs_passage_is_judged(system);
+    if (judged)
+        host->calls.max_share = host_max_share;
+    // who asks for one may ask for the other
+    if (!judged && !cs_bounds_have_rate(system))
         return CS_OK;
     host->rate_work =
         cs_arena_take_n(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
     host->calls.rate = host_rate;
-    if (system->pairings)
-        host->calls.max_share = host_max_share;
     return error->status;
 }
 
@@ -300,6 +302,18 @@ static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
     return CS_STEP_OK;
 }
 
+/* what follows a first crossing has no meaning, where the scene says so */
+static enum cs_step stop_crossings(struct cs_run_host *host, double t, const double *x) {
+    const double begin = stage_begin(host);
+    struct cs_text why = {0};
+    enum cs_step step = CS_STEP_OK;
+    if (cs_passage_stops(host->run->system, t, x, &why))
+        step = host_fail(host, "%s", cs_text_get(&why));
+    cs_text_finish(&why);
+    stage_end(host, CS_STAGE_CONTACT, begin);
+    return step;
+}
+
 static enum cs_step host_commit(void *ctx, double t, double dt, double *x, double *v,
                                 bool *changed) {
     struct cs_run_host *host = ctx;
@@ -318,7 +332,9 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
         lose_velocity(host, v, changed);
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
-    const enum cs_step step = judge(host, t, x, v);
+    enum cs_step step = judge(host, t, x, v);
+    if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
+        step = stop_crossings(host, t, x);
     bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
     // a step that ends the run is observed too
     if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))

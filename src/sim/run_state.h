@@ -35,7 +35,7 @@ struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
     uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD */
     uint64_t contacts;      /* particles pushed out */
-    uint64_t cut_steps;     /* taken again, shorter, for contact by force */
+    uint64_t cut_steps;     /* moves that were too long for contact or crossings */
     uint64_t contact_tests; /* particle-collider pairs tested */
     uint64_t limit_moves;   /* springs shortened by the strain limit */
     uint64_t normals;       /* times that normals were computed in a step */

@@ -71,6 +71,8 @@ START_TEST(each_key_builds_its_feature) {
          least | FORCE(drag) | BIT(AREA)},
         {CLOTH("") ", \"forces\": {\"velocity_loss\": 0.1}}", 0, least | BIT(VELOCITY_LOSS)},
         {CLOTH("") ", \"colliders\": [{\"floor\": {}}]}", 0, least | BIT(CONTACT)},
+        {CLOTH("") ", \"crossings\": \"ignore\"}", 0, least},
+        {CLOTH("") ", \"crossings\": \"count\"}", 0, least | BIT(CROSSINGS)},
         {wind, 0, least | FORCE(wind) | BIT(AREA)},
         {wind_n, 0, least | FORCE(wind)},
         {calm, 0, least},

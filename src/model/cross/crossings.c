@@ -140,6 +140,17 @@ struct cs_crossing_count cs_crossings_count(const struct cs_system *system, cons
     return cs_crossings_mark(system, x, NULL);
 }
 
+void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
+                        struct cs_text *out) {
+    const struct cs_parts *parts = &system->crossings->parts;
+    cs_text_add(out, "%llu edge%s through %s", (unsigned long long)count->n,
+                count->n == 1 ? " goes" : "s go", count->n == 1 ? "a triangle" : "triangles");
+    cs_text_add(out, count->n == 1 ? ", from " : ", the first from ");
+    cs_system_print_particle(system, cs_parts_ends(parts, count->edge)[0], out);
+    cs_text_add(out, ", through the triangle at ");
+    cs_system_print_particle(system, cs_parts_corners(parts, count->triangle)[0], out);
+}
+
 /* --- the first of a move --- */
 
 static void try_pair(const struct asking *asking, enum cs_gap_kind kind,

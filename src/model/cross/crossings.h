@@ -29,6 +29,10 @@ struct cs_crossing_count cs_crossings_count(const struct cs_system *system, cons
 struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, const double *x,
                                            uint8_t *marks);
 
+/* "12 edges go through triangles, the first from particle ..., through ..." */
+void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
+                        struct cs_text *out);
+
 /* The largest share 0..1 of the straight move from x0 to x1 (3,n) in which no two parts meet,
  * by gap.h over all pairs of a point and a triangle and of two edges without a particle in
  * common. 0: a pair touches at x0, and moves. What crosses at x0 already is not seen. */

@@ -6,25 +6,39 @@
 
 #include <float.h>
 
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+static double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* Whether their boxes lie apart, which is exact. */
+static bool has_gap(const double edge[2][3], const double triangle[3][3]) {
+    for (int c = 0; c < 3; c++) {
+        const double a = triangle[0][c], b = triangle[1][c], d = triangle[2][c];
+        if (larger(edge[0][c], edge[1][c]) < smaller(smaller(a, b), d) ||
+            smaller(edge[0][c], edge[1][c]) > larger(larger(a, b), d))
+            return true;
+    }
+    return false;
+}
+
 /* Whether an edge and a triangle surely lie apart along an axis, whatever axis it is: rounding
  * of the projections is below the margin. */
 static bool are_apart(const double edge[2][3], const double triangle[3][3],
                       const double axis[3]) {
-    double low[2] = {DBL_MAX, DBL_MAX}, high[2] = {-DBL_MAX, -DBL_MAX}, size = 0;
+    double at[5], size = 0;
     for (int k = 0; k < 5; k++) {
-        const double *p = k < 2 ? edge[k] : triangle[k - 2];
-        double at = 0, sum = 0;
-        for (int c = 0; c < 3; c++) {
-            const double product = axis[c] * (p[c] - triangle[0][c]);
-            at += product;
-            sum += fabs(product);
-        }
-        low[k >= 2] = fmin(low[k >= 2], at);
-        high[k >= 2] = fmax(high[k >= 2], at);
-        size = fmax(size, sum);
+        const double *p = k < 2 ? edge[k] : triangle[k - 2], *from = triangle[0];
+        const double x = axis[0] * (p[0] - from[0]), y = axis[1] * (p[1] - from[1]);
+        const double z = axis[2] * (p[2] - from[2]);
+        at[k] = x + y + z;
+        size = larger(size, fabs(x) + fabs(y) + fabs(z));
     }
     const double margin = 8 * DBL_EPSILON * size;
-    return low[0] > high[1] + margin || low[1] > high[0] + margin;
+    return smaller(at[0], at[1]) > larger(larger(at[2], at[3]), at[4]) + margin ||
+           larger(at[0], at[1]) < smaller(smaller(at[2], at[3]), at[4]) - margin;
 }
 
 /* A flat body has no other certain answer than this for edges beside a triangle: every
@@ -47,7 +61,7 @@ static bool are_beside(const double edge[2][3], const double triangle[3][3]) {
 }
 
 bool cs_pierces(const double edge[2][3], const double triangle[3][3]) {
-    if (are_beside(edge, triangle))
+    if (has_gap(edge, triangle) || are_beside(edge, triangle))
         return false;
     const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
     const double *p = edge[0], *q = edge[1];

@@ -15,6 +15,7 @@
     X(AREA, "area shares")                                                                     \
     X(VELOCITY_LOSS, "velocity loss")                                                          \
     X(CONTACT, "contact")                                                                      \
+    X(CROSSINGS, "crossings")                                                                  \
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \
     X(PRODS, "prods")                                                                          \

@@ -1,0 +1,19 @@
+/* crossings.h - what a scene does about edges that go through triangles. */
+#ifndef CS_SCENE_CROSSINGS_H
+#define CS_SCENE_CROSSINGS_H
+
+#include "scene/scene.h"
+
+enum cs_crossings_policy {
+    CS_CROSSINGS_IGNORE, /* nothing: they are not looked for */
+    CS_CROSSINGS_COUNT,  /* counted after each frame */
+    CS_CROSSINGS_LIMIT,  /* counted, and steps that would make one are cut */
+    CS_CROSSINGS_STOP    /* counted after each step: the first ends the run */
+};
+
+static inline enum cs_crossings_policy cs_scene_crossings(const struct cs_scene *scene) {
+    return scene->crossings < 0 ? CS_CROSSINGS_IGNORE
+                                : (enum cs_crossings_policy)scene->crossings;
+}
+
+#endif

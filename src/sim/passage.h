@@ -1,0 +1,21 @@
+/* passage.h - how far a step may go before it passes over contact or through a surface, and
+ * what is said of one that did. */
+#ifndef CS_PASSAGE_H
+#define CS_PASSAGE_H
+
+#include "model/system/system.h"
+
+/* Whether the scene wants moves to be judged; else the others are not to be called. */
+bool cs_passage_is_judged(const struct cs_system *system);
+
+/* Of the move from x0 (3,n) at t0 to x1 at t1: 1, or less where it is to be taken back. Contact
+ * by force knows only that it is too far: then half of it may be tried. */
+double cs_passage_share(const struct cs_system *system, double t0, const double *x0, double t1,
+                        const double *x1);
+
+/* Whether the scene wants the run to end at the first crossing, and x (3,n) at t has one: then
+ * one line about it is added. */
+bool cs_passage_stops(const struct cs_system *system, double t, const double *x,
+                      struct cs_text *why);
+
+#endif

@@ -1,0 +1,24 @@
+/* tally.h - crossings over the frames of a run. */
+#ifndef CS_TALLY_H
+#define CS_TALLY_H
+
+#include "model/cross/crossings.h"
+#include "sim/run.h"
+
+/* Zeroed: nothing was counted, as where the scene ignores crossings. */
+struct cs_tally {
+    bool counted;
+    uint64_t start;               /* where the run began */
+    uint64_t most, last;          /* of all frames and of the last one, the start among them */
+    double most_time, first_time; /* s: when they were most, and the first frame with any */
+    struct cs_crossing_count first; /* there; n 0: there were none */
+};
+
+/* Counts where the run stands, if its scene asks for it; at the start, and after each frame. */
+void cs_tally_take(struct cs_tally *tally, const struct cs_run *run);
+
+/* "3 at the end, 12 at most, at t = 0.5 s; from t = 0.2 s on: ..." */
+void cs_tally_print(const struct cs_tally *tally, const struct cs_system *system,
+                    struct cs_text *out);
+
+#endif

@@ -1,0 +1,137 @@
+/* Two sheets that nothing keeps apart, thrown at each other: what is counted, what steps are
+ * taken back, and where a run ends. */
+#include "fixture.h"
+
+#include "model/cross/crossings.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define SHEETS                                                                                 \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"size\": [0.4, 0.4], \"start\": \"flat\", " \
+    "\"velocity\": [0, -1, 0], \"place\": {\"translate\": [0.03, 0.1, 0.02]}}, \"mass\": "     \
+    "{\"total\": 0.1}, \"springs\": {\"damping\": 0.01}}, {\"cloth\": {\"grid\": [6, 5], "     \
+    "\"size\": [0.5, 0.4], \"start\": \"flat\", \"velocity\": [0, 1, 0], \"bump\": 0.06}, "    \
+    "\"mass\": {\"total\": 0.1}, \"springs\": {\"damping\": 0.01}}], \"forces\": "             \
+    "{\"gravity\": [0, 0, 0]}, \"crossings\": \"%s\", \"time\": {\"fps\": 100}}"
+
+/* s at which the sheets meet: the gap is 0.1 m less the bump, which is 0.06 m in the middle */
+#define MEET_FIRST 0.019
+#define MEET_LAST  0.04
+
+static const char *const methods[] = {"velocity-verlet:dt=0.002",
+                                      "rk4:dt=0.002",
+                                      "dopri5:rtol=1e-4",
+                                      "implicit-linearised:dt=0.005",
+                                      "ros2:dt=0.005",
+                                      "backward-euler:dt=0.005",
+                                      "tr-bdf2:dt=0.005",
+                                      "xpbd:dt=0.005",
+                                      "bdf2:dt=0.005"};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+/* until the run ends or ten frames are done; the first failure stays in *error */
+static uint64_t run_frames(struct fixture *fixture, const char *method, const char *policy,
+                           struct cs_error *error) {
+    struct cs_run *run = &fixture->session.run;
+    uint64_t most = 0;
+    fixture_open(fixture, method, SHEETS, policy);
+    fixture_start(fixture);
+    while (run->frame < 10 && !cs_run_frame(run, error)) {
+        ck_assert_int_eq(run->outcome, CS_RUNNING);
+        const uint64_t found = cs_crossings_count(fixture->system, run->x).n;
+        most = found > most ? found : most;
+    }
+    return most;
+}
+
+START_TEST(counted_sheets_pass_through_each_other) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture fixture;
+        struct cs_error error = {0};
+        const uint64_t most = run_frames(&fixture, methods[k], "count", &error);
+        ck_assert_msg(!error.status, "%s", error.message);
+        ck_assert_msg(most > 5, "%s: %llu", methods[k], (unsigned long long)most);
+        ck_assert_uint_eq(fixture.session.run.counts.cut_steps, 0);
+        fixture_close(&fixture);
+    }
+}
+END_TEST
+
+/* the state is that of the last step that was good: nothing has crossed, and it is not a step
+ * too early */
+START_TEST(limited_sheets_stop_before_they_meet) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture fixture;
+        struct cs_error error = {0};
+        const uint64_t most = run_frames(&fixture, methods[k], "limit", &error);
+        const struct cs_run *run = &fixture.session.run;
+        ck_assert_msg(error.status == CS_ERR_MODULE, "%s: no end", methods[k]);
+        ck_assert_msg(strstr(error.message, "through a surface") ||
+                          strstr(error.message, "the step fell to"),
+                      "%s", error.message);
+        ck_assert_uint_eq(most, 0);
+        ck_assert_uint_eq(cs_crossings_count(fixture.system, run->x).n, 0);
+        ck_assert_uint_gt(run->counts.cut_steps, 5);
+        // a move of a hundredth of a frame more would cross
+        double *next = malloc(3 * fixture.n * sizeof *next);
+        for (size_t i = 0; i < 3 * fixture.n; i++)
+            next[i] = run->x[i] + 1e-4 * run->v[i];
+        ck_assert_double_lt(cs_crossings_share(fixture.system, run->x, next), 1);
+        free(next);
+        fixture_close(&fixture);
+    }
+}
+END_TEST
+
+static double time_in(const char *message) {
+    const char *place = strstr(message, "step to t = ");
+    ck_assert_msg(place, "%s", message);
+    return strtod(place + strlen("step to t = "), NULL);
+}
+
+START_TEST(stopped_sheets_say_when) {
+    static const char *const asked[] = {"velocity-verlet:dt=0.0001", "xpbd:dt=0.001",
+                                        "fast-mass-spring:dt=0.001",
+                                        "implicit-linearised:dt=0.001"};
+    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
+        struct fixture fixture;
+        struct cs_error error = {0};
+        const uint64_t most = run_frames(&fixture, asked[k], "stop", &error);
+        ck_assert_int_eq(error.status, CS_ERR_MODULE);
+        const double t = time_in(error.message);
+        ck_assert_msg(t > MEET_FIRST && t < MEET_LAST, "%s: %g", asked[k], t);
+        ck_assert_uint_eq(most, 0);
+        ck_assert_uint_gt(cs_crossings_count(fixture.system, fixture.x).n, 0);
+        fixture_close(&fixture);
+    }
+}
+END_TEST
+
+/* before they come near each other a limit changes nothing, to the bit */
+START_TEST(limits_cost_no_bit_until_they_act) {
+    for (size_t k = 0; k < METHODS; k++) {
+        struct fixture free, limited;
+        fixture_open(&free, methods[k], SHEETS, "ignore");
+        fixture_open(&limited, methods[k], SHEETS, "limit");
+        fixture_start(&free);
+        fixture_start(&limited);
+        fixture_frames(&free, 1);
+        fixture_frames(&limited, 1);
+        ck_assert_msg(!memcmp(free.x, limited.x, 6 * free.n * sizeof *free.x), "%s",
+                      methods[k]);
+        ck_assert_ptr_null(free.system->crossings);
+        ck_assert_ptr_null(free.system->surfaces);
+        ck_assert_uint_eq(limited.session.run.counts.cut_steps, 0);
+        fixture_close(&free);
+        fixture_close(&limited);
+    }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {counted_sheets_pass_through_each_other,
+                                  limited_sheets_stop_before_they_meet, stopped_sheets_say_when,
+                                  limits_cost_no_bit_until_they_act};
+    return fixture_run("crossings", tests, sizeof tests / sizeof *tests);
+}
