@@ -13,6 +13,15 @@
 #define CS_CLONES
 #endif
 
+/* Before a loop whose turns touch nothing of one another, where pointers alone do not tell. */
+#if defined(__clang__)
+#define CS_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define CS_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define CS_INDEPENDENT
+#endif
+
 /* inlined into each clone */
 #define CS_INLINE static inline __attribute__((always_inline))
 

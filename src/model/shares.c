@@ -78,10 +78,10 @@ static uint32_t find_block(const struct cs_block *blocks, uint32_t n, uint32_t p
     return low;
 }
 
-/* run r has an end in that block */
-static void touch(struct cs_block *block, uint32_t r) {
+/* run r has an end in that block; fan: the first run of its row, or r */
+static void touch(struct cs_block *block, uint32_t fan, uint32_t r) {
     if (block->end_run == 0)
-        block->first_run = r;
+        block->first_run = fan;
     block->end_run = r + 1;
 }
 
@@ -96,15 +96,17 @@ static void build_blocks(struct cs_system *system, const struct sizes *sizes, ui
     uint32_t n = 0;
     for (uint32_t begin = 0; begin < system->view.n; begin = blocks[n++].end)
         blocks[n] = (struct cs_block){begin, end_of_block(system, begin, size), 0, 0};
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
+    for (uint32_t r = 0, fan = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
+        if (!run->columns || run->row != springs->runs[fan].row)
+            fan = r;
         const uint32_t last = run->ends ? run->a + system->bodies[run->body].count - 1 : run->b;
         const uint32_t to = find_block(blocks, n, last);
         uint32_t b = find_block(blocks, n, run->a);
-        touch(blocks + b, r);
+        touch(blocks + b, fan, r);
         /* a mesh's springs end in all between; of a grid's two rows there is nothing between */
         for (b = run->ends ? b + 1 : to; b <= to; b++)
-            touch(blocks + b, r);
+            touch(blocks + b, fan, r);
     }
     springs->blocks = blocks;
     springs->n_blocks = n;

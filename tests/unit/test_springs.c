@@ -8,9 +8,11 @@
     " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": %s}}"
 #define SCENE "{\"bodies\": [" GRID "]}"
 
-enum { N_GRIDS = 9 };
-static const int grids[N_GRIDS][2] = {{1, 1}, {2, 1}, {1, 2}, {2, 2},  {3, 2},
-                                      {1, 5}, {4, 1}, {7, 5}, {300, 3}};
+/* rows of one tile of particles, of a tile and one or two, of several */
+enum { N_GRIDS = 13 };
+static const int grids[N_GRIDS][2] = {{1, 1},  {2, 1},  {1, 2},  {2, 2}, {3, 2},
+                                      {1, 5},  {4, 1},  {7, 5},  {3, 4}, {64, 4},
+                                      {65, 5}, {66, 3}, {300, 3}};
 
 /* What a body's springs are by definition: particles (row, column) and (row + down,
  * column + right) are joined for these six steps and no other. */

@@ -1,12 +1,15 @@
-/* rows.h - a run of springs in pieces: both ends' rows, and forces added back to them.
+/* rows.h - a run of springs in pieces: both ends' rows, and a mesh's forces added back to them.
  *
- * A grid's rows are read and written where they lie. The ends of a mesh lie anywhere: their
- * differences are gathered into rows on the stack, and the forces are added back one by one. */
+ * A grid's rows are read where they lie; what is added to them goes by fans (fan.h). The ends
+ * of a mesh lie anywhere: their differences are gathered into rows on the stack, and the forces
+ * are added back one by one. */
 #ifndef CS_ROWS_H
 #define CS_ROWS_H
 
 #include "base/clones.h"
 #include "model/spring/runs.h"
+
+#include <clothsim/integrator.h>
 
 enum { PIECE = 256 }; /* springs whose forces a buffer on the stack holds */
 enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
@@ -20,6 +23,27 @@ struct job {
     const double *factors; /* of the matrix */
     double *to;            /* what is added to */
 };
+
+/* what a part asks of a run: k is 0 without its elastic force, c without its dampers */
+struct asked {
+    double k, c;
+};
+
+CS_INLINE struct asked asked_of(const struct cs_spring_run *run, uint32_t parts) {
+    return (struct asked){
+        parts & (CS_PART_STRETCH << run->kind) ? run->ends ? 1 : run->stiffness : 0,
+        parts & CS_PART_DAMPING ? run->damping : 0};
+}
+
+CS_INLINE bool asks_force(const struct job *job, const struct cs_spring_run *run) {
+    const struct asked asked = asked_of(run, job->at.parts);
+    return asked.k != 0 || asked.c != 0;
+}
+
+CS_INLINE bool asks_always(const struct job *job, const struct cs_spring_run *run) {
+    (void)job, (void)run;
+    return true;
+}
 
 /* one piece of a run: both ends' rows of an array of 3-vectors, or, of a mesh, the rows of the
  * differences in b* alone */
@@ -97,32 +121,7 @@ CS_INLINE void take_row(size_t count, const double *restrict from, double *restr
         to[i] -= from[i];
 }
 
-/* where forces go: to an array (3,n), at the first ends, the second, or both */
-struct adding {
-    double *f;
-    size_t n;
-    bool at_a, at_b;
-};
-
-/* adds the buffered forces of a grid's piece at the first ends and takes them at the second */
-CS_INLINE void add_rows(const struct piece *piece, const double *fx, const double *fy,
-                        const double *fz, const struct adding *to) {
-    const bool at_a = to->at_a, at_b = to->at_b;
-    const size_t n = to->n;
-    double *a = to->f + piece->run->a + piece->start, *b = to->f + piece->run->b + piece->start;
-    if (at_a) {
-        add_row(piece->count, fx, a);
-        add_row(piece->count, fy, a + n);
-        add_row(piece->count, fz, a + 2 * n);
-    }
-    if (at_b) {
-        take_row(piece->count, fx, b);
-        take_row(piece->count, fy, b + n);
-        take_row(piece->count, fz, b + 2 * n);
-    }
-}
-
-/* The same for a mesh's piece, spring by spring. */
+/* Adds the buffered forces of a mesh's piece at the first ends and takes them at the second. */
 CS_INLINE void scatter(const struct piece *piece, const double *fx, const double *fy,
                        const double *fz, size_t n, double *f) {
     double *a = f + piece->run->a, *b = f + piece->run->b;
@@ -167,35 +166,14 @@ CS_INLINE bool is_in(const struct cs_block *block, uint32_t particle) {
     return particle >= block->begin && particle < block->end;
 }
 
-/* adds what kernel makes of one run to the particles of a block */
-CS_INLINE void add_run(const struct job *job, const struct cs_block *block,
-                       const struct cs_spring_run *run, piece_kernel *kernel) {
+/* Adds what kernel makes of a mesh's run, whose body is all in the block. */
+CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
+                       piece_kernel *kernel) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
-    const struct adding to = {job->to, job->n, is_in(block, run->a), is_in(block, run->b)};
-    if (!to.at_a && !to.at_b)
-        return;
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
         kernel(job, &piece, fx, fy, fz);
-        if (run->ends)
-            scatter(&piece, fx, fy, fz, job->n, job->to);
-        else
-            add_rows(&piece, fx, fy, fz, &to);
-    }
-}
-
-/* Adds what kernel makes of the runs to the particles of a block, in the order of the runs. */
-CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
-                        piece_kernel *kernel) {
-    const struct cs_springs *springs = job->springs;
-    for (uint32_t r = block->first_run; r < block->end_run; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        if (!asks(job, run))
-            continue;
-        if (run->ends && springs->waits)
-            gather(springs->waits + r, run, block, job->n, job->to);
-        else
-            add_run(job, block, run, kernel);
+        scatter(&piece, fx, fy, fz, job->n, job->to);
     }
 }
 

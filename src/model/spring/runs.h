@@ -1,10 +1,11 @@
 /* runs.h - springs as runs, and how threads share them.
  *
  * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. The
- * 12 neighbours of a grid are six runs a row, so kernels vectorise inside a run. A mesh has a
- * run a kind, with lists of ends, lengths and stiffnesses; its ends are gathered into rows, and
- * then the same kernels work on them. The order of runs, and of springs in a run, is the order
- * of every sum, and the state hash depends on it.
+ * 12 neighbours of a grid are six runs a row, which stand together, and kernels do them at once
+ * (fan.h). A mesh has a run a kind, with lists of ends, lengths and stiffnesses; its ends are
+ * gathered into rows, and then kernels of the same formulas work on them. The order of runs, of
+ * springs in a run, and of the ways of a row, is the order of every sum, and the state hash
+ * depends on it.
  */
 #ifndef CS_RUNS_H
 #define CS_RUNS_H
@@ -17,6 +18,18 @@
 /* a grid's diagonals are shear springs, and so are the inner springs of a network */
 enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPRING_KINDS };
 
+/* Where the springs of a grid's row lead, in the order in which a particle sums those that it
+ * begins: beside it, then to the next row, then to the one after. */
+enum cs_spring_way {
+    CS_WAY_RIGHT,
+    CS_WAY_RIGHT_TWO,
+    CS_WAY_DOWN,
+    CS_WAY_FORTH, /* down and right */
+    CS_WAY_BACK,  /* down and left */
+    CS_WAY_DOWN_TWO,
+    CS_WAYS
+};
+
 struct cs_spring_run {
     uint32_t a, b, count;
     uint32_t kind; /* enum cs_spring_kind */
@@ -26,6 +39,10 @@ struct cs_spring_run {
     double length;    /* rest length in m */
     double damping;   /* N s/m */
     bool axial;       /* damping along the spring only */
+
+    /* of a grid's run; columns 0 of a mesh's */
+    uint32_t way;                 /* enum cs_spring_way */
+    uint32_t row, columns, below; /* the row's first particle, its length, rows after it */
 
     /* lists of a mesh's run, or all NULL: spring i joins a + ends[2 i] and b + ends[2 i + 1] */
     const uint32_t *ends;                /* (count, 2) */

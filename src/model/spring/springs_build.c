@@ -41,14 +41,15 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
     /* the six forward directions: steps right and down */
     static const struct {
         int32_t right, down;
-        uint32_t kind;
-    } forward[6] = {{1, 0, CS_SPRING_STRETCH}, {0, 1, CS_SPRING_STRETCH},
-                    {1, 1, CS_SPRING_SHEAR},   {-1, 1, CS_SPRING_SHEAR},
-                    {2, 0, CS_SPRING_BEND},    {0, 2, CS_SPRING_BEND}};
+        uint32_t kind, way;
+    } forward[CS_WAYS] = {
+        {1, 0, CS_SPRING_STRETCH, CS_WAY_RIGHT},  {0, 1, CS_SPRING_STRETCH, CS_WAY_DOWN},
+        {1, 1, CS_SPRING_SHEAR, CS_WAY_FORTH},    {-1, 1, CS_SPRING_SHEAR, CS_WAY_BACK},
+        {2, 0, CS_SPRING_BEND, CS_WAY_RIGHT_TWO}, {0, 2, CS_SPRING_BEND, CS_WAY_DOWN_TWO}};
 
     uint32_t n_runs = 0;
     for (uint32_t i = 0; i < rows; i++)
-        for (uint32_t d = 0; d < 6; d++) {
+        for (uint32_t d = 0; d < CS_WAYS; d++) {
             const int32_t right = forward[d].right, down = forward[d].down;
             const uint32_t reach = (uint32_t)(right < 0 ? -right : right);
             if (i + (uint32_t)down >= rows || reach >= columns ||
@@ -67,6 +68,10 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
                     .length = length,
                     .damping = law->damping,
                     .axial = law->damping_model == CS_DAMPING_AXIAL,
+                    .way = forward[d].way,
+                    .row = row,
+                    .columns = columns,
+                    .below = rows - 1 - i,
                 };
                 cs_springs_stiffen(runs + n_runs, body);
             }

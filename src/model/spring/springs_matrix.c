@@ -1,116 +1,20 @@
-/* The springs' Jacobian as a matrix: diagonal blocks, and the factored form
- * y = sum of (s I + w w^T)(p_a - p_b) that the linear solver multiplies by. */
+/* The springs' Jacobian in the factored form y = sum of (s I + w w^T)(p_a - p_b) that the
+ * linear solver multiplies by. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
-#include "model/spring/rows.h"
+#include "model/spring/fan.h"
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
-
-/* symmetric blocks of one piece's springs, a row each: xx, xy, xz, yy, yz, zz */
-struct blocks {
-    double rows[6][PIECE];
-};
-
-/* a I + b u u^T */
-CS_INLINE void set_block(struct blocks *blocks, size_t i, double a, double b,
-                         const struct difference u) {
-    blocks->rows[0][i] = a + b * u.x * u.x;
-    blocks->rows[1][i] = b * u.x * u.y;
-    blocks->rows[2][i] = b * u.x * u.z;
-    blocks->rows[3][i] = a + b * u.y * u.y;
-    blocks->rows[4][i] = b * u.y * u.z;
-    blocks->rows[5][i] = a + b * u.z * u.z;
-}
-
-/* Adds the blocks of a piece to both ends, sums (6,n). The second ends come first: a particle
- * in the middle of a grid's row meets the spring on its left before the one on its right, as
- * springs come one by one. */
-CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks, size_t n,
-                          double *sums) {
-    double *a = sums + piece->run->a, *b = sums + piece->run->b;
-    if (!piece->run->ends) {
-        for (size_t c = 0; c < 6; c++) {
-            add_row(piece->count, blocks->rows[c], b + piece->start + c * n);
-            add_row(piece->count, blocks->rows[c], a + piece->start + c * n);
-        }
-        return;
-    }
-    const uint32_t *ends = piece->run->ends + 2 * (size_t)piece->start;
-    for (size_t i = 0; i < piece->count; i++)
-        for (size_t c = 0; c < 6; c++) {
-            a[c * n + ends[2 * i]] += blocks->rows[c][i];
-            b[c * n + ends[2 * i + 1]] += blocks->rows[c][i];
-        }
-}
-
-/* Diagonal blocks of one piece: of df/dx; of df/dv only with axial dampers, which turn with the
- * spring. */
-CS_INLINE void piece_diagonal(const struct piece *piece, struct ends e, const bool listed,
-                              const bool axial, struct blocks *stiff, struct blocks *damp) {
-    const struct cs_spring_run *run = piece->run;
-    const double L = run->length, k = run->stiffness, damping = run->damping;
-    const size_t count = piece->count;
-    for (size_t i = 0; i < count; i++) {
-        const double length = listed ? piece->lengths[i] : L;
-        const double stiffness = listed ? piece->stiffnesses[i] : k;
-        const struct difference d = across(e, i, listed);
-        const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
-        const double ratio = length * inverse;
-        const struct difference u = {d.x * inverse, d.y * inverse, d.z * inverse};
-        set_block(stiff, i, -(stiffness * (1 - ratio)), -(stiffness * ratio), u);
-        if (axial)
-            set_block(damp, i, 0, -damping, u);
-    }
-}
-
-/* relative dampers are the same in every direction */
-CS_INLINE void add_relative(const struct piece *piece, size_t n, double *dvv) {
-    const double damping = piece->run->damping;
-    for (size_t c = 0; c < 6; c += c ? 2 : 3)
-        for (uint32_t i = piece->start; i < piece->start + piece->count; i++) {
-            dvv[c * n + cs_spring_b(piece->run, i)] -= damping;
-            dvv[c * n + cs_spring_a(piece->run, i)] -= damping;
-        }
-}
-
-CS_INLINE void run_diagonal(const struct cs_spring_run *run, uint32_t n, const double *x,
-                            const bool listed, double *kxx, double *dvv) {
-    struct gathered places;
-    struct blocks stiff, damp;
-    for (uint32_t start = 0; start < run->count; start += PIECE) {
-        const struct piece piece = piece_of(run, start);
-        const struct ends e = ends_of(&piece, x, n, false, &places);
-        if (run->axial && run->damping != 0) {
-            piece_diagonal(&piece, e, listed, true, &stiff, &damp);
-            add_blocks(&piece, &damp, n, dvv);
-        } else
-            piece_diagonal(&piece, e, listed, false, &stiff, &damp);
-        add_blocks(&piece, &stiff, n, kxx);
-        if (!run->axial && run->damping != 0)
-            add_relative(&piece, n, dvv);
-    }
-}
-
-CS_CLONES void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n,
-                                       const double *x, double *kxx, double *dvv) {
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        if (run->ends)
-            run_diagonal(run, n, x, true, kxx, dvv);
-        else
-            run_diagonal(run, n, x, false, kxx, dvv);
-    }
-}
 
 /* factors of one piece, where they lie in the run's */
 CS_INLINE void factor_of(const struct piece *piece, struct ends e,
                          const struct cs_matrix *matrix, const bool listed, double *base) {
     const struct cs_spring_run *run = piece->run;
     const double cd = matrix->cd, ck = matrix->ck;
-    const bool psd = matrix->psd;
+    /* of a rest length to a length, in the matrix */
+    const double most = matrix->psd ? 1 : HUGE_VAL;
     const double gamma = run->axial ? 0 : -cd * run->damping;
     const double eta = run->axial ? -cd * run->damping : 0;
     double *restrict s = base + piece->start;
@@ -125,9 +29,9 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
         const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
         const double ratio = length * inverse;
         /* a compressed spring's axial stiffness is k: beta alone would exceed it */
-        const bool clamped = psd && ratio > 1;
-        s[i] = gamma + (clamped ? 0 : stiffness * (1 - ratio));
-        const double w = sqrt(stiffness * (clamped ? 1 : ratio) + eta) * inverse;
+        const double clamped = ratio < most ? ratio : most;
+        s[i] = gamma + stiffness * (1 - clamped);
+        const double w = sqrt(stiffness * clamped + eta) * inverse;
         wx[i] = w * d.x;
         wy[i] = w * d.y;
         wz[i] = w * d.z;
@@ -177,35 +81,44 @@ void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
     cs_pool_run(springs->n_lots, factor_lot, &made);
 }
 
-CS_INLINE void mul_listed_or_not(const struct job *job, const struct piece *piece,
-                                 const bool listed, double *restrict fx, double *restrict fy,
-                                 double *restrict fz) {
+/* w.(p_a - p_b), left to right: the sum order is part of the state hash */
+CS_INLINE struct difference mul_of(double s, const struct difference w,
+                                   const struct difference d) {
+    const double along = w.x * d.x + w.y * d.y + w.z * d.z;
+    return (struct difference){s * d.x + along * w.x, s * d.y + along * w.y,
+                               s * d.z + along * w.z};
+}
+
+CS_INLINE void mul(const struct fan_in *in, const struct fan_way *way, size_t i, double *out) {
+    const double *p = in->x, *s = way->factors;
+    const size_t n = in->n, b = i + way->step, count = way->count;
+    const struct difference w = {s[count + i], s[2 * count + i], s[3 * count + i]};
+    const struct difference d = {p[i] - p[b], p[n + i] - p[n + b], p[2 * n + i] - p[2 * n + b]};
+    fan_put(mul_of(s[i], w, d), out);
+}
+
+CS_FAN_KERNEL(product, mul, 3, -1);
+
+static const struct fan_kernel *choose_mul(const struct job *job,
+                                           const struct cs_spring_run *first) {
+    (void)job, (void)first;
+    return &product;
+}
+
+CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, double *restrict fx,
+                         double *restrict fy, double *restrict fz) {
     struct gathered places;
     const struct cs_spring_run *run = piece->run;
     const double *s = job->factors + 4 * (size_t)run->first + piece->start;
     const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
     const struct ends e = ends_of(piece, job->at.x, job->n, true, &places);
     for (size_t i = 0; i < piece->count; i++) {
-        const struct difference d = across(e, i, listed);
-        /* w.(p_a - p_b), left to right: the sum order is part of the state hash */
-        const double along = wx[i] * d.x + wy[i] * d.y + wz[i] * d.z;
-        fx[i] = s[i] * d.x + along * wx[i];
-        fy[i] = s[i] * d.y + along * wy[i];
-        fz[i] = s[i] * d.z + along * wz[i];
+        const struct difference w = {wx[i], wy[i], wz[i]};
+        const struct difference f = mul_of(s[i], w, across(e, i, true));
+        fx[i] = f.x;
+        fy[i] = f.y;
+        fz[i] = f.z;
     }
-}
-
-CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, double *restrict fx,
-                         double *restrict fy, double *restrict fz) {
-    if (piece->run->ends)
-        mul_listed_or_not(job, piece, true, fx, fy, fz);
-    else
-        mul_listed_or_not(job, piece, false, fx, fy, fz);
-}
-
-CS_INLINE bool asks_always(const struct job *job, const struct cs_spring_run *run) {
-    (void)job, (void)run;
-    return true;
 }
 
 CS_CLONES static void wait_mul_lot(void *job, uint32_t lot) {
@@ -215,7 +128,7 @@ CS_CLONES static void wait_mul_lot(void *job, uint32_t lot) {
 CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_block block = cs_springs_block(job->springs, (uint32_t)job->n, number);
-    add_runs(job, &block, asks_always, mul_piece);
+    add_runs(job, &block, asks_always, choose_mul, mul_piece);
 }
 
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
@@ -223,20 +136,4 @@ void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const doub
     struct job job = {.springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};
     cs_pool_run(springs->n_lots, wait_mul_lot, &job);
     cs_pool_run(springs->n_blocks, mul_add_block, &job);
-}
-
-CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
-                                          const double *factors, double *sums) {
-    struct blocks blocks;
-    for (uint32_t r = 0; r < springs->n_runs; r++) {
-        const struct cs_spring_run *run = springs->runs + r;
-        for (uint32_t start = 0; start < run->count; start += PIECE) {
-            const struct piece piece = piece_of(run, start);
-            const double *s = factors + 4 * (size_t)run->first + start;
-            const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
-            for (size_t i = 0; i < piece.count; i++)
-                set_block(&blocks, i, s[i], 1, (struct difference){wx[i], wy[i], wz[i]});
-            add_blocks(&piece, &blocks, n, sums);
-        }
-    }
 }

@@ -1,0 +1,135 @@
+/* fan.h - all springs that lead forward from one row of a grid, at once.
+ *
+ * The springs of a row fan out in up to six ways: right, two to the right, down, both
+ * diagonals, two down. A kernel does the ways of a tile of particles side by side, sums what
+ * each particle gets from its own springs in registers, and the tile is then added to three
+ * rows, once each: own row     sum over the ways - (right[i - 1] + right two[i - 2]) next row
+ * - (down[i] + forth[i - 1] + back[i + 1]) after next  - down two[i] Tiles begin at multiples
+ * of TILE particles of the row, whatever block of particles is asked for: so no sum depends on
+ * the number of threads. Loops run over whole tiles: what they read beside the ends of a row
+ * belongs to other particles, and what they make of it is dropped. The last two rows of a grid,
+ * where that would lie behind the arrays, are done way by way. */
+#ifndef CS_FAN_H
+#define CS_FAN_H
+
+#include "model/spring/rows.h"
+
+enum {
+    TILE = 64,  /* particles whose springs are done together */
+    MARGIN = 8, /* more than any way reaches along the row, and a whole vector */
+    WIDE = MARGIN + TILE + MARGIN,
+    PARTS_MOST = 6, /* numbers that a kernel makes of a spring */
+    TOGETHER = 3    /* ways that are done side by side */
+};
+
+/* One way of a fan, of numbers by particle of the tile. */
+struct fan_way {
+    double k, length;
+    size_t step;           /* from a particle to the other end */
+    const double *factors; /* of the matrix; a row has `count` numbers */
+    size_t count;
+    double *to; /* what the kernel makes, in rows of WIDE */
+};
+
+/* What a kernel reads: arrays from the tile's first particle on. */
+struct fan_in {
+    const double *x, *v, *dx, *dv;
+    size_t n;
+    double c;   /* of dampers, N s/m */
+    bool axial; /* along the springs only */
+};
+
+/* Makes the numbers of the springs of one, two or three ways from particles [begin, end) of the
+ * tile. */
+typedef void fan_pass(const struct fan_in *in, const struct fan_way *ways, size_t begin,
+                      size_t end);
+
+/* A kernel of some numbers a spring. A particle gets those of the springs that it begins; the
+ * other ends get them times sign, 1 or -1. */
+struct fan_kernel {
+    fan_pass *passes[TOGETHER];
+    size_t parts;
+    double sign;
+};
+
+/* Adds what a kernel makes of a row's springs to job->to at the particles of a block; the runs
+ * of the row begin with `first`, and those that are not asked for are left out. Returns how
+ * many there are. */
+uint32_t cs_fan_add(const struct job *job, const struct cs_block *block,
+                    const struct cs_spring_run *first, run_test *asks,
+                    const struct fan_kernel *kernel);
+
+/* the kernel for a row's law, and what is asked of it */
+typedef const struct fan_kernel *fan_choice(const struct job *job,
+                                            const struct cs_spring_run *first);
+
+/* Adds what kernels make of all runs to the particles of a block, in the order of the runs: of
+ * fans, and of pieces of meshes. */
+CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
+                        fan_choice *choose, piece_kernel *kernel) {
+    const struct cs_springs *springs = job->springs;
+    uint32_t n_runs = 1;
+    for (uint32_t r = block->first_run; r < block->end_run; r += n_runs) {
+        const struct cs_spring_run *run = springs->runs + r;
+        n_runs = 1;
+        if (run->columns)
+            n_runs = cs_fan_add(job, block, run, asks, choose(job, run));
+        else if (asks(job, run) && springs->waits)
+            gather(springs->waits + r, run, block, job->n, job->to);
+        else if (asks(job, run))
+            add_run(job, run, kernel);
+    }
+}
+
+/* between the ends of the spring of a way from particle i of the tile */
+CS_INLINE struct difference fan_across(const double *p, size_t n, size_t i, size_t step) {
+    return (struct difference){p[i + step] - p[i], p[n + i + step] - p[n + i],
+                               p[2 * n + i + step] - p[2 * n + i]};
+}
+
+CS_INLINE void fan_put(struct difference from, double *out) {
+    out[0] = from.x;
+    out[1] = from.y;
+    out[2] = from.z;
+}
+
+/* makes the numbers of the spring of a way from particle i of the tile */
+typedef void fan_spring(const struct fan_in *in, const struct fan_way *way, size_t i,
+                        double *out);
+
+/* what is made of one spring, to row after row */
+CS_INLINE void fan_make(const struct fan_in *in, const struct fan_way *way, size_t i,
+                        fan_spring *spring, const size_t parts) {
+    double made[PARTS_MOST];
+    spring(in, way, i, made);
+    for (size_t k = 0; k < parts; k++)
+        way->to[k * WIDE + i] = made[k];
+}
+
+CS_INLINE void fan_springs(const struct fan_in in, const struct fan_way p,
+                           const struct fan_way q, const struct fan_way r, const unsigned ways,
+                           fan_spring *spring, const size_t parts, size_t begin, size_t end) {
+    CS_INDEPENDENT
+    for (size_t i = begin; i < end; i++) {
+        fan_make(&in, &p, i, spring, parts);
+        if (ways > 1)
+            fan_make(&in, &q, i, spring, parts);
+        if (ways > 2)
+            fan_make(&in, &r, i, spring, parts);
+    }
+}
+
+#define CS_FAN_PASS(name, spring, parts, n, second, third)                                     \
+    CS_CLONES static void name(const struct fan_in *in, const struct fan_way *ways,            \
+                               size_t begin, size_t end) {                                     \
+        fan_springs(*in, ways[0], ways[second], ways[third], n, spring, parts, begin, end);    \
+    }
+
+/* The kernel `name` of what is made of single springs by spring(), an inline function. */
+#define CS_FAN_KERNEL(name, spring, parts_, sign_)                                             \
+    CS_FAN_PASS(name##_1, spring, parts_, 1, 0, 0)                                             \
+    CS_FAN_PASS(name##_2, spring, parts_, 2, 1, 1)                                             \
+    CS_FAN_PASS(name##_3, spring, parts_, 3, 1, 2)                                             \
+    static const struct fan_kernel name = {{name##_1, name##_2, name##_3}, parts_, sign_}
+
+#endif

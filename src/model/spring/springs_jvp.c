@@ -1,0 +1,152 @@
+/* The springs' derivative along a direction, exact: fans of grids and pieces of meshes. */
+#include "model/spring/springs.h"
+
+#include "base/pool.h"
+#include "model/spring/fan.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Copies of the loops. MOVED: dx is given; TURNED: dv is given. */
+enum how { MOVED = 1, TURNED = 2 };
+
+/* a spring's law */
+struct law {
+    double length, k, axial, relative;
+};
+
+/* its differences: of x, v, dx and dv */
+struct bend {
+    struct difference p, w, e, g;
+};
+
+/* What dx and dv at the ends do to the force of a spring: with u the unit direction, l the
+ * length, e and g the differences of dx and dv, w that of v:
+ *   elastic    k (1 - L/l) e + k L/l (u.e) u
+ *   axial      d (g.u) u + d [(w.du) u + (w.u) du],  du = (e - (u.e) u) / l
+ *   relative   d g */
+CS_INLINE struct difference jvp_of(const struct law law, const struct bend at,
+                                   const unsigned how) {
+    const struct difference p = at.p, e = at.e, g = at.g, w = at.w;
+    /* DBL_MIN as in the force, whose derivative this is */
+    const double inverse = 1 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z + DBL_MIN);
+    const double ux = p.x * inverse, uy = p.y * inverse, uz = p.z * inverse;
+    struct difference r = {0, 0, 0};
+    /* the spring changes its length and turns, and axial dampers turn with it */
+    if (how & MOVED) {
+        const double ue = ux * e.x + uy * e.y + uz * e.z;
+        const double slack = law.k * (1 - law.length * inverse);
+        double along = law.k * law.length * inverse * ue;
+        const double tx = (e.x - ue * ux) * inverse, ty = (e.y - ue * uy) * inverse;
+        const double tz = (e.z - ue * uz) * inverse;
+        const double closing = law.axial * (w.x * ux + w.y * uy + w.z * uz);
+        along += law.axial * (w.x * tx + w.y * ty + w.z * tz);
+        r.x = slack * e.x + along * ux + closing * tx;
+        r.y = slack * e.y + along * uy + closing * ty;
+        r.z = slack * e.z + along * uz + closing * tz;
+    }
+    /* dv changes the speeds of the ends alone, which dampers feel */
+    if (how & TURNED) {
+        const double along = law.axial * (g.x * ux + g.y * uy + g.z * uz);
+        r.x += law.relative * g.x + along * ux;
+        r.y += law.relative * g.y + along * uy;
+        r.z += law.relative * g.z + along * uz;
+    }
+    return r;
+}
+
+CS_INLINE void jvp_from(const struct fan_in *in, const struct fan_way *way, size_t i,
+                        const unsigned how, double *out) {
+    const struct law law = {way->length, way->k, in->axial ? in->c : 0, in->axial ? 0 : in->c};
+    struct bend at = {.p = fan_across(in->x, in->n, i, way->step)};
+    if (how & MOVED) {
+        at.w = fan_across(in->v, in->n, i, way->step);
+        at.e = fan_across(in->dx, in->n, i, way->step);
+    }
+    if (how & TURNED)
+        at.g = fan_across(in->dv, in->n, i, way->step);
+    fan_put(jvp_of(law, at, how), out);
+}
+
+CS_INLINE void moved(const struct fan_in *in, const struct fan_way *way, size_t i,
+                     double *out) {
+    jvp_from(in, way, i, MOVED, out);
+}
+
+CS_INLINE void turned(const struct fan_in *in, const struct fan_way *way, size_t i,
+                      double *out) {
+    jvp_from(in, way, i, TURNED, out);
+}
+
+CS_INLINE void both(const struct fan_in *in, const struct fan_way *way, size_t i, double *out) {
+    jvp_from(in, way, i, MOVED | TURNED, out);
+}
+
+CS_FAN_KERNEL(moved_jvp, moved, 3, -1);
+CS_FAN_KERNEL(turned_jvp, turned, 3, -1);
+CS_FAN_KERNEL(both_jvp, both, 3, -1);
+
+static const struct fan_kernel *choose_jvp(const struct job *job,
+                                           const struct cs_spring_run *first) {
+    (void)first;
+    if (job->at.dx && job->at.dv)
+        return &both_jvp;
+    return job->at.dx ? &moved_jvp : &turned_jvp;
+}
+
+/* of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
+CS_INLINE void jvp_rows(const struct job *job, const struct piece *piece, const unsigned how,
+                        double *restrict fx, double *restrict fy, double *restrict fz) {
+    struct gathered places, speeds, moves, turns;
+    const struct cs_eval *at = &job->at;
+    const struct asked asked = asked_of(piece->run, at->parts);
+    const size_t n = job->n, count = piece->count;
+    /* a direction that is not given stands for itself, and is not read */
+    const struct ends x = ends_of(piece, at->x, n, false, &places);
+    const struct ends v = how & MOVED ? ends_of(piece, at->v, n, false, &speeds) : x;
+    const struct ends dx = how & MOVED ? ends_of(piece, at->dx, n, false, &moves) : x;
+    const struct ends dv = how & TURNED ? ends_of(piece, at->dv, n, false, &turns) : x;
+    const double axial = piece->run->axial ? asked.c : 0;
+    const double relative = piece->run->axial ? 0 : asked.c;
+    for (size_t i = 0; i < count; i++) {
+        const struct law law = {piece->lengths[i], asked.k * piece->stiffnesses[i], axial,
+                                relative};
+        const struct bend moves_i = {across(x, i, true), across(v, i, true),
+                                     across(dx, i, true), across(dv, i, true)};
+        const struct difference f = jvp_of(law, moves_i, how);
+        fx[i] = f.x;
+        fy[i] = f.y;
+        fz[i] = f.z;
+    }
+}
+
+CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, double *restrict fx,
+                         double *restrict fy, double *restrict fz) {
+    if (job->at.dx && job->at.dv)
+        jvp_rows(job, piece, MOVED | TURNED, fx, fy, fz);
+    else if (job->at.dx)
+        jvp_rows(job, piece, MOVED, fx, fy, fz);
+    else
+        jvp_rows(job, piece, TURNED, fx, fy, fz);
+}
+
+CS_INLINE bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
+    return job->at.dx ? asks_force(job, run)
+                      : job->at.dv && asked_of(run, job->at.parts).c != 0;
+}
+
+CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n,
+                                  const struct cs_eval *at, double *df) {
+    const struct job job = {.springs = springs, .n = n, .at = *at, .to = df};
+    add_runs(&job, at->block, asks_jvp, choose_jvp, jvp_piece);
+}
+
+CS_CLONES static void wait_jvp_lot(void *job, uint32_t lot) {
+    wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_jvp, jvp_piece);
+}
+
+void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
+                         const struct cs_eval *at) {
+    struct job job = {.springs = springs, .n = n, .at = *at};
+    cs_pool_run(springs->n_lots, wait_jvp_lot, &job);
+}
