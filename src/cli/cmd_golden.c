@@ -2,6 +2,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "sim/folders.h"
 #include "study/golden/golden.h"
 
 #include <stdio.h>
@@ -25,7 +26,9 @@ static const struct cs_arg rows[GOLDEN_ROWS] = {
     [GOLDEN_HASHES] = {"hashes", 0, NULL, "state hashes only", false},
     [GOLDEN_IMAGES] = {"images", 0, NULL, "images only", false},
     [GOLDEN_ONLY] = {"only", 0, "TEXT", "rows whose scene or integrator holds TEXT", false},
-    [GOLDEN_FOLDER] = {"folder", 0, "DIR", "the golden folder (default: golden)", false},
+    [GOLDEN_FOLDER] = {"folder", 0, "DIR",
+                       "the golden folder (default: golden here, else the installed one)",
+                       false},
     [GOLDEN_RENDERER] = {"renderer", 0, "NAME",
                          "cpu, osmesa, egl or auto (default: auto); may be repeated", true},
     [GOLDEN_THREADS] = {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",
@@ -57,17 +60,22 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     const char *folder = cs_args_get(args, GOLDEN_FOLDER);
     const bool hashes = cs_args_get(args, GOLDEN_HASHES),
                images = cs_args_get(args, GOLDEN_IMAGES);
+    const bool accept = cs_args_get(args, GOLDEN_ACCEPT);
+    char installed[CS_DATA_PATH_MAX];
     uint32_t threads = 1;
     if (cs_args_choices(args, GOLDEN_RENDERER, cs_renderer_names, &renderers, error) ||
         cs_args_whole(args, GOLDEN_THREADS, 1, CS_POOL_MOST, &threads, error))
         return error->status;
     struct cs_golden check = {
-        .folder = folder ? folder : "golden",
+        /* the installed tables are there to be compared with, and never written to */
+        .folder = folder   ? folder
+                  : accept ? "golden"
+                           : cs_data_find("golden", installed, sizeof installed),
         .only = cs_args_get(args, GOLDEN_ONLY),
         /* without a flag both are checked, as with both flags */
         .hashes = hashes || !images,
         .images = images || !hashes,
-        .accept = cs_args_get(args, GOLDEN_ACCEPT),
+        .accept = accept,
         .renderers = renderers,
         .threads = threads,
         .stop = cs_interrupt_catch(),

@@ -1,6 +1,7 @@
 /* clothsim stability: maps which steps a method survives, as text, CSV, JSON and a picture. */
 #include "cli/commands.h"
 #include "cli/stability_map.h"
+#include "sim/folders.h"
 #include "study/stability/extreme.h"
 
 #include <stdio.h>
@@ -21,9 +22,10 @@ static enum cs_status run_extreme(struct cs_args *args,
                                   const char *const *methods, uint32_t n_methods,
                                   struct cs_error *error) {
     const char *folder = cs_args_get(args, STABILITY_FOLDER);
+    char installed[CS_DATA_PATH_MAX];
     const bool all = n_methods == 1 && !strcmp(methods[0], "all");
     struct cs_extreme extreme = {
-        .folder = folder ? folder : "scenes/extreme",
+        .folder = folder ? folder : cs_data_find("scenes/extreme", installed, sizeof installed),
         .only_scene = args->n_operands ? args->operands[0] : NULL,
         .methods = methods,
         /* 0 stands for every method that can be used */

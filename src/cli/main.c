@@ -1,5 +1,6 @@
 /* Picks the command, prints its error and sets the exit code. */
 #include "cli/commands.h"
+#include "cli/completion.h"
 #include "cli/print.h"
 
 #include <signal.h>
@@ -38,7 +39,7 @@ static enum cs_status unknown_command(const char *word, struct cs_error *error) 
     return cs_fail(error, CS_ERR_USAGE, "unknown command \"%.60s\" (see: clothsim help)", word);
 }
 
-static enum cs_status print_overview(struct cs_error *error) {
+static enum cs_status print_overview(FILE *file, struct cs_error *error) {
     struct cs_text out = {0};
     cs_text_add(&out, "usage: clothsim COMMAND [options]\n\n"
                       "Cloth as particles and springs: simulated, compared and drawn.\n\n");
@@ -53,7 +54,7 @@ static enum cs_status print_overview(struct cs_error *error) {
     cs_text_add(&out,
                 "\nA first run:  clothsim run scenes/sphere_rest.json --frames 60 -o out\n"
                 "Manual:       man clothsim\n");
-    return cs_print_out(stdout, &out, error);
+    return cs_print_out(file, &out, error);
 }
 
 static enum cs_status print_help(const struct cs_command *command, struct cs_error *error) {
@@ -64,7 +65,7 @@ static enum cs_status print_help(const struct cs_command *command, struct cs_err
 
 static enum cs_status help(int argc, char **argv, struct cs_error *error) {
     if (!argc || !strcmp(argv[0], "help") || argv[0][0] == '-')
-        return print_overview(error);
+        return print_overview(stdout, error);
     const struct cs_command *command = find_command(argv[0]);
     return command ? print_help(command, error) : unknown_command(argv[0], error);
 }
@@ -73,6 +74,14 @@ static enum cs_status print_version(struct cs_error *error) {
     struct cs_text out = {0};
     cs_text_add(&out, "clothsim " CS_VERSION "\n");
     return cs_print_out(stdout, &out, error);
+}
+
+static enum cs_status print_completion(const char *shell, struct cs_error *error) {
+    struct cs_text out = {0};
+    if (!cs_completion_print(commands, shell, &out, error))
+        cs_print_out(stdout, &out, error);
+    cs_text_finish(&out);
+    return error->status;
 }
 
 static enum cs_status run_command(const struct cs_command *command, int argc, char **argv,
@@ -90,9 +99,13 @@ static enum cs_status run_command(const struct cs_command *command, int argc, ch
 
 static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     if (argc < 2)
-        return cs_fail(error, CS_ERR_USAGE, "expected a command (see: clothsim help)");
-    if (!strcmp(argv[1], "--version"))
+        return print_overview(stderr, error)
+                   ? error->status
+                   : cs_fail(error, CS_ERR_USAGE, "expected a command");
+    if (!strcmp(argv[1], "--version") || !strcmp(argv[1], "-V"))
         return print_version(error);
+    if (argc == 3 && !strcmp(argv[1], "--completion"))
+        return print_completion(argv[2], error);
     if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
         return help(argc - 2, argv + 2, error);
     const struct cs_command *command = find_command(argv[1]);

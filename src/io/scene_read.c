@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/options.h"
+#include "io/input.h"
 #include "io/json_path.h"
 #include "io/scene_mesh.h"
 #include "io/table_read.h"
@@ -183,12 +184,24 @@ done:
     return status;
 }
 
+static enum cs_status read_input(struct cs_scene *scene, const struct cs_override *overrides,
+                                 uint32_t n_overrides, struct cs_error *error) {
+    const char *text;
+    size_t bytes;
+    if (cs_input_read(CS_JSON_BYTES_MAX, &text, &bytes, error))
+        return error->status;
+    return cs_scene_read_text(scene, CS_INPUT_TITLE, text, bytes, overrides, n_overrides,
+                              error);
+}
+
 enum cs_status cs_scene_read(struct cs_scene *scene, const char *path,
                              const struct cs_override *overrides, uint32_t n_overrides,
                              struct cs_error *error) {
     char *text;
     size_t bytes;
     *scene = (struct cs_scene){0};
+    if (!strcmp(path, CS_INPUT_NAME))
+        return read_input(scene, overrides, n_overrides, error);
     enum cs_status status = cs_file_read(path, CS_JSON_BYTES_MAX, &text, &bytes, error);
     if (!status)
         status = cs_scene_read_text(scene, path, text, bytes, overrides, n_overrides, error);

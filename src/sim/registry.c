@@ -162,6 +162,27 @@ enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_erro
     return CS_OK;
 }
 
+/* The library of a method that this build was made without, or NULL: the build leaves lines
+ * "method library" in its module folder. The text is the registry's. */
+static const char *find_left_out(struct cs_registry *registry, const char *name,
+                                 struct cs_error *error) {
+    struct cs_error unread = {0};
+    char path[PATH_MAX], *text;
+    size_t length;
+    const char *library = NULL;
+    snprintf(path, sizeof path, "%.4000s/left-out.txt", cs_module_folder());
+    if (cs_file_read(path, 1 << 16, &text, &length, &unread))
+        return NULL;
+    char *rest = text;
+    for (char *line; !library && (line = strsep(&rest, "\n"));) {
+        const char *method = strsep(&line, " ");
+        if (line && !strcmp(method, name))
+            library = cs_arena_take_text(&registry->arena, line, error);
+    }
+    free(text);
+    return library;
+}
+
 static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
     if (cs_registry_open_all(registry, error))
@@ -173,6 +194,11 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
             names[n++] = registry->entries[k].integrator->name;
     names[n] = NULL;
     const char *nearest = cs_nearest(name, names);
+    const char *library = find_left_out(registry, name, error);
+    if (library)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "integrator \"%s\" needs %s, which this clothsim was built without",
+                       name, library);
     return cs_fail(
         error, CS_ERR_USAGE, "no integrator \"%.60s\"%s%s%s (see: clothsim integrators)", name,
         nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");
@@ -188,7 +214,7 @@ enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
     if (*found)
         return CS_OK;
     for (uint32_t k = 0; k < registry->n; k++)
-        if (registry->entries[k].refusal && strstr(registry->entries[k].file, name))
+        if (registry->entries[k].refusal && may_hold(registry->entries[k].file, name))
             return cs_fail(error, CS_ERR_MODULE, "%s: %s", registry->entries[k].file,
                            registry->entries[k].refusal);
     return unknown_name(registry, name, error);

@@ -30,7 +30,8 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
  * (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute folders only) by their
  * names. Only a module whose bytes hold the name is opened, and none after the one that has the
  * integrator: opening loads libraries. CS_ERR_USAGE with the nearest name where
- * there is none, CS_ERR_MODULE with the reason where it was refused. */
+ * there is none, or with the library that the build was made without; CS_ERR_MODULE with the
+ * reason where it was refused. */
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
                                 const struct cs_registered **found, struct cs_error *error);
 

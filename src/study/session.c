@@ -5,6 +5,7 @@
 #include "model/plan.h"
 #include "model/system_build.h"
 #include "scene/shape.h"
+#include "sim/folders.h"
 #include "study/perturb.h"
 
 #include <math.h>
@@ -13,9 +14,11 @@
 
 static enum cs_status read_scene(struct cs_session *session, struct cs_error *error) {
     const struct cs_session_settings *settings = &session->settings;
+    char installed[CS_DATA_PATH_MAX];
     if (!settings->text)
-        return cs_scene_read(&session->scene, settings->scene, settings->overrides,
-                             settings->n_overrides, error);
+        return cs_scene_read(&session->scene,
+                             cs_data_find(settings->scene, installed, sizeof installed),
+                             settings->overrides, settings->n_overrides, error);
     return cs_scene_read_text(&session->scene, settings->scene, settings->text,
                               strlen(settings->text), settings->overrides,
                               settings->n_overrides, error);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # outside.sh SOURCE BUILD - what an outsider does: installs clothsim, builds the template module
-# against what was installed, with nothing but pkg-config, and runs it and its card.
+# against what was installed, with nothing but pkg-config, and runs it and its card; and uses what
+# was installed with it from a folder that has nothing of it.
 set -eu
 
 source=$1 build=$2
@@ -43,3 +44,23 @@ cp "$example" mine.c
 grep -q ' 0 fail, 0 expected, 0 stale' card
 # and the installed program gives its own modules a card
 "$program" conform --quiet --only order velocity-verlet
+
+# documents, and scenes and golden tables from any folder
+documents=$(dirname "$example")
+for file in LICENSE README.md CHANGELOG.md docs/compare.md; do [ -s "$documents/$file" ]; done
+for file in clothsim.bash _clothsim clothsim.fish; do
+    [ -s "$(find "$work/root" -name $file)" ]
+done
+mkdir empty
+cd empty
+"$program" run scenes/hang.json --frames 2 --no-render --quiet --hash \
+    --plugin ../mine.so --integrator midpoint:dt=0.0002 | cmp - ../hashes
+"$program" golden --hashes --quiet --only free_fall | grep -q '^[1-9][0-9]* agree, 0 differ'
+"$program" scene "scenes/extreme/$(ls "$source/scenes/extreme" | grep -m 1 json)" | grep -q ': ok, '
+if "$program" golden --accept --hashes 2>../refused; then exit 1; fi
+grep -q 'golden/hash.tsv' ../refused
+
+# a method whose library the build was without is told from a misspelt one
+echo 'made-up-bdf SUNDIALS (Debian: libsundials-dev)' >>"$modules/left-out.txt"
+if "$program" integrators made-up-bdf 2>../refused; then exit 1; fi
+grep -qx 'clothsim: integrator "made-up-bdf" needs SUNDIALS (Debian: libsundials-dev), which this clothsim was built without' ../refused
