@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Explicit midpoint method, to start an integrator module of your own from.
  *
  *   x_m = x + h/2 v,  v_m = v + h/2 f(t, x, v)/m

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* integrator.h - the one contract between clothsim and an integrator module.
  *
  * A module is a shared object that exports ONE symbol, `clothsim_module`. It links against

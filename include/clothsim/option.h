@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* option.h - one self-describing table for every struct that a user can fill.
  *
  * A row names a field of a plain struct and gives its type, unit, default, range and meaning.

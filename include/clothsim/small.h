@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* small.h - 3-vectors and symmetric 3x3 blocks out of component-major arrays.
  *
  * Arrays lie component by component: vector i of an array (3,n) is array[i], array[n + i],

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* system.h - the particle system as an integrator sees it: read only, SI units.
  *
  * Arrays of 3-vectors are component-major, of shape (3,n): all x, then all y, then all z.
