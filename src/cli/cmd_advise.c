@@ -1,9 +1,9 @@
 /* clothsim advise: finds a safe step for each method, what limits it and what a frame costs. */
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
-#include "cli/print.h"
-#include "cli/progress.h"
+#include "cli/line/interrupt.h"
+#include "cli/line/print.h"
+#include "cli/line/progress.h"
 #include "study/stability/advise.h"
 #include "study/workers.h"
 

@@ -1,8 +1,8 @@
 /* clothsim compare: measures error against run time for integrators on a scene. */
 #include "cli/commands.h"
-#include "cli/interrupt.h"
-#include "cli/print.h"
-#include "cli/progress.h"
+#include "cli/line/interrupt.h"
+#include "cli/line/print.h"
+#include "cli/line/progress.h"
 #include "study/compare/compare.h"
 #include "study/compare/compare_report.h"
 #include "study/compare/compare_sheet.h"

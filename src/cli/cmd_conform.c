@@ -1,7 +1,7 @@
 /* clothsim conform: prints a method's conformance card as text or JSON. */
 #include "base/file.h"
 #include "cli/commands.h"
-#include "cli/print.h"
+#include "cli/line/print.h"
 #include "sim/method.h"
 #include "study/conform/conform.h"
 #include "study/conform/conform_cache.h"

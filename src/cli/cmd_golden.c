@@ -1,7 +1,7 @@
 /* clothsim golden: recomputes golden hashes and images, and reports what differs. */
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
+#include "cli/line/interrupt.h"
 #include "sim/folders.h"
 #include "study/golden/golden.h"
 

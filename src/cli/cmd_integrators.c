@@ -1,7 +1,7 @@
 /* clothsim integrators: lists the integrators, or describes one with its options. */
 #include "base/options.h"
 #include "cli/commands.h"
-#include "cli/print.h"
+#include "cli/line/print.h"
 #include "sim/registry.h"
 
 #include <stdlib.h>

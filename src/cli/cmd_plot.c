@@ -1,6 +1,6 @@
 /* clothsim plot: draws two columns of a comparison against each other. */
 #include "cli/commands.h"
-#include "cli/print.h"
+#include "cli/line/print.h"
 #include "study/compare/compare_csv.h"
 #include "study/compare/compare_plot.h"
 

@@ -2,8 +2,8 @@
 #include "base/file.h"
 #include "base/pool.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
-#include "cli/print.h"
+#include "cli/line/interrupt.h"
+#include "cli/line/print.h"
 #include "cli/run_report.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* clothsim scene: checks a scene file and prints its plan, its values or the schema. */
 #include "cli/commands.h"
-#include "cli/print.h"
+#include "cli/line/print.h"
 #include "io/scene_write.h"
 #include "model/plan.h"
 #include "study/company.h"

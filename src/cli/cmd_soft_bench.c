@@ -1,9 +1,9 @@
 /* clothsim soft-bench: measures spring networks against shape matching on a soft body. */
 #include "base/file.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
-#include "cli/print.h"
-#include "cli/progress.h"
+#include "cli/line/interrupt.h"
+#include "cli/line/print.h"
+#include "cli/line/progress.h"
 #include "cli/run_output.h"
 #include "io/gnuplot.h"
 #include "study/soft/soft_report.h"

@@ -2,7 +2,7 @@
 #ifndef CS_COMMANDS_H
 #define CS_COMMANDS_H
 
-#include "cli/args.h"
+#include "cli/line/args.h"
 
 /* CS_COMMAND_LIST(X): X(name) of each, made by the build from its list in meson.build. */
 #include "cli/command_list.h"

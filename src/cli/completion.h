@@ -2,7 +2,7 @@
 #ifndef CS_COMPLETION_H
 #define CS_COMPLETION_H
 
-#include "cli/args.h"
+#include "cli/line/args.h"
 
 /* Adds the script for "bash", "zsh" or "fish"; CS_ERR_USAGE for any other shell. commands is
  * closed by NULL. */

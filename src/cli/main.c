@@ -1,7 +1,7 @@
 /* Picks the command, prints its error and sets the exit code. */
 #include "cli/commands.h"
 #include "cli/completion.h"
-#include "cli/print.h"
+#include "cli/line/print.h"
 
 #include <signal.h>
 #include <string.h>

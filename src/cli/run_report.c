@@ -2,7 +2,7 @@
 #include "cli/run_report.h"
 
 #include "base/pool.h"
-#include "cli/print.h"
+#include "cli/line/print.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "cli/stability_args.h"
 
 #include "base/pool.h"
-#include "cli/interrupt.h"
+#include "cli/line/interrupt.h"
 #include "study/workers.h"
 
 #include <string.h>

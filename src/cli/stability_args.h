@@ -2,7 +2,7 @@
 #ifndef CS_STABILITY_ARGS_H
 #define CS_STABILITY_ARGS_H
 
-#include "cli/args.h"
+#include "cli/line/args.h"
 #include "study/stability/stability.h"
 
 enum {

@@ -2,8 +2,8 @@
 #include "cli/stability_map.h"
 
 #include "base/file.h"
-#include "cli/print.h"
-#include "cli/progress.h"
+#include "cli/line/print.h"
+#include "cli/line/progress.h"
 #include "cli/run_output.h"
 #include "io/gnuplot.h"
 #include "study/stability/stability_report.h"

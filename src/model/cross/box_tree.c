@@ -43,7 +43,7 @@ static void sort_group(const double *centres, uint32_t first, uint32_t end,
     double side = 0;
     for (size_t k = first; k < end; k++)
         for (size_t c = 0; c < 3; c++)
-            cs_sweep_widen(low + c, high + c, centres[3 * k + c], centres[3 * k + c]);
+            cs_swept_widen(low + c, high + c, centres[3 * k + c], centres[3 * k + c]);
     for (int c = 0; c < 3; c++)
         side = fmax(side, high[c] - low[c]);
     for (uint32_t k = first; k < end; k++)
@@ -90,7 +90,7 @@ static size_t nodes_most(size_t n, size_t n_groups) {
 
 size_t cs_box_tree_bytes(size_t n, size_t n_groups) {
     return nodes_most(n, n_groups) * sizeof(struct cs_box_node) +
-           n * (sizeof(uint32_t) + sizeof(struct cs_sweep)) +
+           n * (sizeof(uint32_t) + sizeof(struct cs_swept)) +
            CS_BOX_JOBS_MOST * sizeof(struct cs_box_job);
 }
 
@@ -118,13 +118,13 @@ static void set_boxes(struct cs_box_tree *tree) {
     // children stand behind their parents
     for (uint32_t k = tree->n_nodes; k-- > 0;) {
         struct cs_box_node *node = tree->nodes + k;
-        node->sweep = cs_sweep_none();
+        node->sweep = cs_swept_none();
         if (node->right) {
-            cs_sweep_join(&node->sweep, &tree->nodes[k + 1].sweep);
-            cs_sweep_join(&node->sweep, &tree->nodes[node->right].sweep);
+            cs_swept_join(&node->sweep, &tree->nodes[k + 1].sweep);
+            cs_swept_join(&node->sweep, &tree->nodes[node->right].sweep);
         } else
             for (uint32_t i = node->first; i < node->end; i++)
-                cs_sweep_join(&node->sweep, tree->sweeps + tree->items[i]);
+                cs_swept_join(&node->sweep, tree->sweeps + tree->items[i]);
     }
 }
 
@@ -140,7 +140,7 @@ static uint32_t cut(const struct cs_box_tree *tree, struct cs_box_job pair,
         return 3;
     }
     parts[0] = parts[1] = pair;
-    if (pair.a != pair.b && !cs_sweeps_meet(&a->sweep, &b->sweep, tree->reach))
+    if (pair.a != pair.b && !cs_swepts_meet(&a->sweep, &b->sweep, tree->reach))
         return 0;
     if (!a->right && !b->right)
         return 1;
@@ -191,7 +191,7 @@ static void visit_items(const struct cs_box_tree *tree, struct cs_box_job pair,
     for (uint32_t k = a->first; k < a->end; k++)
         for (uint32_t l = pair.a == pair.b ? k + 1 : b->first; l < b->end; l++) {
             const uint32_t i = tree->items[k], j = tree->items[l];
-            if (cs_sweeps_meet(tree->sweeps + i, tree->sweeps + j, tree->reach))
+            if (cs_swepts_meet(tree->sweeps + i, tree->sweeps + j, tree->reach))
                 visit(arg, i < j ? i : j, i < j ? j : i);
         }
 }

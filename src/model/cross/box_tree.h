@@ -8,7 +8,7 @@
 #define CS_BOX_TREE_H
 
 #include "base/arena.h"
-#include "model/cross/sweep.h"
+#include "model/cross/swept.h"
 
 #include <stdint.h>
 
@@ -17,7 +17,7 @@ enum { CS_BOX_LEAF = 4 };
 
 /* Node k of a tree that is written down depth first: its left child is k + 1. */
 struct cs_box_node {
-    struct cs_sweep sweep;
+    struct cs_swept sweep;
     uint32_t first, end; /* places in items */
     uint32_t right;      /* its right child; 0: a leaf */
 };
@@ -32,7 +32,7 @@ struct cs_box_tree {
     uint32_t n, n_nodes, n_jobs;
     uint32_t *items; /* (n) */
     struct cs_box_node *nodes;
-    struct cs_sweep *sweeps; /* (n) of the items */
+    struct cs_swept *sweeps; /* (n) of the items */
     struct cs_box_job *jobs; /* (CS_BOX_JOBS_MOST) */
     double reach;            /* m, of the last update */
 };

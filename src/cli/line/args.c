@@ -1,5 +1,5 @@
 /* Parses a command's options and operands by its table of options. */
-#include "cli/args.h"
+#include "cli/line/args.h"
 
 #include <stdlib.h>
 #include <string.h>

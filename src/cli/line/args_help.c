@@ -1,6 +1,6 @@
 /* Prints the help of a command from its table of options. */
-#include "cli/args.h"
-#include "cli/print.h"
+#include "cli/line/args.h"
+#include "cli/line/print.h"
 
 enum { HELP_COLUMN = 28 };
 

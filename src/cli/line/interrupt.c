@@ -1,5 +1,5 @@
 /* Turns SIGINT and SIGTERM into a flag that stops a run at its next step. */
-#include "cli/interrupt.h"
+#include "cli/line/interrupt.h"
 
 #include <time.h>
 

@@ -1,5 +1,5 @@
 /* Prints wrapped columns, whole texts and error messages to the terminal. */
-#include "cli/print.h"
+#include "cli/line/print.h"
 
 #include <errno.h>
 #include <string.h>

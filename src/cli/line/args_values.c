@@ -1,5 +1,5 @@
 /* Reads the values of options as numbers, choices and overrides, and checks them. */
-#include "cli/args.h"
+#include "cli/line/args.h"
 
 #include <stdlib.h>
 #include <string.h>

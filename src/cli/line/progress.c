@@ -1,6 +1,6 @@
 /* Shows a progress line with the time that is left: one that changes on a terminal, else one
  * now and then. */
-#include "cli/progress.h"
+#include "cli/line/progress.h"
 
 #include "base/clock.h"
 
