@@ -55,16 +55,16 @@ static enum cs_step restart(void *self, double t, const double *x, const double 
     return CS_STEP_OK;
 }
 
-/* (x1, v1) = (x, v) + h (velocity, f/m). A pinned particle has f = 0 and 1/m = 0, and needs no
- * case of its own. */
-static void move(const struct midpoint *self, double h, const double *x, const double *v,
-                 const double *velocity, double *x1, double *v1) {
+/* out = y + h (velocity, f/m), where y and out are positions with velocities behind them. A
+ * pinned particle has f = 0 and 1/m = 0, and needs no case of its own. */
+static void move(const struct midpoint *self, double h, const double *y, const double *velocity,
+                 double *out) {
     const struct cs_view *view = self->host->view;
     const size_t n = view->n;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {
-            x1[k] = x[k] + h * velocity[k];
-            v1[k] = v[k] + h * self->f[k] * view->inv_mass[i];
+            out[k] = y[k] + h * velocity[k];
+            out[3 * n + k] = y[3 * n + k] + h * self->f[k] * view->inv_mass[i];
         }
 }
 
@@ -72,9 +72,9 @@ static void step(struct midpoint *self, double t, double h, double *x, double *v
     const struct cs_host *host = self->host;
     double *xm = self->middle, *vm = xm + 3 * (size_t)host->view->n;
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
-    move(self, h / 2, x, v, v, xm, vm);
+    move(self, h / 2, x, v, xm);
     host->force(host->ctx, t + h / 2, xm, vm, CS_PART_ALL, self->f);
-    move(self, h, x, v, vm, x, v);
+    move(self, h, x, vm, x);
 }
 
 /* From t0 to exactly t1, in equal steps not longer than dt. */
