@@ -70,7 +70,7 @@ static bool rubs_unresolved(struct method *self, double t, double h, const doubl
                             const double *v) {
     const struct cs_host *host = self->base.loop.host;
     double omega, delta;
-    // saved: the scene has contact by force
+    // no move of this scene is judged: it has no contact by force either
     if (!self->base.loop.saved)
         return false;
     host->force(host->ctx, t, x, v, CS_PART_DISSIPATIVE, self->b);

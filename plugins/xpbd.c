@@ -9,16 +9,29 @@
  * v = (x' - x)/h. Relative damping is a constraint d = d_old of compliance 1/(c h) beside the
  * spring. Outer forces, drag too, are those at the start of the step.
  *
+ * Contact by force comes after the springs in each pass, particle by particle: with its force F
+ * at x and at the velocity (x - x_old)/h, its share B of an implicit step's matrix and the
+ * impulse p that it has given so far,
+ *   dx = (m + B)^-1 (h h F - p), p += m dx, x += dx,
+ * a Newton step for p = h h F. For a force along one direction that is a constraint of
+ * compliance 1/(k h^2) with k the law's stiffness; friction and damping come along as functions
+ * of x.
+ *
  * As the iterations grow the result settles, but not on implicit Euler: the directions that the
  * multipliers l belong to are those at which they were found. The difference vanishes with h.
  * Mode pbd forgets the multipliers after every iteration, so that each corrects the same share
  * (w_a + w_b) / (w_a + w_b + a) of what is left (Mueller et al. 2007, eq. 10 and 11, with that
  * share as k): springs are the stiffer the more iterations, and nothing settles.
+ * Contact keeps its impulses in either mode.
  */
 #include "fixed_step.h"
 
+#include <clothsim/small.h>
 #include <float.h>
 #include <string.h>
+
+/* what a scene with contact by force has of these parts is contact */
+#define CONTACT (CS_PART_POTENTIAL | CS_PART_DISSIPATIVE)
 
 enum mode { XPBD, PBD };
 static const char *const modes[] = {"xpbd", "pbd", NULL};
@@ -51,6 +64,11 @@ struct xpbd {
     double *spring;  /* (n_springs) multipliers of the springs, kg m */
     double *damper;  /* (n_springs, 3) of the relative dampers; NULL: there are none */
     uint64_t passes; /* over the springs */
+
+    /* in scenes with contact by force, else NULL */
+    double *impulse; /* (3,n) p in kg m */
+    double *blocks;  /* (6,n) B in kg */
+    double *speed;   /* (3,n) in m/s */
 };
 
 /* Moves the ends of a spring apart by what m l is at each; push (3). */
@@ -129,11 +147,38 @@ static void sweep(struct xpbd *self, double h, double *x) {
     self->passes++;
 }
 
+/* One Newton step of each particle towards p = h h F, at the end t of the step; f: work. */
+static void touch(struct xpbd *self, double t, double h, double *x) {
+    const struct cs_host *host = self->loop.host;
+    const size_t n = host->view->n;
+    for (size_t k = 0; k < 3 * n; k++)
+        self->speed[k] = (x[k] - self->old[k]) / h;
+    host->force(host->ctx, t, x, self->speed, CONTACT, self->f);
+    host->blocks(host->ctx, t, x, self->speed, h, self->blocks);
+    for (size_t i = 0; i < n; i++) {
+        const double mass = host->view->mass[i];
+        double b[6], r[3], dx[3];
+        cs_sym3_read(n, self->blocks, i, b);
+        b[0] += mass, b[3] += mass, b[5] += mass;
+        // what is not finite is left for the blow-up test
+        if (host->view->inv_mass[i] == 0 || !cs_sym3_invert(b, b))
+            continue;
+        for (size_t c = 0; c < 3; c++)
+            r[c] = h * h * self->f[c * n + i] - self->impulse[c * n + i];
+        cs_sym3_mul(b, r, dx);
+        for (size_t c = 0; c < 3; c++) {
+            self->impulse[c * n + i] += mass * dx[c];
+            x[c * n + i] += dx[c];
+        }
+    }
+}
+
 static enum cs_step step(struct fixed_step *loop, double t, double h, double *x, double *v) {
     struct xpbd *self = (struct xpbd *)loop;
     const struct cs_host *host = loop->host;
     const size_t n = host->view->n;
-    host->force(host->ctx, t, x, v, CS_PART_OUTER, self->f);
+    const uint32_t outer = self->impulse ? CS_PART_OUTER & ~CONTACT : CS_PART_OUTER;
+    host->force(host->ctx, t, x, v, outer, self->f);
     memcpy(self->old, x, 3 * n * sizeof *x);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, k = c * n; i < n; i++, k++) {
@@ -142,10 +187,14 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
         }
 
     forget(self);
+    if (self->impulse)
+        memset(self->impulse, 0, 3 * n * sizeof *x);
     for (int64_t i = 0; i < self->iterations; i++) {
         if (self->forgets && i > 0)
             forget(self);
         sweep(self, h, x);
+        if (self->impulse)
+            touch(self, t + h, h, x);
     }
     // (x - old) / h by what the springs moved, so that free flight keeps every bit of v
     for (size_t k = 0; k < 3 * n; k++)
@@ -177,6 +226,18 @@ static bool has_relative_dampers(const struct cs_view *view) {
     return false;
 }
 
+/* what contact by force needs, which only some scenes and hosts have */
+static enum cs_step take_contact(struct xpbd *self, size_t vectors) {
+    const struct cs_host *host = self->loop.host;
+    if (!CS_HAS(host, blocks) || !host->blocks)
+        return CS_STEP_OK;
+    if (!(self->impulse = host->alloc(host->ctx, vectors)) ||
+        !(self->blocks = host->alloc(host->ctx, 2 * vectors)) ||
+        !(self->speed = host->alloc(host->ctx, vectors)))
+        return CS_STEP_FAIL;
+    return CS_STEP_OK;
+}
+
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
     const struct xpbd_options *asked = options;
     const struct cs_view *view = host->view;
@@ -197,6 +258,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     /* three multipliers a spring, which only relative dampers need */
     if (has_relative_dampers(view) && !(self->damper = host->alloc(host->ctx, 3 * springs)))
         return CS_STEP_FAIL;
+    if (take_contact(self, vectors) != CS_STEP_OK)
+        return CS_STEP_FAIL;
     return fixed_step_guard(&self->loop, NULL);
 }
 
@@ -214,7 +277,7 @@ static const struct cs_integrator xpbd = {
     .order = 1,
     .order_damped = 1,
     .needs = CS_NEED_SPRINGS,
-    .traits = CS_IMPLICIT | CS_EXPLICIT_OUTER,
+    .traits = CS_IMPLICIT,
     .fidelity = CS_FIDELITY_CONSISTENT,
     .options = rows,
     .n_options = sizeof rows / sizeof rows[0],

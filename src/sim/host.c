@@ -212,6 +212,19 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
     return share;
 }
 
+static void host_blocks(void *ctx, double t, const double *x, const double *v, double h,
+                        double *blocks) {
+    struct cs_run_host *host = ctx;
+    const struct cs_matrix matrix = {
+        .t = t, .x = x, .v = v, .cd = -h, .ck = -h * h, .psd = true, .bound = true};
+    move_values(host, t);
+    const double begin = stage_begin(host);
+    cs_terms_blocks(host->run->system, &matrix, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+                    blocks);
+    host->run->counts.diagonals++;
+    stage_end(host, CS_STAGE_FORCE, begin);
+}
+
 /* only where it is asked for: methods leave out what is NULL */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
@@ -224,6 +237,8 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     host->rate_work =
         cs_arena_take_n(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
     host->calls.rate = host_rate;
+    if (system->pairings)
+        host->calls.blocks = host_blocks;
     return error->status;
 }
 

@@ -121,6 +121,14 @@ void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at,
     }
 }
 
+void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                     uint32_t parts, double *blocks) {
+    memset(blocks, 0, 6 * sizeof *blocks * system->view.n);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->parts & parts)
+            add_share(system, matrix, system->terms[k], blocks);
+}
+
 void cs_terms_add_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                          size_t begin, size_t end, double *diagonal, double *blocks) {
     for (uint32_t k = 0; k < system->n_terms; k++) {

@@ -29,6 +29,10 @@ void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, doub
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv);
 
+/* blocks (6,n) = the shares in a matrix of the terms with one of these parts. */
+void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                     uint32_t parts, double *blocks);
+
 /* Adds the shares of all terms that have none between particles, at particles [begin, end):
  * numbers to diagonal (n), blocks to blocks (6,n), which is not used without
  * cs_terms_have_blocks. */
