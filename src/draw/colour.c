@@ -8,6 +8,10 @@ static const uint32_t force_stops[6] = {0x1a9850, 0x8cc63f, 0xf7e33b,
 static const uint32_t strain_stops[6] = {0x3b1f6b, 0x31578f, 0x1f8a8c,
                                          0x3db86f, 0xa4d742, 0xfbe84a};
 
+// marked triangles are red, all others pale
+static const uint32_t mark_stops[6] = {0xd9dde2, 0xd9dde2, 0xd9dde2,
+                                       0xd9dde2, 0xd9dde2, 0xd0121b};
+
 // a cubic within 0.002 of the sRGB curve: no libm, whose last bit depends on the machine
 void cs_colour_linear(uint32_t hex, float linear[3]) {
     for (int i = 0; i < 3; i++) {
@@ -17,7 +21,9 @@ void cs_colour_linear(uint32_t hex, float linear[3]) {
 }
 
 void cs_colour_stops(int32_t look, float stops[6][4]) {
-    const uint32_t *table = look == CS_LOOK_STRAIN ? strain_stops : force_stops;
+    const uint32_t *table = look == CS_LOOK_STRAIN      ? strain_stops
+                            : look == CS_LOOK_CROSSINGS ? mark_stops
+                                                        : force_stops;
     for (int i = 0; i < 6; i++) {
         cs_colour_linear(table[i], stops[i]);
         stops[i][3] = 1;

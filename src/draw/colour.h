@@ -5,8 +5,8 @@
 #include <stdint.h>
 
 /* Six evenly spaced stops in linear RGB for the look's values, lowest first: green over yellow
- * and orange to red for force (cloth thesis, fig. 6.2), violet over green to yellow for strain.
- */
+ * and orange to red for force (cloth thesis, fig. 6.2), violet over green to yellow for strain,
+ * and red at the end for marks. */
 void cs_colour_stops(int32_t look, float stops[6][4]);
 
 /* From 0xRRGGBB in sRGB to linear RGB. */

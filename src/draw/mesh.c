@@ -3,6 +3,7 @@
 
 #include "draw/matrix.h"
 #include "model/system/faces.h"
+#include "model/system/surfaces.h"
 
 // drawing a particle farther away than this only upsets the rasteriser
 static const double bound = 1e5;
@@ -15,11 +16,14 @@ void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
     }
 }
 
-enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_body_range *range, bool flat,
+enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error) {
+    const struct cs_body_range *range = system->bodies + body;
+    const bool marked = system->scene->render.look == CS_LOOK_CROSSINGS;
     mesh->range = *range;
-    mesh->flat = flat;
-    mesh->split = flat || (textured && range->mesh && range->mesh->uv);
+    mesh->flat = cs_scene_bodies(system->scene)[body].material.shading == CS_SHADING_FLAT;
+    mesh->split = mesh->flat || marked || (textured && range->mesh && range->mesh->uv);
+    mesh->first_triangle = marked ? system->surfaces->first_triangle[body] : 0;
     mesh->n_indices = 3 * cs_faces_count(range);
     mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
     mesh->vertices = cs_arena_take_n(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
@@ -72,8 +76,8 @@ static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     }
 }
 
-void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const double *x, const double *values,
-                    const double range[2]) {
+void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame) {
+    const double *x = frame->x;
     double normal[3];
     if (!mesh->flat)
         sum_normals(mesh, n, x);
@@ -85,7 +89,8 @@ void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const double *x, const dou
             triangle_normal(mesh, n, x, mesh->indices + k, normal);
         set_vertex(mesh->vertices + k, place,
                    mesh->flat ? normal : mesh->normals + 3 * (size_t)i,
-                   scaled(values, particle, range));
+                   frame->marks ? frame->marks[mesh->first_triangle + k / 3]
+                                : scaled(frame->scalar, particle, frame->range));
     }
 }
 

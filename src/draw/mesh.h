@@ -3,7 +3,7 @@
 #define CS_DRAW_MESH_H
 
 #include "base/arena.h"
-#include "model/system/system.h"
+#include "draw/render.h"
 
 #include <stdbool.h>
 
@@ -13,25 +13,28 @@ struct cs_vertex {
 
 /* A grid has two triangles a cell, counter-clockwise seen from +z for a hanging cloth; a mesh
  * has its own. A vertex a particle, shared by its triangles; split: three vertices a triangle
- * of their own, for one normal a triangle (flat) or texture coordinates of corners. */
+ * of their own, for one normal a triangle (flat), texture coordinates of corners, or marks of
+ * triangles. */
 struct cs_mesh {
     struct cs_body_range range;
     bool flat, split;
+    uint32_t first_triangle; /* of the body among the system's */
     uint32_t n_vertices, n_indices;
     struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
     uint32_t *indices;          /* (n_indices) particles of the body, three a triangle */
     double *normals;            /* (count, 3) work */
 };
 
-/* textured: texture coordinates will be asked for */
-enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_body_range *range, bool flat,
+/* Of a body, as its material and the scene's look have it. textured: texture coordinates will
+ * be asked for. */
+enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error);
 
-/* Fills the vertices from x (3,n); values (n) or NULL become 0..1 between the ends of range.
+/* Fills the vertices from a frame of n particles; its values become 0..1 between the ends of
+ * their range, or the marks of triangles 0 and 1.
  * A smooth normal is the sum of the normals of its triangles, each as long as the triangle is
  * large. Positions that are not finite, or far off after a blow-up, are drawn at a bound. */
-void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const double *x, const double *values,
-                    const double range[2]);
+void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame);
 
 /* Texture coordinates (n_vertices, 2): of a grid from 0 at the top left to `repeat`; of a mesh
  * its own times `repeat`, or where it has none, as if the picture lay on its front (+z). */

@@ -4,6 +4,10 @@
 #include "draw/matrix.h"
 
 bool cs_look_has_values(int32_t look) {
+    return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN || look == CS_LOOK_CROSSINGS;
+}
+
+bool cs_look_has_bar(int32_t look) {
     return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN;
 }
 

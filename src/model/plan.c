@@ -149,9 +149,11 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
            cs_contact_bytes(scene, n, s, forced), "the scene has colliders",
            scene->colliders.n > 0 ? "contact is a force" : "no colliders");
-    decide(plan, CS_FEATURE_CROSSINGS, cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE,
-           cs_surfaces_bytes(scene) + cs_crossings_bytes(scene), "crossings is not ignore",
-           "crossings is ignore");
+    const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
+    const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
+    decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
+           cs_surfaces_bytes(scene) + cs_crossings_bytes(scene),
+           wanted ? "crossings is not ignore" : "they are drawn", "crossings is ignore");
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
            cs_linear_bytes(scene, n, s, forced) + (forced ? 6 : 3) * n * real,
            levels ? "the integrator asks for it; multigrid for stiff steps"

@@ -305,7 +305,8 @@ enum cs_look {
     CS_LOOK_SPRINGS,
     CS_LOOK_FORCE,
     CS_LOOK_STRAIN,
-    CS_LOOK_GOALS
+    CS_LOOK_GOALS,
+    CS_LOOK_CROSSINGS
 };
 struct cs_render {
     int64_t size[2]; /* pixels: width, height */

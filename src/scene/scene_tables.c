@@ -312,8 +312,8 @@ static const struct cs_option light_rows[] = {
 };
 static const struct cs_table light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
 
-const char *const cs_look_names[] = {"lit",    "wireframe", "springs", "force",
-                                     "strain", "goals",     NULL};
+const char *const cs_look_names[] = {"lit",    "wireframe", "springs",   "force",
+                                     "strain", "goals",     "crossings", NULL};
 static const double vga[2] = {640, 480};
 static const double paper[3] = {0.82, 0.86, 0.91};
 static const struct cs_option render_rows[] = {

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/pool.h"
 #include "io/png.h"
+#include "model/cross/crossings.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,6 +43,14 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
     return CS_OK;
 }
 
+/* false: out of memory */
+static bool take_marks(struct cs_picture *picture) {
+    if (picture->scene->render.look != CS_LOOK_CROSSINGS)
+        return true;
+    picture->marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
+    return picture->marks;
+}
+
 static enum cs_status take_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
     const bool coloured = cs_picture_is_coloured(picture->scene);
@@ -56,7 +65,8 @@ static enum cs_status take_arrays(struct cs_picture *picture, struct cs_error *e
     if (drawn_to)
         picture->goals = calloc(n, 3 * sizeof(double));
     if (!picture->x || !picture->inv_mass || !picture->obstacles ||
-        (drawn_to && !picture->goals) || (coloured && (!picture->scalar || !picture->work)))
+        (drawn_to && !picture->goals) || !take_marks(picture) ||
+        (coloured && (!picture->scalar || !picture->work)))
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pictures of %zu particles",
                        n);
     return CS_OK;
@@ -125,6 +135,7 @@ static void paint(void *object) {
                                    .range = {picture->range[0], picture->range[1]},
                                    .inv_mass = picture->inv_mass,
                                    .goals = picture->goals,
+                                   .marks = picture->marks,
                                    .obstacles = picture->obstacles};
     picture->renderer->paint(picture->canvas, &frame, picture->image, &picture->error);
     picture->seconds += cs_clock_wall() - start;
@@ -139,6 +150,8 @@ void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
     cs_obstacles_at(picture->system, run->t, picture->obstacles);
     if (picture->scalar)
         measure(picture, run);
+    if (picture->marks)
+        cs_crossings_mark(picture->system, run->x, picture->marks);
     if (picture->goals)
         cs_run_goals(run, picture->goals);
     picture->t = run->t;
@@ -172,6 +185,7 @@ void cs_picture_close(struct cs_picture *picture) {
     free(picture->scalar);
     free(picture->work);
     free(picture->goals);
+    free(picture->marks);
     free(picture->obstacles);
     *picture = (struct cs_picture){0};
 }

@@ -20,6 +20,7 @@ struct cs_picture {
     double *x, *inv_mass;      /* (3,n), (n), owned: the run as it was at begin */
     double *scalar, *work;     /* (n), (3,n), owned; NULL unless the look colours by a value */
     double *goals;             /* (3,n), owned; NULL unless the look shows them */
+    uint8_t *marks;            /* of triangles, owned; NULL unless the look shows them */
     struct cs_obstacle *obstacles; /* (scene->colliders.n), owned: as they were at begin */
     double t;                      /* s, of the picture begun last */
     double range[2];               /* of its colours */

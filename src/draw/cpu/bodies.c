@@ -23,9 +23,9 @@ enum cs_status cs_body_picture_init(struct cs_body_picture *body,
     static const struct cs_image none = {0, 0, NULL};
     const struct cs_image *image = settings->textures ? settings->textures + b : &none;
     const struct cs_material *material = &cs_scene_bodies(settings->scene)[b].material;
-    const bool flat = material->shading == CS_SHADING_FLAT, textured = image->width > 0;
+    const bool textured = image->width > 0;
     struct cs_surface_style style;
-    if (cs_mesh_init(&body->mesh, settings->system->bodies + b, flat, textured, arena, error))
+    if (cs_mesh_init(&body->mesh, settings->system, b, textured, arena, error))
         return error->status;
     body->corners = cs_arena_take_n(arena, body->mesh.n_vertices, sizeof *body->corners, error);
     body->hidden = cs_overlay_hides(settings->scene, b);
@@ -39,7 +39,7 @@ enum cs_status cs_body_picture_init(struct cs_body_picture *body,
 
 void cs_body_picture_update(struct cs_body_picture *body, uint32_t n,
                             const struct cs_frame *frame) {
-    cs_mesh_update(&body->mesh, n, frame->x, frame->scalar, frame->range);
+    cs_mesh_update(&body->mesh, n, frame);
 }
 
 static void set_attributes(const struct cs_body_picture *body, uint32_t i,

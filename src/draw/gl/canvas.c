@@ -44,9 +44,8 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                                  const struct cs_image *texture, struct cs_error *error) {
     struct cs_cloth_picture *cloth = canvas->cloths + b;
     const struct cs_material *material = &cs_scene_bodies(canvas->scene)[b].material;
-    const bool flat = material->shading == CS_SHADING_FLAT;
-    if (cs_mesh_init(&cloth->mesh, canvas->system->bodies + b, flat, texture->width > 0,
-                     &canvas->arena, error) != CS_OK)
+    if (cs_mesh_init(&cloth->mesh, canvas->system, b, texture->width > 0, &canvas->arena,
+                     error) != CS_OK)
         return error->status;
     /* split vertices stand in the order in which they are drawn, without indices */
     cs_surface_init(&cloth->surface, cloth->mesh.split ? NULL : cloth->mesh.indices,
@@ -162,8 +161,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         return error->status;
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
         struct cs_cloth_picture *cloth = canvas->cloths + b;
-        cs_mesh_update(&cloth->mesh, canvas->system->view.n, frame->x, frame->scalar,
-                       frame->range);
+        cs_mesh_update(&cloth->mesh, canvas->system->view.n, frame);
         cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
     }
     cs_gl_colliders_move(&canvas->colliders, frame->obstacles);
