@@ -96,8 +96,16 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     return sdirk2_take(host, &self->arrays);
 }
 
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    struct method *self = object;
+    const size_t n3 = 3 * (size_t)self->base.base.loop.host->view->n;
+    archive->reals(archive->ctx, self->xl, n3);
+    archive->reals(archive->ctx, self->vl, n3);
+    return halving_archive(self, archive);
+}
+
 const struct cs_integrator bdf2 = {
-    HALVING_METHOD(struct bdf2_options, rows),
+    HALVING_METHOD(struct bdf2_options, rows, archive),
     .name = "bdf2",
     .summary = "two-step backward differentiation, by Newton or by one linear solve a step",
     .source = "Gear 1971; Choi, Ko 2002",

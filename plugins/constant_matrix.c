@@ -31,6 +31,8 @@ enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct c
 
 void constant_matrix_restart(struct constant_matrix *matrix) {
     matrix->h = 0;
+    // its order of elimination too: what follows hangs on nothing that was before
+    cholmod_free_factor(&matrix->factor, &matrix->common);
 }
 
 static void read_drag(const struct constant_matrix *matrix, double t, const double *x,
@@ -115,14 +117,8 @@ static cholmod_sparse *assemble(struct constant_matrix *matrix, double h) {
     return sparse;
 }
 
-enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h) {
+static enum cs_step factor(struct constant_matrix *matrix, double h) {
     const struct cs_host *host = matrix->host;
-    const bool others = follow_springs(matrix);
-    if (matrix->drag_changes)
-        follow_drag(matrix, t + h);
-    // frames differ in length by rounding
-    if (!others && !matrix->drag_changes && fabs(h - matrix->h) <= 1e-9 * h)
-        return CS_STEP_OK;
     matrix->h = 0;
     cholmod_sparse *sparse = assemble(matrix, h);
     if (sparse && !matrix->factor)
@@ -139,6 +135,29 @@ enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, d
                               : "numbers out of the range of doubles");
     matrix->h = h;
     return CS_STEP_OK;
+}
+
+enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h) {
+    const bool others = follow_springs(matrix);
+    if (matrix->drag_changes)
+        follow_drag(matrix, t + h);
+    // frames differ in length by rounding
+    if (!others && !matrix->drag_changes && fabs(h - matrix->h) <= 1e-9 * h)
+        return CS_STEP_OK;
+    return factor(matrix, h);
+}
+
+void constant_matrix_archive(struct constant_matrix *matrix, const struct cs_archive *archive) {
+    const struct cs_view *view = matrix->host->view;
+    archive->reals(archive->ctx, &matrix->h, 1);
+    archive->reals(archive->ctx, matrix->drag, view->n);
+    archive->reals(archive->ctx, matrix->springs, 2 * (size_t)view->n_springs);
+}
+
+enum cs_step constant_matrix_load(struct constant_matrix *matrix,
+                                  const struct cs_archive *archive) {
+    constant_matrix_archive(matrix, archive);
+    return matrix->h > 0 ? factor(matrix, matrix->h) : CS_STEP_OK;
 }
 
 enum cs_step constant_matrix_solve(struct constant_matrix *matrix, double *b,

@@ -43,6 +43,12 @@ void constant_matrix_read_drag(struct constant_matrix *matrix, double t0, double
  * is the step to use. */
 enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h);
 
+/* For save: the step, the drag and the springs that the factor was made with. For load: takes
+ * them back, and factors anew. */
+void constant_matrix_archive(struct constant_matrix *matrix, const struct cs_archive *archive);
+enum cs_step constant_matrix_load(struct constant_matrix *matrix,
+                                  const struct cs_archive *archive);
+
 /* Solves A u = b for three columns. b (4,n): the last row of it is 0, as CHOLMOD works on four
  * columns at once, and for three it would take memory in every call. *u (3,n) is valid until
  * the next call. */

@@ -244,6 +244,22 @@ static void stats(const void *object, struct cs_stats *out) {
     out->rejected = ((const struct dopri5 *)object)->rejected;
 }
 
+/* the slope at the state, and what the control of the step knows */
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    struct dopri5 *self = object;
+    struct step_control *control = &self->control;
+    uint64_t marks[] = {self->fresh, self->started, control->rejected};
+    archive->wholes(archive->ctx, marks, 3);
+    self->fresh = marks[0] != 0;
+    self->started = marks[1] != 0;
+    control->rejected = marks[2] != 0;
+    archive->wholes(archive->ctx, &self->rejected, 1);
+    archive->reals(archive->ctx, &control->h, 1);
+    archive->reals(archive->ctx, &control->root_old, 1);
+    archive->reals(archive->ctx, self->k[0], self->length);
+    return CS_STEP_OK;
+}
+
 static const struct cs_integrator dopri5 = {
     .size = sizeof(struct cs_integrator),
     .name = "dopri5",
@@ -260,6 +276,8 @@ static const struct cs_integrator dopri5 = {
     .restart = restart,
     .advance = advance,
     .stats = stats,
+    .save = archive,
+    .load = archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&dopri5};

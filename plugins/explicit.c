@@ -161,10 +161,21 @@ static enum cs_step create_rk4(const struct cs_host *host, const void *options, 
     return create_lossless(host, options, rk4_limit, step_rk4, 5, self);
 }
 
-#define EXPLICIT(struct_, rows_)                                                               \
+/* an evaluation, or a half step, is kept from step to step */
+static enum cs_step verlet_archive(void *object, const struct cs_archive *archive) {
+    struct explicit_method *self = object;
+    const size_t n3 = 3 * (size_t)self->loop.host->view->n;
+    archive->reals(archive->ctx, &self->h, 1);
+    archive->reals(archive->ctx, self->a, n3);
+    archive->reals(archive->ctx, self->kept, n3);
+    return fixed_step_archive(self, archive);
+}
+
+#define EXPLICIT(struct_, rows_, archive_)                                                     \
     .size = sizeof(struct cs_integrator), .options = rows_,                                    \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
-    .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance
+    .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance, .save = archive_,              \
+    .load = archive_
 
 /* the eigenvalues of a step lie outside the unit circle wherever nothing damps */
 static const char *const gains_energy[] = {"energy", "contact-energy", NULL};
@@ -174,7 +185,7 @@ static const char *const gains_energy[] = {"energy", "contact-energy", NULL};
 static const char *const late_velocity[] = {"angular-momentum", "reversible", NULL};
 
 static const struct cs_integrator explicit_euler = {
-    EXPLICIT(struct explicit_options, explicit_rows),
+    EXPLICIT(struct explicit_options, explicit_rows, fixed_step_archive),
     .name = "explicit-euler",
     .summary = "forward Euler: explodes unless damping is strong against dt",
     .source = "Euler 1768; cloth thesis, eq. 5.15",
@@ -186,7 +197,7 @@ static const struct cs_integrator explicit_euler = {
 };
 
 static const struct cs_integrator symplectic_euler = {
-    EXPLICIT(struct explicit_options, explicit_rows),
+    EXPLICIT(struct explicit_options, explicit_rows, fixed_step_archive),
     .name = "symplectic-euler",
     .summary = "velocity first, then position with the new velocity",
     .source = "flag thesis; Hairer, Lubich, Wanner 2006, sec. I.1.2",
@@ -198,7 +209,7 @@ static const struct cs_integrator symplectic_euler = {
 };
 
 static const struct cs_integrator averaged_euler = {
-    EXPLICIT(struct explicit_options, explicit_rows),
+    EXPLICIT(struct explicit_options, explicit_rows, fixed_step_archive),
     .name = "averaged-euler",
     .summary = "forward Euler whose position moves by the mean of old and new velocity",
     .source = "cloth article",
@@ -210,7 +221,7 @@ static const struct cs_integrator averaged_euler = {
 };
 
 static const struct cs_integrator velocity_verlet = {
-    EXPLICIT(struct explicit_options, explicit_rows),
+    EXPLICIT(struct explicit_options, explicit_rows, verlet_archive),
     .name = "velocity-verlet",
     .summary = "kick, drift, kick; damping sees a predicted velocity",
     .source = "Swope et al. 1982; Hairer, Lubich, Wanner 2003",
@@ -222,7 +233,7 @@ static const struct cs_integrator velocity_verlet = {
 };
 
 static const struct cs_integrator position_verlet = {
-    EXPLICIT(struct lossy_options, lossy_rows),
+    EXPLICIT(struct lossy_options, lossy_rows, verlet_archive),
     .name = "position-verlet",
     .summary = "two-step Verlet on positions, with a loss; damping sees the last half step",
     .source = "Verlet 1967; flag thesis",
@@ -235,7 +246,7 @@ static const struct cs_integrator position_verlet = {
 };
 
 static const struct cs_integrator rk4 = {
-    EXPLICIT(struct explicit_options, explicit_rows),
+    EXPLICIT(struct explicit_options, explicit_rows, fixed_step_archive),
     .name = "rk4",
     .summary = "the classical Runge-Kutta method: four evaluations a step",
     .source = "Kutta 1901; Hairer, Norsett, Wanner 1993, sec. II.1",

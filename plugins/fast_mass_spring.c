@@ -169,6 +169,20 @@ static void destroy(void *object) {
     constant_matrix_finish(&((struct local_global *)object)->matrix);
 }
 
+static enum cs_step save(void *object, const struct cs_archive *archive) {
+    struct local_global *self = object;
+    constant_matrix_archive(&self->matrix, archive);
+    archive->wholes(archive->ctx, &self->passes, 1);
+    return fixed_step_archive(self, archive);
+}
+
+static enum cs_step load(void *object, const struct cs_archive *archive) {
+    struct local_global *self = object;
+    const enum cs_step status = constant_matrix_load(&self->matrix, archive);
+    archive->wholes(archive->ctx, &self->passes, 1);
+    return status == CS_STEP_OK ? fixed_step_archive(self, archive) : status;
+}
+
 static const struct cs_integrator fast_mass_spring = {
     .size = sizeof(struct cs_integrator),
     .name = "fast-mass-spring",
@@ -187,6 +201,8 @@ static const struct cs_integrator fast_mass_spring = {
     .advance = advance,
     .stats = stats,
     .destroy = destroy,
+    .save = save,
+    .load = load,
 };
 
 static const struct cs_integrator *const integrators[] = {&fast_mass_spring};

@@ -68,6 +68,16 @@ static inline enum cs_step fixed_step_restart(void *self, double t, const double
     return CS_STEP_OK;
 }
 
+/* What the loop remembers, for save and load. */
+static inline enum cs_step fixed_step_archive(void *object, const struct cs_archive *archive) {
+    struct fixed_step *self = (struct fixed_step *)object;
+    uint64_t marks[] = {self->fresh, self->told};
+    archive->wholes(archive->ctx, marks, 2);
+    self->fresh = marks[0] != 0;
+    self->told = marks[1] != 0;
+    return CS_STEP_OK;
+}
+
 /* Lets steps be cut where the scene has contact by force; [create]. limit: the method's largest
  * stable step where it chose dt by it, else NULL. */
 static inline enum cs_step fixed_step_guard(struct fixed_step *self,

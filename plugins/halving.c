@@ -120,6 +120,15 @@ void halving_stats(const void *object, struct cs_stats *out) {
     out->newton = self->newton ? self->newton->done : 0;
 }
 
+enum cs_step halving_archive(void *object, const struct cs_archive *archive) {
+    struct halving *self = object;
+    archive->reals(archive->ctx, &self->before, 1);
+    archive->wholes(archive->ctx, &self->rejected, 1);
+    if (self->newton)
+        archive->wholes(archive->ctx, &self->newton->done, 1);
+    return fixed_step_archive(self, archive);
+}
+
 bool halving_is_fresh(const struct halving *self, double h) {
     // frames of 1/60 s differ in their last bits
     return self->loop.fresh || fabs(h - self->before) > 1e-9 * h;

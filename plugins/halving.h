@@ -17,9 +17,9 @@
 
 /* A method's own struct starts with this. */
 struct halving {
-    struct fixed_step loop;      /* its step is not used */
-    const struct newton *newton; /* NULL: the method has none */
-    double before;               /* length of the last accepted step in s */
+    struct fixed_step loop; /* its step is not used */
+    struct newton *newton;  /* NULL: the method has none */
+    double before;          /* length of the last accepted step in s */
     uint64_t rejected;
     bool passed; /* the last step was taken back, for it passed over contact */
     bool turned; /* the last step was refused by springs_turned */
@@ -49,6 +49,8 @@ enum cs_step halving_take(const struct cs_host *host, double **const arrays[], s
 
 enum cs_step halving_advance(void *self, double t0, double t1, double *x, double *v);
 void halving_stats(const void *self, struct cs_stats *out);
+/* What the loop remembers, for save and load. */
+enum cs_step halving_archive(void *self, const struct cs_archive *archive);
 
 /* What the last step remembers cannot be used for one of length h. */
 bool halving_is_fresh(const struct halving *self, double h);
@@ -59,9 +61,10 @@ bool halving_is_fresh(const struct halving *self, double h);
 bool springs_turned(const struct cs_view *view, const double *x0, const double *x1);
 
 /* The common part of the descriptors. */
-#define HALVING_METHOD(struct_, rows_)                                                         \
+#define HALVING_METHOD(struct_, rows_, archive_)                                               \
     .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
-    .restart = fixed_step_restart, .advance = halving_advance, .stats = halving_stats
+    .restart = fixed_step_restart, .advance = halving_advance, .stats = halving_stats,         \
+    .save = archive_, .load = archive_
 
 #endif

@@ -258,6 +258,12 @@ static enum cs_step create_block(const struct cs_host *host, const void *options
     return fixed_step_guard(&self->loop, NULL);
 }
 
+static enum cs_step archive_linearised(void *object, const struct cs_archive *archive) {
+    struct linearised *self = object;
+    archive->reals(archive->ctx, self->external, 3 * (size_t)self->loop.host->view->n);
+    return fixed_step_archive(self, archive);
+}
+
 static const struct cs_integrator implicit_linearised = {
     .size = sizeof(struct cs_integrator),
     .name = "implicit-linearised",
@@ -273,6 +279,8 @@ static const struct cs_integrator implicit_linearised = {
     .create = create_linearised,
     .restart = restart_linearised,
     .advance = fixed_step_advance,
+    .save = archive_linearised,
+    .load = archive_linearised,
 };
 
 /* h K_ii v is a drag that a falling or sliding sheet feels, and no pair of particles shares */
@@ -296,6 +304,8 @@ static const struct cs_integrator implicit_block = {
     .create = create_block,
     .restart = fixed_step_restart,
     .advance = fixed_step_advance,
+    .save = fixed_step_archive,
+    .load = fixed_step_archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&implicit_linearised,

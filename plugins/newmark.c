@@ -139,8 +139,14 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     return choose(self, asked);
 }
 
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    struct method *self = object;
+    archive->reals(archive->ctx, self->a, 3 * (size_t)self->base.base.loop.host->view->n);
+    return halving_archive(self, archive);
+}
+
 const struct cs_integrator newmark = {
-    HALVING_METHOD(struct newmark_options, rows),
+    HALVING_METHOD(struct newmark_options, rows, archive),
     .uses = uses,
     .n_uses = sizeof uses / sizeof *uses,
     .name = "newmark",

@@ -78,7 +78,7 @@ static enum cs_step create_midpoint(const struct cs_host *host, const void *opti
 }
 
 const struct cs_integrator backward_euler = {
-    HALVING_METHOD(struct one_stage_options, rows),
+    HALVING_METHOD(struct one_stage_options, rows, halving_archive),
     .name = "backward-euler",
     .summary = "implicit Euler by Newton with line search; stable at large steps, damps",
     .source = "Gast et al. 2015; Martin et al. 2011",
@@ -90,7 +90,7 @@ const struct cs_integrator backward_euler = {
 };
 
 const struct cs_integrator implicit_midpoint = {
-    HALVING_METHOD(struct one_stage_options, rows),
+    HALVING_METHOD(struct one_stage_options, rows, halving_archive),
     .name = "implicit-midpoint",
     .summary = "midpoint rule by Newton: symplectic, no numerical damping",
     .source = "Hairer, Lubich, Wanner 2006, sec. II.1",

@@ -166,7 +166,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 }
 
 const struct cs_integrator ros2 = {
-    HALVING_METHOD(struct ros2_options, rows),
+    HALVING_METHOD(struct ros2_options, rows, halving_archive),
     .name = "ros2",
     .summary = "Rosenbrock method: two linear solves with one matrix, L-stable, no Newton",
     .source = "Verwer et al. 1999",

@@ -69,7 +69,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 }
 
 const struct cs_integrator sdirk2 = {
-    HALVING_METHOD(struct sdirk2_options, rows),
+    HALVING_METHOD(struct sdirk2_options, rows, halving_archive),
     .name = "sdirk2",
     .summary = "two diagonally implicit stages by Newton, L-stable",
     .source = "Alexander 1977",

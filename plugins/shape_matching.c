@@ -284,6 +284,13 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     return fixed_step_guard(&self->loop, limit_of);
 }
 
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    struct shape *self = object;
+    for (uint32_t k = 0; k < self->loop.host->view->n_clusters; k++)
+        archive->reals(archive->ctx, self->clusters[k].turn, 4);
+    return fixed_step_archive(self, archive);
+}
+
 static const struct cs_integrator shape_matching = {
     .size = sizeof(struct cs_integrator),
     .name = "shape-matching",
@@ -302,6 +309,8 @@ static const struct cs_integrator shape_matching = {
     .restart = restart,
     .advance = fixed_step_advance,
     .goals = goals,
+    .save = archive,
+    .load = archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&shape_matching};

@@ -74,7 +74,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 }
 
 const struct cs_integrator tr_bdf2 = {
-    HALVING_METHOD(struct tr_bdf2_options, rows),
+    HALVING_METHOD(struct tr_bdf2_options, rows, halving_archive),
     .name = "tr-bdf2",
     .summary = "trapezoidal rule, then BDF2, by Newton: accurate at large steps, L-stable",
     .source = "Bank et al. 1985; Hosea, Shampine 1996",

@@ -267,6 +267,11 @@ static void stats(const void *object, struct cs_stats *out) {
     out->newton = ((const struct xpbd *)object)->passes;
 }
 
+static enum cs_step archive(void *object, const struct cs_archive *archive) {
+    archive->wholes(archive->ctx, &((struct xpbd *)object)->passes, 1);
+    return fixed_step_archive(object, archive);
+}
+
 static const struct cs_integrator xpbd = {
     .size = sizeof(struct cs_integrator),
     .name = "xpbd",
@@ -286,6 +291,8 @@ static const struct cs_integrator xpbd = {
     .restart = fixed_step_restart,
     .advance = advance,
     .stats = stats,
+    .save = archive,
+    .load = archive,
 };
 
 static const struct cs_integrator *const integrators[] = {&xpbd};

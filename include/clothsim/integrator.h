@@ -264,6 +264,17 @@ struct cs_option_use {
     uint32_t values;
 };
 
+/* A method's memory on its way into a checkpoint, or back. save and load make the same calls
+ * with the same counts in the same order, so that one function may be both. */
+struct cs_archive {
+    /* sizeof at the host's build: see CS_HAS. */
+    uint32_t size;
+    void *ctx;
+    /* n values: save has them read, load has them written. */
+    void (*reals)(void *ctx, double *values, size_t n);
+    void (*wholes)(void *ctx, uint64_t *values, size_t n);
+};
+
 /* A method: what it claims, and its calls. The host calls them in the order
  *   create, then for each stretch of time restart and any number of advance, then destroy.
  * Marks in brackets say when a call comes, and after which others. */
@@ -326,6 +337,15 @@ struct cs_integrator {
      * the host asks CS_HAS(integrator, n_uses). */
     const struct cs_option_use *uses;
     uint32_t n_uses;
+
+    /* [after restart, between two calls of advance] What the method remembers from one advance
+     * to the next, so that one made anew goes on to the same bits: history, next step, counts.
+     * save must not change it. load follows a restart at the same time, state and forces, with
+     * the same options. Both or neither; without them the method is restarted at each
+     * checkpoint, in the unbroken run too. Later than the first release: the host asks
+     * CS_HAS(integrator, load). */
+    enum cs_step (*save)(void *self, const struct cs_archive *archive);
+    enum cs_step (*load)(void *self, const struct cs_archive *archive);
 };
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */

@@ -24,8 +24,9 @@ struct cs_run_host {
     bool creating; /* the method may take memory */
     struct cs_run_settings settings;
     struct cs_budget budget;
-    void *self;            /* the method's own */
-    struct cs_error error; /* the method's first message */
+    void *self;             /* the method's own */
+    struct cs_stats before; /* counted before the checkpoint that the run goes on from */
+    struct cs_error error;  /* the method's first message */
     struct cs_bound bound;
     struct cs_arena arena; /* the method's memory and the solver's */
 };

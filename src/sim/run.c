@@ -67,6 +67,12 @@ enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
     return judge(run, step, guard, error);
 }
 
+enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
+                              const struct cs_archive *archive, struct cs_error *error) {
+    const struct cs_guard guard = cs_guard_take();
+    return judge(run, call(run->host->self, archive), guard, error);
+}
+
 /* From run->t to end, in one go but for the events on the way, at which the method starts anew.
  * Those at the end itself belong to what follows. */
 static enum cs_step advance(struct cs_run *run, double end) {
@@ -99,16 +105,26 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
     return error->status;
 }
 
+/* what the method has counted, here and before a checkpoint that it knows nothing of */
+static void count_method(struct cs_run *run) {
+    const struct cs_stats *before = &run->host->before;
+    struct cs_stats *found = &run->counts.method;
+    if (!run->integrator->stats)
+        return;
+    *found = (struct cs_stats){.size = sizeof *found};
+    run->integrator->stats(run->host->self, found);
+    found->rejected += before->rejected;
+    found->newton += before->newton;
+    found->setups += before->setups;
+}
+
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
     const struct cs_guard guard = cs_guard_take();
     const enum cs_step step = advance(run, next);
     run->advance_seconds += cs_clock_wall() - begin;
-    if (run->integrator->stats) {
-        run->counts.method.size = sizeof run->counts.method;
-        run->integrator->stats(run->host->self, &run->counts.method);
-    }
+    count_method(run);
     if (judge(run, step, guard, error))
         return error->status;
     if (run->outcome == CS_RUNNING) {

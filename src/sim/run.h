@@ -26,6 +26,11 @@ enum cs_status cs_run_restart(struct cs_run *run, double t, struct cs_error *err
 enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
                               struct cs_error *error);
 
+/* The method's save or load, guarded as its other calls. CS_ERR_MODULE as above. */
+typedef enum cs_step cs_archive_call(void *self, const struct cs_archive *archive);
+enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
+                              const struct cs_archive *archive, struct cs_error *error);
+
 /* The calls as the method sees them. */
 const struct cs_host *cs_run_calls(const struct cs_run *run);
 /* From now on every linear solve of the host fails: for checks of what a method then does. */

@@ -26,7 +26,7 @@ enum plant {
     FLUSHES_IN_ADVANCE,
     /* against its own claims: found by the card */
     NOTHING_WRONG,
-    OLDER, /* built before the call goals was there */
+    OLDER, /* built before the calls goals, save and load were there */
     WRONG_ORDER,
     LEAKS_MOMENTUM,
     TAKES_MEMORY,
@@ -42,7 +42,8 @@ enum plant {
     DOUBLES_DRAG,
     SINGLE_MASS,
     WRONG_STAGE_TIME, /* Heun's method, whose second stage asks for the forces of the first's */
-    TIME_STANDS_STILL
+    TIME_STANDS_STILL,
+    FORGETS_STEPS /* saves nothing of what it remembers */
 };
 
 struct options {
@@ -54,6 +55,7 @@ struct planted {
     double dt, *f;   /* (3,n) in N */
     double *b, *u;   /* (3,n) of IGNORES_FAILURE, faulty_force and heun */
     double *xs, *vs; /* (3,n) of heun: the second stage */
+    uint32_t steps;  /* since the restart, of FORGETS_STEPS */
 };
 
 static const struct cs_option rows[] = {
@@ -105,7 +107,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 }
 
 static enum cs_step restart(void *self, double t, const double *x, const double *v) {
-    (void)self, (void)t, (void)x, (void)v;
+    (void)t, (void)x, (void)v;
+    ((struct planted *)self)->steps = 0;
     return CS_STEP_OK;
 }
 
@@ -180,6 +183,8 @@ static void step(struct planted *self, double t, double h, double *x, double *v)
         x[0] = (double)NAN;
     if (PLANT == COUNTS_RUNS)
         x[0] += 1e-12 * runs;
+    if (PLANT == FORGETS_STEPS)
+        x[n - 1] += 1e-12 * self->steps++;
 }
 
 /* volatile: a compiler may not leave the pair out */
@@ -214,7 +219,12 @@ static void not_there(const void *self, const double *x, double *g) {
     (void)self, (void)x, (void)g;
     abort();
 }
-#define SIZE (PLANT == OLDER ? offsetof(struct cs_integrator, goals) : sizeof planted)
+static enum cs_step saves_nothing(void *self, const struct cs_archive *archive) {
+    (void)self, (void)archive;
+    return PLANT == OLDER ? CS_STEP_FAIL : CS_STEP_OK;
+}
+#define SAVES (PLANT == OLDER || PLANT == FORGETS_STEPS)
+#define SIZE  (PLANT == OLDER ? offsetof(struct cs_integrator, goals) : sizeof planted)
 
 static const struct cs_integrator planted = {
     .size = SIZE,
@@ -234,6 +244,8 @@ static const struct cs_integrator planted = {
     .restart = restart,
     .advance = PLANT == NO_ADVANCE ? NULL : advance,
     .goals = PLANT == OLDER ? not_there : NULL,
+    .save = SAVES ? saves_nothing : NULL,
+    .load = SAVES ? saves_nothing : NULL,
 };
 
 static const struct cs_integrator *const all[] = {&planted};

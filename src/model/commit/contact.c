@@ -279,6 +279,17 @@ void cs_contact_keep(struct cs_contact *contact, const double *x, const double *
     contact->known &= resolved;
 }
 
+void cs_contact_record(struct cs_contact *contact, struct cs_record *record) {
+    cs_record_bytes(record, contact->last, 6 * count_of(contact) * sizeof *contact->last);
+    CS_RECORD(record, contact->energy);
+    CS_RECORD(record, contact->most);
+    CS_RECORD(record, contact->known);
+    CS_RECORD(record, contact->touching);
+    CS_RECORD(record, contact->counts);
+    CS_RECORD(record, contact->response.solves);
+    CS_RECORD(record, contact->response.iterations);
+}
+
 /* size of the parts that gravity's energy is the sum of, which may cancel */
 static double weigh(const struct cs_system *system) {
     const size_t n = system->view.n;

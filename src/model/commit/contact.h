@@ -3,6 +3,7 @@
 #ifndef CS_CONTACT_H
 #define CS_CONTACT_H
 
+#include "base/record.h"
 #include "model/commit/response.h"
 #include "model/contact/obstacle.h"
 
@@ -44,6 +45,9 @@ size_t cs_contact_bytes(const struct cs_scene *scene, size_t n, size_t n_springs
 /* The state that the next step starts from. resolved: it is what cs_contact_resolve left. */
 void cs_contact_keep(struct cs_contact *contact, const double *x, const double *v,
                      bool resolved);
+
+/* All that one commit leaves to the next, for a checkpoint. */
+void cs_contact_record(struct cs_contact *contact, struct cs_record *record);
 
 /* Corrects the state after a step of dt that ended at t: each particle meets the colliders in
  * the scene's order (touch.h). Returns whether any was pushed.

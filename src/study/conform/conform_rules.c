@@ -202,8 +202,3 @@ void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *ro
     cs_probe_close(&one);
     cs_probe_close(&two);
 }
-
-void cs_check_resume(const struct cs_conform *card, struct cs_conform_row *row) {
-    (void)card;
-    cs_row_skip(row, "there are no checkpoints");
-}

@@ -1,0 +1,96 @@
+/* Writes or reads a run between two frames. */
+#include "sim/run_record.h"
+
+#include "model/event/event_record.h"
+#include "sim/host.h"
+
+#include <string.h>
+
+bool cs_run_remembers(const struct cs_integrator *integrator) {
+    // a module that was built before the calls were there has a shorter struct
+    return CS_HAS(integrator, load) && integrator->save && integrator->load;
+}
+
+static void record_reals(void *ctx, double *values, size_t n) {
+    cs_record_bytes(ctx, values, n * sizeof *values);
+}
+
+static void record_wholes(void *ctx, uint64_t *values, size_t n) {
+    cs_record_bytes(ctx, values, n * sizeof *values);
+}
+
+static struct cs_archive archive_of(struct cs_record *record) {
+    return (struct cs_archive){.size = sizeof(struct cs_archive),
+                               .ctx = record,
+                               .reals = record_reals,
+                               .wholes = record_wholes};
+}
+
+/* what the model has changed since the run began */
+static void record_system(struct cs_run *run, struct cs_record *record) {
+    struct cs_run_host *host = run->host;
+    struct cs_system *system = run->system;
+    cs_record_bytes(record, run->x, 6 * (size_t)system->view.n * sizeof *run->x);
+    CS_RECORD(record, run->t);
+    CS_RECORD(record, run->frame);
+    CS_RECORD(record, host->bound);
+    cs_events_record(system, record);
+    if (system->plan.rows[CS_FEATURE_CONTACT].built)
+        cs_contact_record(&host->contact, record);
+}
+
+/* what only reports show: taken back last, since making the method and restarting it counts */
+static void record_counts(struct cs_run *run, struct cs_record *record) {
+    CS_RECORD(record, run->counts);
+    CS_RECORD(record, run->notes);
+    CS_RECORD(record, run->n_notes);
+    if (run->n_notes > CS_NOTES_MAX)
+        record->failed = true;
+}
+
+static enum cs_status restart_silent(struct cs_run *run, struct cs_error *error) {
+    cs_run_note(run, "the method starts anew at each checkpoint");
+    return cs_run_restart(run, run->t, error);
+}
+
+enum cs_status cs_run_save(struct cs_run *run, struct cs_record *record,
+                           struct cs_error *error) {
+    const struct cs_archive archive = archive_of(record);
+    const bool remembers = cs_run_remembers(run->integrator);
+    record_system(run, record);
+    record_counts(run, record);
+    if (remembers && cs_run_archive(run, run->integrator->save, &archive, error))
+        return error->status;
+    if (record->failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a checkpoint");
+    return remembers ? CS_OK : restart_silent(run, error);
+}
+
+/* Its own counts begin at 0 again in a method that does not save them. */
+static void keep_counts(struct cs_run *run) {
+    run->host->before = run->counts.method;
+}
+
+enum cs_status cs_run_load(struct cs_run *run, struct cs_record *record,
+                           struct cs_error *error) {
+    const struct cs_archive archive = archive_of(record);
+    const bool remembers = cs_run_remembers(run->integrator);
+    struct cs_run counted = {0};
+    CS_ASSERT(run->frame == 0 && record->loading);
+    record_system(run, record);
+    record_counts(&counted, record);
+    if (record->failed)
+        return cs_fail(error, CS_ERR_FILE, "it is too short");
+    if (remembers && (cs_run_restart(run, run->t, error) ||
+                      cs_run_archive(run, run->integrator->load, &archive, error)))
+        return error->status;
+    if (record->failed)
+        return cs_fail(error, CS_ERR_FILE, "it is too short for the method");
+    run->counts = counted.counts;
+    memcpy(run->notes, counted.notes, sizeof run->notes);
+    run->n_notes = counted.n_notes;
+    if (remembers)
+        return CS_OK;
+    keep_counts(run);
+    return restart_silent(run, error);
+}
