@@ -141,25 +141,6 @@ static enum cs_status read_reference(struct cs_args *args, struct cs_compare_set
     return CS_OK;
 }
 
-/* Whole frames that cover the time. */
-static enum cs_status read_frames(const struct cs_args *args,
-                                  struct cs_compare_settings *settings,
-                                  struct cs_error *error) {
-    double seconds = 0.5;
-    struct cs_session session;
-    struct cs_session_settings asked = settings->course.session;
-    asked.integrator = "velocity-verlet";
-    if (cs_args_real(args, COMPARE_TIME, &seconds, error) ||
-        cs_session_open_plan(&session, &asked, error))
-        return error->status;
-    const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
-    if (!(frames <= 1e6))
-        cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
-    settings->course.frames = (uint32_t)frames;
-    cs_session_close(&session);
-    return error->status;
-}
-
 static enum cs_status read_settings(struct cs_args *args, struct cs_compare_settings *settings,
                                     struct cs_error *error) {
     const char *folder = cs_args_get(args, COMPARE_OUT),
@@ -174,6 +155,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     };
     settings->cache = cache ? cache : settings->folder;
     int rank = CS_NORM_END;
+    double seconds = 0.5;
     session->scene = args->operands[0];
     session->run.stop = cs_interrupt_catch();
     if (cs_args_choice(args, COMPARE_RANK, cs_norm_names, &rank, error) ||
@@ -187,7 +169,9 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
         return error->status;
     settings->rank = (enum cs_norm)rank;
     /* last: the length of a frame may come from --set */
-    return read_frames(args, settings, error);
+    return cs_args_real(args, COMPARE_TIME, &seconds, error)
+               ? error->status
+               : cs_course_count_frames(&settings->course, seconds, error);
 }
 
 static enum cs_status print_verdict(struct screen *screen, struct cs_error *error) {

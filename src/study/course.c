@@ -27,6 +27,21 @@ void cs_course_describe_changes(const struct cs_scene *scene, struct cs_text *ou
         }
 }
 
+enum cs_status cs_course_count_frames(struct cs_course_settings *settings, double seconds,
+                                      struct cs_error *error) {
+    struct cs_session session;
+    struct cs_session_settings asked = settings->session;
+    asked.integrator = "velocity-verlet";
+    if (cs_session_open_plan(&session, &asked, error))
+        return error->status;
+    const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
+    if (!(frames <= 1e6))
+        cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
+    settings->frames = (uint32_t)frames;
+    cs_session_close(&session);
+    return error->status;
+}
+
 static enum cs_status keep_start(struct cs_course *course, struct cs_error *error) {
     const size_t values = 6 * (size_t)course->session.system.view.n;
     course->start = malloc(values * sizeof *course->start);

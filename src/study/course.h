@@ -45,6 +45,10 @@ enum cs_status cs_course_open(struct cs_course *course,
                               const struct cs_course_settings *settings, const char *integrator,
                               struct cs_error *error);
 
+/* Sets the frames, whole ones, that cover a time in s. CS_ERR_USAGE for more than a million. */
+enum cs_status cs_course_count_frames(struct cs_course_settings *settings, double seconds,
+                                      struct cs_error *error);
+
 /* Adds what of a scene is switched off, as words ("contact, strain limit"); nothing where
  * nothing is. The scene is one that was not opened by cs_course_open. */
 void cs_course_describe_changes(const struct cs_scene *scene, struct cs_text *out);

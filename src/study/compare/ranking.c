@@ -103,12 +103,16 @@ static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *ra
 }
 
 /* cheapest, and cheapest of another series, of the cells that pass */
-static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
-                   const struct choice *choice, passes *pass) {
+static void find_best(struct cs_rank *rank, const struct choice *choice, passes *pass) {
     rank->best = cheapest(choice, pass, NULL);
     rank->next = rank->best ? cheapest(choice, pass, rank->best) : NULL;
     if (rank->next)
         rank->apart = relate(choice->compare, rank->next, rank->best, &rank->ratio);
+}
+
+static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
+                   const struct choice *choice, passes *pass) {
+    find_best(rank, choice, pass);
     if (rank->best)
         mark_contenders(ranking, rank, choice, pass);
 }
@@ -186,6 +190,12 @@ enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compa
         make_ranks(ranking, &choice);
     }
     return CS_OK;
+}
+
+void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank) {
+    const struct choice choice = {compare, compare->settings->rank, bound};
+    *rank = (struct cs_rank){.exponent = (int)floor(log10(bound))};
+    find_best(rank, &choice, is_accurate);
 }
 
 void cs_ranking_finish(struct cs_ranking *ranking) {

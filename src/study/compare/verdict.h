@@ -9,6 +9,9 @@
 void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
                       const struct cs_compare *compare, struct cs_text *out);
 
+/* Adds the answer to "what is the cheapest way to an error of at most bound": a line. */
+void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out);
+
 /* The closed list of warnings, each with advice; adds one line a warning, each behind `bullet`.
  */
 void cs_compare_warn(const struct cs_compare *compare, const char *bullet, struct cs_text *out);

@@ -1,7 +1,6 @@
 /* Finds a safe step for each method from linear theory, and confirms it by runs. */
 #include "study/stability/advise.h"
 
-#include "study/stability/contact_line.h"
 #include "study/workers.h"
 
 #include <math.h>
@@ -9,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 32 };
+enum { SAMPLES = 32, HALVINGS = 6 };
 #define PERTURBATION 1e-4 /* of the shortest spring */
 #define MARGIN       0.9  /* of the limit that is advised */
+#define GROWTH_SEEN  1e-7 /* in a step; less is rounding */
 
 struct work {
     struct cs_advise *advise;
@@ -30,12 +30,32 @@ static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_sett
     if (cs_trial_run(&trial, &asked, error))
         return error->status;
     row->verdict = cs_fate_of(&trial, &reference->trial, true);
+    row->watched = trial.end;
     if (trial.failed)
         snprintf(row->message, sizeof row->message, "%s", trial.message);
     if (trial.end > 0) {
         row->frame_cost = trial.seconds / trial.end * frame;
         row->steps = (double)trial.steps / trial.end * frame;
     }
+    return CS_OK;
+}
+
+/* The safe step, or a shorter one: what the watch of its own run calls unstable is not advised.
+ */
+static enum cs_status try_shorter(struct cs_advice *row,
+                                  const struct cs_trial_settings *settings,
+                                  const struct cs_reference *reference, double frame,
+                                  struct cs_error *error) {
+    for (int k = 0; k < HALVINGS; k++) {
+        if (try_safe(row, settings, reference, frame, error) || !cs_advice_is_unstable(row))
+            return error->status;
+        *row->message = 0;
+        row->safe /= 2;
+    }
+    snprintf(row->message, sizeof row->message, "no step was found stable down to %.3g s: %s",
+             2 * row->safe, cs_fate_word(row->verdict));
+    row->kind = CS_ADVICE_NONE;
+    row->safe = 0;
     return CS_OK;
 }
 
@@ -46,8 +66,7 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
     row->kind = CS_ADVICE_FRAME;
     row->limit = HUGE_VAL;
     row->safe = fmin(frame, 10);
-    if (try_safe(row, settings, reference, frame, error) || cs_fate_is_stable(row->verdict) ||
-        row->verdict == CS_FATE_OVER_BUDGET)
+    if (try_safe(row, settings, reference, frame, error) || !cs_advice_is_unstable(row))
         return error->status;
     row->kind = CS_ADVICE_MEASURED;
     if (cs_stability_border(settings, reference, 0, row->safe, &row->limit, error))
@@ -65,7 +84,7 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
     /* the message is about the step of a frame, which is not advised */
     *row->message = 0;
     row->safe = MARGIN * row->limit;
-    return try_safe(row, settings, reference, frame, error);
+    return try_shorter(row, settings, reference, frame, error);
 }
 
 /* If even a part of theory's limit is unstable, the stable step is bisected: a motion that is
@@ -74,14 +93,17 @@ static enum cs_status try_lower(struct cs_advice *row, const struct cs_trial_set
                                 const struct cs_reference *reference, double frame,
                                 struct cs_error *error) {
     double border;
-    if (cs_stability_border(settings, reference, 0, row->safe, &border, error) ||
-        !(border > 0 && border < HUGE_VAL))
+    if (cs_stability_border(settings, reference, 0, row->safe, &border, error))
         return error->status;
+    if (!(border > 0 && border < HUGE_VAL)) {
+        row->safe /= 2;
+        return try_shorter(row, settings, reference, frame, error);
+    }
     row->kind = CS_ADVICE_LOWERED;
     row->limit = border;
     row->safe = MARGIN * border;
     *row->message = 0;
-    return try_safe(row, settings, reference, frame, error);
+    return try_shorter(row, settings, reference, frame, error);
 }
 
 static enum cs_status check_limit(struct cs_advice *row,
@@ -115,10 +137,22 @@ static enum cs_status advise_fixed(struct cs_advice *row,
         return CS_OK;
     if (check && check_limit(row, settings, &reference, error))
         return error->status;
-    if (try_safe(row, settings, &reference, frame, error) || cs_fate_is_stable(row->verdict) ||
-        row->verdict == CS_FATE_OVER_BUDGET)
+    if (try_safe(row, settings, &reference, frame, error) || !cs_advice_is_unstable(row))
         return error->status;
     return try_lower(row, settings, &reference, frame, error);
+}
+
+/* What theory calls stable may grow, if too slowly to show in the time of the advice. */
+static enum cs_status measure_growth(struct cs_advice *row, const struct cs_method *method,
+                                     struct cs_error *error) {
+    const struct cs_amplify amplify = {method->integrator, method->options, 0};
+    double radius;
+    if (!(row->safe > 0) || !(row->theory > 0 && row->theory < HUGE_VAL) ||
+        cs_amplify_measure(&amplify, row->safe, fmax(row->mode.square, 0),
+                           fmax(row->mode.rate, 0), &radius, error))
+        return error->status;
+    row->growth = radius > 1 + GROWTH_SEEN && isfinite(radius) ? log(radius) / row->safe : 0;
+    return CS_OK;
 }
 
 static enum cs_status advise_adaptive(struct cs_advice *row,
@@ -157,12 +191,11 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
         cs_workers_tick(&work->workers, 1);
         return refuse(row, error);
     }
-    const bool fixed = cs_method_takes_dt(session.method.integrator);
-    cs_session_close(&session);
-    if (fixed)
-        advise_fixed(row, &trial, frame, advise->check, error);
-    else
+    if (!cs_method_takes_dt(session.method.integrator))
         advise_adaptive(row, &trial, frame, error);
+    else if (!advise_fixed(row, &trial, frame, advise->check, error))
+        measure_growth(row, &session.method, error);
+    cs_session_close(&session);
     cs_workers_tick(&work->workers, 1);
     return error->status;
 }
@@ -214,115 +247,4 @@ void cs_advise_finish(struct cs_advise *advise) {
     cs_registry_finish(&advise->registry);
     cs_session_close(&advise->opened);
     *advise = (struct cs_advise){0};
-}
-
-struct spring {
-    double stiffness; /* N/m; 0: none */
-    uint32_t kind;
-};
-
-static struct spring stiffest_at(const struct cs_system *system, uint32_t particle) {
-    struct spring found = {0};
-    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
-        const struct cs_spring_run *run = system->springs.runs + r;
-        for (uint32_t i = 0; i < run->count; i++) {
-            const double stiffness = cs_spring_stiffness(run, i);
-            if ((cs_spring_a(run, i) == particle || cs_spring_b(run, i) == particle) &&
-                stiffness > found.stiffness)
-                found = (struct spring){stiffness, run->kind};
-        }
-    }
-    return found;
-}
-
-/* "particle 12 (body 0, column 4, row 1) swings at 4158 /s on stretch springs of 1000 N/m" */
-static void add_binding(const struct cs_system *system, const struct cs_mode *mode,
-                        struct cs_text *out) {
-    static const char *const kinds[CS_SPRING_KINDS] = {"stretch", "shear", "bend"};
-    const struct spring spring = stiffest_at(system, mode->particle);
-    const bool damped = mode->rate * mode->rate > 4 * mode->square;
-    cs_system_print_particle(system, mode->particle, out);
-    if (damped)
-        cs_text_add(out, " is damped at %.4g /s", mode->rate);
-    else
-        cs_text_add(out, " swings at %.4g /s, damped at %.3g /s", sqrt(fmax(mode->square, 0)),
-                    mode->rate);
-    // the bounds of the view do not hold contact
-    if (mode->rate > 2 * system->view.delta ||
-        mode->square > system->view.omega * system->view.omega)
-        cs_text_add(out, " by contact");
-    if (spring.stiffness > 0)
-        cs_text_add(out, ": %.3g kg on %s springs of %.4g N/m", system->mass[mode->particle],
-                    kinds[spring.kind], spring.stiffness);
-}
-
-static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
-                    struct cs_text *out) {
-    switch (row->kind) {
-    case CS_ADVICE_THEORY:
-        add_binding(&advise->opened.system, &row->mode, out);
-        break;
-    case CS_ADVICE_LOWERED:
-        add_binding(&advise->opened.system, &row->mode, out);
-        cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
-        break;
-    case CS_ADVICE_MEASURED:
-        cs_text_add(out, "no limit in linear theory; bisected, large motions set it");
-        break;
-    case CS_ADVICE_FRAME:
-        cs_text_add(out, "no limit found: one step a frame");
-        break;
-    case CS_ADVICE_NONE:
-        cs_text_add(out, "no step is stable: the damping is too weak");
-        break;
-    case CS_ADVICE_ADAPTIVE:
-        cs_text_add(out, "chooses its own steps");
-        break;
-    case CS_ADVICE_REFUSED:
-        break;
-    }
-    /* a message says more than the verdict; a sound run needs neither */
-    if (*row->message)
-        cs_text_add(out, "%s%s", row->kind == CS_ADVICE_REFUSED ? "" : "; ", row->message);
-    else if (row->verdict != CS_FATE_BOUNDED && row->kind != CS_ADVICE_NONE)
-        cs_text_add(out, "; %s", cs_fate_word(row->verdict));
-}
-
-static void add_number(struct cs_text *out, double value, int width) {
-    if (value > 0 && value < 1e100)
-        cs_text_add(out, "%*.4g", width, value);
-    else
-        cs_text_add(out, "%*s", width, "-");
-}
-
-static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
-    const struct cs_system *system = &advise->opened.system;
-    double speed = 0;
-    for (uint32_t k = 0; k < advise->n; k++)
-        speed = fmax(speed, advise->rows[k].speed);
-    if (!system->scene->colliders.n)
-        return;
-    cs_contact_line_add(system->scene, "", out);
-    cs_text_add(out, "\n");
-    cs_contact_line_add_crossing(system, speed, out);
-}
-
-void cs_advise_print(const struct cs_advise *advise, struct cs_text *out) {
-    add_contact(advise, out);
-    cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",
-                advise->check ? "   found [s]" : "", "steps/frame", "ms a frame");
-    for (uint32_t k = 0; k < advise->n; k++) {
-        const struct cs_advice *row = advise->rows + k;
-        const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE;
-        cs_text_add(out, "%-22s", row->method);
-        add_number(out, row->limit, 12);
-        add_number(out, fixed ? row->safe : 0, 12);
-        if (advise->check)
-            add_number(out, row->measured, 12);
-        add_number(out, row->steps, 12);
-        add_number(out, 1e3 * row->frame_cost, 14);
-        cs_text_add(out, "\n    ");
-        add_why(advise, row, out);
-        cs_text_add(out, "\n");
-    }
 }

@@ -9,7 +9,7 @@ enum cs_advice_kind {
     CS_ADVICE_LOWERED,  /* 0.9 of theory's limit was tried and is unstable: bisected */
     CS_ADVICE_MEASURED, /* theory knows no limit, but one was found by bisection */
     CS_ADVICE_FRAME,    /* one step a frame was tried and is stable */
-    CS_ADVICE_NONE,     /* no step is stable without damping */
+    CS_ADVICE_NONE,     /* no step is stable; message says why, where it is not the damping */
     CS_ADVICE_ADAPTIVE, /* chooses its own steps */
     CS_ADVICE_REFUSED   /* message says why */
 };
@@ -21,19 +21,27 @@ struct cs_advice {
     double theory;            /* s, limit of linear theory; HUGE_VAL: none */
     struct cs_mode mode;      /* that limits it, where theory has a limit */
     enum cs_fate verdict;     /* of a run with the safe step */
+    double watched;           /* s, that this run lasted */
+    double growth;            /* 1/s, of the worst mode at the safe step; 0: it does not grow */
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
     double speed;             /* m/s, largest of a particle in the trusted run; 0: none */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
     char message[320];
 };
 
+/* What the watch of its own run calls unstable is never advised. */
+static inline bool cs_advice_is_unstable(const struct cs_advice *row) {
+    return !cs_fate_is_stable(row->verdict) && row->verdict != CS_FATE_OVER_BUDGET;
+}
+
 struct cs_advise {
     struct cs_session_settings session; /* of the scene; integrator is not used */
     const char *const *methods;         /* (n_methods); 0: all that can be used */
     uint32_t n_methods;
-    double seconds,
-        budget; /* of the trusted run and the probe runs, at least; CPU time of a probe run */
-    bool check; /* bisect the limit too */
+    double
+        seconds;   /* that the advice is for: of the trusted run and the probe runs, at least */
+    double budget; /* s of processor time of a probe run */
+    bool check;    /* bisect the limit too */
     uint32_t workers;
     const volatile sig_atomic_t *stop;
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
@@ -48,7 +56,5 @@ struct cs_advise {
 
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error);
 void cs_advise_finish(struct cs_advise *advise);
-
-void cs_advise_print(const struct cs_advise *advise, struct cs_text *out);
 
 #endif

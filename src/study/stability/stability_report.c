@@ -99,6 +99,14 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
     }
 }
 
+/* For how long the border was watched: a column has as long as its slowest limit needs. */
+static void add_watch(const struct cs_stability *map, struct cs_text *out) {
+    cs_text_add(out, "%-*s", NAME_WIDTH, "watched for [s]");
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].reference.seconds);
+    cs_text_add(out, "\n");
+}
+
 void cs_stability_print_table(const struct cs_stability *map, struct cs_text *out) {
     const struct cs_stability_settings *settings = map->settings;
     cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]", map->series,
@@ -113,6 +121,7 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
     for (uint32_t r = map->n_rows; r-- > 0;)
         add_row(map, r, out);
     cs_text_add(out, "\n");
+    add_watch(map, out);
     add_lines(map, out);
     add_drift(map, out);
     cs_text_add(out, "\n");

@@ -1,0 +1,127 @@
+/* Prints advice: a line a method, and below it what binds the step. */
+#include "study/stability/advise_print.h"
+
+#include "study/stability/contact_line.h"
+
+#include <math.h>
+
+struct spring {
+    double stiffness; /* N/m; 0: none */
+    uint32_t kind;
+};
+
+static struct spring stiffest_at(const struct cs_system *system, uint32_t particle) {
+    struct spring found = {0};
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const double stiffness = cs_spring_stiffness(run, i);
+            if ((cs_spring_a(run, i) == particle || cs_spring_b(run, i) == particle) &&
+                stiffness > found.stiffness)
+                found = (struct spring){stiffness, run->kind};
+        }
+    }
+    return found;
+}
+
+/* "particle 12 (body 0, column 4, row 1) swings at 4158 /s on stretch springs of 1000 N/m" */
+static void add_binding(const struct cs_system *system, const struct cs_mode *mode,
+                        struct cs_text *out) {
+    static const char *const kinds[CS_SPRING_KINDS] = {"stretch", "shear", "bend"};
+    const struct spring spring = stiffest_at(system, mode->particle);
+    const bool damped = mode->rate * mode->rate > 4 * mode->square;
+    cs_system_print_particle(system, mode->particle, out);
+    if (damped)
+        cs_text_add(out, " is damped at %.4g /s", mode->rate);
+    else
+        cs_text_add(out, " swings at %.4g /s, damped at %.3g /s", sqrt(fmax(mode->square, 0)),
+                    mode->rate);
+    // the bounds of the view do not hold contact
+    if (mode->rate > 2 * system->view.delta ||
+        mode->square > system->view.omega * system->view.omega)
+        cs_text_add(out, " by contact");
+    if (spring.stiffness > 0)
+        cs_text_add(out, ": %.3g kg on %s springs of %.4g N/m", system->mass[mode->particle],
+                    kinds[spring.kind], spring.stiffness);
+}
+
+static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
+                    struct cs_text *out) {
+    switch (row->kind) {
+    case CS_ADVICE_THEORY:
+        add_binding(&advise->opened.system, &row->mode, out);
+        break;
+    case CS_ADVICE_LOWERED:
+        add_binding(&advise->opened.system, &row->mode, out);
+        cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
+        break;
+    case CS_ADVICE_MEASURED:
+        cs_text_add(out, "no limit in linear theory; bisected, large motions set it");
+        break;
+    case CS_ADVICE_FRAME:
+        cs_text_add(out, "no limit found: one step a frame");
+        break;
+    case CS_ADVICE_NONE:
+        if (!*row->message)
+            cs_text_add(out, "no step is stable for %.4g s: the damping is too weak",
+                        advise->seconds);
+        break;
+    case CS_ADVICE_ADAPTIVE:
+        cs_text_add(out, cs_advice_is_unstable(row) ? "not advised" : "chooses its own steps");
+        break;
+    case CS_ADVICE_REFUSED:
+        break;
+    }
+    if (row->growth > 0)
+        cs_text_add(out, "; its worst mode grows at %.2g /s", row->growth);
+    /* a message says more than the verdict; a sound run needs neither */
+    if (*row->message)
+        cs_text_add(out, "%s%s",
+                    row->kind == CS_ADVICE_REFUSED || row->kind == CS_ADVICE_NONE ? "" : "; ",
+                    row->message);
+    else if (row->verdict != CS_FATE_BOUNDED && row->kind != CS_ADVICE_NONE)
+        cs_text_add(out, "; %s", cs_fate_word(row->verdict));
+    if (row->verdict == CS_FATE_OVER_BUDGET)
+        cs_text_add(out, " after %.3g s: not watched longer", row->watched);
+}
+
+static void add_number(struct cs_text *out, double value, int width) {
+    if (value > 0 && value < 1e100)
+        cs_text_add(out, "%*.4g", width, value);
+    else
+        cs_text_add(out, "%*s", width, "-");
+}
+
+static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
+    const struct cs_system *system = &advise->opened.system;
+    double speed = 0;
+    for (uint32_t k = 0; k < advise->n; k++)
+        speed = fmax(speed, advise->rows[k].speed);
+    if (!system->scene->colliders.n)
+        return;
+    cs_contact_line_add(system->scene, "", out);
+    cs_text_add(out, "\n");
+    cs_contact_line_add_crossing(system, speed, out);
+}
+
+void cs_advise_print(const struct cs_advise *advise, struct cs_text *out) {
+    add_contact(advise, out);
+    cs_text_add(out, "steps for runs of %.4g s, and watched for so long\n", advise->seconds);
+    cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",
+                advise->check ? "   found [s]" : "", "steps/frame", "ms a frame");
+    for (uint32_t k = 0; k < advise->n; k++) {
+        const struct cs_advice *row = advise->rows + k;
+        const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
+                           row->kind != CS_ADVICE_REFUSED;
+        cs_text_add(out, "%-22s", row->method);
+        add_number(out, row->limit, 12);
+        add_number(out, fixed ? row->safe : 0, 12);
+        if (advise->check)
+            add_number(out, row->measured, 12);
+        add_number(out, row->steps, 12);
+        add_number(out, 1e3 * row->frame_cost, 14);
+        cs_text_add(out, "\n    ");
+        add_why(advise, row, out);
+        cs_text_add(out, "\n");
+    }
+}

@@ -1,0 +1,9 @@
+/* advise_print.h - advice as aligned text. */
+#ifndef CS_ADVISE_PRINT_H
+#define CS_ADVISE_PRINT_H
+
+#include "study/stability/advise.h"
+
+void cs_advise_print(const struct cs_advise *advise, struct cs_text *out);
+
+#endif
