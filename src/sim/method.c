@@ -41,7 +41,8 @@ enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *regi
     char *name = strndup(text, length);
     if (!name)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the name of an integrator");
-    else if (!cs_registry_find(registry, name, &found, error))
+    else if (!(strchr(name, '/') ? cs_registry_find_in(registry, name, &found, error)
+                                 : cs_registry_find(registry, name, &found, error)))
         cs_method_init(method, found->integrator, NULL, error);
     free(name);
     return error->status;

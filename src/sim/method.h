@@ -19,8 +19,9 @@ enum cs_status cs_method_init(struct cs_method *method, const struct cs_integrat
                               const void *options, struct cs_error *error);
 void cs_method_finish(struct cs_method *method);
 
-/* Reads NAME or NAME:key=value,... over the defaults. CS_ERR_USAGE with the nearest right name;
- * whoever reads methods does it by these calls, so that one mistake has one message. */
+/* Reads NAME or NAME:key=value,... over the defaults; a NAME with a '/' is a module file, of
+ * which the first integrator is meant. CS_ERR_USAGE with the nearest right name; whoever reads
+ * methods does it by these calls, so that one mistake has one message. */
 enum cs_status cs_method_read(struct cs_method *method, struct cs_registry *registry,
                               const char *text, struct cs_error *error);
 

@@ -220,6 +220,19 @@ enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
     return unknown_name(registry, name, error);
 }
 
+enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *file,
+                                   const struct cs_registered **found, struct cs_error *error) {
+    char absolute[PATH_MAX];
+    if (cs_registry_add_file(registry, file, error))
+        return error->status;
+    for (uint32_t k = 0; k < registry->n && realpath(file, absolute); k++)
+        if (registry->entries[k].integrator && !strcmp(registry->entries[k].file, absolute)) {
+            *found = registry->entries + k;
+            return CS_OK;
+        }
+    return cs_fail(error, CS_ERR_MODULE, "%s: there is no integrator in it", file);
+}
+
 void cs_registry_finish(struct cs_registry *registry) {
     cs_arena_finish(&registry->arena);
     *registry = (struct cs_registry){0};

@@ -35,6 +35,10 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
                                 const struct cs_registered **found, struct cs_error *error);
 
+/* Adds a module file as cs_registry_add_file does and gives its first integrator. */
+enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *file,
+                                   const struct cs_registered **found, struct cs_error *error);
+
 /* Opens every module of the folders, for the list. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
 

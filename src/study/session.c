@@ -46,6 +46,13 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
     const char *asked = session->settings.integrator, *pairs = NULL;
     struct cs_method *method = &session->method;
     struct cs_error missing = {0};
+    /* a module file is code: it is run where the user names it, and never by a scene */
+    if (!asked && strchr(scene->integrator, '/'))
+        return cs_fail(
+            error, CS_ERR_SCENE,
+            "%s: integrator: found \"%.60s\", expected a name: a module file is given "
+            "with --integrator or --plugin",
+            scene->path, scene->integrator);
     if (cs_method_find(method, &session->registry, asked ? asked : scene->integrator, &pairs,
                        &missing)) {
         const bool by_scene = !asked && missing.status == CS_ERR_USAGE;

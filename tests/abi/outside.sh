@@ -40,6 +40,11 @@ cp "$example" mine.c
 "$program" run "$source/scenes/hang.json" --frames 2 --no-render --quiet --hash \
     --plugin mine.so --integrator midpoint:dt=0.0002 >hashes
 [ "$(wc -l <hashes)" -ge 2 ]
+# a module file in the place of a name, but never by a scene
+"$program" run "$source/scenes/hang.json" --frames 2 --no-render --quiet --hash \
+    --integrator ./mine.so:dt=0.0002 | cmp - hashes
+if "$program" scene "$source/scenes/hang.json" --set 'integrator="./mine.so"' 2>refused; then exit 1; fi
+grep -q 'integrator: found "./mine.so", expected a name' refused
 "$program" conform mine.so | tee card
 grep -q ' 0 fail, 0 expected, 0 stale' card
 # and the installed program gives its own modules a card
