@@ -111,6 +111,7 @@ static int open_temporary(const char *path) {
 enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
                               struct cs_error *error) {
     out->file = NULL;
+    out->lasting = false;
     const enum cs_status status = check_target(path, error);
     if (status)
         return status;
@@ -131,6 +132,18 @@ enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
     return CS_OK;
 }
 
+/* The new name too. Some file systems cannot, and the file itself is safe: no failure. */
+static void sync_folder(const char *path) {
+    char folder[sizeof((struct cs_file_out *)0)->path];
+    const char *end = strrchr(path, '/');
+    snprintf(folder, sizeof folder, "%.*s", end ? (int)(end - path) : 1, end ? path : ".");
+    const int file = open(*folder ? folder : "/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0)
+        return;
+    fsync(file);
+    close(file);
+}
+
 enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
     /* an earlier failure shows in ferror alone, with the reason most likely still in errno;
      * what is still in the buffer fails now */
@@ -140,13 +153,20 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
         failed = true;
         reason = errno;
     }
+    if (!failed && out->lasting && fsync(fileno(out->file))) {
+        failed = true;
+        reason = errno;
+    }
     if (fclose(out->file) && !failed) {
         failed = true;
         reason = errno;
     }
     out->file = NULL;
-    if (!failed && !rename(out->temporary, out->path))
+    if (!failed && !rename(out->temporary, out->path)) {
+        if (out->lasting)
+            sync_folder(out->path);
         return CS_OK;
+    }
     reason = failed ? reason : errno;
     unlink(out->temporary);
     return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", out->path,
@@ -161,15 +181,26 @@ void cs_file_abandon(struct cs_file_out *out) {
     unlink(out->temporary);
 }
 
-enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
-                             struct cs_error *error) {
+static enum cs_status write_whole(const char *path, const void *bytes, size_t length,
+                                  bool lasting, struct cs_error *error) {
     struct cs_file_out out = {0};
     const enum cs_status status = cs_file_create(&out, path, error);
     if (status)
         return status;
+    out.lasting = lasting;
     /* a short write sets the error flag, which finish looks at */
     fwrite(bytes, 1, length, out.file);
     return cs_file_finish(&out, error);
+}
+
+enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
+                             struct cs_error *error) {
+    return write_whole(path, bytes, length, false, error);
+}
+
+enum cs_status cs_file_write_lasting(const char *path, const void *bytes, size_t length,
+                                     struct cs_error *error) {
+    return write_whole(path, bytes, length, true, error);
 }
 
 /* mkdir that is content with a folder that is there */

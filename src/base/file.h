@@ -16,7 +16,8 @@ enum cs_status cs_file_read(const char *path, size_t max, char **bytes, size_t *
 
 /* A file under way: written to `path.tmp.PID` and renamed by finish. */
 struct cs_file_out {
-    FILE *file; /* NULL: not open */
+    FILE *file;   /* NULL: not open */
+    bool lasting; /* set after create: finish waits until the disk has it */
     char path[4096], temporary[4160];
 };
 enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
@@ -29,6 +30,10 @@ void cs_file_abandon(struct cs_file_out *out);
 /* Writes a whole text file by the three calls above. */
 enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
                              struct cs_error *error);
+
+/* The same, and the disk has it when the call returns. */
+enum cs_status cs_file_write_lasting(const char *path, const void *bytes, size_t length,
+                                     struct cs_error *error);
 
 /* Makes a folder and its parents; one that is there already is fine. */
 enum cs_status cs_folder_make(const char *path, struct cs_error *error);

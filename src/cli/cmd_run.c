@@ -17,6 +17,8 @@ enum {
     RUN_OVERWRITE,
     RUN_NO_RENDER,
     RUN_EVERY,
+    RUN_CHECKPOINT,
+    RUN_RESUME,
     RUN_STATES,
     RUN_HASH,
     RUN_JSON,
@@ -46,8 +48,13 @@ static const struct cs_arg rows[RUN_ROWS] = {
     [RUN_OUT] = {"out", 'o', "DIR",
                  "folder for frame_00001.png ... and run.json (default: out)", false},
     [RUN_OVERWRITE] = {"overwrite", 'y', NULL, "replace the files of an earlier run", false},
-    [RUN_NO_RENDER] = {"no-render", 0, NULL, "draw nothing; -o is not used", false},
+    [RUN_NO_RENDER] = {"no-render", 0, NULL, "draw nothing", false},
     [RUN_EVERY] = {"every", 0, "K", "draw frames K, 2K, 3K ... only (default: 1)", false},
+    [RUN_CHECKPOINT] = {"checkpoint", 0, "EVERY",
+                        "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
+                        false},
+    [RUN_RESUME] = {"resume", 0, "DIR",
+                    "go on from the checkpoint in DIR, with the same scene and options", false},
     [RUN_STATES] = {"states", 0, "DIR",
                     "write x_00000.npy, v_00000.npy ...: positions and velocities of the start "
                     "(0) and of each frame",
@@ -86,6 +93,22 @@ static enum cs_status read_session(struct cs_args *args, struct cs_session_setti
     return cs_args_all(args, RUN_PLUGIN, &session->plugins, &session->n_plugins, error);
 }
 
+/* A resumed run goes on in its folder, at its own pace of checkpoints. */
+static enum cs_status read_checkpoints(const struct cs_args *args,
+                                       struct cs_job_settings *settings,
+                                       struct cs_error *error) {
+    const char *pace = cs_args_get(args, RUN_CHECKPOINT);
+    const char *folder = cs_args_get(args, RUN_RESUME);
+    static const int others[] = {RUN_CHECKPOINT, RUN_OUT, RUN_OVERWRITE};
+    for (size_t k = 0; folder && k < sizeof others / sizeof *others; k++)
+        if (cs_args_get(args, (uint32_t)others[k]))
+            return cs_fail(error, CS_ERR_USAGE, "--resume goes on as the run began: no --%s",
+                           rows[others[k]].name);
+    settings->resume = folder;
+    settings->folder = folder ? folder : settings->folder;
+    return pace ? cs_resume_read_pace(pace, &settings->checkpoint, error) : CS_OK;
+}
+
 static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings *settings,
                                     struct cs_error *error) {
     const char *folder = cs_args_get(args, RUN_OUT);
@@ -102,7 +125,8 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
         .overwrite = cs_args_get(args, RUN_OVERWRITE),
         .quiet = cs_args_get(args, RUN_QUIET),
     };
-    if (cs_args_whole(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
+    if (read_checkpoints(args, settings, error) ||
+        cs_args_whole(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
         cs_args_whole(args, RUN_EVERY, 1, MOST_FRAMES, &settings->every, error) ||
         cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
         cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))

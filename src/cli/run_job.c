@@ -55,11 +55,20 @@ static uint32_t frames_of_one_second(const struct cs_scene *scene) {
     return frames < 1 ? 1 : (uint32_t)frames;
 }
 
+static bool makes_checkpoints(const struct cs_job_settings *settings) {
+    return settings->checkpoint.frames || settings->checkpoint.seconds > 0 || settings->resume;
+}
+
+/* pictures and checkpoints go into the folder */
+static bool uses_folder(const struct cs_job_settings *settings) {
+    return settings->session.render || makes_checkpoints(settings);
+}
+
 static enum cs_status check_outputs(const struct cs_job_settings *settings,
                                     struct cs_error *error) {
-    if (settings->overwrite)
+    if (settings->overwrite || settings->resume)
         return CS_OK;
-    if (settings->session.render && cs_output_check(settings->folder, false, error))
+    if (uses_folder(settings) && cs_output_check(settings->folder, false, error))
         return error->status;
     if (settings->json && strcmp(settings->json, "-") &&
         cs_output_check_file(settings->json, error))
@@ -92,28 +101,35 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
     const int64_t *size = job->session.scene.render.size;
     if (settings->session.render && open_pictures(job, error))
         return error->status;
-    if (settings->states && cs_output_prepare(settings->states, true, error))
+    if (settings->states && cs_output_prepare(settings->states, true, !settings->resume, error))
+        return error->status;
+    if (uses_folder(settings) &&
+        cs_output_prepare(settings->folder, false, !settings->resume, error))
         return error->status;
     if (!settings->session.render)
         return CS_OK;
-    if (cs_output_prepare(settings->folder, false, error))
-        return error->status;
     return cs_frames_create(settings->folder, (uint32_t)size[0], (uint32_t)size[1],
                             (int)settings->level, has_processors(), &job->writer, error);
+}
+
+static bool has_room(struct cs_job *job, size_t frames) {
+    if (frames <= job->kept_capacity)
+        return true;
+    const size_t capacity = 2 * frames + 64;
+    void *larger = realloc(job->kept, capacity * sizeof *job->kept);
+    if (!larger)
+        return false;
+    job->kept = larger;
+    job->kept_capacity = capacity;
+    return true;
 }
 
 static enum cs_status keep(struct cs_job *job, const struct cs_job_frame *frame,
                            struct cs_error *error) {
     const size_t number = job->session.run.frame;
-    if (number > job->kept_capacity) {
-        const size_t capacity = 2 * number + 64;
-        void *larger = realloc(job->kept, capacity * sizeof *job->kept);
-        if (!larger)
-            return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %zu frames",
-                           number);
-        job->kept = larger;
-        job->kept_capacity = capacity;
-    }
+    if (!has_room(job, number))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %zu frames",
+                       number);
     job->kept[number - 1] = *frame;
     return CS_OK;
 }
@@ -243,6 +259,81 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
     return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
 }
 
+/* Waits until every picture that was begun is a file. */
+static enum cs_status settle_pictures(struct cs_job *job, struct cs_error *error) {
+    if (end_picture(job, error) || !job->writer)
+        return error->status;
+    const double start = cs_clock_wall();
+    cs_frames_finish(job->writer, &job->encode_seconds, error);
+    job->wait_seconds += cs_clock_wall() - start;
+    return error->status;
+}
+
+/* A checkpoint is written once the pictures up to it are there. */
+static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error) {
+    bool due;
+    if (cs_resume_keep(&job->checkpoints, &due, error) || !due || settle_pictures(job, error))
+        return error->status;
+    return cs_resume_write(&job->checkpoints, error);
+}
+
+static void record_rows(struct cs_text *rows, struct cs_record *record) {
+    uint64_t length = rows->length;
+    CS_RECORD(record, length);
+    if (!record->loading) {
+        cs_record_bytes(record, rows->bytes, length);
+        return;
+    }
+    if (record->failed || length > record->length - record->at)
+        record->failed = true;
+    else
+        cs_text_add(rows, "%.*s", (int)length, record->bytes + record->at);
+    if (!record->failed)
+        record->at += length;
+}
+
+/* What the job keeps of the frames so far, for a checkpoint. */
+static void record_job(void *ctx, struct cs_record *record) {
+    struct cs_job *job = ctx;
+    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
+    CS_RECORD(record, job->watch);
+    CS_RECORD(record, job->tally);
+    CS_RECORD(record, job->hash);
+    CS_RECORD(record, job->drawn);
+    record_rows(&job->watch_rows, record);
+    CS_RECORD(record, n);
+    if (record->loading && (record->failed || n > record->length || !has_room(job, n)))
+        record->failed = true;
+    else
+        cs_record_bytes(record, job->kept, n * sizeof *job->kept);
+}
+
+static const char *yes(bool fact) {
+    return fact ? "yes" : "no";
+}
+
+/* Checkpoints are of use only where the files of a run would be the same ones. */
+static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    cs_text_add(&job->outputs,
+                "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
+                "%s\nwatch: %s\nJSON: %s\n",
+                settings->session.render ? cs_text_get(&job->renderer) : "none",
+                settings->every, settings->level, yes(settings->fast),
+                yes(settings->states != NULL), yes(settings->watch != NULL),
+                yes(cs_job_wants_json(settings)));
+    if (job->outputs.failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for checkpoints");
+    const struct cs_resume_of of = {.scene = cs_text_get(&job->scene),
+                                    .hash = job->scene_hash,
+                                    .method = cs_text_get(&job->method),
+                                    .outputs = cs_text_get(&job->outputs),
+                                    .record = record_job,
+                                    .ctx = job};
+    return cs_resume_begin(&job->checkpoints, &job->session, &of, settings->folder,
+                           &settings->checkpoint, error);
+}
+
 static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
     struct cs_progress progress;
@@ -250,29 +341,40 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     while (run->frame < job->frames && !error->status) {
         if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
             break;
-        take_frame(job, error);
+        if (!take_frame(job, error))
+            make_checkpoint(job, error);
         cs_progress_show(&progress, run->frame, job->frames);
     }
     cs_progress_end(&progress);
     return error->status;
 }
 
-/* Also of a run that failed: its last picture is of a frame that was fine. The first failure
+/* Also of a run that failed: its last picture is of a frame that was fine, and so is the last
+ * checkpoint. The first failure
  * wins: a later one of drawing or writing changes nothing. */
-static void finish_pictures(struct cs_job *job, struct cs_error *error) {
+static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
-    end_picture(job, &later);
-    const double start = cs_clock_wall();
-    cs_frames_finish(job->writer, &job->encode_seconds, &later);
-    job->wait_seconds += cs_clock_wall() - start;
+    if (settle_pictures(job, &later) == CS_OK)
+        cs_resume_write(&job->checkpoints, &later);
     if (!error->status)
         *error = later;
+}
+
+/* The start has a state, a hash and a row but no picture. */
+static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    const uint32_t n = job->session.system.view.n;
+    const char *states = job->settings->states;
+    cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
+    if (states && cs_output_state(states, 0, run->x, run->v, n, error))
+        return error->status;
+    cs_tally_take(&job->tally, run);
+    return begin_watch(job, error);
 }
 
 enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
                           struct cs_error *error) {
     const double start = cs_clock_wall();
-    const struct cs_run *run = &job->session.run;
     job->settings = settings;
     if (cs_session_open(&job->session, &settings->session, error) || describe(job, error) ||
         check_outputs(settings, error) || open_outputs(job, error))
@@ -282,18 +384,13 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (cs_company_print(scene, job->frames / scene->time.fps, &job->warning, error))
         return error->status;
 
-    /* the start has a state and a hash but no picture */
-    const uint32_t n = job->session.system.view.n;
-    cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
-    if (settings->states && cs_output_state(settings->states, 0, run->x, run->v, n, error))
+    if (makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
-    cs_tally_take(&job->tally, run);
-    if (!begin_watch(job, error))
+    if (!(settings->resume ? cs_resume_load(&job->checkpoints, error) : begin(job, error)))
         run_frames(job, error);
     /* also after a failure: rows and frames that were finished are kept */
     write_watch(job, error);
-    if (job->writer)
-        finish_pictures(job, error);
+    finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;
 }
@@ -308,6 +405,8 @@ void cs_job_finish(struct cs_job *job) {
     cs_text_finish(&job->method);
     cs_text_finish(&job->renderer);
     cs_text_finish(&job->watch_rows);
+    cs_text_finish(&job->outputs);
+    cs_resume_finish(&job->checkpoints);
     free(job->kept);
     *job = (struct cs_job){0};
 }

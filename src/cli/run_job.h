@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "cli/run_resume.h"
 #include "io/frames.h"
 #include "study/picture.h"
 #include "study/session.h"
@@ -18,6 +19,8 @@ struct cs_job_settings {
     const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
     int renderer;                       /* enum cs_renderer_kind */
     uint32_t level;                     /* zlib */
+    struct cs_resume_pace checkpoint;   /* zeroed: none */
+    bool resume;                        /* go on from the checkpoint in the folder */
     bool fast, hash, overwrite, quiet;
 };
 
@@ -57,6 +60,8 @@ struct cs_job {
     char hash[CS_HASH_DIGITS];       /* of the last frame's state */
     struct cs_job_picture begun;     /* not yet written */
     uint32_t drawn;                  /* pictures written */
+    struct cs_text outputs;          /* which there are, as far as checkpoints depend on it */
+    struct cs_resume checkpoints;
     double wall_seconds, encode_seconds;
     double wait_seconds; /* that the run stood still for its pictures */
 };

@@ -24,7 +24,8 @@ static bool is_numbered(const char *name, const char *prefix, const char *ending
 static bool is_ours(const char *name, bool states) {
     if (states)
         return is_numbered(name, "x_", ".npy") || is_numbered(name, "v_", ".npy");
-    return is_numbered(name, "frame_", ".png") || !strcmp(name, "run.json");
+    return is_numbered(name, "frame_", ".png") || !strcmp(name, "run.json") ||
+           !strcmp(name, "run.checkpoint");
 }
 
 static enum cs_status join(const char *folder, const char *name, char path[PATH_BYTES],
@@ -68,9 +69,10 @@ enum cs_status cs_output_check(const char *folder, bool states, struct cs_error 
     return refuse(path, error);
 }
 
-enum cs_status cs_output_prepare(const char *folder, bool states, struct cs_error *error) {
+enum cs_status cs_output_prepare(const char *folder, bool states, bool empty,
+                                 struct cs_error *error) {
     char path[PATH_BYTES];
-    if (cs_folder_make(folder, error))
+    if (cs_folder_make(folder, error) || !empty)
         return error->status;
     DIR *entries = open_folder(folder, error);
     if (!entries)

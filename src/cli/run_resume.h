@@ -1,0 +1,56 @@
+/* run_resume.h - checkpoints of a run: when one is made, and going on from the last. */
+#ifndef CS_RUN_RESUME_H
+#define CS_RUN_RESUME_H
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "io/checkpoint.h"
+#include "study/session.h"
+
+/* How often. Zeroed: never. */
+struct cs_resume_pace {
+    uint32_t frames;
+    double seconds; /* of wall clock */
+};
+
+/* What a checkpoint belongs to, beside its session. */
+struct cs_resume_of {
+    const char *scene, *hash, *method, *outputs; /* texts, borrowed */
+    /* what the caller keeps from frame to frame, by the same calls both ways */
+    void (*record)(void *ctx, struct cs_record *record);
+    void *ctx;
+};
+
+/* Zeroed: no checkpoints. */
+struct cs_resume {
+    struct cs_session *session; /* borrowed; NULL: none are made */
+    struct cs_resume_of of;
+    struct cs_resume_pace pace;
+    char path[4096];
+    char module[CS_HASH_DIGITS]; /* hash of the method's file */
+    double last;                 /* s, when one was made */
+    uint32_t kept, written;      /* frames, of the record and of the file */
+    struct cs_record record;     /* owned: of the last frame, or of the last that was due */
+};
+
+/* Reads K, a number of frames, or Ks, of seconds. CS_ERR_USAGE. */
+enum cs_status cs_resume_read_pace(const char *value, struct cs_resume_pace *pace,
+                                   struct cs_error *error);
+
+/* Before the first frame. CS_ERR_USAGE where a pace in seconds would reach the state. */
+enum cs_status cs_resume_begin(struct cs_resume *resume, struct cs_session *session,
+                               const struct cs_resume_of *of, const char *folder,
+                               const struct cs_resume_pace *pace, struct cs_error *error);
+
+/* Goes on from the checkpoint in the folder, at its pace. CS_ERR_FILE says what differs. */
+enum cs_status cs_resume_load(struct cs_resume *resume, struct cs_error *error);
+
+/* After each frame: keeps what it has come to; *due: it is to be written. */
+enum cs_status cs_resume_keep(struct cs_resume *resume, bool *due, struct cs_error *error);
+/* Once the files of that frame are there, and at the end of a run: nothing where the last one
+ * kept is written already. */
+enum cs_status cs_resume_write(struct cs_resume *resume, struct cs_error *error);
+
+void cs_resume_finish(struct cs_resume *resume);
+
+#endif

@@ -1,0 +1,145 @@
+/* Writes and reads checkpoints. */
+#include "io/checkpoint.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIRST_LINE "clothsim checkpoint 1\n"
+/* of a scene of the most particles, with any method */
+#define BYTES_MAX ((size_t)1 << 36)
+enum { LINE = 128, SHOWN = 60 };
+
+static void add_item(struct cs_record *file, const char *name, const void *bytes,
+                     size_t length) {
+    char line[LINE];
+    const int size = snprintf(line, sizeof line, "%s %zu\n", name, length);
+    cs_record_bytes(file, line, (size_t)size);
+    /* only written from, as the record is not loading */
+    cs_record_bytes(file, (void *)bytes, length);
+    cs_record_bytes(file, "\n", 1);
+}
+
+enum cs_status cs_checkpoint_write(const char *path, const struct cs_fact *facts,
+                                   uint32_t n_facts, const struct cs_record *record,
+                                   struct cs_error *error) {
+    struct cs_record file = {0};
+    char digits[CS_HASH_DIGITS];
+    cs_record_bytes(&file, FIRST_LINE, sizeof FIRST_LINE - 1);
+    for (uint32_t k = 0; k < n_facts; k++)
+        add_item(&file, facts[k].name, facts[k].value, strlen(facts[k].value));
+    add_item(&file, "record", record->bytes, record->length);
+    cs_hash_bytes(file.bytes, file.length, digits);
+    digits[CS_HASH_DIGITS - 1] = '\n';
+    cs_record_bytes(&file, digits, sizeof digits);
+    if (file.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
+    else
+        cs_file_write_lasting(path, file.bytes, file.length, error);
+    cs_record_finish(&file);
+    return error->status;
+}
+
+static enum cs_status check_whole(const char *path, const struct cs_record *file,
+                                  struct cs_error *error) {
+    char digits[CS_HASH_DIGITS];
+    if (file->length < sizeof FIRST_LINE - 1 + CS_HASH_DIGITS ||
+        memcmp(file->bytes, FIRST_LINE, sizeof FIRST_LINE - 1) != 0)
+        return cs_fail(error, CS_ERR_FILE, "\"%s\": it is no checkpoint of this form", path);
+    const size_t length = file->length - CS_HASH_DIGITS;
+    cs_hash_bytes(file->bytes, length, digits);
+    digits[CS_HASH_DIGITS - 1] = '\n';
+    if (memcmp(digits, file->bytes + length, CS_HASH_DIGITS) != 0)
+        return cs_fail(error, CS_ERR_FILE, "\"%s\": it is damaged: its checksum is wrong",
+                       path);
+    return CS_OK;
+}
+
+/* The next item, which must have this name: its bytes, or NULL. */
+static const char *take_item(struct cs_record *file, const char *name, size_t *length) {
+    const char *line = file->bytes + file->at;
+    const size_t left = file->length - CS_HASH_DIGITS - file->at;
+    const char *end = memchr(line, '\n', left < LINE ? left : LINE);
+    const size_t size = strlen(name);
+    if (!end || (size_t)(end - line) <= size || strncmp(line, name, size) != 0 ||
+        line[size] != ' ')
+        return NULL;
+    *length = strtoull(line + size, NULL, 10);
+    const size_t begin = (size_t)(end - line) + 1;
+    if (*length >= left - begin)
+        return NULL;
+    file->at += begin + *length + 1;
+    return line + begin;
+}
+
+/* a line without the blanks before it and the comma behind it */
+static int trim(const char **line, const char *end) {
+    while (*line < end && **line == ' ')
+        ++*line;
+    const char *stop = *line;
+    while (stop < end && *stop != '\n')
+        stop++;
+    if (stop > *line && stop[-1] == ',')
+        stop--;
+    return stop - *line < SHOWN ? (int)(stop - *line) : SHOWN;
+}
+
+static const char *next_line(const char *line, const char *end) {
+    const char *stop = memchr(line, '\n', (size_t)(end - line));
+    return stop ? stop + 1 : end;
+}
+
+/* names the first line that differs */
+static enum cs_status refuse(const char *path, const struct cs_fact *fact, const char *there,
+                             size_t length, struct cs_error *error) {
+    const char *here = fact->value, *end = here + strlen(here), *stop = there + length;
+    while (there < stop && here < end) {
+        const char *after = next_line(there, stop), *next = next_line(here, end);
+        if (after - there != next - here || memcmp(there, here, (size_t)(after - there)) != 0)
+            break;
+        there = after;
+        here = next;
+    }
+    const int shown_there = trim(&there, stop), shown_here = trim(&here, end);
+    return cs_fail(error, CS_ERR_FILE, "\"%s\": it is of another %s: there %.*s, here %.*s",
+                   path, fact->name, shown_there, there, shown_here, here);
+}
+
+static enum cs_status check_facts(const char *path, const struct cs_fact *facts,
+                                  uint32_t n_facts, struct cs_record *file,
+                                  struct cs_error *error) {
+    for (uint32_t k = 0; k < n_facts; k++) {
+        size_t length;
+        const char *value = take_item(file, facts[k].name, &length);
+        if (!value)
+            return cs_fail(error, CS_ERR_FILE, "\"%s\": it says nothing of the %s", path,
+                           facts[k].name);
+        if (length != strlen(facts[k].value) || memcmp(value, facts[k].value, length) != 0)
+            return refuse(path, facts + k, value, length, error);
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_checkpoint_read(const char *path, const struct cs_fact *facts,
+                                  uint32_t n_facts, struct cs_record *record,
+                                  struct cs_error *error) {
+    size_t length;
+    *record = (struct cs_record){0};
+    if (cs_file_read(path, BYTES_MAX, &record->bytes, &record->length, error))
+        return error->status;
+    record->loading = true;
+    if (check_whole(path, record, error))
+        return error->status;
+    record->at = sizeof FIRST_LINE - 1;
+    if (check_facts(path, facts, n_facts, record, error))
+        return error->status;
+    const char *bytes = take_item(record, "record", &length);
+    if (!bytes)
+        return cs_fail(error, CS_ERR_FILE, "\"%s\": it holds no record", path);
+    record->at = (size_t)(bytes - record->bytes);
+    record->length = record->at + length;
+    return CS_OK;
+}

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Kills runs at random moments, goes on from their checkpoints, and holds what comes of it to the
+unbroken run: hashes, pictures, states, rows and report (as TAP).
+
+usage: kills.py PROGRAM KILLS     at least so many kills, over all methods below
+"""
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+SCENE = {
+    "bodies": [{"cloth": {"grid": [12, 10], "bump": 0.01}, "mass": {"total": 1},
+                "springs": {"stretch": 60, "damping": 0.05}, "pins": ["top"]}],
+    "colliders": [{"sphere": {"centre": [0.5, -0.6, 0.1], "radius": 0.3}}],
+    "contact": {"start": "move-out"},
+    "events": [{"from": 0.05, "to": 0.4, "wind": {"direction": [0, 0, 1], "strength": 2}},
+               {"from": 0.1, "to": 0.3, "impact": {"direction": [1, 0, 0], "impulse": 0.3}},
+               {"at": 0.25, "release": {"particles": ["top-left"]}}],
+    "render": {"size": [64, 48], "look": "strain"},
+}
+METHODS = ["velocity-verlet", "implicit-linearised", "bdf2", "dopri5", "xpbd", "newmark",
+           "cvode-bdf", "fast-mass-spring"]
+FRAMES, EVERY = 24, 5
+
+
+def command(program, method, name, rest):
+    return [program, "run", "s.json", "-n", str(FRAMES), "-i", method, "-q", "--renderer", "cpu",
+            "--states", name + "-states", "--watch", name + ".csv", *rest]
+
+
+def survey(name):
+    """The bytes of all outputs of a run; of its report all but the times."""
+    found = {name_of: open(os.path.join(folder, name_of), "rb").read()
+             for folder in (name, name + "-states") for name_of in os.listdir(folder)}
+    found["csv"] = open(name + ".csv", "rb").read()
+    report = json.loads(found.pop("run.json"))
+    del report["seconds"]
+    found.pop("run.checkpoint", None)
+    return found, report
+
+
+def begin(program, method, name):
+    """The command that goes on with a run, or begins it."""
+    if os.path.exists(f"{name}/run.checkpoint"):
+        return command(program, method, name, ["--resume", name])
+    return command(program, method, name, ["-y", "-o", name, "--checkpoint", str(EVERY)])
+
+
+def break_run(program, method, name, longest, chance):
+    """Kills and resumes until a run ends by itself; the number of kills, and what was wrong."""
+    kills = 0
+    while True:
+        # what the other kind of death leaves behind must do no harm either
+        process = subprocess.Popen(begin(program, method, name), stderr=subprocess.PIPE)
+        try:
+            process.wait(chance.uniform(0, longest) if kills < 12 else None)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            kills += 1
+            continue
+        return kills, process.returncode, process.stderr.read().decode()
+
+
+def main():
+    program, wanted = os.path.realpath(sys.argv[1]), int(sys.argv[2])
+    listed = subprocess.run([program, "integrators"], capture_output=True, text=True).stdout
+    methods = [m for m in METHODS if f"\n{m} " in "\n" + listed]
+    chance, failed, total, n = random.Random(1), 0, 0, 0
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        json.dump(SCENE, open("s.json", "w"))
+        expected, longest = {}, {}
+        while total < wanted:
+            method = methods[n % len(methods)]
+            if method not in expected:
+                start = time.monotonic()
+                subprocess.run(command(program, method, "whole-" + method, [
+                    "-o", "whole-" + method, "--checkpoint", str(EVERY)]), check=True)
+                longest[method] = time.monotonic() - start
+                expected[method] = survey("whole-" + method)
+            name, n = f"run-{n}", n + 1
+            kills, code, message = break_run(program, method, name, longest[method], chance)
+            total += kills
+            same = code == 0 and survey(name) == expected[method]
+            left = [f for f in os.listdir(name) if ".tmp" in f]
+            fine = same and not left
+            failed += not fine
+            print(f"{'ok' if fine else 'not ok'} {n} - {method}: {kills} kills")
+            if not fine:
+                print(f"# exit code {code} {message} left: {left}")
+                if code == 0:
+                    a, b = survey(name), expected[method]
+                    print("#", [k for k in a[0] | b[0] if a[0].get(k) != b[0].get(k)],
+                          [k for k in a[1] if a[1][k] != b[1].get(k)])
+    print(f"# {total} kills\n1..{n}")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

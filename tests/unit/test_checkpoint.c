@@ -1,0 +1,98 @@
+/* A checkpoint gives back what was recorded, and no damaged or foreign one is taken. */
+#include "base/file.h"
+#include "io/checkpoint.h"
+#include "unit.h"
+
+static const struct cs_fact facts[] = {{"scene", "{\n  \"dt\": 0.001,\n  \"n\": 3\n}"},
+                                       {"method", "rk4:dt=0.001"}};
+enum { FACTS = sizeof facts / sizeof *facts };
+
+struct memory {
+    double x[3];
+    unsigned count;
+};
+
+static void record_memory(struct memory *memory, struct cs_record *record) {
+    CS_RECORD(record, memory->x);
+    CS_RECORD(record, memory->count);
+}
+
+static void write_one(void) {
+    struct cs_error error = {0};
+    struct cs_record record = {0};
+    struct memory memory = {{0.1, -0.0, 1e300}, 7};
+    record_memory(&memory, &record);
+    cs_checkpoint_write("c", facts, FACTS, &record, &error);
+    UNIT_ASSERT_OK(&error);
+    cs_record_finish(&record);
+}
+
+static void expect_refusal(const struct cs_fact *expected, uint32_t n, const char *part) {
+    struct cs_error error = {0};
+    struct cs_record record;
+    cs_checkpoint_read("c", expected, n, &record, &error);
+    UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, part);
+    cs_record_finish(&record);
+}
+
+START_TEST(it_comes_back) {
+    struct cs_error error = {0};
+    struct cs_record record;
+    struct memory memory = {0};
+    const double expected[3] = {0.1, -0.0, 1e300};
+    write_one();
+    cs_checkpoint_read("c", facts, FACTS, &record, &error);
+    UNIT_ASSERT_OK(&error);
+    record_memory(&memory, &record);
+    ck_assert(cs_record_is_done(&record));
+    ck_assert_mem_eq(memory.x, expected, sizeof expected);
+    ck_assert_uint_eq(memory.count, 7);
+    ck_assert_int_eq(unit_count_files("."), 1);
+    // more is asked for than there is: said, and nothing is written
+    CS_RECORD(&record, memory.count);
+    ck_assert(record.failed && memory.count == 7);
+    cs_record_finish(&record);
+}
+END_TEST
+
+START_TEST(what_differs_is_told) {
+    struct cs_fact others[FACTS] = {facts[0], facts[1]};
+    write_one();
+    others[0].value = "{\n  \"dt\": 0.002,\n  \"n\": 3\n}";
+    expect_refusal(others, FACTS,
+                   "\"c\": it is of another scene: there \"dt\": 0.001, here \"dt\": 0.002");
+    others[0].value = facts[0].value;
+    others[1].value = "rk4:dt=0.001,more";
+    expect_refusal(others, FACTS, "another method: there rk4:dt=0.001, here rk4:dt=0.001,more");
+    others[1] = (struct cs_fact){"plugin", ""};
+    expect_refusal(others, FACTS, "says nothing of the plugin");
+    expect_refusal(facts, 1, "it holds no record");
+}
+END_TEST
+
+/* every byte turned, in each of its bits, and every length but the whole */
+START_TEST(damage_is_noticed) {
+    struct cs_error error = {0};
+    char *bytes;
+    size_t length;
+    write_one();
+    cs_file_read("c", 1 << 16, &bytes, &length, &error);
+    UNIT_ASSERT_OK(&error);
+    for (size_t i = 0; i < length; i++) {
+        const char turned = (char)(1 << i % 8);
+        bytes[i] ^= turned;
+        cs_file_write("c", bytes, length, &error);
+        expect_refusal(facts, FACTS, "\"c\": it is ");
+        bytes[i] ^= turned;
+        cs_file_write("c", bytes, i, &error);
+        expect_refusal(facts, FACTS, "\"c\": it is ");
+    }
+    UNIT_ASSERT_OK(&error);
+    free(bytes);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {it_comes_back, what_differs_is_told, damage_is_noticed};
+    return unit_run("checkpoint", tests, sizeof tests / sizeof *tests);
+}
