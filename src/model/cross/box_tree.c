@@ -43,7 +43,7 @@ static void sort_group(const double *centres, uint32_t first, uint32_t end,
     double side = 0;
     for (size_t k = first; k < end; k++)
         for (size_t c = 0; c < 3; c++)
-            cs_swept_widen(low + c, high + c, centres[3 * k + c], centres[3 * k + c]);
+            cs_swath_widen(low + c, high + c, centres[3 * k + c], centres[3 * k + c]);
     for (int c = 0; c < 3; c++)
         side = fmax(side, high[c] - low[c]);
     for (uint32_t k = first; k < end; k++)
@@ -90,7 +90,7 @@ static size_t nodes_most(size_t n, size_t n_groups) {
 
 size_t cs_box_tree_bytes(size_t n, size_t n_groups) {
     return nodes_most(n, n_groups) * sizeof(struct cs_box_node) +
-           n * (sizeof(uint32_t) + sizeof(struct cs_swept)) +
+           n * (sizeof(uint32_t) + sizeof(struct cs_swath)) +
            CS_BOX_JOBS_MOST * sizeof(struct cs_box_job);
 }
 
@@ -102,7 +102,7 @@ enum cs_status cs_box_tree_init(struct cs_box_tree *tree, const double *centres,
     struct placed *placed = calloc(n ? n : 1, sizeof *placed);
     tree->items = cs_arena_take_n(arena, n, sizeof *tree->items, error);
     tree->nodes = cs_arena_take_n(arena, nodes_most(n, n_groups), sizeof *tree->nodes, error);
-    tree->sweeps = cs_arena_take_n(arena, n, sizeof *tree->sweeps, error);
+    tree->swaths = cs_arena_take_n(arena, n, sizeof *tree->swaths, error);
     tree->jobs = cs_arena_take_n(arena, CS_BOX_JOBS_MOST, sizeof *tree->jobs, error);
     if (!placed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %u parts of surfaces", n);
@@ -118,13 +118,13 @@ static void set_boxes(struct cs_box_tree *tree) {
     // children stand behind their parents
     for (uint32_t k = tree->n_nodes; k-- > 0;) {
         struct cs_box_node *node = tree->nodes + k;
-        node->sweep = cs_swept_none();
+        node->swath = cs_swath_none();
         if (node->right) {
-            cs_swept_join(&node->sweep, &tree->nodes[k + 1].sweep);
-            cs_swept_join(&node->sweep, &tree->nodes[node->right].sweep);
+            cs_swath_join(&node->swath, &tree->nodes[k + 1].swath);
+            cs_swath_join(&node->swath, &tree->nodes[node->right].swath);
         } else
             for (uint32_t i = node->first; i < node->end; i++)
-                cs_swept_join(&node->sweep, tree->sweeps + tree->items[i]);
+                cs_swath_join(&node->swath, tree->swaths + tree->items[i]);
     }
 }
 
@@ -140,7 +140,7 @@ static uint32_t cut(const struct cs_box_tree *tree, struct cs_box_job pair,
         return 3;
     }
     parts[0] = parts[1] = pair;
-    if (pair.a != pair.b && !cs_swepts_meet(&a->sweep, &b->sweep, tree->reach))
+    if (pair.a != pair.b && !cs_swaths_meet(&a->swath, &b->swath, tree->reach))
         return 0;
     if (!a->right && !b->right)
         return 1;
@@ -191,7 +191,7 @@ static void visit_items(const struct cs_box_tree *tree, struct cs_box_job pair,
     for (uint32_t k = a->first; k < a->end; k++)
         for (uint32_t l = pair.a == pair.b ? k + 1 : b->first; l < b->end; l++) {
             const uint32_t i = tree->items[k], j = tree->items[l];
-            if (cs_swepts_meet(tree->sweeps + i, tree->sweeps + j, tree->reach))
+            if (cs_swaths_meet(tree->swaths + i, tree->swaths + j, tree->reach))
                 visit(arg, i < j ? i : j, i < j ? j : i);
         }
 }

@@ -8,7 +8,7 @@
 #define CS_BOX_TREE_H
 
 #include "base/arena.h"
-#include "model/cross/swept.h"
+#include "model/cross/swath.h"
 
 #include <stdint.h>
 
@@ -17,7 +17,7 @@ enum { CS_BOX_LEAF = 4 };
 
 /* Node k of a tree that is written down depth first: its left child is k + 1. */
 struct cs_box_node {
-    struct cs_swept sweep;
+    struct cs_swath swath;
     uint32_t first, end; /* places in items */
     uint32_t right;      /* its right child; 0: a leaf */
 };
@@ -32,7 +32,7 @@ struct cs_box_tree {
     uint32_t n, n_nodes, n_jobs;
     uint32_t *items; /* (n) */
     struct cs_box_node *nodes;
-    struct cs_swept *sweeps; /* (n) of the items */
+    struct cs_swath *swaths; /* (n) of the items */
     struct cs_box_job *jobs; /* (CS_BOX_JOBS_MOST) */
     double reach;            /* m, of the last update */
 };
@@ -46,12 +46,12 @@ enum cs_status cs_box_tree_init(struct cs_box_tree *tree, const double *centres,
 /* Bytes of a tree over n items. */
 size_t cs_box_tree_bytes(size_t n, size_t n_groups);
 
-/* Sets the boxes from tree->sweeps, which the caller has filled, and shares the work out. */
+/* Sets the boxes from tree->swaths, which the caller has filled, and shares the work out. */
 void cs_box_tree_update(struct cs_box_tree *tree, double reach);
 
-/* Calls visit(arg, i, j) with i < j for all pairs of a job whose sweeps meet within reach; the
+/* Calls visit(arg, i, j) with i < j for all pairs of a job whose swaths meet within reach; the
  * jobs 0..tree->n_jobs - 1 together have each pair once, in an order that depends on nothing
- * but the sweeps. */
+ * but the swaths. */
 typedef void cs_box_visit(void *arg, uint32_t i, uint32_t j);
 void cs_box_tree_visit(const struct cs_box_tree *tree, uint32_t job, cs_box_visit *visit,
                        void *arg);

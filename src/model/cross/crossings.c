@@ -158,14 +158,14 @@ static void try_pair(const struct asking *asking, enum cs_gap_kind kind,
     const struct question *question = asking->question;
     const size_t n = question->parts->n_particles, side = kind == CS_GAP_POINT ? 1 : 2;
     double p[4][3], moves[4][3];
-    struct cs_swept sweeps[2] = {cs_swept_none(), cs_swept_none()};
+    struct cs_swath swaths[2] = {cs_swath_none(), cs_swath_none()};
     for (size_t k = 0; k < 4; k++)
         for (size_t l = 0; l < side; l++)
             if (k >= side && particles[k] == particles[l])
                 return;
     for (size_t k = 0; k < 4; k++)
-        cs_swept_add(sweeps + (k >= side), n, particles[k], question->x0, question->x1);
-    if (!cs_swepts_meet(sweeps, sweeps + 1, CS_GAP_LEAST))
+        cs_swath_add(swaths + (k >= side), n, particles[k], question->x0, question->x1);
+    if (!cs_swaths_meet(swaths, swaths + 1, CS_GAP_LEAST))
         return;
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++) {

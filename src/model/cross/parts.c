@@ -175,12 +175,12 @@ struct placing {
 static void place_parts(void *arg, size_t begin, size_t end) {
     const struct placing *placing = arg;
     for (size_t part = begin; part < end; part++) {
-        struct cs_swept sweep = cs_swept_none();
+        struct cs_swath swath = cs_swath_none();
         uint32_t corners[3];
         for (uint32_t k = corners_of(placing->parts, (uint32_t)part, corners); k-- > 0;)
-            cs_swept_add(&sweep, placing->parts->n_particles, corners[k], placing->x0,
+            cs_swath_add(&swath, placing->parts->n_particles, corners[k], placing->x0,
                          placing->x1);
-        placing->parts->tree.sweeps[part] = sweep;
+        placing->parts->tree.swaths[part] = swath;
     }
 }
 
