@@ -63,9 +63,11 @@ enum cs_status cs_course_open(struct cs_course *course,
     return error->status;
 }
 
-static void keep_state(struct cs_track *track, const struct cs_run *run) {
+static void keep_state(struct cs_track *track, const struct cs_run *run,
+                       struct cs_tally *crossings) {
     if (!track)
         return;
+    cs_tally_take(crossings, run);
     memcpy(cs_track_state(track, run->frame), run->x, 6 * track->n * sizeof *run->x);
     track->done = run->frame;
 }
@@ -82,15 +84,15 @@ static enum cs_status step_timed(struct cs_course *course, uint32_t last,
     return error->status;
 }
 
-/* Copies are not timed; where there are none, the clocks are read twice in all. */
+/* Copies and counts are not timed; where there are none, the clocks are read twice in all. */
 static enum cs_status step_frames(struct cs_course *course, struct cs_track *track,
                                   struct cs_course_end *end, struct cs_error *error) {
     struct cs_run *run = &course->session.run;
-    keep_state(track, run);
+    keep_state(track, run, &end->crossings);
     while (run->frame < course->frames && run->outcome == CS_RUNNING) {
         if (step_timed(course, track ? run->frame + 1 : course->frames, end, error))
             return error->status;
-        keep_state(track, run);
+        keep_state(track, run, &end->crossings);
     }
     return CS_OK;
 }

@@ -8,6 +8,7 @@
 #define CS_COURSE_H
 
 #include "study/session.h"
+#include "study/tally.h"
 
 /* The scene and how long; what every run of a comparison shares. */
 struct cs_course_settings {
@@ -37,7 +38,8 @@ struct cs_course_end {
     double time;      /* reached, s */
     double cpu, wall; /* s, of stepping only */
     struct cs_counts counts;
-    char note[240]; /* the method's remarks, or why it failed */
+    struct cs_tally crossings; /* of the frames of a track, where the scene counts them */
+    char note[240];            /* the method's remarks, or why it failed */
 };
 
 /* Opens a scene for a method, "NAME:key=value,...", without what is no equation of motion. */

@@ -55,6 +55,7 @@ static void take_sample(struct cs_trial *trial, const struct cs_trial_settings *
     trial->mean_kinetic += energy.kinetic;
     trial->strain = fmax(trial->strain, cs_measure_strain(run->system, run->x));
     note_excess(trial, run, settings->limits.speed);
+    cs_tally_take(&trial->crossings, run);
     /* only the first crossing counts: its time is reported */
     if (!trial->beyond &&
         (trial->held > settings->limits.energy || trial->gained > settings->limits.gain)) {

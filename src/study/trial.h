@@ -7,6 +7,7 @@
 #define CS_TRIAL_H
 
 #include "study/session.h"
+#include "study/tally.h"
 
 /* What a particle or the whole may reach before a run counts as unstable; HUGE_VAL: no limit.
  */
@@ -54,6 +55,7 @@ struct cs_trial {
     bool beyond;                     /* held or gained passed its limit */
     double beyond_time;              /* s */
     struct cs_trial_excess excess;
+    struct cs_tally crossings; /* of the samples, where the scene counts them */
 };
 
 /* CS_OK with a verdict's numbers even where the run blew up or the method failed. An error is

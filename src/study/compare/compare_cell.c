@@ -34,6 +34,7 @@ const struct cs_column cs_columns[] = {
     NUMBER(centre_error, "error of the centre of mass in m"),
     NUMBER(box_error, "error of the bounding box in m"),
     NUMBER(strain, "largest strain"),
+    NUMBER(crossings, "edges through triangles, the most of all frames"),
     NUMBER(bar, NULL),
     NUMBER(order, NULL),
     NUMBER(achieved, "achieved error / (asked tolerance x motion)"),

@@ -32,6 +32,7 @@ struct cs_cell {
     double energy_error; /* largest |E - E_ref| over frames / largest kinetic energy */
     double centre_error, box_error; /* m, largest over frames: centre of mass, bounding box */
     double strain;                  /* largest over frames */
+    double crossings;               /* most of all frames, where they are counted */
     double bar;                     /* m, error of the reference itself */
     double order;                   /* slope from the row before, where it is steady */
     double achieved;                /* error / (rtol x motion) of an adaptive method */

@@ -34,6 +34,7 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->wall = end->wall;
     cell->runs = 1;
     cell->outliers = 0;
+    cell->crossings = end->crossings.counted ? (double)end->crossings.most : (double)NAN;
     cell->time = end->time;
     cell->step =
         end->outcome == CS_RUNNING && !end->failed ? end->time / cell->steps : (double)NAN;

@@ -190,7 +190,10 @@ static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out
     add_field(out, "%f", cell->solves);
     add_field(out, "%f", cell->iterations);
     add_field(out, "%e", cell->cpu);
-    cs_text_add(out, " | %s |\n", cell->outcome);
+    if (isfinite(cell->crossings))
+        cs_text_add(out, " | %s, %.0f crossings |\n", cell->outcome, cell->crossings);
+    else
+        cs_text_add(out, " | %s |\n", cell->outcome);
 }
 
 static void add_table(const struct cs_compare *compare, const struct cs_ranking *ranking,

@@ -83,6 +83,8 @@ void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *ce
     else
         cs_text_add(out, "          ");
     cs_text_add(out, "%s", cell->outcome);
+    if (isfinite(cell->crossings))
+        cs_text_add(out, ", %.0f crossings", cell->crossings);
     if (isfinite(cell->time) && !cs_cell_is_finished(cell))
         cs_text_add(out, " at %.3g s", cell->time);
     cs_text_add(out, "\n");

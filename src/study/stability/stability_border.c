@@ -25,6 +25,7 @@ static enum cs_status try_step(const struct cs_trial_settings *settings,
         .drift = (double)NAN,
         .time = trial.end,
         .particles = trial.excess.particles,
+        .crossings = trial.crossings.counted ? (double)trial.crossings.most : (double)NAN,
     };
     /* drift compares the energies at the end, which both runs must have reached */
     if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)

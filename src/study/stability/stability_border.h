@@ -12,6 +12,7 @@ struct cs_stability_cell {
     double drift;       /* see cs_fate_drift; NAN where the run did not come to its end */
     double time;        /* s, where the verdict showed; the end of a stable one */
     uint32_t particles; /* of a local instability: most at one time */
+    double crossings;   /* most of all samples; NAN where they are not counted */
 };
 
 /* One cell, judged by a reference; CS_FATE_SHORT where CS_CELL_STEPS ended a sound run. */

@@ -65,25 +65,38 @@ static void add_lines(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "\n");
 }
 
-/* of the largest step that is stable with all below it */
-static double drift_of(const struct cs_stability *map, uint32_t c) {
-    double drift = (double)NAN;
+/* of the largest step that is stable with all below it: energy drift, or crossings */
+static double last_stable(const struct cs_stability *map, uint32_t c, bool crossings) {
+    double last = (double)NAN;
     for (uint32_t r = 0; r < map->n_rows; r++) {
         const struct cs_stability_cell *cell = map->columns[c].cells + r;
+        const double value = crossings ? cell->crossings : cell->drift;
         if (!cs_fate_is_sound(cell->verdict))
             break;
-        drift = isnan(cell->drift) ? drift : cell->drift;
+        last = isnan(value) ? last : value;
     }
-    return drift;
+    return last;
 }
 
 static void add_drift(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "energy drift");
     for (uint32_t c = 0; c < map->n_columns; c++)
-        if (isnan(drift_of(map, c)))
+        if (isnan(last_stable(map, c, false)))
             cs_text_add(out, "%*s", CELL_WIDTH, "-");
         else
-            cs_text_add(out, "%*.1f%%", CELL_WIDTH - 1, 100 * drift_of(map, c));
+            cs_text_add(out, "%*.1f%%", CELL_WIDTH - 1, 100 * last_stable(map, c, false));
+    cs_text_add(out, "\n");
+}
+
+static void add_crossings(const struct cs_stability *map, struct cs_text *out) {
+    if (!map->session.plan.rows[CS_FEATURE_CROSSINGS].built)
+        return;
+    cs_text_add(out, "%-*s", NAME_WIDTH, "crossings");
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        if (isnan(last_stable(map, c, true)))
+            cs_text_add(out, "%*s", CELL_WIDTH, "-");
+        else
+            cs_text_add(out, "%*.0f", CELL_WIDTH, last_stable(map, c, true));
     cs_text_add(out, "\n");
 }
 
@@ -124,6 +137,7 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
     add_watch(map, out);
     add_lines(map, out);
     add_drift(map, out);
+    add_crossings(map, out);
     cs_text_add(out, "\n");
     add_legend(map, out);
 }
@@ -168,13 +182,14 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     add_field(out, edge(right, value, left));
     add_field(out, edge(below, cell->dt, above));
     add_field(out, edge(above, cell->dt, below));
+    add_field(out, cell->crossings);
     cs_text_add(out, "\n");
 }
 
 void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out,
                 "%s,dt,verdict,verdict_number,energy_drift,time,particles,cell_left,cell_right,"
-                "cell_bottom,cell_top\n",
+                "cell_bottom,cell_top,crossings\n",
                 cs_axis_names[map->settings->axis]);
     for (uint32_t c = 0; c < map->n_columns; c++)
         for (uint32_t r = 0; r < map->n_rows; r++)
@@ -226,7 +241,9 @@ static void add_json_column(const struct cs_stability *map, uint32_t c, struct c
         cs_text_add(out, ", \"verdict\": \"%s\"", cs_fate_word(cell->verdict));
         add_member(out, ", \"energy_drift\": ", cell->drift);
         add_member(out, ", \"time\": ", cell->time);
-        cs_text_add(out, ", \"particles\": %u}", cell->particles);
+        cs_text_add(out, ", \"particles\": %u", cell->particles);
+        add_member(out, ", \"crossings\": ", cell->crossings);
+        cs_text_add(out, "}");
     }
     cs_text_add(out, "]}%s\n", c + 1 < map->n_columns ? "," : "");
 }
