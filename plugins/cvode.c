@@ -108,6 +108,7 @@ static int moved(struct sundials *base, double t, double dt) {
 }
 
 static const struct sundials_library library = {
+    .recovers = true,
     .name = "CVODE",
     .code_name = CVodeGetReturnFlagName,
     .set_stop = CVodeSetStopTime,

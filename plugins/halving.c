@@ -35,7 +35,7 @@ static int most_halvings(const struct halving *self) {
 
 static enum cs_step give_up(const struct halving *self, double t, double h) {
     const struct cs_host *host = self->loop.host;
-    if (self->passed)
+    if (self->passed || (self->newton && self->newton->blocked))
         return host->fail(host->ctx,
                           "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
                           "contact or through a surface",

@@ -117,6 +117,36 @@ static double potential(struct newton *newton, const struct newton_stage *stage,
            stage->s / stage->gx * host->energy(host->ctx, stage->t, newton->x, newton->zero);
 }
 
+static bool is_limited(const struct newton *newton) {
+    return CS_HAS(newton->host, max_share) && newton->host->max_share;
+}
+
+/* Where steps must not carry surfaces through each other: a start u from which nothing has
+ * crossed on the way from xb. What paths move stays as it is. */
+static void shorten_start(struct newton *newton, const struct newton_stage *stage, double *u) {
+    const struct cs_host *host = newton->host;
+    const size_t n = host->view->n;
+    host->vector->linear_sum(3 * n, 1, stage->xb, stage->gx, u, newton->f);
+    const double share = host->max_share(host->ctx, stage->t, stage->xb, stage->t, newton->f);
+    newton->blocked = share < 1;
+    for (size_t c = 0; share < 1 && c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            u[c * n + i] *= host->view->inv_mass[i] > 0 ? share : 1;
+}
+
+/* The longest a of u0 + a du that carries no surface through another. */
+static double longest_move(struct newton *newton, const struct newton_stage *stage) {
+    const struct cs_host *host = newton->host;
+    const size_t n3 = 3 * (size_t)host->view->n;
+    if (!is_limited(newton))
+        return 1;
+    host->vector->linear_sum(n3, 1, stage->xb, stage->gx, newton->u0, newton->b);
+    host->vector->linear_sum(n3, 1, newton->b, stage->gx, newton->du, newton->f);
+    const double share = host->max_share(host->ctx, stage->t, newton->b, stage->t, newton->f);
+    newton->blocked |= share < 1;
+    return share;
+}
+
 /* Goes from u along du; false where no length is good. */
 static bool search(struct newton *newton, const struct newton_stage *stage, double *u) {
     const struct cs_host *host = newton->host;
@@ -125,8 +155,8 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
     const double slope = host->vector->dot(n3, newton->r, newton->du);
     double start = (double)NAN, work = 0;
     memcpy(newton->u0, u, n3 * sizeof *u);
-    double a = 1;
-    for (int k = 0; k <= LINE_HALVINGS; k++, a /= 2) {
+    double a = longest_move(newton, stage);
+    for (int k = 0; a > 0 && k <= LINE_HALVINGS; k++, a /= 2) {
         host->vector->linear_sum(n3, 1, newton->u0, a, newton->du, u);
         evaluate(newton, stage, u);
         if (newton->norm <= (1 - LINE_DECREASE * a) * norm)
@@ -148,6 +178,8 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
 enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stage, double *u,
                           bool *converged) {
     *converged = false;
+    if (is_limited(newton))
+        shorten_start(newton, stage, u);
     evaluate(newton, stage, u);
     for (int64_t k = 0; isfinite(newton->norm); k++) {
         const double goal = newton->rtol * newton->impulse + noise(newton, stage, u);

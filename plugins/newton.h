@@ -9,7 +9,8 @@
  * a tenth of the impulse it is the exact one, unless that is indefinite, which gives Newton's
  * convergence back.
  *
- * Line search: u + a du with a = 1, 1/2, ... is taken where |r| falls, or where the incremental
+ * Line search: u + a du with a = 1, 1/2, ..., or from the share that host->max_share allows of
+ * the move to X(u + du), is taken where |r| falls, or where the incremental
  * potential (Martin et al. 2011; Gast et al. 2015)
  *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (potential energy)(X) - s w.(u - u0)
  * falls by 1e-4 of what its slope r.du promises. Forces without energy, such as dampers, drag
@@ -51,7 +52,8 @@ struct newton {
     double *zero;         /* (3,n): stays 0 */
     double norm, impulse; /* |r| and |M (u - ub)| of the last u, in sqrt(J) */
     double mass;          /* kg, of the free particles */
-    uint64_t done;        /* iterations so far */
+    bool blocked;  /* a move of the last solution was cut, for it went through a surface */
+    uint64_t done; /* iterations so far */
 };
 
 /* Takes the memory; [create]. */

@@ -46,12 +46,21 @@ enum cs_step sundials_fail(struct sundials *self, int code, double t) {
     return CS_STEP_FAIL;
 }
 
+/* The way from the state before the step to x carries surfaces through each other. Contact by
+ * force is left to error control. */
+static bool passes_through(const struct sundials *self, double t, const double *x) {
+    const struct cs_host *host = self->host;
+    return self->from && host->max_share(host->ctx, t, self->from, t, x) < 1;
+}
+
 int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t parts,
                    bool moves, N_Vector slope) {
     const struct cs_host *host = self->host;
     const size_t n = host->view->n;
     const double *x = sundials_data(y), *v = x + 3 * n;
     double *dx = sundials_data(slope), *dv = dx + 3 * n;
+    if (self->library->recovers && passes_through(self, t, x))
+        return 1;
     host->force(host->ctx, t, x, v, parts, dv);
     double finite = 0; /* 0, or not a number */
     for (size_t c = 0; c < 3; c++)
@@ -87,6 +96,24 @@ static int set_stop(const struct sundials *self, bool limited, double t, double 
     return self->library->set_stop(self->memory, most < t1 - t ? t + most : t1);
 }
 
+/* Parts of a frame below which a step is not shortened. */
+#define PARTS_MOST 65536
+
+/* The end of a step need not have been asked about: the step from t to `reached` is taken back,
+ * and the library starts anew with a small one. Steps of equal length would only be repeated.
+ */
+static int take_back(struct sundials *self, double t, double reached, double frame, double *x) {
+    const struct cs_host *host = self->host;
+    memcpy(x, self->from, 6 * sizeof *x * host->view->n);
+    if (self->equal_steps || (reached - t) * PARTS_MOST < frame) {
+        self->status =
+            host->fail(host->ctx, "a step of %.3g s at t = %.9g s passes through a surface",
+                       reached - t, t);
+        return -1;
+    }
+    return self->library->moved(self, t, 0);
+}
+
 enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v) {
     struct sundials *self = object;
     const struct cs_host *host = self->host;
@@ -105,9 +132,18 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
                               (long long)self->max_steps, t0, t);
         const double before = t;
         bool changed = false;
+        if (self->from)
+            memcpy(self->from, x, 6 * sizeof *x * host->view->n);
         code = library->evolve(self->memory, t1, self->state, &t, library->one_step);
         if (code < 0 || self->status != CS_STEP_OK)
             return sundials_fail(self, code, before);
+        if (passes_through(self, t, x)) {
+            if ((code = take_back(self, before, t, t1 - t0, x)) < 0 ||
+                (code = set_stop(self, limited, before, t1, x)) < 0)
+                return sundials_fail(self, code, before);
+            t = before;
+            continue;
+        }
         const enum cs_step status = host->commit(host->ctx, t, t - before, x, v, &changed);
         if (status != CS_STEP_OK)
             return status;
@@ -131,6 +167,9 @@ enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
     if (sundials_vectors_init(&self->vectors, host, n_vectors, self->context) != CS_STEP_OK)
         return CS_STEP_FAIL;
     self->state = sundials_vectors_take(&self->vectors);
+    if (CS_HAS(host, max_share) && host->max_share &&
+        !(self->from = host->alloc(host->ctx, 6 * sizeof(double) * host->view->n)))
+        return CS_STEP_FAIL;
     return linear_rtol > 0 ? sundials_solver_init(self) : CS_STEP_OK;
 }
 

@@ -23,7 +23,8 @@ struct sundials_library {
     char *(*code_name)(long code); /* to be freed */
     int (*set_stop)(void *memory, sunrealtype t);
     int (*evolve)(void *memory, sunrealtype t, N_Vector y, sunrealtype *reached, int task);
-    int one_step; /* the task */
+    int one_step;  /* the task */
+    bool recovers; /* from a right-hand side that fails at a stage: by a smaller step */
     /* where the nonlinear solver stands, and its g: see solve_reduced */
     int (*system)(void *memory, double *t, N_Vector *y, double *g);
     /* the state was moved at t after a step of dt; 0: from outside, forget all */
@@ -39,9 +40,10 @@ struct sundials {
     N_Vector state; /* wraps the host's x and v */
     struct _generic_SUNLinearSolver solver;
     struct _generic_SUNLinearSolver_Ops solver_ops;
-    double linear_rtol;  /* relative residual of the linear solves */
-    double *b;           /* (3,n), right-hand side of the reduced system */
-    int64_t max_steps;   /* in a frame */
+    double linear_rtol; /* relative residual of the linear solves */
+    double *b;          /* (3,n), right-hand side of the reduced system */
+    int64_t max_steps;  /* in a frame */
+    double *from; /* (6n) the state before the step; NULL: no step is refused for its move */
     bool equal_steps;    /* without error control: no step is cut but to meet a frame */
     enum cs_step status; /* of the host's solver within the running call */
     char message[256];   /* the library's last */
@@ -59,7 +61,8 @@ void sundials_close(struct sundials *self);
 enum cs_step sundials_fail(struct sundials *self, int code, double t);
 
 /* y' with the chosen parts of the force; moves: x' = v, else 0. Returns 1, which lets the
- * library try a smaller step, where it is not finite. */
+ * library try a smaller step, where it is not finite, or where the way to y carries surfaces
+ * through each other and the library recovers from that. */
 int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t parts,
                    bool moves, N_Vector slope);
 /* The same of the whole force, as SUNDIALS calls it; object is the struct sundials. */

@@ -226,7 +226,8 @@ struct cs_host {
     /* [advance] The share of the move from x0 (3,n) at t0 to x1 at t1 that a step may take: 1,
      * or less where it passes over contact that a step cannot see from where it begins, or
      * carries surfaces through each other. Then a method takes the step back and takes a
-     * shorter one. 0: no share is good. */
+     * shorter one. 0: no share is good. Within an iteration t1 is t0: surfaces
+     * alone are looked at. */
     double (*max_share)(void *ctx, double t0, const double *x0, double t1, const double *x1);
 
     /* [advance] Only where contact follows each step in commit (contact by projection), else

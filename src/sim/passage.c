@@ -11,7 +11,7 @@ bool cs_passage_is_judged(const struct cs_system *system) {
 
 double cs_passage_share(const struct cs_system *system, double t0, const double *x0, double t1,
                         const double *x1) {
-    if (system->pairings && !cs_contact_is_seen(system, t0, x0, t1, x1))
+    if (system->pairings && t1 > t0 && !cs_contact_is_seen(system, t0, x0, t1, x1))
         return 0.5;
     return cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT
                ? cs_crossings_share(system, x0, x1)

@@ -105,7 +105,7 @@ double cs_gap_share(enum cs_gap_kind kind, const double p[4][3], const double mo
     if (!(move > 0 && move <= DBL_MAX))
         return most;
     const double start = sqrt(cs_gap_squared(kind, p));
-    if (start > move)
+    if (start > move + CS_GAP_LEAST)
         return most;
     if (!(start > CS_GAP_LEAST))
         return 0;

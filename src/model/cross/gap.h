@@ -12,7 +12,8 @@ enum cs_gap_kind { CS_GAP_POINT, CS_GAP_EDGES };
 /* The square of the distance in m2. */
 double cs_gap_squared(enum cs_gap_kind kind, const double p[4][3]);
 
-/* Below this distance in m a pair is taken to touch: rounding may have closed it. */
+/* From this distance in m on a pair is taken to touch: rounding may have closed it, and a gap
+ * that only ever shrinks comes to an end. */
 #define CS_GAP_LEAST 1e-9
 
 /* A share 0..1 of the straight moves of the four points from p, within which the pair does not
