@@ -1,6 +1,7 @@
 /* Writes values into memory, or reads them back. */
 #include "base/record.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,6 +40,21 @@ void cs_record_bytes(struct cs_record *record, void *value, size_t n) {
         return;
     record->failed =
         record->loading ? !read_bytes(record, value, n) : !write_bytes(record, value, n);
+}
+
+void cs_record_text(struct cs_record *record, struct cs_text *text) {
+    size_t length = text->length;
+    CS_RECORD(record, length);
+    if (!record->loading)
+        cs_record_bytes(record, text->bytes, length);
+    if (!record->loading || record->failed)
+        return;
+    record->failed = length > record->length - record->at || length > INT_MAX;
+    if (record->failed)
+        return;
+    cs_text_add(text, "%.*s", (int)length, record->bytes + record->at);
+    record->at += length;
+    record->failed = text->failed;
 }
 
 void cs_record_begin(struct cs_record *record) {

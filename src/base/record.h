@@ -6,6 +6,8 @@
 #ifndef CS_RECORD_H
 #define CS_RECORD_H
 
+#include "base/text.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -23,6 +25,9 @@ void cs_record_bytes(struct cs_record *record, void *value, size_t n);
 
 /* A field, or an array, of a fixed size. */
 #define CS_RECORD(record, value) cs_record_bytes(record, &(value), sizeof(value))
+
+/* A text; one that is read is empty before. */
+void cs_record_text(struct cs_record *record, struct cs_text *text);
 
 /* Empties one to be written anew, in the memory it has. */
 void cs_record_begin(struct cs_record *record);

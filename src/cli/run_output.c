@@ -1,4 +1,4 @@
-/* Writes state files, and finds or removes the files of an earlier run. */
+/* Writes state files; owns folders, and finds or removes the files of an earlier run there. */
 #include "cli/run_output.h"
 
 #include "base/file.h"
@@ -6,7 +6,9 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,11 +23,23 @@ static bool is_numbered(const char *name, const char *prefix, const char *ending
     return digits >= NUMBER_DIGITS && !strcmp(name + start + digits, ending);
 }
 
-static bool is_ours(const char *name, bool states) {
-    if (states)
-        return is_numbered(name, "x_", ".npy") || is_numbered(name, "v_", ".npy");
+bool cs_output_is_picture(const char *name) {
     return is_numbered(name, "frame_", ".png") || !strcmp(name, "run.json") ||
            !strcmp(name, "run.checkpoint");
+}
+
+bool cs_output_is_state(const char *name) {
+    return is_numbered(name, "x_", ".npy") || is_numbered(name, "v_", ".npy");
+}
+
+/* such a file before it was renamed: NAME.tmp.PID */
+static bool is_unfinished(const char *name, cs_output_kind *is_ours) {
+    char whole[256];
+    const char *end = strstr(name, ".tmp.");
+    if (!end || !end[5] || end[5 + strspn(end + 5, "0123456789")])
+        return false;
+    return snprintf(whole, sizeof whole, "%.*s", (int)(end - name), name) < (int)sizeof whole &&
+           is_ours(whole);
 }
 
 static enum cs_status join(const char *folder, const char *name, char path[PATH_BYTES],
@@ -54,14 +68,15 @@ static DIR *open_folder(const char *folder, struct cs_error *error) {
     return entries;
 }
 
-enum cs_status cs_output_check(const char *folder, bool states, struct cs_error *error) {
+enum cs_status cs_output_check(const char *folder, cs_output_kind *is_ours,
+                               struct cs_error *error) {
     char first[256] = "", path[PATH_BYTES];
     DIR *entries = folder ? open_folder(folder, error) : NULL;
     if (!entries)
         return error->status;
     /* the first by name, since folders have no order */
     for (struct dirent *entry; (entry = readdir(entries));)
-        if (is_ours(entry->d_name, states) && (!*first || strcmp(entry->d_name, first) < 0))
+        if (is_ours(entry->d_name) && (!*first || strcmp(entry->d_name, first) < 0))
             snprintf(first, sizeof first, "%s", entry->d_name);
     closedir(entries);
     if (!*first || join(folder, first, path, error))
@@ -69,20 +84,64 @@ enum cs_status cs_output_check(const char *folder, bool states, struct cs_error 
     return refuse(path, error);
 }
 
-enum cs_status cs_output_prepare(const char *folder, bool states, bool empty,
-                                 struct cs_error *error) {
+/* whole: the files of an earlier run too, not only what was left half written */
+static enum cs_status sweep(const char *folder, cs_output_kind *is_ours, bool whole,
+                            struct cs_error *error) {
     char path[PATH_BYTES];
-    if (cs_folder_make(folder, error) || !empty)
-        return error->status;
     DIR *entries = open_folder(folder, error);
     if (!entries)
         return error->status;
     for (struct dirent *entry; (entry = readdir(entries)) && !error->status;)
-        if (is_ours(entry->d_name, states) && !join(folder, entry->d_name, path, error) &&
-            unlink(path))
+        if ((is_unfinished(entry->d_name, is_ours) || (whole && is_ours(entry->d_name))) &&
+            !join(folder, entry->d_name, path, error) && unlink(path))
             cs_fail(error, CS_ERR_FILE, "cannot remove \"%s\": %s", path, strerror(errno));
     closedir(entries);
     return error->status;
+}
+
+static bool is_same_folder(int lock, const struct cs_output *other) {
+    struct stat mine, theirs;
+    return other && other->lock && !fstat(lock, &mine) && !fstat(other->lock - 1, &theirs) &&
+           mine.st_dev == theirs.st_dev && mine.st_ino == theirs.st_ino;
+}
+
+/* The lock is on the folder itself: it leaves no file behind, and ends with the process. */
+static enum cs_status lock_folder(struct cs_output *output, const struct cs_output *other,
+                                  const char *folder, struct cs_error *error) {
+    const int lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock < 0)
+        return cs_fail(error, CS_ERR_FILE, "cannot read the folder \"%s\": %s", folder,
+                       strerror(errno));
+    if (is_same_folder(lock, other)) {
+        close(lock);
+        return CS_OK;
+    }
+    /* a file system without locks has no owners either */
+    if (flock(lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) {
+        close(lock);
+        return cs_fail(error, CS_ERR_FILE, "another run is writing into \"%s\"", folder);
+    }
+    output->lock = lock + 1;
+    return CS_OK;
+}
+
+enum cs_status cs_output_own(struct cs_output *output, const struct cs_output *other,
+                             const char *folder, cs_output_kind *is_ours,
+                             enum cs_output_earlier earlier, struct cs_error *error) {
+    *output = (struct cs_output){0};
+    if ((earlier != CS_OUTPUT_KEEP && cs_folder_make(folder, error)) ||
+        lock_folder(output, other, folder, error))
+        return error->status;
+    /* looked at again by the owner: a run may have ended here since */
+    if (earlier == CS_OUTPUT_REFUSE && cs_output_check(folder, is_ours, error))
+        return error->status;
+    return sweep(folder, is_ours, earlier == CS_OUTPUT_REMOVE, error);
+}
+
+void cs_output_release(struct cs_output *output) {
+    if (output->lock)
+        close(output->lock - 1);
+    *output = (struct cs_output){0};
 }
 
 enum cs_status cs_output_state(const char *folder, uint32_t number, const double *x,

@@ -197,3 +197,20 @@ bool cs_method_set_dt(struct cs_method *method, double dt) {
     memcpy((char *)method->options + row->offset, &dt, sizeof dt);
     return true;
 }
+
+void cs_method_describe(const struct cs_method *method, struct cs_text *out) {
+    cs_text_add(out, "%s", method->integrator->name);
+    char mark = ':';
+    for (uint32_t r = 0; r < method->table.n; r++) {
+        const struct cs_option *row = method->table.rows + r;
+        if (cs_option_is_optional(row) && !cs_option_is_given(row, method->options))
+            continue;
+        cs_text_add(out, "%c%s=", mark, row->name);
+        if (row->type == CS_CHOICE) {
+            const char *field = (const char *)method->options + row->offset;
+            cs_text_add(out, "%s", row->choices[*(const int32_t *)(const void *)field]);
+        } else
+            cs_option_print(row, method->options, out);
+        mark = ',';
+    }
+}

@@ -2,6 +2,7 @@
 #ifndef CS_METHOD_H
 #define CS_METHOD_H
 
+#include "base/text.h"
 #include "sim/registry.h"
 
 #include <clothsim/option.h>
@@ -50,6 +51,9 @@ int32_t cs_method_choice(const struct cs_method *method, const struct cs_option 
 
 /* Where NAME begins in "SERIES=NAME:..."; NULL: there is no SERIES. */
 const char *cs_method_behind_series(const char *text);
+
+/* Adds "NAME:key=value,..." with every option that has a value. */
+void cs_method_describe(const struct cs_method *method, struct cs_text *out);
 
 /* Cuts the next method off a list NAME:key=value,key=value,NAME,...; NULL: none is left. A
  * comma stands between methods and between options: what has no ':' round its '=' is an

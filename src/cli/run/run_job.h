@@ -4,7 +4,8 @@
 
 #include "base/hash.h"
 #include "base/text.h"
-#include "cli/run_resume.h"
+#include "cli/run/run_resume.h"
+#include "cli/run_output.h"
 #include "io/frames.h"
 #include "study/picture.h"
 #include "study/session.h"
@@ -61,6 +62,7 @@ struct cs_job {
     struct cs_job_picture begun;     /* not yet written */
     uint32_t drawn;                  /* pictures written */
     struct cs_text outputs;          /* which there are, as far as checkpoints depend on it */
+    struct cs_output folder, states; /* owned while the run lasts */
     struct cs_resume checkpoints;
     double wall_seconds, encode_seconds;
     double wait_seconds; /* that the run stood still for its pictures */

@@ -1,5 +1,5 @@
 /* Makes checkpoints of a run, and goes on from one. */
-#include "cli/run_resume.h"
+#include "cli/run/run_resume.h"
 
 #include "base/clock.h"
 #include "base/file.h"
@@ -66,17 +66,22 @@ static void list_facts(const struct cs_resume *resume, struct cs_fact facts[FACT
     memcpy(facts, list, sizeof list);
 }
 
-enum cs_status cs_resume_begin(struct cs_resume *resume, struct cs_session *session,
-                               const struct cs_resume_of *of, const char *folder,
-                               const struct cs_resume_pace *pace, struct cs_error *error) {
-    const char *name = session->method.integrator->name;
-    *resume = (struct cs_resume){
-        .session = session, .of = *of, .pace = *pace, .last = cs_clock_wall()};
-    if (pace->seconds > 0 && !cs_run_remembers(session->method.integrator))
+enum cs_status cs_resume_check_pace(const struct cs_session *session,
+                                    const struct cs_resume_pace *pace, struct cs_error *error) {
+    const struct cs_integrator *integrator = session->method.integrator;
+    if (pace->seconds > 0 && !cs_run_remembers(integrator))
         return cs_fail(error, CS_ERR_USAGE,
                        "--checkpoint: integrator \"%s\" starts anew at each checkpoint, so its "
                        "result would hang on the clock; give a number of frames",
-                       name);
+                       integrator->name);
+    return CS_OK;
+}
+
+enum cs_status cs_resume_begin(struct cs_resume *resume, struct cs_session *session,
+                               const struct cs_resume_of *of, const char *folder,
+                               const struct cs_resume_pace *pace, struct cs_error *error) {
+    *resume = (struct cs_resume){
+        .session = session, .of = *of, .pace = *pace, .last = cs_clock_wall()};
     if (snprintf(resume->path, sizeof resume->path, "%s/run.checkpoint", folder) >=
         (int)sizeof resume->path)
         return cs_fail(error, CS_ERR_FILE,

@@ -1,6 +1,6 @@
 /* Prints run.json: what is needed to repeat a run and to see that it gave the same result. */
 #include "base/pool.h"
-#include "cli/run_report.h"
+#include "cli/run/run_report.h"
 
 #include <cjson/cJSON.h>
 #include <png.h>

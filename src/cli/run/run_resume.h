@@ -37,7 +37,11 @@ struct cs_resume {
 enum cs_status cs_resume_read_pace(const char *value, struct cs_resume_pace *pace,
                                    struct cs_error *error);
 
-/* Before the first frame. CS_ERR_USAGE where a pace in seconds would reach the state. */
+/* CS_ERR_USAGE where a pace in seconds would reach the state. */
+enum cs_status cs_resume_check_pace(const struct cs_session *session,
+                                    const struct cs_resume_pace *pace, struct cs_error *error);
+
+/* Before the first frame. */
 enum cs_status cs_resume_begin(struct cs_resume *resume, struct cs_session *session,
                                const struct cs_resume_of *of, const char *folder,
                                const struct cs_resume_pace *pace, struct cs_error *error);

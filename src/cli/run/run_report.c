@@ -1,5 +1,5 @@
 /* Prints what a run did as a table: outcome, counts, energy, memory and times. */
-#include "cli/run_report.h"
+#include "cli/run/run_report.h"
 
 #include "base/pool.h"
 #include "cli/line/print.h"

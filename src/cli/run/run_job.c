@@ -1,13 +1,12 @@
 /* Runs a scene frame by frame and hands out its pictures, states, hashes and report. */
-#include "cli/run_job.h"
+#include "cli/run/run_job.h"
 
 #include "base/clock.h"
 #include "base/file.h"
-#include "base/options.h"
 #include "base/pool.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
-#include "cli/run_output.h"
+#include "cli/run/run_claims.h"
 #include "io/scene_hash.h"
 #include "io/scene_write.h"
 #include "study/company.h"
@@ -20,30 +19,12 @@ bool cs_job_wants_json(const struct cs_job_settings *settings) {
     return settings->session.render || settings->json;
 }
 
-/* "NAME:key=value,..." with every option that has a value */
-static void describe_method(const struct cs_session *session, struct cs_text *out) {
-    cs_text_add(out, "%s", session->method.integrator->name);
-    char mark = ':';
-    for (uint32_t r = 0; r < session->method.table.n; r++) {
-        const struct cs_option *row = session->method.table.rows + r;
-        if (cs_option_is_optional(row) && !cs_option_is_given(row, session->method.options))
-            continue;
-        cs_text_add(out, "%c%s=", mark, row->name);
-        if (row->type == CS_CHOICE) {
-            const char *field = (const char *)session->method.options + row->offset;
-            cs_text_add(out, "%s", row->choices[*(const int32_t *)(const void *)field]);
-        } else
-            cs_option_print(row, session->method.options, out);
-        mark = ',';
-    }
-}
-
 /* The scene with every value, its hash, and the method. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     const struct cs_session *session = &job->session;
     cs_scene_print(&session->scene, &session->method.table, session->method.options, 2,
                    &job->scene);
-    describe_method(session, &job->method);
+    cs_method_describe(&session->method, &job->method);
     if (job->scene.failed || job->method.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
     return cs_scene_hash(&session->scene, &session->method.table, session->method.options,
@@ -64,18 +45,28 @@ static bool uses_folder(const struct cs_job_settings *settings) {
     return settings->session.render || makes_checkpoints(settings);
 }
 
+static enum cs_status check_claims(const struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const struct cs_run_outputs outputs = {.json = settings->json,
+                                           .watch = settings->watch,
+                                           .states = settings->states,
+                                           .folder =
+                                               uses_folder(settings) ? settings->folder : NULL};
+    return cs_run_check_claims(&job->session, &outputs, error);
+}
+
 static enum cs_status check_outputs(const struct cs_job_settings *settings,
                                     struct cs_error *error) {
     if (settings->overwrite || settings->resume)
         return CS_OK;
-    if (uses_folder(settings) && cs_output_check(settings->folder, false, error))
+    if (uses_folder(settings) && cs_output_check(settings->folder, cs_output_is_picture, error))
         return error->status;
     if (settings->json && strcmp(settings->json, "-") &&
         cs_output_check_file(settings->json, error))
         return error->status;
     if (settings->watch && cs_output_check_file(settings->watch, error))
         return error->status;
-    return cs_output_check(settings->states, true, error);
+    return cs_output_check(settings->states, cs_output_is_state, error);
 }
 
 /* more than one, so that drawing and encoding can overlap the run */
@@ -101,10 +92,14 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
     const int64_t *size = job->session.scene.render.size;
     if (settings->session.render && open_pictures(job, error))
         return error->status;
-    if (settings->states && cs_output_prepare(settings->states, true, !settings->resume, error))
+    const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_KEEP
+                                           : settings->overwrite ? CS_OUTPUT_REMOVE
+                                                                 : CS_OUTPUT_REFUSE;
+    if (settings->states &&
+        cs_output_own(&job->states, NULL, settings->states, cs_output_is_state, earlier, error))
         return error->status;
-    if (uses_folder(settings) &&
-        cs_output_prepare(settings->folder, false, !settings->resume, error))
+    if (uses_folder(settings) && cs_output_own(&job->folder, &job->states, settings->folder,
+                                               cs_output_is_picture, earlier, error))
         return error->status;
     if (!settings->session.render)
         return CS_OK;
@@ -277,21 +272,6 @@ static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error
     return cs_resume_write(&job->checkpoints, error);
 }
 
-static void record_rows(struct cs_text *rows, struct cs_record *record) {
-    uint64_t length = rows->length;
-    CS_RECORD(record, length);
-    if (!record->loading) {
-        cs_record_bytes(record, rows->bytes, length);
-        return;
-    }
-    if (record->failed || length > record->length - record->at)
-        record->failed = true;
-    else
-        cs_text_add(rows, "%.*s", (int)length, record->bytes + record->at);
-    if (!record->failed)
-        record->at += length;
-}
-
 /* What the job keeps of the frames so far, for a checkpoint. */
 static void record_job(void *ctx, struct cs_record *record) {
     struct cs_job *job = ctx;
@@ -300,7 +280,7 @@ static void record_job(void *ctx, struct cs_record *record) {
     CS_RECORD(record, job->tally);
     CS_RECORD(record, job->hash);
     CS_RECORD(record, job->drawn);
-    record_rows(&job->watch_rows, record);
+    cs_record_text(record, &job->watch_rows);
     CS_RECORD(record, n);
     if (record->loading && (record->failed || n > record->length || !has_room(job, n)))
         record->failed = true;
@@ -377,7 +357,8 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     const double start = cs_clock_wall();
     job->settings = settings;
     if (cs_session_open(&job->session, &settings->session, error) || describe(job, error) ||
-        check_outputs(settings, error) || open_outputs(job, error))
+        cs_resume_check_pace(&job->session, &settings->checkpoint, error) ||
+        check_claims(job, error) || check_outputs(settings, error) || open_outputs(job, error))
         return error->status;
     const struct cs_scene *scene = &job->session.scene;
     job->frames = settings->frames ? settings->frames : frames_of_one_second(scene);
@@ -399,6 +380,8 @@ void cs_job_finish(struct cs_job *job) {
     /* a picture under way is drawn into an image of the writer's */
     cs_picture_close(&job->picture);
     cs_frames_destroy(job->writer);
+    cs_output_release(&job->folder);
+    cs_output_release(&job->states);
     cs_session_close(&job->session);
     cs_text_finish(&job->scene);
     cs_text_finish(&job->warning);

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/run_report.h"
+#include "cli/run/run_report.h"
 
 #include <string.h>
 

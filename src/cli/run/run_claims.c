@@ -1,0 +1,64 @@
+/* Lists the files that a run reads, and holds its outputs against them and each other. */
+#include "cli/run/run_claims.h"
+
+#include "cli/run_output.h"
+#include "io/claims.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_BYTES = 4096 };
+
+static void claim_beside(struct cs_claims *claims, const struct cs_scene *scene,
+                         const char *file, const char *what) {
+    char path[PATH_BYTES];
+    if (*file && snprintf(path, sizeof path, "%s/%s", scene->folder, file) < PATH_BYTES)
+        cs_claims_input(claims, path, what);
+}
+
+static void claim_inputs(const struct cs_session *session, struct cs_claims *claims) {
+    const struct cs_scene *scene = &session->scene;
+    cs_claims_input(claims, scene->path, "the scene");
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        claim_beside(claims, scene, body->mesh.file, "a mesh");
+        claim_beside(claims, scene, body->material.texture, "a texture");
+    }
+    for (uint32_t k = 0; k < session->settings.n_plugins; k++)
+        cs_claims_input(claims, session->settings.plugins[k], "a module");
+}
+
+static void claim_file(struct cs_claims *claims, const char *path, const char *what,
+                       struct cs_error *error) {
+    if (path && strcmp(path, "-") != 0 && !error->status)
+        cs_claims_output(claims, path, what, error);
+}
+
+static enum cs_status claim_outputs(struct cs_claims *claims,
+                                    const struct cs_run_outputs *outputs,
+                                    struct cs_error *error) {
+    claim_file(claims, outputs->json, "--json", error);
+    claim_file(claims, outputs->watch, "--watch", error);
+    claim_file(claims, outputs->ledger, "--ledger", error);
+    if (error->status)
+        return error->status;
+    if (outputs->states &&
+        cs_claims_folder(claims, outputs->states, cs_output_is_state, "--states", error))
+        return error->status;
+    return outputs->folder
+               ? cs_claims_folder(claims, outputs->folder, cs_output_is_picture, "--out", error)
+               : CS_OK;
+}
+
+enum cs_status cs_run_check_claims(const struct cs_session *session,
+                                   const struct cs_run_outputs *outputs,
+                                   struct cs_error *error) {
+    struct cs_claims *claims = calloc(1, sizeof *claims);
+    if (!claims)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of files");
+    claim_inputs(session, claims);
+    claim_outputs(claims, outputs, error);
+    free(claims);
+    return error->status;
+}

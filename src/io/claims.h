@@ -1,0 +1,41 @@
+/* claims.h - the files that one run reads and writes: no input is overwritten, and no two
+ * outputs are one file, whatever their paths look like. */
+#ifndef CS_CLAIMS_H
+#define CS_CLAIMS_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* A file by what it is, and by where it lies, since an output may not be there yet. */
+struct cs_claim {
+    const char *what; /* borrowed, as in "is read as the scene" */
+    dev_t device, folder_device;
+    ino_t number, folder_number;
+    bool there, output;
+    char name[256];
+};
+
+enum { CS_CLAIMS_MOST = 256 };
+
+/* Zeroed: none. Inputs beyond the most are not looked after. */
+struct cs_claims {
+    unsigned n;
+    struct cs_claim items[CS_CLAIMS_MOST];
+};
+
+/* A file that is read; one that is not there is none. */
+void cs_claims_input(struct cs_claims *claims, const char *path, const char *what);
+
+/* A file that is to be written, by the option `what`. CS_ERR_FILE where it is claimed. */
+enum cs_status cs_claims_output(struct cs_claims *claims, const char *path, const char *what,
+                                struct cs_error *error);
+
+/* A folder in which files of certain names are written, or removed: CS_ERR_FILE where one of
+ * them is claimed. A folder that is not there holds none. */
+enum cs_status cs_claims_folder(const struct cs_claims *claims, const char *folder,
+                                bool (*is_ours)(const char *name), const char *what,
+                                struct cs_error *error);
+
+#endif

@@ -1,0 +1,122 @@
+/* A run that goes on from any of its frames is the unbroken one, to the last bit: of scenes in
+ * which events, contact and methods with a memory are at work. */
+#include "fixture.h"
+
+#include "sim/run_record.h"
+
+#include <string.h>
+
+enum { BREAKS = 3 };
+
+struct broken {
+    const char *scene, *method;
+    uint32_t frames, breaks[BREAKS];
+};
+
+static void open_session(struct cs_session *session, const struct broken *broken) {
+    struct cs_error error = {0};
+    const struct cs_session_settings settings = {.scene = broken->scene,
+                                                 .integrator = broken->method};
+    cs_session_open(session, &settings, &error);
+    ck_assert_msg(!error.status, "%s: %s", broken->scene, error.message);
+}
+
+static void run_to(struct cs_session *session, uint32_t frame) {
+    struct cs_error error = {0};
+    while (session->run.frame < frame && session->run.outcome == CS_RUNNING)
+        cs_run_frame(&session->run, &error);
+    ck_assert_msg(!error.status && session->run.outcome == CS_RUNNING, "%s", error.message);
+}
+
+static void compare(const struct cs_session *whole, const struct cs_session *resumed,
+                    const struct broken *broken, uint32_t at) {
+    const struct cs_run *a = &whole->run, *b = &resumed->run;
+    const size_t n = 6 * (size_t)whole->system.view.n;
+    ck_assert_msg(!memcmp(a->x, b->x, n * sizeof *a->x), "%s by %s differs after frame %u",
+                  broken->scene, broken->method, at);
+    ck_assert_uint_eq(a->counts.steps, b->counts.steps);
+    ck_assert_uint_eq(a->counts.forces, b->counts.forces);
+    ck_assert_uint_eq(a->counts.contacts, b->counts.contacts);
+    ck_assert_uint_eq(a->counts.limit_moves, b->counts.limit_moves);
+    ck_assert_uint_eq(a->counts.method.rejected, b->counts.method.rejected);
+    ck_assert_uint_eq(a->n_notes, b->n_notes);
+    ck_assert_mem_eq(a->notes, b->notes, sizeof a->notes);
+}
+
+static void go_on(const struct broken *broken, struct cs_record *record,
+                  const struct cs_session *whole, uint32_t at) {
+    struct cs_error error = {0};
+    struct cs_session resumed;
+    open_session(&resumed, broken);
+    record->loading = true;
+    cs_run_load(&resumed.run, record, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    ck_assert(cs_record_is_done(record));
+    ck_assert_uint_eq(resumed.run.frame, at);
+    run_to(&resumed, broken->frames);
+    compare(whole, &resumed, broken, at);
+    cs_session_close(&resumed);
+}
+
+/* breaks one run in several places, where a method that saves nothing starts anew */
+static void check(const struct broken *broken) {
+    struct cs_error error = {0};
+    struct cs_session whole;
+    struct cs_record records[BREAKS] = {0};
+    open_session(&whole, broken);
+    for (int k = 0; k < BREAKS; k++) {
+        run_to(&whole, broken->breaks[k]);
+        cs_run_save(&whole.run, records + k, &error);
+        ck_assert_msg(!error.status, "%s", error.message);
+    }
+    run_to(&whole, broken->frames);
+    // after the last break nothing starts anew any more; before it only a method that saves
+    const bool saves = cs_run_remembers(whole.method.integrator);
+    for (int k = saves ? 0 : BREAKS - 1; k < BREAKS; k++)
+        go_on(broken, records + k, &whole, broken->breaks[k]);
+    for (int k = 0; k < BREAKS; k++)
+        cs_record_finish(records + k);
+    cs_session_close(&whole);
+}
+
+START_TEST(scenes_go_on) {
+    static const struct broken all[] = {
+        {"scenes/grab_release.json", "velocity-verlet", 30, {1, 11, 23}},
+        {"scenes/prod_flag.json", "implicit-linearised", 20, {3, 8, 17}},
+        {"scenes/push.json", "bdf2", 16, {2, 7, 12}},
+        {"scenes/swing.json", "dopri5", 20, {1, 9, 15}},
+        {"scenes/two_winds.json", "implicit-linearised", 16, {2, 7, 12}},
+        {"scenes/contact_compare.json", "newmark", 16, {3, 8, 13}},
+        {"scenes/explosion_cured.json", "implicit-linearised", 12, {1, 4, 9}},
+        {"scenes/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
+        {"scenes/mixed_company.json", "shape-matching", 10, {1, 4, 7}},
+    };
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        check(all + k);
+}
+END_TEST
+
+/* the record of another scene has too many bytes, or too few */
+START_TEST(foreign_records_are_refused) {
+    static const struct broken one = {"scenes/hang.json", "velocity-verlet", 3, {1, 2, 3}};
+    static const struct broken two = {"scenes/swing.json", "velocity-verlet", 3, {1, 2, 3}};
+    struct cs_error error = {0};
+    struct cs_session session;
+    struct cs_record record = {0};
+    open_session(&session, &one);
+    run_to(&session, 1);
+    cs_run_save(&session.run, &record, &error);
+    cs_session_close(&session);
+    open_session(&session, &two);
+    record.loading = true;
+    cs_run_load(&session.run, &record, &error);
+    ck_assert(error.status == CS_ERR_FILE || !cs_record_is_done(&record));
+    cs_record_finish(&record);
+    cs_session_close(&session);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {scenes_go_on, foreign_records_are_refused};
+    return fixture_run("resume", tests, sizeof tests / sizeof *tests);
+}
