@@ -63,7 +63,34 @@ char *cs_arena_take_text(struct cs_arena *arena, const char *text, struct cs_err
     return copy ? memcpy(copy, text, bytes) : NULL;
 }
 
+struct cs_arena_owned {
+    struct cs_arena_owned *next;
+    void (*finish)(void *object);
+    void *object;
+};
+
+void cs_arena_own(struct cs_arena *arena, void (*finish)(void *object), void *object,
+                  struct cs_error *error) {
+    struct cs_arena_owned *owned = cs_arena_take(arena, sizeof *owned, error);
+    if (!owned)
+        return;
+    *owned = (struct cs_arena_owned){arena->owned, finish, object};
+    arena->owned = owned;
+}
+
+void *cs_arena_grow(void *items, size_t *room, size_t needed, size_t size) {
+    if (needed <= *room)
+        return items;
+    const size_t larger = needed > 2 * *room ? needed : 2 * *room;
+    size_t bytes;
+    void *moved = __builtin_mul_overflow(larger, size, &bytes) ? NULL : realloc(items, bytes);
+    *room = moved ? larger : *room;
+    return moved;
+}
+
 void cs_arena_finish(struct cs_arena *arena) {
+    for (; arena->owned; arena->owned = arena->owned->next)
+        arena->owned->finish(arena->owned->object);
     while (arena->blocks) {
         struct cs_arena_block *next = arena->blocks->next;
         free(arena->blocks);

@@ -7,11 +7,13 @@
 #include <stddef.h>
 
 struct cs_arena_block;
+struct cs_arena_owned;
 
 /* A zeroed struct is an empty arena. */
 struct cs_arena {
     struct cs_arena_block *blocks; /* owned, newest first */
     size_t used;                   /* bytes handed out, for the plan */
+    struct cs_arena_owned *owned;  /* objects that end with it, newest first */
 };
 
 /* Takes bytes, zeroed and 64-byte aligned; they live until finish. NULL and CS_ERR_MEMORY in
@@ -23,6 +25,16 @@ void *cs_arena_take_n(struct cs_arena *arena, size_t n, size_t size, struct cs_e
 
 /* Copies a zero-terminated string. */
 char *cs_arena_take_text(struct cs_arena *arena, const char *text, struct cs_error *error);
+
+/* Calls finish(object) when the arena is given back, before its memory goes: for objects in it
+ * that hold other memory. CS_ERR_MEMORY: not noted, and not called. */
+void cs_arena_own(struct cs_arena *arena, void (*finish)(void *object), void *object,
+                  struct cs_error *error);
+
+/* items with room for at least `needed` of them, of size bytes each: moved and *room set where
+ * there are fewer, twice as many as before. The caller frees them. NULL: no memory, and items
+ * are as they were. Unlike an arena's takes, for several threads at the same time. */
+void *cs_arena_grow(void *items, size_t *room, size_t needed, size_t size);
 
 /* Gives everything back; the arena is empty again. */
 void cs_arena_finish(struct cs_arena *arena);

@@ -179,7 +179,8 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "bodies: none has shape_matching, and without it integrator \"%s\" has "
                        "nothing to match",
                        method->name);
-    if (scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n > 0 &&
+    if (scene->contact.law == CS_CONTACT_FORCE &&
+        (scene->colliders.n > 0 || cs_scene_any_meet(scene)) &&
         method->traits & CS_EXPLICIT_OUTER)
         return cs_fail(
             error, CS_ERR_SCENE,

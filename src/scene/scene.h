@@ -128,6 +128,9 @@ struct cs_body {
     struct cs_mass mass;
     struct cs_spring_law springs;
     struct cs_list pins; /* struct cs_pin */
+    bool self_contact;   /* it keeps off itself: contact.law force */
+    double thickness;    /* m, range of its contact with bodies; 0: a share of its edges */
+    double friction;     /* Coulomb coefficient on itself */
     double strain_limit; /* longest length of a stretch spring / rest length; NAN: none */
     int64_t strain_limit_sweeps;
     struct cs_material material;
@@ -182,6 +185,18 @@ struct cs_contact_keys {
     double stiffness;      /* N/m a particle; NAN: that of the softest body's stretch springs */
     double damping;        /* s, times the stiffness of the contact: N s/m */
     double friction_speed; /* m/s, at which friction has 0.7 of its limit */
+};
+
+/* two bodies that keep off each other */
+struct cs_pair_keys {
+    int64_t bodies[2];
+    double friction; /* Coulomb coefficient */
+};
+enum cs_pairs_among { CS_PAIRS_LISTED, CS_PAIRS_ALL };
+struct cs_pairs_keys {
+    int32_t among;       /* enum cs_pairs_among */
+    double friction;     /* of pairs that are not in the list */
+    struct cs_list list; /* struct cs_pair_keys */
 };
 
 enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
@@ -330,6 +345,7 @@ struct cs_scene {
     struct cs_list colliders; /* struct cs_collider */
     struct cs_contact_keys contact;
     int32_t crossings; /* enum cs_crossings_policy, -1: absent: see crossings.h */
+    struct cs_pairs_keys pairs;
     struct cs_forces forces;
     struct cs_list events; /* struct cs_event */
     struct cs_time time;
@@ -379,6 +395,13 @@ static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
 static inline const struct cs_event *cs_scene_events(const struct cs_scene *scene) {
     return scene->events.items;
 }
+/* Whether two bodies, or one with itself, keep off each other, and at which coefficient of
+ * friction (where they do). */
+bool cs_scene_bodies_meet(const struct cs_scene *scene, uint32_t a, uint32_t b,
+                          double *friction);
+/* Whether any do. */
+bool cs_scene_any_meet(const struct cs_scene *scene);
+
 /* 4096 x 4096 particles: about 10 GB with springs and solver */
 #define CS_PARTICLES_MAX 16777216.0
 

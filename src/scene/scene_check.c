@@ -214,6 +214,37 @@ static enum cs_status check_colliders(const struct place *at, struct cs_scene *s
     return CS_OK;
 }
 
+static enum cs_status check_pairs(const struct place *at, const struct cs_scene *scene) {
+    const struct cs_pair_keys *pairs = scene->pairs.list.items;
+    char path[64];
+    for (uint32_t p = 0; p < scene->pairs.list.n; p++) {
+        snprintf(path, sizeof path, "pairs.list[%u].bodies", p);
+        for (int k = 0; k < 2; k++)
+            if (pairs[p].bodies[k] >= scene->bodies.n)
+                return refuse(at, path, "found body %lld, expected 0..%u",
+                              (long long)pairs[p].bodies[k], scene->bodies.n - 1);
+        if (pairs[p].bodies[0] == pairs[p].bodies[1])
+            return refuse(at, path, "found body %lld twice, expected bodies[%lld].self_contact",
+                          (long long)pairs[p].bodies[0], (long long)pairs[p].bodies[0]);
+    }
+    return CS_OK;
+}
+
+/* surfaces of bodies meet by a force alone */
+static enum cs_status check_meetings(const struct place *at, const struct cs_scene *scene) {
+    char path[64] = "pairs";
+    if (check_pairs(at, scene))
+        return at->error->status;
+    if (scene->contact.law == CS_CONTACT_FORCE || !cs_scene_any_meet(scene))
+        return CS_OK;
+    for (uint32_t b = scene->bodies.n; b--;)
+        if (cs_scene_bodies(scene)[b].self_contact)
+            snprintf(path, sizeof path, "bodies[%u].self_contact", b);
+    return refuse(at, path,
+                  "contact.law is project, which knows colliders alone; expected "
+                  "contact.law force");
+}
+
 static enum cs_status check_camera(const struct place *at, const struct cs_camera *camera) {
     char path[64];
     const char *key, *fault = cs_viewpoint_fault(camera->eye, camera->target, camera->up, &key);
@@ -241,7 +272,7 @@ static enum cs_status check_render(const struct place *at, const struct cs_rende
 enum cs_status cs_scene_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {
     const struct place at = {path_out, error};
     path_out[0] = 0;
-    if (check_bodies(&at, scene) || check_colliders(&at, scene) ||
+    if (check_bodies(&at, scene) || check_colliders(&at, scene) || check_meetings(&at, scene) ||
         (scene->forces.wind.present &&
          make_unit(&at, "forces.wind.direction", scene->forces.wind.direction, 3)) ||
         check_camera(&at, &scene->camera) || check_light(&at, &scene->light) ||

@@ -165,6 +165,12 @@ static const struct cs_option body_rows[] = {
     TABLE(struct cs_body, mass, mass_table, "exactly one of its keys"),
     TABLE(struct cs_body, springs, spring_table, "spring law"),
     LIST(struct cs_body, pins, cs_pin_table, "particles that keep their place"),
+    BOOL(struct cs_body, self_contact, 0,
+         "it does not pass through itself; for contact.law force"),
+    REAL(struct cs_body, thickness, "m", 0, 0, BIG,
+         "of its surface: how near another layer of it may come before they push apart; of two "
+         "bodies the mean. 0: 0.4 of its shortest edge at the start"),
+    REAL(struct cs_body, friction, "", 0, 0, 1000, "Coulomb coefficient on itself"),
     REAL(struct cs_body, strain_limit, "", ABSENT, 1, 1000,
          "largest length of a stretch spring over its rest length; absent: no limit"),
     INT(struct cs_body, strain_limit_sweeps, "", 10, 1, 10000,
@@ -254,6 +260,22 @@ static const struct cs_table contact_table = {
     ROWS(contact_rows), .size = sizeof(struct cs_contact_keys), .shorthand_text = "law"};
 
 static const char *const crossings_names[] = {"ignore", "count", "limit", "stop", NULL};
+static const struct cs_option pair_rows[] = {
+    COUNTS(struct cs_pair_keys, bodies, 2, "", NULL, 0, 65535, "numbers of two bodies"),
+    REAL(struct cs_pair_keys, friction, "", 0, 0, 1000, "Coulomb coefficient between them"),
+};
+static const struct cs_table pair_table = {ROWS(pair_rows),
+                                           .size = sizeof(struct cs_pair_keys)};
+static const char *const among_names[] = {"listed", "all", NULL};
+static const struct cs_option pairs_rows[] = {
+    CHOICE(struct cs_pairs_keys, among, among_names, CS_PAIRS_LISTED,
+           "listed: those of the list; all: every two bodies"),
+    REAL(struct cs_pairs_keys, friction, "", 0, 0, 1000,
+         "of all: Coulomb coefficient between two bodies that are not in the list"),
+    LIST(struct cs_pairs_keys, list, pair_table, "pairs of bodies, each with its own friction"),
+};
+static const struct cs_table pairs_table = {
+    ROWS(pairs_rows), .size = sizeof(struct cs_pairs_keys), .shorthand_text = "among"};
 
 static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {
@@ -341,6 +363,8 @@ static const struct cs_option scene_rows[] = {
            "edges of bodies that go through triangles: ignore, as where it is absent; count: "
            "after each frame; limit: "
            "steps that would make one are cut too; stop: the first one ends the run"),
+    TABLE(struct cs_scene, pairs, pairs_table,
+          "bodies that do not pass through each other; for contact.law force"),
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
     LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),

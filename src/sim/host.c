@@ -8,6 +8,7 @@
 #include "model/force/measure.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
+#include "model/pair/pairs.h"
 #include "sim/passage.h"
 
 #include <math.h>
@@ -237,7 +238,7 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     host->rate_work =
         cs_arena_take_n(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
     host->calls.rate = host_rate;
-    if (system->pairings)
+    if (system->pairings || system->pairs)
         host->calls.blocks = host_blocks;
     return error->status;
 }
@@ -347,6 +348,8 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
         lose_velocity(host, v, changed);
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
+    if (host->run->system->pairs && host->run->system->pairs->failed)
+        return host_fail(ctx, "out of memory for the pairs of contact");
     enum cs_step step = judge(host, t, x, v);
     if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
         step = stop_crossings(host, t, x);

@@ -3,15 +3,19 @@
 
 #include "model/contact/share.h"
 #include "model/cross/crossings.h"
+#include "model/pair/seen.h"
 #include "scene/crossings.h"
 
 bool cs_passage_is_judged(const struct cs_system *system) {
-    return system->pairings || cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT;
+    return system->pairings || system->pairs ||
+           cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT;
 }
 
 double cs_passage_share(const struct cs_system *system, double t0, const double *x0, double t1,
                         const double *x1) {
     if (system->pairings && t1 > t0 && !cs_contact_is_seen(system, t0, x0, t1, x1))
+        return 0.5;
+    if (system->pairs && t1 > t0 && !cs_pairs_are_seen(system->pairs, t0, x0, t1, x1))
         return 0.5;
     return cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT
                ? cs_crossings_share(system, x0, x1)

@@ -100,12 +100,16 @@ done:
     return error->status;
 }
 
-/* the pairs that overlap, of the starts or of the reaches; *first, *second: of the first */
-static uint32_t count_pairs(const struct body *bodies, uint32_t n, bool start, uint32_t *first,
-                            uint32_t *second) {
+/* the pairs that overlap, of the starts or of the reaches, and that no contact keeps apart;
+ * *first, *second: of the first */
+static uint32_t count_pairs(const struct cs_scene *scene, const struct body *bodies, bool start,
+                            uint32_t *first, uint32_t *second) {
     uint32_t pairs = 0;
-    for (uint32_t a = 0; a < n; a++)
-        for (uint32_t b = a + 1; b < n; b++) {
+    double friction;
+    for (uint32_t a = 0; a < scene->bodies.n; a++)
+        for (uint32_t b = a + 1; b < scene->bodies.n; b++) {
+            if (cs_scene_bodies_meet(scene, a, b, &friction))
+                continue;
             if (start ? !overlap(&bodies[a].start, &bodies[b].start)
                       : !overlap(&bodies[a].reach, &bodies[b].reach))
                 continue;
@@ -129,17 +133,17 @@ enum cs_status cs_company_print(const struct cs_scene *scene, double seconds,
     for (uint32_t b = 0; b < n && !error->status; b++)
         measure(scene, cs_scene_bodies(scene) + b, seconds, bodies + b, error);
     bool now = true;
-    uint32_t pairs = error->status ? 0 : count_pairs(bodies, n, true, &first, &second);
+    uint32_t pairs = error->status ? 0 : count_pairs(scene, bodies, true, &first, &second);
     if (!pairs && !error->status) {
         now = false;
-        pairs = count_pairs(bodies, n, false, &first, &second);
+        pairs = count_pairs(scene, bodies, false, &first, &second);
     }
     if (pairs)
         cs_text_add(out, "bodies[%u] and bodies[%u] ", first, second);
     if (pairs > 1)
         cs_text_add(out, "(and %u more pair%s) ", pairs - 1, pairs > 2 ? "s" : "");
     if (pairs)
-        cs_text_add(out, "%s, and nothing keeps bodies apart: they pass through each other",
+        cs_text_add(out, "%s, and nothing keeps them apart: they pass through each other",
                     now ? "overlap at the start" : "could meet");
     free(bodies);
     return error->status;

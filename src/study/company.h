@@ -1,4 +1,4 @@
-/* company.h - bodies that overlap or could meet: nothing in the program keeps bodies apart. */
+/* company.h - bodies that overlap or could meet, and that no contact keeps apart. */
 #ifndef CS_COMPANY_H
 #define CS_COMPANY_H
 

@@ -22,6 +22,7 @@
     " \"wind\": {\"direction\": [0.3, 0.2, 1], \"strength\": 4}"
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [5, 4]}, \"mass\": {\"areal_density\": 0.4},"        \
+    " \"self_contact\": true, \"thickness\": 0.199, \"friction\": 0.4,"                        \
     " \"springs\": {\"stretch\": 200, \"shear\": 75, \"bend\": 25, \"damping\": 0.7},"         \
     " \"pins\": [\"top-left\", 7]}],"                                                          \
     " \"events\": [{\"from\": 0, \"to\": 1, \"impact\": {\"impulse\": 1, \"direction\": [1, "  \

@@ -194,13 +194,24 @@ END_TEST
 
 /* what cs_scene_check says gets the place of the value at fault, or of the nearest one */
 START_TEST(checks_get_a_place) {
-    struct cs_error pins = {0}, none = {0};
+    struct cs_error pins = {0}, none = {0}, pair = {0}, twice = {0}, law = {0};
     struct cs_scene scene;
     const char *text =
         "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3]}, \"mass\": {\"total\": 2},\n"
         " \"pins\": [0,\n  12]}]}";
     cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &pins);
     UNIT_ASSERT_FAILED(&pins, CS_ERR_SCENE, "s.json:3:3: bodies[0].pins[1]: ");
+    text = "{\"bodies\": [" BODY "], \"pairs\": {\"list\": [\n{\"bodies\": [0, 1]}]}}";
+    cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &pair);
+    UNIT_ASSERT_FAILED(&pair, CS_ERR_SCENE,
+                       "s.json:2:12: pairs.list[0].bodies: found body 1, expected 0..0");
+    text = "{\"bodies\": [" BODY "], \"pairs\": {\"list\": [\n{\"bodies\": [0, 0]}]}}";
+    cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &twice);
+    UNIT_ASSERT_FAILED(&twice, CS_ERR_SCENE,
+                       "found body 0 twice, expected bodies[0].self_contact");
+    text = "{\"bodies\": [" BODY ", " BODY "],\n\"pairs\": \"all\"}";
+    cs_scene_read_text(&scene, "s.json", text, strlen(text), NULL, 0, &law);
+    UNIT_ASSERT_FAILED(&law, CS_ERR_SCENE, "s.json:2:10: pairs: contact.law is project");
     cs_scene_read_text(&scene, "s.json", "{}", 2, NULL, 0, &none);
     UNIT_ASSERT_FAILED(&none, CS_ERR_SCENE, "s.json:1:1: bodies: ");
 }

@@ -13,15 +13,23 @@ static double softest(const struct cs_springs *springs) {
     return k;
 }
 
-enum cs_status cs_pairings_build(struct cs_system *system, struct cs_error *error) {
-    const struct cs_scene *scene = system->scene;
-    const double given = scene->contact.stiffness;
-    const double k = isnan(given) ? softest(&system->springs) : given;
-    const double shortest = cs_springs_shortest(&system->springs);
-    if (!isfinite(k))
+enum cs_status cs_pairing_stiffness(const struct cs_system *system, double *k,
+                                    struct cs_error *error) {
+    const double given = system->scene->contact.stiffness;
+    *k = isnan(given) ? softest(&system->springs) : given;
+    if (!isfinite(*k))
         return cs_fail(error, CS_ERR_SCENE,
                        "contact.stiffness: no stretch spring to take it from, expected a "
                        "number in N/m");
+    return CS_OK;
+}
+
+enum cs_status cs_pairings_build(struct cs_system *system, struct cs_error *error) {
+    const struct cs_scene *scene = system->scene;
+    const double shortest = cs_springs_shortest(&system->springs);
+    double k;
+    if (cs_pairing_stiffness(system, &k, error))
+        return error->status;
     struct cs_pairing *pairings =
         cs_arena_take_n(&system->arena, scene->colliders.n, sizeof *pairings, error);
     for (uint32_t c = 0; pairings && c < scene->colliders.n; c++) {

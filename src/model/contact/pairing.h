@@ -13,6 +13,10 @@ struct cs_pairing {
     double range; /* m in front of the surface */
 };
 
+/* *k = contact.stiffness, or that of the softest stretch spring. CS_ERR_SCENE: neither. */
+enum cs_status cs_pairing_stiffness(const struct cs_system *system, double *k,
+                                    struct cs_error *error);
+
 /* Fills system->pairings (one a collider), the springs there. k: contact.stiffness, or the
  * softest stretch spring; range: the collider's thickness, or CS_RANGE_SHARE of the shortest
  * spring. CS_ERR_SCENE where a value is neither given nor to be had from springs;

@@ -63,6 +63,14 @@ struct cs_term {
      * none may have a negative eigenvalue. */
     void (*add_blocks)(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks);
+    /* Where a force has entries between particles beside its blocks, in any pattern: found at
+     * the matrix's state before add_blocks, kept until the next if `kept` (else good for
+     * add_blocks alone), and added to products; the solver's preconditioner has the blocks
+     * alone. Both or neither; by all threads. */
+    void (*prepare_matrix)(const struct cs_system *system, const struct cs_matrix *matrix,
+                           bool kept);
+    /* y += those entries times p. */
+    void (*add_product)(const struct cs_system *system, const double *p, double *y);
     /* Between particles: the springs alone, whose factors the solver knows; here it adds the
      * particles' diagonal blocks of df/dx and df/dv, (6,n). */
     void (*add_diagonal)(const struct cs_system *system, const double *x, double *kxx,

@@ -106,6 +106,27 @@ static void add_share(const struct cs_system *system, const struct cs_matrix *ma
         term->add_scalar(system, matrix, 0, system->view.n, blocks + c * system->view.n);
 }
 
+void cs_terms_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                             bool kept) {
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->prepare_matrix)
+            system->terms[k]->prepare_matrix(system, matrix, kept);
+}
+
+void cs_terms_add_product(const struct cs_system *system, const double *p, double *y) {
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->add_product)
+            system->terms[k]->add_product(system, p, y);
+}
+
+/* of all terms that have one without the springs */
+static void add_shares(const struct cs_system *system, const struct cs_matrix *matrix,
+                       double *blocks) {
+    cs_terms_prepare_matrix(system, matrix, false);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        add_share(system, matrix, system->terms[k], blocks);
+}
+
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv) {
     const size_t bytes = 6 * sizeof *kxx * system->view.n;
@@ -113,12 +134,11 @@ void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at,
     const struct cs_matrix d = {.t = at->t, .x = at->x, .v = at->v, .cd = 1};
     memset(kxx, 0, bytes);
     memset(dvv, 0, bytes);
-    for (uint32_t term = 0; term < system->n_terms; term++) {
+    for (uint32_t term = 0; term < system->n_terms; term++)
         if (system->terms[term]->add_diagonal)
             system->terms[term]->add_diagonal(system, at->x, kxx, dvv);
-        add_share(system, &k, system->terms[term], kxx);
-        add_share(system, &d, system->terms[term], dvv);
-    }
+    add_shares(system, &k, kxx);
+    add_shares(system, &d, dvv);
 }
 
 void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,

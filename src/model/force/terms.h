@@ -10,7 +10,7 @@
 #define CS_TERM_LIST_MORE(X)
 #endif
 #define CS_TERM_LIST(X)                                                                        \
-    X(springs) X(gravity) X(drag) X(wind) X(push) X(contact) CS_TERM_LIST_MORE(X)
+    X(springs) X(gravity) X(drag) X(wind) X(push) X(contact) X(pairs) CS_TERM_LIST_MORE(X)
 
 #define X(name) extern const struct cs_term cs_term_##name;
 CS_TERM_LIST(X)
@@ -38,6 +38,13 @@ void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *mat
  * cs_terms_have_blocks. */
 void cs_terms_add_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                          size_t begin, size_t end, double *diagonal, double *blocks);
+/* Before them: what shares have to prepare at the matrix's state. kept: its products are asked
+ * for until the next one that is kept. With all threads. */
+void cs_terms_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                             bool kept);
+/* y (3,n) += the shares of those terms that have some between particles, without the diagonal
+ * blocks, of the matrix kept last, times p. */
+void cs_terms_add_product(const struct cs_system *system, const double *p, double *y);
 bool cs_terms_have_blocks(const struct cs_system *system);
 
 /* true if the chosen parts need the particle normals in this scene */

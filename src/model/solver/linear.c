@@ -89,6 +89,7 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     linear->matrix = *matrix;
     linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * matrix->cm;
     cs_springs_factor(&system->springs, view->n, matrix, linear->factors);
+    cs_terms_prepare_matrix(system, matrix, true);
     cs_vector_share(view->n, set_mass, linear);
     if (linear->stiff)
         cs_multigrid_setup(
@@ -142,6 +143,7 @@ void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
     struct product product = {linear, p, y};
     cs_vector_share(n, mul_mass, &product);
     cs_springs_mul_add(&linear->system->springs, (uint32_t)n, linear->factors, p, y);
+    cs_terms_add_product(linear->system, p, y);
     clear_pinned(linear->system, y);
 }
 

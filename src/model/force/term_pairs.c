@@ -1,0 +1,70 @@
+/* Contact of bodies with themselves and with each other: the pairs of model/pair as a term. */
+#include "model/force/term.h"
+#include "model/pair/pairs.h"
+
+static size_t bytes_of(const struct cs_scene *scene) {
+    const size_t bodies = scene->bodies.n;
+    return cs_surfaces_bytes(scene) + sizeof(struct cs_pairs) +
+           bodies * bodies * sizeof(struct cs_meeting);
+}
+
+/* what depends on how much is in range comes on top */
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    const bool built = cs_scene_any_meet(scene);
+    return (struct cs_plan_row){.built = built,
+                                .bytes = built ? bytes_of(scene) : 0,
+                                .why = built ? "self_contact, or pairs of bodies" : NULL};
+}
+
+static void prepare(const struct cs_system *system, const struct cs_eval *at) {
+    cs_pairs_set(system->pairs, at);
+}
+
+static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    const struct cs_pair_set *set = &system->pairs->now;
+    const size_t n = system->view.n;
+    for (size_t i = at->block->begin; i < at->block->end && set->n; i++)
+        for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++)
+            for (size_t c = 0; c < 3; c++)
+                f[c * n + i] += set->ends[e].pair->to[set->ends[e].corner][c];
+}
+
+static double energy(const struct cs_system *system, const struct cs_eval *at) {
+    return cs_pairs_energy(system->pairs, at);
+}
+
+static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                           bool kept) {
+    cs_pairs_set_matrix(system->pairs, matrix, kept);
+}
+
+static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                       size_t begin, size_t end, double *blocks) {
+    (void)matrix;
+    cs_pairs_add_blocks(system->pairs, begin, end, blocks);
+}
+
+static void add_product(const struct cs_system *system, const double *p, double *y) {
+    cs_pairs_multiply(system->pairs, p, y);
+}
+
+static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
+                         const struct cs_row_sums *sums) {
+    cs_pairs_add_bound(system->pairs, at, sums->stiffness, sums->damping);
+}
+
+const struct cs_term cs_term_pairs = {
+    .name = "contact pairs",
+    .parts = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .plan = plan,
+    .build = cs_pairs_build,
+    .prepare = prepare,
+    .add_force = add,
+    .add_jvp = add,
+    .energy = energy,
+    .energy_kind = CS_ENERGY_OTHER,
+    .prepare_matrix = prepare_matrix,
+    .add_blocks = add_blocks,
+    .add_product = add_product,
+    .add_bound_at = add_bound_at,
+};

@@ -1,0 +1,148 @@
+/* The grid of boxes: sized, counted, filled. */
+#include "model/pair/cells.h"
+
+#include "base/arena.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* most cells, and most places in cells, a box on average */
+enum { CELLS_EACH = 8, PLACES_EACH = 32, FEW = 4096 };
+#define LARGER 1.26
+
+static bool is_empty(const struct cs_cell_box *box) {
+    return !(box->high[0] >= box->low[0]);
+}
+
+/* low corner and extent of all boxes; returns their mean longest side, 0 where there is none */
+static double measure(const struct cs_cell_box *boxes, uint32_t n, double low[3],
+                      double extent[3]) {
+    double high[3], sum = 0;
+    uint32_t count = 0;
+    for (int c = 0; c < 3; c++) {
+        low[c] = HUGE_VAL;
+        high[c] = -HUGE_VAL;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        double side = 0;
+        if (is_empty(boxes + i))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            low[c] = fmin(low[c], boxes[i].low[c]);
+            high[c] = fmax(high[c], boxes[i].high[c]);
+            side = fmax(side, boxes[i].high[c] - boxes[i].low[c]);
+        }
+        sum += side;
+        count++;
+    }
+    for (int c = 0; c < 3; c++)
+        extent[c] = high[c] - low[c];
+    return count ? sum / count : 0;
+}
+
+/* cells along each axis; false: more than there may be */
+static bool divide(struct cs_cells *cells, const double extent[3], double size, double most) {
+    double all = 1;
+    cells->inverse = 1 / size;
+    for (int c = 0; c < 3; c++) {
+        const double number = floor(extent[c] * cells->inverse) + 1;
+        all *= number;
+        if (!(all <= most))
+            return false;
+        cells->dim[c] = (uint32_t)number;
+    }
+    return true;
+}
+
+void cs_cells_span(const struct cs_cells *cells, const struct cs_cell_box *box,
+                   uint32_t first[3], uint32_t last[3]) {
+    for (int c = 0; c < 3; c++) {
+        const double end = cells->dim[c] - 1;
+        const double a = (box->low[c] - cells->low[c]) * cells->inverse;
+        const double b = (box->high[c] - cells->low[c]) * cells->inverse;
+        first[c] = (uint32_t)(a > 0 ? a < end ? a : end : 0);
+        last[c] = (uint32_t)(b > 0 ? b < end ? b : end : 0);
+    }
+}
+
+/* Adds 1 to each cell that a box touches, or puts the item where the cell's count says. */
+static size_t visit(struct cs_cells *cells, const struct cs_cell_box *box, uint32_t item,
+                    bool put) {
+    uint32_t first[3], last[3];
+    size_t places = 0;
+    cs_cells_span(cells, box, first, last);
+    for (uint32_t z = first[2]; z <= last[2]; z++)
+        for (uint32_t y = first[1]; y <= last[1]; y++)
+            for (uint32_t x = first[0]; x <= last[0]; x++, places++) {
+                uint32_t *count = cells->starts + cs_cells_at(cells, x, y, z);
+                if (put)
+                    cells->items[--*count] = item;
+                else
+                    ++*count;
+            }
+    return places;
+}
+
+static bool count_all(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n,
+                      size_t *places) {
+    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
+    uint32_t *starts =
+        cs_arena_grow(cells->starts, &cells->starts_room, all + 1, sizeof *starts);
+    *places = 0;
+    if (!starts)
+        return false;
+    cells->starts = starts;
+    memset(starts, 0, (all + 1) * sizeof *starts);
+    for (uint32_t i = 0; i < n && *places <= (size_t)PLACES_EACH * n + FEW; i++)
+        if (!is_empty(boxes + i))
+            *places += visit(cells, boxes + i, i, false);
+    return true;
+}
+
+/* places from the last to the first, so that items come down to where the cell begins */
+static bool fill_all(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n,
+                     size_t places) {
+    const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
+    uint32_t *items = cs_arena_grow(cells->items, &cells->items_room, places, sizeof *items);
+    if (!items && places)
+        return false;
+    cells->items = items;
+    for (size_t c = 1; c < all; c++)
+        cells->starts[c] += cells->starts[c - 1];
+    cells->starts[all] = (uint32_t)places;
+    for (uint32_t i = n; i--;)
+        if (!is_empty(boxes + i))
+            visit(cells, boxes + i, i, true);
+    return true;
+}
+
+/* false: no memory */
+static bool fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n,
+                 const double extent[3], double size) {
+    size_t places;
+    for (;; size *= LARGER) {
+        if (!divide(cells, extent, size, (double)CELLS_EACH * n + FEW))
+            continue;
+        if (!count_all(cells, boxes, n, &places))
+            return false;
+        if (places <= (size_t)PLACES_EACH * n + FEW)
+            return fill_all(cells, boxes, n, places);
+    }
+}
+
+bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n) {
+    double extent[3];
+    const double size = measure(boxes, n, cells->low, extent);
+    const bool some = size > 0 && extent[0] + extent[1] + extent[2] < HUGE_VAL;
+    const bool filled = !some || fill(cells, boxes, n, extent, size);
+    if (!some || !filled)
+        memset(cells->dim, 0, sizeof cells->dim);
+    return filled;
+}
+
+void cs_cells_finish(struct cs_cells *cells) {
+    free(cells->starts);
+    free(cells->items);
+    *cells = (struct cs_cells){0};
+}

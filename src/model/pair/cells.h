@@ -1,0 +1,40 @@
+/* cells.h - boxes sorted into the cells of a uniform grid by counting: integer keys, no
+ * pointers, items of a cell ascending. */
+#ifndef CS_PAIR_CELLS_H
+#define CS_PAIR_CELLS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct cs_cell_box {
+    double low[3], high[3]; /* m */
+};
+
+struct cs_cells {
+    double low[3], inverse; /* corner of the grid, 1/edge of a cell */
+    uint32_t dim[3];
+    uint32_t *starts, *items; /* cell c holds items[starts[c]..starts[c + 1]) */
+    size_t starts_room, items_room;
+};
+
+/* Puts box i into every cell that it touches; empty boxes (high below low) into none. Cells are
+ * about as large as the boxes on average, and larger where there would be too many. Where boxes
+ * are not finite, or all empty, there is no cell (dim 0), and so it is where false says that
+ * there was no memory. */
+bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n);
+
+/* Cells that a box touches, first and last along each axis. */
+void cs_cells_span(const struct cs_cells *cells, const struct cs_cell_box *box,
+                   uint32_t first[3], uint32_t last[3]);
+
+/* Number of a cell. */
+static inline size_t cs_cells_at(const struct cs_cells *cells, uint32_t x, uint32_t y,
+                                 uint32_t z) {
+    return ((size_t)z * cells->dim[1] + y) * cells->dim[0] + x;
+}
+
+/* Gives the memory back. */
+void cs_cells_finish(struct cs_cells *cells);
+
+#endif

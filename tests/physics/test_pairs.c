@@ -1,0 +1,280 @@
+/* Contact of bodies with themselves and with each other: its order, energy and momentum, and
+ * that no list of pairs is ever seen in the bits. */
+#include "fixture.h"
+
+#include "base/pool.h"
+#include "io/scene_read.h"
+#include "model/force/terms.h"
+#include "model/pair/reaction.h"
+#include "model/plan.h"
+#include "model/system_build.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define LENGTH(a) (sizeof(a) / sizeof *(a))
+
+/* a sheet over a sheet, turned, or a strip to be bent into a U; %s: mass and springs' damping
+ */
+#define SPRINGS                                                                                \
+    "\"mass\": {\"particle\": 0.1}, \"springs\": {\"stretch\": 40, \"shear\": 15, \"bend\": "  \
+    "5, \"damping\": 0}"
+#define CONTACT                                                                                \
+    "\"contact\": {\"law\": \"force\", \"stiffness\": 40, \"damping\": %g, "                   \
+    "\"friction_speed\": 0.5}, \"time\": {\"fps\": 10}"
+#define SHEETS                                                                                 \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"start\": \"flat\"}, \"thickness\": 0.1, "  \
+    "\"pins\": [\"top\", \"bottom\"], " SPRINGS "}, {\"cloth\": {\"grid\": [3, 4], \"start\":" \
+    " \"flat\", \"size\": [0.6, 0.7], \"place\": {\"translate\": [0.03, 0.12, 0.05], "         \
+    "\"rotate\": [0.03, 0.2, 0, 1]}}, \"thickness\": 0.1, " SPRINGS "}], \"pairs\": "          \
+    "{\"among\": \"all\", \"friction\": %g}, " CONTACT "}"
+#define STRIP                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [9, 3], \"size\": [2, 0.5]}, \"thickness\": 0.1, "   \
+    "\"self_contact\": true, \"friction\": %g, " SPRINGS "}], \"forces\": {\"gravity\": "      \
+    "[0, 0, 0]}, " CONTACT "}"
+
+/* the strip in the shape of a U whose arms close */
+static void bend(struct fixture *strip) {
+    static const double turn[9][2] = {{0.9, 0.1},  {0.65, 0.1},  {0.4, 0.1},
+                                      {0.15, 0.1}, {0, 0},       {0.15, -0.1},
+                                      {0.4, -0.1}, {0.65, -0.1}, {0.9, -0.1}};
+    const size_t n = strip->n;
+    for (size_t i = 0; i < n; i++) {
+        const double bump = 0.02 * sin(1.3 * (double)i);
+        strip->x[i] = turn[i % 9][0] + bump;
+        strip->x[2 * n + i] = turn[i % 9][1] + 0.5 * bump;
+        strip->v[2 * n + i] = -1.5 * turn[i % 9][1];
+    }
+}
+
+enum scene { ON_BODY, ON_ITSELF };
+
+static void open(struct fixture *cloth, enum scene scene, const char *integrator,
+                 double friction, double damping) {
+    if (scene == ON_BODY)
+        fixture_open(cloth, integrator, SHEETS, friction, damping);
+    else
+        fixture_open(cloth, integrator, STRIP, friction, damping);
+    if (scene == ON_ITSELF)
+        bend(cloth);
+    fixture_start(cloth);
+}
+
+enum { VALUES = 6 * 28 };
+
+static size_t end_state(enum scene scene, const char *name, double h, uint32_t frames,
+                        double *state) {
+    struct fixture cloth;
+    char integrator[128];
+    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
+             h);
+    open(&cloth, scene, integrator, 0, 0);
+    fixture_frames(&cloth, frames);
+    const size_t n = 6 * cloth.n;
+    memcpy(state, cloth.x, n * sizeof *state);
+    fixture_close(&cloth);
+    return n;
+}
+
+START_TEST(orders_hold_in_contact) {
+    static const struct {
+        const char *name;
+        double h, order;
+    } methods[] = {{"velocity-verlet", 5e-4, 2},
+                   {"rk4", 2e-3, 4},
+                   {"implicit-linearised:rtol=1e-10", 2.5e-4, 1},
+                   {"implicit-midpoint:rtol=1e-12", 1e-3, 2}};
+    for (int scene = ON_BODY; scene <= ON_ITSELF; scene++) {
+        double reference[VALUES], state[VALUES], error[2];
+        const size_t n = end_state(scene, "rk4", 1e-4, 3, reference);
+        for (size_t m = 0; m < LENGTH(methods); m++) {
+            for (int k = 0; k < 2; k++) {
+                end_state(scene, methods[m].name, methods[m].h / (1 + k), 3, state);
+                error[k] = cs_rms_difference(state, reference, n);
+            }
+            ck_assert_msg(fabs(log2(error[0] / error[1]) - methods[m].order) < 0.2,
+                          "scene %d, %s: order %.3f (errors %.3g, %.3g)", scene,
+                          methods[m].name, log2(error[0] / error[1]), error[0], error[1]);
+        }
+    }
+}
+END_TEST
+
+/* what rk4 loses of the energy over a run, which falls by 2^4 or so with each halving of the
+ * step */
+START_TEST(energy_is_kept) {
+    for (int scene = ON_BODY; scene <= ON_ITSELF; scene++) {
+        double lost[2];
+        for (int k = 0; k < 2; k++) {
+            struct fixture cloth;
+            open(&cloth, scene, k ? "rk4:dt=2.5e-4" : "rk4:dt=1e-3", 0, 0);
+            const double before = fixture_energy(&cloth);
+            fixture_frames(&cloth, 4);
+            lost[k] = fabs(fixture_energy(&cloth) - before);
+            fixture_close(&cloth);
+        }
+        ck_assert_msg(lost[0] < 1e-5 && lost[1] < lost[0] / 200, "scene %d: lost %.3g, %.3g J",
+                      scene, lost[0], lost[1]);
+    }
+}
+END_TEST
+
+/* free in space: momentum whatever acts, angular momentum but for friction */
+START_TEST(momentum_is_kept) {
+    for (int rub = 0; rub < 2; rub++) {
+        struct fixture strip;
+        double p[2][3] = {{0}}, l[2][3] = {{0}};
+        open(&strip, ON_ITSELF, "symplectic-euler:dt=1e-3", rub ? 0.5 : 0, 0.01);
+        fixture_momentum(&strip, p[0], l[0]);
+        fixture_frames(&strip, 6);
+        fixture_momentum(&strip, p[1], l[1]);
+        for (int c = 0; c < 3; c++) {
+            ck_assert_double_eq_tol(p[0][c], p[1][c], 1e-12);
+            ck_assert(rub || fabs(l[0][c] - l[1][c]) < 1e-10);
+        }
+        fixture_close(&strip);
+    }
+}
+END_TEST
+
+/* --- lists --- */
+
+static const char crumple[] =
+    "{\"bodies\": [{\"cloth\": {\"grid\": [25, 12], \"size\": [2.4, 1.1]}, \"self_contact\": "
+    "true, \"friction\": 0.2, \"mass\": {\"particle\": 0.01}, \"springs\": {\"stretch\": 40, "
+    "\"shear\": 15, \"bend\": 1, \"damping\": 0.02}}, {\"mesh\": {\"shape\": \"sphere\", "
+    "\"detail\": 4, \"scale\": [0.6, 0.6, 0.6], \"place\": {\"translate\": [0, 0, 0.4]}, "
+    "\"velocity\": [0, 0, -4]}, \"mass\": {\"total\": 2}, \"springs\": {\"stretch\": 400, "
+    "\"damping\": 0.1}}], \"pairs\": \"all\", \"contact\": {\"law\": \"force\"}, \"forces\": "
+    "{\"gravity\": [0, 0, 0]}}";
+
+/* a ball is thrown at a sheet, which wraps round it */
+static size_t end_of_crumple(const char *method, uint32_t threads, double margin,
+                             double state[6 * 600]) {
+    struct fixture cloth;
+    struct cs_error error = {0};
+    cs_pool_start(threads, &error);
+    fixture_open(&cloth, method, "%s", crumple);
+    cloth.system->pairs->search.margin *= margin;
+    cloth.system->pairs->search.fresh = false;
+    fixture_start(&cloth);
+    fixture_frames(&cloth, 12);
+    ck_assert_uint_gt(cloth.system->pairs->now.n, 40);
+    ck_assert_uint_gt(cloth.system->pairs->search.builds, 3);
+    const size_t n = 6 * cloth.n;
+    ck_assert_uint_le(n, 6 * 600);
+    memcpy(state, cloth.x, n * sizeof *state);
+    fixture_close(&cloth);
+    cs_pool_stop();
+    return n;
+}
+
+START_TEST(lists_are_not_seen_in_the_bits) {
+    static const struct {
+        uint32_t threads;
+        double margin;
+    } runs[] = {{1, 0.5}, {1, 2}, {2, 1}, {3, 0.7}};
+    static const char *const methods[] = {"velocity-verlet", "implicit-linearised:dt=0.004"};
+    for (size_t m = 0; m < LENGTH(methods); m++) {
+        static double one[6 * 600], other[6 * 600];
+        const size_t n = end_of_crumple(methods[m], 1, 1, one);
+        for (size_t r = 0; r < LENGTH(runs); r++) {
+            end_of_crumple(methods[m], runs[r].threads, runs[r].margin, other);
+            ck_assert_msg(!memcmp(one, other, n * sizeof *one), "%s: %u threads, margin %g",
+                          methods[m], runs[r].threads, runs[r].margin);
+        }
+    }
+}
+END_TEST
+
+/* all pairs there are, one after the other, without any list */
+static size_t add_all(const struct fixture *cloth, double *f) {
+    const struct cs_system *system = cloth->system;
+    const struct cs_surfaces *s = system->surfaces;
+    const struct cs_touch_parts parts = {1, 1};
+    size_t found = 0;
+    for (uint32_t kind = 0; kind < 2; kind++)
+        for (uint32_t a = 0; a < (kind ? s->n_edges : cloth->n); a++)
+            for (uint32_t b = kind ? a + 1 : 0; b < (kind ? s->n_edges : s->n_triangles); b++) {
+                const uint32_t pair[2] = {a, b};
+                struct cs_reaction reaction;
+                uint32_t at[4];
+                double p[4][3], v[4][3], push[4][3];
+                bool same = false;
+                cs_search_corners(s, kind, pair, at);
+                for (int i = 0; i < 2; i++)
+                    for (int j = i + 1; j < 4; j++)
+                        same = same || (at[i] == at[j] && (kind ? i / 2 != j / 2 : !i));
+                const uint32_t *body = system->pairs->search.body;
+                const struct cs_meeting *meeting =
+                    cs_meeting_of(&system->pairs->meetings, body[at[0]], body[at[2]]);
+                for (size_t k = 0; k < 4; k++)
+                    for (size_t c = 0; c < 3; c++) {
+                        p[k][c] = cloth->x[c * cloth->n + at[k]];
+                        v[k][c] = cloth->v[c * cloth->n + at[k]];
+                    }
+                cs_stencil_set(&reaction.stencil, kind, p);
+                if (same || !(reaction.stencil.d < meeting->range))
+                    continue;
+                cs_reaction_set(&reaction, meeting, &system->scene->contact, v);
+                cs_reaction_force(&reaction, parts, push);
+                for (size_t k = 0; k < 4; k++)
+                    for (size_t c = 0; c < 3; c++)
+                        f[c * cloth->n + at[k]] += push[k][c];
+                found++;
+            }
+    return found;
+}
+
+START_TEST(lists_miss_no_pair) {
+    struct fixture cloth;
+    static double all[3 * 600], found[3 * 600];
+    fixture_open(&cloth, "velocity-verlet", "%s", crumple);
+    fixture_start(&cloth);
+    // springs and the like aside
+    for (uint32_t k = 0; k < cloth.system->n_terms; k++)
+        if (cloth.system->terms[k] == &cs_term_pairs)
+            for (int frame = 0; frame < 12; frame += 4) {
+                fixture_frames(&cloth, 4);
+                struct cs_system alone = *cloth.system;
+                alone.terms[0] = &cs_term_pairs;
+                alone.n_terms = 1;
+                memset(all, 0, sizeof all);
+                const size_t n = add_all(&cloth, all);
+                cs_terms_force(
+                    &alone, &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL},
+                    found);
+                ck_assert_uint_eq(n, cloth.system->pairs->now.n);
+                ck_assert(!memcmp(all, found, 3 * cloth.n * sizeof *all));
+            }
+    ck_assert_uint_gt(cloth.system->pairs->now.n, 40);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* a cloth whose layers have no room for its thickness is told so */
+START_TEST(too_thick_is_refused) {
+    struct cs_error error = {0};
+    struct cs_scene scene;
+    struct cs_system system;
+    struct cs_plan plan;
+    static const char text[] =
+        "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5]}, \"mass\": {\"total\": 1}, "
+        "\"self_contact\": true, \"thickness\": 0.2}], \"contact\": \"force\"}";
+    cs_scene_read_text(&scene, "scene.json", text, strlen(text), NULL, 0, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_plan_make(&plan, &scene, 0, false);
+    ck_assert_int_eq(cs_system_build(&system, &scene, &plan, &error), CS_ERR_SCENE);
+    ck_assert_msg(strstr(error.message, "bodies[0].self_contact: parts of it start 0.177 m"),
+                  "%s", error.message);
+    cs_scene_finish(&scene);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {orders_hold_in_contact, energy_is_kept,
+                                  momentum_is_kept,       lists_are_not_seen_in_the_bits,
+                                  lists_miss_no_pair,     too_thick_is_refused};
+    return fixture_run("pairs", tests, sizeof tests / sizeof *tests);
+}
