@@ -15,6 +15,7 @@
 #include "model/system/system.h"
 #include "scene/crossings.h"
 #include "scene/event_key.h"
+#include "scene/pairs.h"
 #include "scene/shape.h"
 
 #include <clothsim/integrator.h>

@@ -1,5 +1,5 @@
 /* Which bodies keep off each other, by the table of pairs and by each body's own key. */
-#include "scene/scene.h"
+#include "scene/pairs.h"
 
 bool cs_scene_bodies_meet(const struct cs_scene *scene, uint32_t a, uint32_t b,
                           double *friction) {

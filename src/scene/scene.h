@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "base/status.h"
 #include "mesh/network.h"
+#include "scene/pair_keys.h"
 
 #include <clothsim/option.h>
 
@@ -187,18 +188,6 @@ struct cs_contact_keys {
     double friction_speed; /* m/s, at which friction has 0.7 of its limit */
 };
 
-/* two bodies that keep off each other */
-struct cs_pair_keys {
-    int64_t bodies[2];
-    double friction; /* Coulomb coefficient */
-};
-enum cs_pairs_among { CS_PAIRS_LISTED, CS_PAIRS_ALL };
-struct cs_pairs_keys {
-    int32_t among;       /* enum cs_pairs_among */
-    double friction;     /* of pairs that are not in the list */
-    struct cs_list list; /* struct cs_pair_keys */
-};
-
 enum cs_wind_unit { CS_WIND_PA, CS_WIND_N };
 struct cs_wind {
     bool present;
@@ -370,8 +359,7 @@ extern const char *const cs_pin_names[];
 extern const char *const cs_look_names[];
 extern const char *const cs_mesh_shape_names[];
 #define CS_INTEGRATOR_DEFAULT "implicit-linearised"
-
-/* The colliders, bodies and pins of a scene with their type. */
+/* Lists of a scene with their type. */
 static inline struct cs_body *cs_scene_bodies(const struct cs_scene *scene) {
     return scene->bodies.items;
 }
@@ -395,13 +383,6 @@ static inline uint32_t cs_scene_first_matched(const struct cs_scene *scene) {
 static inline const struct cs_event *cs_scene_events(const struct cs_scene *scene) {
     return scene->events.items;
 }
-/* Whether two bodies, or one with itself, keep off each other, and at which coefficient of
- * friction (where they do). */
-bool cs_scene_bodies_meet(const struct cs_scene *scene, uint32_t a, uint32_t b,
-                          double *friction);
-/* Whether any do. */
-bool cs_scene_any_meet(const struct cs_scene *scene);
-
 /* 4096 x 4096 particles: about 10 GB with springs and solver */
 #define CS_PARTICLES_MAX 16777216.0
 

@@ -1,5 +1,6 @@
 /* What single ranges cannot say about a scene. */
 #include "scene/event_check.h"
+#include "scene/pairs.h"
 #include "scene/shape.h"
 #include "scene/viewpoint.h"
 

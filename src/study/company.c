@@ -1,6 +1,7 @@
 /* company.c - boxes about bodies, and about where they can come to. */
 #include "study/company.h"
 
+#include "scene/pairs.h"
 #include "scene/shape.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* Contact of bodies with themselves and with each other: the pairs of model/pair as a term. */
 #include "model/force/term.h"
 #include "model/pair/pairs.h"
+#include "scene/pairs.h"
 
 static size_t bytes_of(const struct cs_scene *scene) {
     const size_t bodies = scene->bodies.n;

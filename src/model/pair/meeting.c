@@ -2,6 +2,7 @@
 #include "model/pair/meeting.h"
 
 #include "model/contact/pairing.h"
+#include "scene/pairs.h"
 
 #include <math.h>
 

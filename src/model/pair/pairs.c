@@ -3,7 +3,7 @@
 
 #include "base/pool.h"
 #include "base/vector.h"
-#include "model/pair/reaction.h"
+#include "model/pair/nearness.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -88,6 +88,8 @@ static void meet(const struct job *job, enum cs_stencil_kind kind, const uint32_
     const struct cs_meeting *meeting =
         cs_meeting_of(&pairs->meetings, body[at[0]], body[at[2]]);
     read(job->at.x, n, at, move.p);
+    if (cs_nearness_is_apart(kind, move.p, meeting->range))
+        return;
     cs_stencil_set(&reaction.stencil, kind, move.p);
     if (!(reaction.stencil.d < meeting->range) || is_fixed(pairs->system, at))
         return;

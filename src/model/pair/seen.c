@@ -3,6 +3,7 @@
 
 #include "base/vector.h"
 #include "model/contact/share.h"
+#include "model/pair/nearness.h"
 
 /* points of one move, at most */
 enum { POINTS_MOST = 64 };
@@ -73,12 +74,14 @@ static double kinetic(const struct way *way, const struct cs_stencil *s, double 
     return inverse > 0 ? 0.5 * cs_vec3_dot(v, v) / inverse : HUGE_VAL;
 }
 
-static bool is_unseen(const struct job *job, const struct way *way,
+static bool is_unseen(const struct job *job, struct way *way,
                       const struct cs_meeting *meeting) {
     const double range = meeting->range, k = meeting->k, move = largest_move(way);
     const int points =
         move < 0.5 * range * POINTS_MOST ? 1 + (int)(move / (0.5 * range)) : POINTS_MOST;
     struct cs_stencil start, s;
+    if (cs_nearness_is_apart(way->kind, way->from, range + move))
+        return false;
     double approach, unseen = 0;
     bool near = false;
     set_at(way, 0, &start);
