@@ -1,7 +1,11 @@
 /* Contact as a force: against closed forms of the law, of the incline and of the belt, and by
  * what holds for every method: its order, and that nothing gains energy at an obstacle. */
+#include "base/vec3.h"
 #include "fixture.h"
 #include "model/contact/law.h"
+#include "model/contact/obstacle.h"
+#include "model/contact/pairing.h"
+#include "model/contact/share.h"
 #include "model/plan.h"
 
 #include <math.h>
@@ -206,6 +210,66 @@ START_TEST(passes_settle_beside_implicit_euler) {
 }
 END_TEST
 
+/* the energy that a straight move of one particle does not see, as share.h has it */
+static bool move_is_seen(const struct cs_system *system, double h, const double from[3],
+                         const double to[3]) {
+    const struct cs_pairing *pairing = system->pairings;
+    struct cs_obstacle obstacle;
+    double g[3], hessian[6], move[3], worst = 0;
+    cs_obstacle_at(system, 0, h, &obstacle);
+    const double d = cs_obstacle_smooth(&obstacle, from, g, hessian);
+    const struct cs_law law = cs_law_at(d, pairing->range, pairing->k);
+    const double held = cs_law_energy(d, pairing->range, pairing->k);
+    for (int c = 0; c < 3; c++)
+        move[c] = to[c] - from[c];
+    const double way = sqrt(cs_vec3_dot(move, move));
+    const int points = 1 + (int)fmin(way / (0.5 * pairing->range), 63);
+    for (int j = 1; j <= points; j++) {
+        double p[3];
+        for (int c = 0; c < 3; c++)
+            p[c] = from[c] + j / (double)points * move[c];
+        const double s = d - cs_obstacle_smooth(&obstacle, p, g, hessian);
+        worst = fmax(worst, fabs(cs_law_energy(d - s, pairing->range, pairing->k) - held -
+                                 law.force * s - 0.5 * law.stiffness * s * s));
+    }
+    return worst <= 0.02 * (0.5 * system->mass[0] * way * way / (h * h) + held);
+}
+
+/* whatever is told from a whole row of particles at once */
+START_TEST(steps_are_judged_as_stated) {
+    static const char *const shapes[] = {
+        "{\"floor\": {\"height\": 0}",
+        "{\"sphere\": {\"centre\": [0, -0.3, 0], \"radius\": 0.3}",
+        "{\"box\": {\"centre\": [0, -0.2, 0], \"size\": [0.4, 0.4, 0.4], \"radius\": 0.05}"};
+    for (size_t k = 0; k < LENGTH(shapes); k++) {
+        struct fixture one;
+        uint32_t seen = 0, moves = 0;
+        fixture_open(
+            &one, "rk4",
+            "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1], \"place\": {\"translate\": [0, 1, "
+            "0]}}, \"mass\": {\"particle\": 0.01}}], \"colliders\": [%s, \"thickness\": "
+            "0.02}], \"contact\": {\"law\": \"force\", \"stiffness\": 200}}",
+            shapes[k]);
+        for (int i = 0; i < 2000; i++) {
+            const double length = 0.1 * pow(10, -3 * fabs(sin(1.7 * i))),
+                         h = i % 2 ? 0.01 : 1e-3;
+            double from[3], to[3];
+            for (int c = 0; c < 3; c++) {
+                from[c] = c == 1 ? 0.012 + 0.012 * sin(2.3 * i) : 0.02 * sin(0.7 * i + c);
+                to[c] = from[c] + length * cos(1.1 * i + 2 * c);
+            }
+            const bool expected = move_is_seen(one.system, h, from, to);
+            ck_assert_msg(cs_contact_is_seen(one.system, 0, from, h, to) == expected,
+                          "shape %zu, move %d of %g m: expected %d", k, i, length, expected);
+            seen += expected, moves++;
+        }
+        ck_assert_uint_gt(seen, moves / 10);
+        ck_assert_uint_lt(seen, moves * 9 / 10);
+        fixture_close(&one);
+    }
+}
+END_TEST
+
 /* a soft ball that falls 0.6 m on a floor, friction and damping 0 */
 #define BALL                                                                                   \
     "{\"bodies\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": 3, \"scale\": [0.4, 0.4, "   \
@@ -306,6 +370,7 @@ int main(void) {
                                   bounces_make_no_energy,
                                   friction_in_a_stage_makes_no_energy,
                                   passes_settle_beside_implicit_euler,
+                                  steps_are_judged_as_stated,
                                   methods_with_explicit_outer_forces_are_refused};
     return fixture_run("contact force", tests, LENGTH(tests));
 }
