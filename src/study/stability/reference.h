@@ -8,9 +8,9 @@
 struct cs_reference {
     bool found; /* else only theory at rest is there, and message says why */
     char message[320];
-    double seconds;                 /* simulated: enough for 200 steps at the limit */
-    struct cs_trial trial;          /* velocity-verlet with a small step */
-    double row_sums;                /* s, limit by the Gershgorin bound (row sums) */
+    double seconds;        /* simulated: enough for 200 steps at the limit */
+    struct cs_trial trial; /* velocity-verlet with a small step */
+    double row_sums; /* s, limit by Gershgorin bounds (row sums), of contact along the way */
     struct cs_theory_limit at_rest; /* before the start is perturbed */
     struct cs_theory_limit worst;   /* along the way */
 };

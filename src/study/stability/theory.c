@@ -1,6 +1,8 @@
 /* Finds the largest stable step of a method on a system by linear theory. */
 #include "study/stability/theory.h"
 
+#include "model/force/bounds.h"
+
 #include <math.h>
 
 enum { MOST_TURNS = 5 };
@@ -16,16 +18,16 @@ void cs_theory_finish(struct cs_theory *theory) {
     cs_modes_finish(&theory->modes);
 }
 
-enum cs_status cs_theory_row_sums(struct cs_theory *theory, double *dt,
+enum cs_status cs_theory_row_sums(struct cs_theory *theory, const double *x, double *dt,
                                   struct cs_error *error) {
-    const struct cs_view *view = &theory->modes.system->view;
-    const double square = view->omega * view->omega;
-    double damped = HUGE_VAL;
-    *dt = HUGE_VAL;
-    if (cs_amplify_limit(&theory->amplify, square, 0, dt, error) ||
-        cs_amplify_limit(&theory->amplify, square, 2 * view->delta, &damped, error))
+    const struct cs_modes *modes = &theory->modes;
+    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zero, .parts = CS_PART_ALL};
+    double omega, delta, free = HUGE_VAL, damped = HUGE_VAL;
+    cs_bounds_rate(modes->system, &at, modes->dx, &omega, &delta);
+    if (cs_amplify_limit(&theory->amplify, omega * omega, 0, &free, error) ||
+        cs_amplify_limit(&theory->amplify, omega * omega, 2 * delta, &damped, error))
         return error->status;
-    *dt = fmin(*dt, damped);
+    *dt = fmin(*dt, fmin(free, damped));
     return CS_OK;
 }
 
