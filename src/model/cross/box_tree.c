@@ -22,7 +22,7 @@ static int by_code(const void *left, const void *right) {
     return (a->item > b->item) - (a->item < b->item);
 }
 
-/* Morton's order (1966): the bits of the three coordinates by turns. */
+/* Morton's order: the bits of the three coordinates by turns. */
 static uint64_t code_of(const double p[3], const double low[3], double side) {
     uint64_t code = 0, place[3];
     for (int c = 0; c < 3; c++) {
