@@ -3,6 +3,7 @@
 #include "cli/line/print.h"
 #include "io/scene_write.h"
 #include "model/plan.h"
+#include "study/coarse.h"
 #include "study/company.h"
 #include "study/session.h"
 
@@ -53,7 +54,9 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     add_count(out, ", ", scene->colliders.n, "collider");
     cs_text_add(out, ", %s\n", session->method.integrator->name);
     struct cs_text warning = {0};
-    if (!cs_company_print(scene, 1, &warning, error) && warning.length)
+    if (!cs_company_print(scene, 1, &warning, error) && !warning.length)
+        cs_coarse_print(&session->system, &warning);
+    if (!error->status && warning.length)
         cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
     cs_text_finish(&warning);
     return error->status;

@@ -6,7 +6,9 @@
 #include "model/contact/obstacle.h"
 #include "model/contact/pairing.h"
 #include "model/contact/share.h"
+#include "model/cross/gap.h"
 #include "model/plan.h"
+#include "study/coarse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -371,6 +373,72 @@ START_TEST(methods_with_explicit_outer_forces_are_refused) {
 }
 END_TEST
 
+/* the distance of the nearest triangle of a grid of 13 x 13 from the origin */
+static double nearest_triangle(const double *x) {
+    enum { SIDE = 13, ALL = SIDE * SIDE };
+    double least = HUGE_VAL;
+    for (uint32_t row = 0; row + 1 < SIDE; row++)
+        for (uint32_t column = 0; column + 1 < SIDE; column++)
+            for (uint32_t half = 0; half < 4; half++) {
+                // both ways to cut a cell
+                static const uint32_t cut[4][3] = {{0, 1, 2}, {1, 3, 2}, {0, 1, 3}, {0, 3, 2}};
+                double p[4][3] = {{0}};
+                for (int k = 0; k < 3; k++) {
+                    const uint32_t corner = cut[half][k];
+                    const size_t i = (row + corner / 2) * SIDE + column + corner % 2;
+                    for (size_t c = 0; c < 3; c++)
+                        p[k + 1][c] = x[c * ALL + i];
+                }
+                least = fmin(least, cs_gap_squared(CS_GAP_POINT, (const double(*)[3])p));
+            }
+    return sqrt(least);
+}
+
+#define BALLED                                                                                 \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [13, 13], \"start\": \"flat\", \"place\": "          \
+    "{\"translate\": [0.05, 0.5, 0.02], \"rotate\": [0, 0.2, 0, 1]}}, \"mass\": "              \
+    "{\"areal_density\": 0.3}, \"springs\": {\"stretch\": 1000, \"shear\": 300, "              \
+    "\"bend\": 12, \"damping\": 0.005}}], \"colliders\": [{\"sphere\": {\"centre\": "          \
+    "[0, 0, 0], \"radius\": 0.35}, \"friction\": 0.3%s}], \"contact\": \"force\"}"
+
+/* A coarse cloth on a ball of 0.35 m, the range left to the mesh: what hangs between the
+ * particles sinks by s^2/8R at most, which is below a quarter of the range. */
+START_TEST(no_triangle_comes_into_a_ball) {
+    struct fixture cloth;
+    struct cs_text warning = {0};
+    double least = HUGE_VAL;
+    fixture_open(&cloth, "implicit-linearised:dt=0.004166666666666667", BALLED, "");
+    cs_coarse_print(cloth.system, &warning);
+    ck_assert_uint_eq(warning.length, 0);
+    fixture_start(&cloth);
+    for (int frame = 0; frame < 45; frame++) {
+        fixture_frames(&cloth, 1);
+        least = fmin(least, nearest_triangle(cloth.x));
+    }
+    ck_assert_double_gt(least, 0.35 + 0.01);
+    fixture_close(&cloth);
+
+    // with so thin a range it does come in, and that is told
+    fixture_open(&cloth, "implicit-linearised", BALLED, ", \"thickness\": 0.008");
+    cs_coarse_print(cloth.system, &warning);
+    ck_assert_ptr_nonnull(strstr(cs_text_get(&warning), "colliders[0]"));
+    cs_text_finish(&warning);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* chords of a quarter circle, and what is longer than it */
+START_TEST(edges_sink_as_their_chords_do) {
+    ck_assert_double_eq_tol(cs_coarse_sinking(0.01, 0.5, false), 0.01 * 0.01 / 8 / 0.5, 1e-8);
+    ck_assert_double_eq(cs_coarse_sinking(3, 1, false), 1);
+    const double r = 0.02, chord = sqrt(2) * r;
+    ck_assert_double_eq_tol(cs_coarse_sinking(chord, r, true), r - r / sqrt(2), 1e-12);
+    ck_assert_double_eq_tol(cs_coarse_sinking(1.0001 * chord, r, true), r - r / sqrt(2), 1e-5);
+    // across a sharp edge: half the chord
+    ck_assert_double_eq(cs_coarse_sinking(0.1, 0, true), 0.05);
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {law_is_one_function,
                                   blocks_slide_and_creep_as_the_law_says,
@@ -380,6 +448,8 @@ int main(void) {
                                   friction_in_a_stage_makes_no_energy,
                                   passes_settle_beside_implicit_euler,
                                   steps_are_judged_as_stated,
+                                  no_triangle_comes_into_a_ball,
+                                  edges_sink_as_their_chords_do,
                                   methods_with_explicit_outer_forces_are_refused};
     return fixture_run("contact force", tests, LENGTH(tests));
 }

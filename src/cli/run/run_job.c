@@ -9,6 +9,7 @@
 #include "cli/run/run_claims.h"
 #include "io/scene_hash.h"
 #include "io/scene_write.h"
+#include "study/coarse.h"
 #include "study/company.h"
 
 #include <math.h>
@@ -364,6 +365,8 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     job->frames = settings->frames ? settings->frames : frames_of_one_second(scene);
     if (cs_company_print(scene, job->frames / scene->time.fps, &job->warning, error))
         return error->status;
+    if (!job->warning.length)
+        cs_coarse_print(&job->session.system, &job->warning);
 
     if (makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
