@@ -1,7 +1,8 @@
 #!/bin/sh
 # page.sh SCDOC SOURCE [PROGRAM] - one man page to standard output; a line @KEYS@ of the source
-# stands for the program's own list of scene keys, @COMMANDS@ for that of its commands. No page where the program or scdoc fails: a
-# pipe tells only how its last command ended.
+# stands for the program's own list of scene keys, @COMMANDS@ for that of its commands, @GLOSSARY@
+# for the table of docs/glossary.md. No page where the program or scdoc fails: a pipe tells only how
+# its last command ended.
 set -eu
 
 work=$(mktemp -d)
@@ -20,10 +21,18 @@ commands() {
         }' "$work/help"
 }
 
+# rows "| term | meaning |"; `code` and *emphasis* are bold
+glossary() {
+    sed -n 's/^| \(.*\) | \(.*\) |$/\1\t\2/p' "$1" | sed 1d | sed 's/_/\\_/g; s/`/*/g' |
+        awk -F '\t' '{ printf "%s*%s*\n\t%s.\n", (NR > 1 ? "\n" : ""), $1,
+            toupper(substr($2, 1, 1)) substr($2, 2) }'
+}
+
 sed '/^@[A-Z]*@$/,$d' "$2" >"$work/source"
 case $(grep '^@[A-Z]*@$' "$2") in
 @KEYS@) "$3" scene --manual >>"$work/source" ;;
 @COMMANDS@) commands "$3" >>"$work/source" ;;
+@GLOSSARY@) glossary "$(dirname "$2")/../docs/glossary.md" >>"$work/source" ;;
 esac
 sed '1,/^@[A-Z]*@$/d' "$2" >"$work/rest"
 cat "$work/rest" >>"$work/source"

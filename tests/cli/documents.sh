@@ -26,7 +26,10 @@ script_of() { awk '/^```/ { inside = !inside && $0 == "```"; next } inside' "$1"
 
 # films need a program that is no part of this
 mkdir "$work/bin" "$work/said"
-command -v ffmpeg >/dev/null || ln -s /bin/true "$work/bin/ffmpeg"
+if ! command -v ffmpeg >/dev/null; then
+    printf '#!/bin/sh\nfor last; do :; done\necho film >"$last"\n' >"$work/bin/ffmpeg"
+    chmod +x "$work/bin/ffmpeg"
+fi
 
 # what a shell makes of the lines: each command prints its words instead of running
 for name in clothsim ffmpeg meson; do
@@ -53,7 +56,7 @@ for document in README.md docs/tutorial.md; do
     done
 done
 
-# a line that takes long is left out of the short test
+# what takes long, and golden tables, which have a test, are left out of the short one
 run() { # SHELL DOCUMENT FILTER
     script_of "$source/$2" | sed "$3" >"$work/script"
     code=0
@@ -68,7 +71,7 @@ if [ -z "$all" ]; then
         mkdir "$work/here"
         cd "$work/here"
         ln -s "$source/scenes" "$source/golden" .
-        run bash $document '/^\.\/dev/d; /^meson/d; /^clothsim compare/d; /^clothsim stability/d'
+        run bash $document '/^\.\/dev/d; /^meson/d; /^clothsim compare/d; /^clothsim stability/d; /^clothsim golden/d'
         cd "$work"
         rm -r here
     done
