@@ -337,6 +337,7 @@ static enum cs_step host_commit(void *ctx, double t, double dt, double *x, doubl
     const struct cs_run_settings *settings = &host->settings;
     *changed = false;
     host->run->counts.steps++;
+    host->left.committed = t;
     move_values(host, t);
     // the limit may move particles into obstacles, so contact comes after it; last are the
     // grabbed ones, which stay on their path whatever moved them

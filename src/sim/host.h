@@ -9,6 +9,7 @@
 #include "sim/bound.h"
 #include "sim/budget.h"
 #include "sim/guard.h"
+#include "sim/left.h"
 #include "sim/run_state.h"
 
 struct cs_run_host {
@@ -28,6 +29,7 @@ struct cs_run_host {
     struct cs_stats before; /* counted before the checkpoint that the run goes on from */
     struct cs_error error;  /* the method's first message */
     struct cs_bound bound;
+    struct cs_left left;
     struct cs_arena arena; /* the method's memory and the solver's */
 };
 

@@ -1,11 +1,16 @@
 /* Opens an integrator module and checks it against the contract before it is called. */
 #include "sim/module.h"
 
+#include "sim/crash.h"
 #include "sim/guard.h"
 
 #include <dlfcn.h>
+#include <errno.h>
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static bool is_name(const char *name, const char *letters) {
     return name && *name && strlen(name) < 64 && !name[strspn(name, letters)];
@@ -126,11 +131,34 @@ static enum cs_status check_module(const struct cs_module *module, struct cs_err
     return CS_OK;
 }
 
+/* Others could have put their code into what they may write; the rest would hang or crash the
+ * loader. */
+static enum cs_status check_file(const char *file, struct cs_error *error) {
+    struct stat info, folder;
+    char path[PATH_MAX];
+    const char *end = strrchr(file, '/');
+    snprintf(path, sizeof path, "%.*s", end ? (int)(end - file) : 1, end ? file : ".");
+    if (stat(file, &info) || stat(*path ? path : "/", &folder))
+        return cs_fail(error, CS_ERR_MODULE, "cannot be looked at: %s", strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return cs_fail(error, CS_ERR_MODULE, "is no regular file");
+    if (info.st_mode & S_IWOTH)
+        return cs_fail(error, CS_ERR_MODULE, "may be written by anyone: chmod o-w it first");
+    if ((folder.st_mode & S_IWOTH) && !(folder.st_mode & S_ISVTX))
+        return cs_fail(error, CS_ERR_MODULE,
+                       "is in a folder that anyone may write into: chmod o-w that first");
+    return CS_OK;
+}
+
 enum cs_status cs_module_open(const char *file, const struct cs_module **module,
                               struct cs_error *error) {
     *module = NULL;
     const struct cs_guard guard = cs_guard_take();
+    if (check_file(file, error))
+        return error->status;
+    cs_crash_watch("module", file, "when it was loaded");
     void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
+    cs_crash_forget();
     const bool changed = cs_guard_restore(guard);
     if (!handle)
         return cs_fail(error, CS_ERR_MODULE, "cannot be loaded: %s", dlerror());

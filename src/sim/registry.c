@@ -7,6 +7,7 @@
 #include "sim/module.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -112,6 +113,8 @@ static enum cs_status open_folder(struct cs_registry *registry, const char *fold
                                   const char *name, struct cs_error *error) {
     struct dirent **entries;
     const int n = scandir(folder, &entries, is_module_name, alphasort);
+    if (n < 0 && errno == ENOMEM)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of modules");
     for (int k = 0; k < n; k++) {
         char file[PATH_MAX];
         const int length = snprintf(file, sizeof file, "%s/%s", folder, entries[k]->d_name);

@@ -40,12 +40,45 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_gua
                    said->status ? said->message : "it gave no reason");
 }
 
+/* Round each call into the method: what it was, if it brings the program down. */
+static void watch(const struct cs_run *run, const char *place) {
+    cs_crash_watch("integrator", run->integrator->name, place);
+}
+
+static enum cs_step restart(struct cs_run *run, double t) {
+    watch(run, "in restart");
+    const enum cs_step step = run->integrator->restart(run->host->self, t, run->x, run->v);
+    cs_crash_forget();
+    return step;
+}
+
+/* An advance that was done is right in what it leaves, or it has failed after all. */
+static enum cs_step check_left(struct cs_run *run, double to) {
+    struct cs_run_host *host = run->host;
+    struct cs_text why = {0};
+    enum cs_step step = CS_STEP_OK;
+    if (!host->settings.unchecked && !cs_left_is_right(&host->left, to, &why))
+        step = host->calls.fail(host, "%s", cs_text_get(&why));
+    cs_text_finish(&why);
+    return step;
+}
+
+static enum cs_step advance(struct cs_run *run, double from, double to) {
+    if (!run->host->settings.unchecked)
+        cs_left_begin(&run->host->left, run->system, from);
+    watch(run, "in advance");
+    const enum cs_step step =
+        run->integrator->advance(run->host->self, from, to, run->x, run->v);
+    cs_crash_forget();
+    return step == CS_STEP_OK ? check_left(run, to) : step;
+}
+
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
     const size_t before = host->arena.used;
     const struct cs_guard guard = cs_guard_take();
     host->creating = true;
-    cs_crash_watch(run->integrator->name);
+    watch(run, "in create");
     const enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
     cs_crash_forget();
     host->creating = false;
@@ -55,35 +88,35 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
 
 enum cs_status cs_run_restart(struct cs_run *run, double t, struct cs_error *error) {
     const struct cs_guard guard = cs_guard_take();
-    const enum cs_step step = run->integrator->restart(run->host->self, t, run->x, run->v);
-    return judge(run, step, guard, error);
+    return judge(run, restart(run, t), guard, error);
 }
 
 enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
                               struct cs_error *error) {
     const struct cs_guard guard = cs_guard_take();
-    const enum cs_step step =
-        run->integrator->advance(run->host->self, from, to, run->x, run->v);
-    return judge(run, step, guard, error);
+    return judge(run, advance(run, from, to), guard, error);
 }
 
 enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
                               const struct cs_archive *archive, struct cs_error *error) {
     const struct cs_guard guard = cs_guard_take();
-    return judge(run, call(run->host->self, archive), guard, error);
+    watch(run, "in save or load");
+    const enum cs_step step = call(run->host->self, archive);
+    cs_crash_forget();
+    return judge(run, step, guard, error);
 }
 
 /* From run->t to end, in one go but for the events on the way, at which the method starts anew.
  * Those at the end itself belong to what follows. */
-static enum cs_step advance(struct cs_run *run, double end) {
+static enum cs_step advance_frame(struct cs_run *run, double end) {
     const struct cs_events *events = run->system->events;
     enum cs_step step = CS_STEP_OK;
     for (double t = run->t, next; t < end && step == CS_STEP_OK; t = next) {
         if (events && cs_events_next(events) <= t && cs_run_host_apply_events(run->host, t))
-            step = run->integrator->restart(run->host->self, t, run->x, run->v);
+            step = restart(run, t);
         next = events ? fmin(cs_events_next(events), end) : end;
         if (step == CS_STEP_OK)
-            step = run->integrator->advance(run->host->self, t, next, run->x, run->v);
+            step = advance(run, t, next);
     }
     return step;
 }
@@ -112,7 +145,9 @@ static void count_method(struct cs_run *run) {
     if (!run->integrator->stats)
         return;
     *found = (struct cs_stats){.size = sizeof *found};
+    watch(run, "in stats");
     run->integrator->stats(run->host->self, found);
+    cs_crash_forget();
     found->rejected += before->rejected;
     found->newton += before->newton;
     found->setups += before->setups;
@@ -122,7 +157,7 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
     const struct cs_guard guard = cs_guard_take();
-    const enum cs_step step = advance(run, next);
+    const enum cs_step step = advance_frame(run, next);
     run->advance_seconds += cs_clock_wall() - begin;
     count_method(run);
     if (judge(run, step, guard, error))
@@ -170,8 +205,11 @@ void cs_run_note(struct cs_run *run, const char *format, ...) {
 void cs_run_finish(struct cs_run *run) {
     if (!run->host)
         return;
-    if (run->integrator->destroy && run->host->self)
+    if (run->integrator->destroy && run->host->self) {
+        watch(run, "in destroy");
         run->integrator->destroy(run->host->self);
+        cs_crash_forget();
+    }
     cs_arena_finish(&run->host->arena);
     free(run->host);
     *run = (struct cs_run){0};

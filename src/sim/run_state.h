@@ -72,7 +72,9 @@ struct cs_run {
 
 /* How a run is begun. Zeroed: as the system stands, without clock, limit or observer. */
 struct cs_run_settings {
-    bool timed;                        /* stage times too */
+    bool timed; /* stage times too */
+    /* what the method leaves behind is not looked at: for checks that measure it themselves */
+    bool unchecked;
     const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
     /* s of processor time from the first step on, after which the run ends as CS_OVER_BUDGET;
      * 0: no limit. The clock is read between steps and never reaches the state. */

@@ -24,6 +24,13 @@ enum plant {
     RETURNS_NAN,
     FLUSHES_AT_LOAD,
     FLUSHES_IN_ADVANCE,
+    CRASHES_AT_LOAD,
+    EXITS_AT_LOAD,
+    CRASHES_IN_RESTART,
+    CRASHES_IN_ADVANCE,
+    OVERFLOWS_ITS_STACK,
+    EXITS_IN_ADVANCE,
+    NOT_FINITE_BEHIND_COMMIT,
     /* against its own claims: found by the card */
     NOTHING_WRONG,
     OLDER, /* built before the calls goals, save and load were there */
@@ -45,6 +52,11 @@ enum plant {
     TIME_STANDS_STILL,
     FORGETS_STEPS /* saves nothing of what it remembers */
 };
+
+static void crash(void) {
+    volatile int *volatile nowhere = NULL;
+    *nowhere = 1;
+}
 
 struct options {
     double dt;
@@ -81,12 +93,15 @@ static void flush_to_zero(void) {
 __attribute__((constructor)) static void loaded(void) {
     if (PLANT == FLUSHES_AT_LOAD)
         flush_to_zero();
+    if (PLANT == CRASHES_AT_LOAD)
+        crash();
+    if (PLANT == EXITS_AT_LOAD)
+        exit(0);
 }
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
-    int *volatile nowhere = NULL;
     if (PLANT == CRASHES)
-        *nowhere = 1;
+        crash();
     if (PLANT == ABORTS)
         abort();
     if (PLANT == FAILS_SILENTLY)
@@ -108,6 +123,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 
 static enum cs_step restart(void *self, double t, const double *x, const double *v) {
     (void)t, (void)x, (void)v;
+    if (PLANT == CRASHES_IN_RESTART)
+        crash();
     ((struct planted *)self)->steps = 0;
     return CS_STEP_OK;
 }
@@ -194,6 +211,13 @@ static void use_memory(void) {
         free(memory);
 }
 
+/* volatile: the compiler may not count the ends of it */
+static double overflow(const double *x) {
+    volatile double much[4096];
+    much[0] = x[0];
+    return much[0] > 1e300 ? 0 : overflow(x) + much[0];
+}
+
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct planted *self = object;
     const double n = ceil((t1 - t0) / self->dt * (1 - 1e-9)), h = (t1 - t0) / n;
@@ -209,6 +233,14 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
     }
     if (PLANT == FLUSHES_IN_ADVANCE)
         flush_to_zero();
+    if (PLANT == CRASHES_IN_ADVANCE)
+        crash();
+    if (PLANT == EXITS_IN_ADVANCE)
+        exit(0);
+    if (PLANT == OVERFLOWS_ITS_STACK)
+        x[0] = overflow(x);
+    if (PLANT == NOT_FINITE_BEHIND_COMMIT)
+        v[1] = (double)INFINITY;
     return status;
 }
 

@@ -107,7 +107,7 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
         .n_overrides = method->needs & CS_NEED_CLUSTERS ? 1 : 0,
         .method = method,
         .options = method == card->method ? card->options : NULL,
-        .run = {.budget = BUDGET, .observe = observe, .ctx = probe}};
+        .run = {.unchecked = true, .budget = BUDGET, .observe = observe, .ctx = probe}};
     *probe = (struct cs_probe){0};
     probe->ended = cs_session_open_system(&probe->session, &settings, &probe->error);
     if (probe->ended)

@@ -1,0 +1,22 @@
+/* left.h - what a method leaves behind at the end of an advance, held to the contract before
+ * anything is hashed, written or drawn. */
+#ifndef CS_LEFT_H
+#define CS_LEFT_H
+
+#include "model/system/system.h"
+
+struct cs_left {
+    const struct cs_system *system; /* borrowed */
+    uint64_t pins;                  /* a sum over the bits of what is pinned, at the begin */
+    double committed;               /* s, the end of the last step */
+};
+
+/* An advance begins at t. */
+void cs_left_begin(struct cs_left *left, const struct cs_system *system, double t);
+
+/* One has ended, which was to reach t: every step was committed, all numbers are finite, and
+ * pinned particles are where they were (those on a path are placed by commit). false: why says
+ * what is not so. */
+bool cs_left_is_right(const struct cs_left *left, double t, struct cs_text *why);
+
+#endif
