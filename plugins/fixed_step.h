@@ -43,10 +43,12 @@ static inline struct fixed_step fixed_step_of(const struct cs_host *host, double
 
 /* More steps than that in one advance are a wrong dt. */
 #define FIXED_STEP_MAX 1e9
+/* A dt that falls short of a whole number of steps by that share was meant to be one. */
+#define FIXED_STEP_TYPED 1e-5
 
 static inline enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
-    // the tolerance keeps a frame of 1/60 s with dt = 1/600 at ten steps
-    *n = ceil(span / (self->dt * (1 + 1e-9)));
+    // a frame of 1/60 s with dt = 1/120 is two steps, also where 1/120 was typed as 0.0083333
+    *n = ceil(span / (self->dt * (1 + FIXED_STEP_TYPED)));
     if (!(*n <= FIXED_STEP_MAX))
         return self->host->fail(self->host->ctx, "dt = %g s needs more than %g steps in %g s",
                                 self->dt, FIXED_STEP_MAX, span);

@@ -29,6 +29,7 @@ enum {
     COMPARE_FRESH,
     COMPARE_PICTURES,
     COMPARE_RENDERER,
+    COMPARE_STRICT,
     COMPARE_QUIET,
     COMPARE_ROWS
 };
@@ -72,6 +73,7 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                           false},
     [COMPARE_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
                           false},
+    [COMPARE_STRICT] = {"strict", 0, NULL, "exit with 8 where a cell blew up or failed", false},
     [COMPARE_QUIET] = {"quiet", 'q', NULL, "no progress and no rows, only the verdict", false},
 };
 
@@ -188,6 +190,16 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     return cs_print_out(stdout, &text, error);
 }
 
+static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
+    uint32_t bad = 0;
+    for (uint32_t k = 0; k < compare->sweep.n; k++)
+        bad += !strcmp(compare->sweep.cells[k].outcome, "failed") ||
+               !strncmp(compare->sweep.cells[k].outcome, "blew up", 7);
+    return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad,
+                         compare->sweep.n)
+               : CS_OK;
+}
+
 static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     struct cs_compare_settings settings;
     struct screen screen = {.quiet = cs_args_get(args, COMPARE_QUIET)};
@@ -207,6 +219,8 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
         if (!cs_compare_write_report(&screen.compare, error) &&
             !print_verdict(&screen, error) && cs_args_get(args, COMPARE_PICTURES))
             cs_sheet_write(&screen.compare, (enum cs_renderer_kind)kind, error);
+        if (!error->status && cs_args_get(args, COMPARE_STRICT))
+            check_cells(&screen.compare, error);
     }
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);

@@ -2,6 +2,7 @@
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
+#include "cli/line/print.h"
 #include "sim/folders.h"
 #include "study/golden/golden.h"
 
@@ -16,6 +17,7 @@ enum {
     GOLDEN_FOLDER,
     GOLDEN_RENDERER,
     GOLDEN_THREADS,
+    GOLDEN_JSON,
     GOLDEN_QUIET,
     GOLDEN_ROWS
 };
@@ -33,17 +35,50 @@ static const struct cs_arg rows[GOLDEN_ROWS] = {
                          "cpu, osmesa, egl or auto (default: auto); may be repeated", true},
     [GOLDEN_THREADS] = {"threads", 0, "N", "threads that step each scene, 1 to 64 (default: 1)",
                         false},
+    [GOLDEN_JSON] = {"json", 0, "FILE", "write the rows as JSON too; -: to standard output",
+                     false},
     [GOLDEN_QUIET] = {"quiet", 'q', NULL, "print only rows that differ, and the count", false},
 };
 
+/* Where rows go. */
+struct sink {
+    const struct cs_args *args;
+    struct cs_text json;
+};
+
+static bool takes_stdout(const char *json) {
+    return json && !strcmp(json, "-");
+}
+
+static void add_member(struct cs_text *out, const char *key, const char *value) {
+    cs_text_add(out, "\"%s\": ", key);
+    cs_text_add_json(out, value);
+    cs_text_add(out, ", ");
+}
+
+static void add_json(const struct cs_golden_row *row, const char *verdict,
+                     struct cs_text *out) {
+    cs_text_add(out, "%s\n    {", out->length ? "," : "");
+    add_member(out, "verdict", verdict);
+    add_member(out, "image", row->image ? row->image : "");
+    add_member(out, "scene", row->run.scene);
+    add_member(out, "integrator", row->run.integrator);
+    add_member(out, "overrides", row->run.overrides);
+    add_member(out, "message", cs_text_get(&row->message));
+    cs_text_add(out, "\"frame\": %u}", row->run.frames);
+}
+
 static void print_row(void *ctx, const struct cs_golden_row *row) {
-    const struct cs_args *args = ctx;
+    struct sink *sink = ctx;
+    const struct cs_args *args = sink->args;
     const bool differs = row->message.length > 0;
-    if (!differs && cs_args_get(args, GOLDEN_QUIET))
-        return;
     const char *verdict = row->skipped ? "skip" : !differs ? "ok" : "DIFFERS";
     if (differs && cs_args_get(args, GOLDEN_ACCEPT))
         verdict = "accepted";
+    add_json(row, verdict, &sink->json);
+    if ((!differs && cs_args_get(args, GOLDEN_QUIET)) ||
+        takes_stdout(cs_args_get(args, GOLDEN_JSON)))
+        return;
     printf("%-8s %s%s%s  %s", verdict, row->image ? "image " : "", row->image ? row->image : "",
            row->image ? " " : "", row->run.scene);
     if (strcmp(row->run.integrator, "-"))
@@ -55,6 +90,21 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
     fflush(stdout);
 }
 
+static enum cs_status write_json(const struct cs_golden *check, struct sink *sink,
+                                 struct cs_error *error) {
+    const char *path = cs_args_get(sink->args, GOLDEN_JSON);
+    struct cs_text out = {0};
+    if (path) {
+        cs_text_add(&out, "{\n  \"agree\": %u, \"differ\": %u, \"accepted\": %u, ",
+                    check->passed, check->failed, check->accepted);
+        cs_text_add(&out, "\"skipped\": %u,\n  \"rows\": [%s\n  ]\n}\n", check->skipped,
+                    cs_text_get(&sink->json));
+        out.failed |= sink->json.failed;
+        cs_print_file(path, &out, error);
+    }
+    return error->status;
+}
+
 static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     uint32_t renderers = 1u << CS_RENDERER_AUTO;
     const char *folder = cs_args_get(args, GOLDEN_FOLDER);
@@ -63,6 +113,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     const bool accept = cs_args_get(args, GOLDEN_ACCEPT);
     char installed[CS_DATA_PATH_MAX];
     uint32_t threads = 1;
+    struct sink sink = {.args = args};
     if (cs_args_choices(args, GOLDEN_RENDERER, cs_renderer_names, &renderers, error) ||
         cs_args_whole(args, GOLDEN_THREADS, 1, CS_POOL_MOST, &threads, error))
         return error->status;
@@ -80,12 +131,16 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
         .threads = threads,
         .stop = cs_interrupt_catch(),
         .report = print_row,
-        .ctx = args,
+        .ctx = &sink,
     };
-    if (cs_golden_check(&check, error))
+    if (!cs_golden_check(&check, error))
+        write_json(&check, &sink, error);
+    cs_text_finish(&sink.json);
+    if (error->status)
         return error->status;
-    printf("%u agree, %u differ, %u accepted, %u skipped\n", check.passed, check.failed,
-           check.accepted, check.skipped);
+    if (!takes_stdout(cs_args_get(args, GOLDEN_JSON)))
+        printf("%u agree, %u differ, %u accepted, %u skipped\n", check.passed, check.failed,
+               check.accepted, check.skipped);
     /* a misspelt --only must not look like success */
     if (check.passed + check.failed + check.accepted + check.skipped == 0)
         return cs_fail(error, CS_ERR_USAGE, "no golden row matches");

@@ -1,5 +1,6 @@
 /* clothsim stability: maps which steps a method survives, as text, CSV, JSON and a picture. */
 #include "cli/commands.h"
+#include "cli/line/print.h"
 #include "cli/stability_map.h"
 #include "sim/folders.h"
 #include "study/stability/extreme.h"
@@ -7,14 +8,58 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Where the rows of the catalogue go. */
+struct sink {
+    const struct cs_args *args;
+    struct cs_text json;
+};
+
+static bool takes_stdout(const struct cs_args *args) {
+    const char *json = cs_args_get(args, STABILITY_JSON);
+    return json && !strcmp(json, "-");
+}
+
+static void add_member(struct cs_text *out, const char *key, const char *value) {
+    cs_text_add(out, "\"%s\": ", key);
+    cs_text_add_json(out, value);
+    cs_text_add(out, ", ");
+}
+
+static void add_json(const struct cs_extreme_row *row, struct cs_text *out) {
+    cs_text_add(out, "%s\n    {", out->length ? "," : "");
+    add_member(out, "scene", row->scene);
+    add_member(out, "method", row->method);
+    add_member(out, "expected", row->expected);
+    add_member(out, "verdict", cs_fate_word(row->verdict));
+    add_member(out, "message", row->message);
+    cs_text_add(out, "\"met\": %s, \"seconds\": %.3g}", row->met ? "true" : "false",
+                row->seconds);
+}
+
 static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
-    const struct cs_args *args = ctx;
-    if (row->met && cs_args_get(args, STABILITY_QUIET))
+    struct sink *sink = ctx;
+    add_json(row, &sink->json);
+    if ((row->met && cs_args_get(sink->args, STABILITY_QUIET)) || takes_stdout(sink->args))
         return;
     printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n", row->met ? "ok" : "MISSED",
            row->scene, row->method, cs_fate_word(row->verdict), row->expected, row->seconds,
            *row->message ? "  " : "", row->message);
     fflush(stdout);
+}
+
+/* What was missed is an error of its own, which stays. */
+static void write_json(const struct cs_extreme *extreme, struct sink *sink,
+                       struct cs_error *error) {
+    const char *path = cs_args_get(sink->args, STABILITY_JSON);
+    struct cs_text out = {0};
+    struct cs_error failure = {0};
+    if (path) {
+        cs_text_add(&out, "{\n  \"met\": %u, \"missed\": %u,\n  \"rows\": [%s\n  ]\n}\n",
+                    extreme->met, extreme->missed, cs_text_get(&sink->json));
+        out.failed |= sink->json.failed;
+        if (cs_print_file(path, &out, &failure))
+            *error = failure;
+    }
 }
 
 static enum cs_status run_extreme(struct cs_args *args,
@@ -24,6 +69,7 @@ static enum cs_status run_extreme(struct cs_args *args,
     const char *folder = cs_args_get(args, STABILITY_FOLDER);
     char installed[CS_DATA_PATH_MAX];
     const bool all = n_methods == 1 && !strcmp(methods[0], "all");
+    struct sink sink = {.args = args};
     struct cs_extreme extreme = {
         .folder = folder ? folder : cs_data_find("scenes/extreme", installed, sizeof installed),
         .only_scene = args->n_operands ? args->operands[0] : NULL,
@@ -36,11 +82,14 @@ static enum cs_status run_extreme(struct cs_args *args,
         .n_workers = settings->workers,
         .stop = settings->session.run.stop,
         .report = print_extreme,
-        .ctx = args,
+        .ctx = &sink,
     };
     cs_extreme_run(&extreme, error);
     /* CS_ERR_CHECK says that an expectation was missed: the counts are valid */
     if (!error->status || error->status == CS_ERR_CHECK)
+        write_json(&extreme, &sink, error);
+    cs_text_finish(&sink.json);
+    if ((!error->status || error->status == CS_ERR_CHECK) && !takes_stdout(args))
         printf("%u as expected, %u not\n", extreme.met, extreme.missed);
     return error->status;
 }

@@ -48,6 +48,11 @@ const struct cs_arg cs_stability_rows[STABILITY_ROWS] = {
                            false},
     [STABILITY_FOLDER] = {"folder", 0, "DIR",
                           "the catalogue's folder (default: scenes/extreme)", false},
+    [STABILITY_JSON] = {"json", 0, "FILE",
+                        "with --extreme: write the rows as JSON too; -: to standard output",
+                        false},
+    [STABILITY_STRICT] = {"strict", 0, NULL,
+                          "exit with 8 where a cell is unstable or its method failed", false},
     [STABILITY_QUIET] = {"quiet", 'q', NULL, "no progress and no tables", false},
 };
 

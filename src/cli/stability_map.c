@@ -34,8 +34,17 @@ static enum cs_status write_file(const struct cs_args *args, const char *folder,
     return error->status;
 }
 
+/* true where gnuplot made NAME.png of NAME.gp */
+static bool draw(const char *folder, const char *name) {
+    char script[CS_SERIES_BYTES + 8];
+    bool drawn = false;
+    struct cs_error ignored = {0};
+    snprintf(script, sizeof script, "%s.gp", name);
+    return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
+}
+
 static enum cs_status write_files(const struct cs_args *args, const struct cs_stability *map,
-                                  const char *folder, struct cs_error *error) {
+                                  const char *folder, bool *drawn, struct cs_error *error) {
     char name[CS_SERIES_BYTES];
     struct cs_text cells = {0}, borders = {0}, json = {0}, plot = {0};
     cs_series_file_name(map->series, name);
@@ -50,19 +59,22 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
         write_file(args, folder, name, ".json", &json, error);
     if (!error->status)
         write_file(args, folder, name, ".gp", &plot, error);
+    if (!error->status)
+        *drawn = draw(folder, name);
     cs_text_finish(&borders);
     cs_text_finish(&json);
     cs_text_finish(&plot);
     return error->status;
 }
 
-/* true where gnuplot made NAME.png of NAME.gp */
-static bool draw(const char *folder, const char *name) {
-    char script[CS_SERIES_BYTES + 8];
-    bool drawn = false;
-    struct cs_error ignored = {0};
-    snprintf(script, sizeof script, "%s.gp", name);
-    return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
+static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
+    uint32_t bad = 0;
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        for (uint32_t r = 0; r < map->n_rows; r++)
+            bad += !cs_fate_is_sound(map->columns[c].cells[r].verdict);
+    return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%s: %u of %u cells are not stable",
+                         map->series, bad, map->n_columns * map->n_rows)
+               : CS_OK;
 }
 
 enum cs_status cs_stability_map_one(const struct cs_args *args,
@@ -72,6 +84,7 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
     struct cs_stability map;
     struct cs_stability_settings asked = *settings;
     const bool quiet = cs_args_get(args, STABILITY_QUIET);
+    bool drawn = false;
     asked.progress = show_progress;
     asked.ctx = &screen;
     cs_progress_begin(&screen.progress, quiet);
@@ -86,16 +99,18 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
                 map.journal.path);
     }
     if (!error->status && !cs_folder_make(folder, error) &&
-        !write_files(args, &map, folder, error) && !quiet) {
+        !write_files(args, &map, folder, &drawn, error) && !quiet) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];
         cs_series_file_name(map.series, name);
         cs_stability_print_table(&map, &out);
         /* gnuplot may be missing: the line then says that there is no picture */
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                    folder, name, draw(folder, name) ? ", .png" : "; no gnuplot: no picture");
+                    folder, name, drawn ? ", .png" : "; no gnuplot: no picture");
         cs_print_out(stdout, &out, error);
     }
+    if (!error->status && cs_args_get(args, STABILITY_STRICT))
+        check_cells(&map, error);
     cs_stability_finish(&map);
     return error->status;
 }

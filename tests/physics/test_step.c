@@ -64,6 +64,8 @@ START_TEST(steps_fill_the_frame) {
         bool told;
     } rows[] = {{"velocity-verlet:dt=0.004", 5, true},
                 {"velocity-verlet:dt=0.00166666666666667", 10, false},
+                {"velocity-verlet:dt=0.0083333", 2, false},
+                {"velocity-verlet:dt=0.00833", 3, true},
                 {"velocity-verlet:dt=1", 1, true},
                 {"implicit-linearised", 1, false},
                 {"implicit-block:dt=0.004", 5, true}};

@@ -1,6 +1,8 @@
 /* Prints wrapped columns, whole texts and error messages to the terminal. */
 #include "cli/line/print.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <string.h>
 
@@ -55,4 +57,15 @@ void cs_print_message(const char *message) {
         fputc(c < 0x20 || c == 0x7f ? '?' : c, stderr);
     }
     fputc('\n', stderr);
+}
+
+enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error) {
+    if (!strcmp(path, "-"))
+        return cs_print_out(stdout, text, error);
+    if (text->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", path);
+    else
+        cs_file_write(path, text->bytes, text->length, error);
+    cs_text_finish(text);
+    return error->status;
 }

@@ -15,6 +15,9 @@ void cs_print_hanging(const char *left, const char *right, size_t column, struct
  * CS_ERR_MEMORY where the text failed, CS_ERR_FILE where it could not be written. */
 enum cs_status cs_print_out(FILE *file, struct cs_text *text, struct cs_error *error);
 
+/* The same into a file; "-": standard output. */
+enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error);
+
 /* "clothsim: message" on stderr, in one line whatever the message holds. */
 void cs_print_message(const char *message);
 

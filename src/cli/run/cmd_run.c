@@ -28,6 +28,7 @@ enum {
     RUN_RENDERER,
     RUN_FAST,
     RUN_LEVEL,
+    RUN_STRICT,
     RUN_QUIET,
     RUN_ROWS
 };
@@ -76,6 +77,7 @@ static const struct cs_arg rows[RUN_ROWS] = {
     [RUN_FAST] = {"fast-render", 0, NULL,
                   "use all of the processor; pixels then depend on the machine", false},
     [RUN_LEVEL] = {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)", false},
+    [RUN_STRICT] = {"strict", 0, NULL, "exit with 8 where the run blew up", false},
     [RUN_QUIET] = {"quiet", 'q', NULL, "no progress and no table", false},
 };
 
@@ -168,7 +170,8 @@ static enum cs_status print_table(const struct cs_job *job, struct cs_error *err
 }
 
 /* A run that stopped early says so whatever else is printed. */
-static enum cs_status tell_outcome(const struct cs_job *job, struct cs_error *error) {
+static enum cs_status tell_outcome(const struct cs_job *job, bool strict,
+                                   struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     struct cs_text outcome = {0};
     if (run->outcome == CS_RUNNING)
@@ -177,6 +180,8 @@ static enum cs_status tell_outcome(const struct cs_job *job, struct cs_error *er
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
+    else if (strict && (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED))
+        cs_fail(error, CS_ERR_UNSTABLE, "%s", cs_text_get(&outcome));
     else
         cs_print_message(cs_text_get(&outcome));
     cs_text_finish(&outcome);
@@ -190,7 +195,7 @@ static enum cs_status run(struct cs_args *args, struct cs_error *error) {
         return error->status;
     if (!cs_job_run(&job, &settings, error) && !write_json(&job, error) &&
         !print_table(&job, error))
-        tell_outcome(&job, error);
+        tell_outcome(&job, cs_args_get(args, RUN_STRICT), error);
     cs_job_finish(&job);
     return error->status;
 }
