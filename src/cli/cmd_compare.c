@@ -29,6 +29,7 @@ enum {
     COMPARE_FRESH,
     COMPARE_PICTURES,
     COMPARE_RENDERER,
+    COMPARE_REPORT,
     COMPARE_STRICT,
     COMPARE_QUIET,
     COMPARE_ROWS
@@ -73,6 +74,10 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                           false},
     [COMPARE_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
                           false},
+    [COMPARE_REPORT] = {"report", 0, NULL,
+                        "write compare.html as well: one file with diagrams, tables, verdict, "
+                        "machine and the command",
+                        false},
     [COMPARE_STRICT] = {"strict", 0, NULL, "exit with 8 where a cell blew up or failed", false},
     [COMPARE_QUIET] = {"quiet", 'q', NULL, "no progress and no rows, only the verdict", false},
 };
@@ -190,6 +195,29 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     return cs_print_out(stdout, &text, error);
 }
 
+/* The command that was typed, in quotes where a shell needs them. */
+static void add_word(struct cs_text *out, const char *word) {
+    const bool plain = !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                          "0123456789_-+./:=,")];
+    cs_text_add(out, " ");
+    for (const char *c = plain ? word : "'"; *c; c++)
+        cs_text_add(out, "%c", *c);
+    for (const char *c = plain ? "" : word; *c; c++)
+        cs_text_add(out, *c == '\'' ? "'\\''" : "%c", *c);
+    cs_text_add(out, "%s", plain ? "" : "'");
+}
+
+static void add_command(const struct cs_args *args, struct cs_text *out) {
+    cs_text_add(out, "clothsim compare");
+    for (uint32_t k = 0; k < args->n_operands; k++)
+        add_word(out, args->operands[k]);
+    for (uint32_t k = 0; k < args->n_given; k++) {
+        cs_text_add(out, " --%s", rows[args->given[k].row].name);
+        if (rows[args->given[k].row].value)
+            add_word(out, args->given[k].value);
+    }
+}
+
 static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
     uint32_t bad = 0;
     for (uint32_t k = 0; k < compare->sweep.n; k++)
@@ -207,6 +235,10 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     if (read_settings(args, &settings, error) ||
         cs_args_choice(args, COMPARE_RENDERER, cs_renderer_names, &kind, error))
         return error->status;
+    struct cs_text command = {0};
+    add_command(args, &command);
+    settings.command = cs_text_get(&command);
+    settings.html = cs_args_get(args, COMPARE_REPORT);
     settings.reference_progress = show_reference;
     settings.begun = show_begin;
     settings.row = show_row;
@@ -224,6 +256,7 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     }
     cs_progress_end(&screen.progress);
     cs_compare_finish(&screen.compare);
+    cs_text_finish(&command);
     /* callbacks return nothing: errors of their printing are reported here */
     return error->status ? error->status
            : screen.error.status

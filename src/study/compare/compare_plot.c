@@ -43,8 +43,8 @@ static bool is_position_error(const struct cs_column *column) {
            !strstr(column->label, "m/s");
 }
 
-static bool is_drawn(const struct cs_plot_settings *settings, const struct cs_cell *cell,
-                     double *x, double *y) {
+bool cs_plot_point(const struct cs_plot_settings *settings, const struct cs_cell *cell,
+                   double *x, double *y) {
     *x = cs_cell_number(cell, settings->x);
     *y = cs_cell_number(cell, settings->y);
     const bool known = !is_position_error(settings->y) || !(cell->bar > 0) || *y >= cell->bar;
@@ -52,13 +52,18 @@ static bool is_drawn(const struct cs_plot_settings *settings, const struct cs_ce
            known;
 }
 
+double cs_plot_bar(const struct cs_plot_settings *settings) {
+    double bar = 0;
+    for (uint32_t k = 0; k < settings->n && is_position_error(settings->y); k++)
+        bar = fmax(bar, settings->cells[k].bar);
+    return bar;
+}
+
 static struct box bounds(const struct cs_plot_settings *settings) {
-    struct box box = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, 0, false};
+    struct box box = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, cs_plot_bar(settings), false};
     for (uint32_t k = 0; k < settings->n; k++) {
         double x, y;
-        if (is_position_error(settings->y) && settings->cells[k].bar > 0)
-            box.bar = settings->cells[k].bar;
-        if (!is_drawn(settings, settings->cells + k, &x, &y)) {
+        if (!cs_plot_point(settings, settings->cells + k, &x, &y)) {
             box.crosses |= isfinite(x) && x > 0 && !cs_cell_is_finished(settings->cells + k);
             continue;
         }
@@ -79,8 +84,8 @@ static struct box bounds(const struct cs_plot_settings *settings) {
 
 static void print_head(const struct cs_plot_settings *settings, const struct box *box,
                        struct cs_text *out) {
-    cs_text_add(out, "# gnuplot %s.gp makes %s.png and %s.svg\n", settings->name,
-                settings->name, settings->name);
+    cs_text_add(out, "# gnuplot %s.gp makes %s.png, .svg and .pdf\n", settings->name,
+                settings->name);
     cs_text_add(out, "set title \"%s\" noenhanced\n", settings->title);
     cs_text_add(out, "set xlabel \"%s\"\nset ylabel \"%s\"\n", settings->x->label,
                 settings->y->label);
@@ -132,7 +137,7 @@ static uint32_t find_groups(const struct cs_plot_settings *settings,
             groups[n++] = (struct group){k, 0, 0, family, used[family]++ % COLOURS};
         }
         groups[n - 1].n++;
-        groups[n - 1].drawn += is_drawn(settings, cell, &x, &y);
+        groups[n - 1].drawn += cs_plot_point(settings, cell, &x, &y);
     }
     return n;
 }
@@ -142,7 +147,7 @@ static void print_data(const struct cs_plot_settings *settings, const struct gro
     double x, y;
     cs_text_add(out, "$points%u << END\n", number);
     for (uint32_t k = group->first; k < group->first + group->n; k++)
-        if (is_drawn(settings, settings->cells + k, &x, &y)) {
+        if (cs_plot_point(settings, settings->cells + k, &x, &y)) {
             cs_text_add_real(out, x);
             cs_text_add(out, " ");
             cs_text_add_real(out, y);
@@ -206,6 +211,12 @@ void cs_plot_print(const struct cs_plot_settings *settings, struct cs_text *out)
     cs_text_add(out,
                 "set terminal svg size 1200,800 font \"DejaVu Sans,14\"\n"
                 "set output \"%s.svg\"\nreplot\n",
+                settings->name);
+    /* as wide as a column of a paper; the legend goes below, where there is room */
+    cs_text_add(out,
+                "set terminal pdfcairo size 8.6cm,11cm font \"DejaVu Sans,6\" linewidth 0.6 "
+                "pointscale 0.4\nset key below maxcols 2 font \",5\"\nset title\n"
+                "set output \"%s.pdf\"\nreplot\n",
                 settings->name);
 }
 

@@ -3,6 +3,7 @@
 #include "study/compare/compare_report.h"
 
 #include "base/file.h"
+#include "study/compare/compare_html.h"
 #include "study/compare/compare_plot.h"
 #include "study/compare/compare_table.h"
 #include "study/compare/verdict.h"
@@ -264,7 +265,7 @@ static enum cs_status write_text(const struct cs_compare *compare, const char *n
 enum cs_status cs_compare_write_report(const struct cs_compare *compare,
                                        struct cs_error *error) {
     struct cs_ranking ranking;
-    struct cs_text json = {0}, markdown = {0};
+    struct cs_text json = {0}, markdown = {0}, html = {0};
     bool drawn = false;
     if (cs_ranking_make(&ranking, compare, error))
         return error->status;
@@ -273,8 +274,12 @@ enum cs_status cs_compare_write_report(const struct cs_compare *compare,
         draw(compare, "error_work", "work", &drawn, error);
     print_json(compare, &ranking, &json);
     print_markdown(compare, &ranking, drawn, &markdown);
-    if (!error->status && !write_text(compare, "compare.json", &json, error))
-        write_text(compare, "compare.md", &markdown, error);
+    if (!error->status && !write_text(compare, "compare.json", &json, error) &&
+        !write_text(compare, "compare.md", &markdown, error) && compare->settings->html) {
+        cs_html_print(compare, &ranking, &html);
+        write_text(compare, "compare.html", &html, error);
+    }
+    cs_text_finish(&html);
     cs_text_finish(&json);
     cs_text_finish(&markdown);
     cs_ranking_finish(&ranking);

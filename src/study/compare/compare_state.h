@@ -25,6 +25,8 @@ struct cs_compare_settings {
     uint32_t runs;            /* rounds of timed runs, at most; up to CS_ROUNDS_MOST */
     enum cs_norm rank;        /* what the verdict goes by */
     const char *folder;       /* for compare.csv */
+    const char *command;      /* that repeats it, for the report; may be NULL */
+    bool html;                /* one HTML file as well */
     const char *cache;        /* folder of references */
     bool fresh;               /* an earlier compare.csv is written over */
     /* may be NULL; taken: the row is of an earlier run */
