@@ -1,8 +1,7 @@
 /* Measures what the machine can do at best: its divider and its memory. */
 #include "limits.h"
 
-#include "base/clones.h"
-
+#include <clothsim/clones.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

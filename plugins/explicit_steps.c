@@ -83,7 +83,7 @@ static void evaluate(struct explicit_method *self, double t, const double *x, co
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->a);
 }
 
-static void explicit_euler_row(const struct row *row) {
+CS_CLONES static void explicit_euler_row(const struct row *row) {
     const double h = row->h, *restrict w = row->inv_mass, *restrict f = row->a;
     double *restrict x = row->x, *restrict v = row->v;
     for (size_t i = 0; i < row->count; i++) {
@@ -99,7 +99,7 @@ enum cs_step step_explicit_euler(struct fixed_step *loop, double t, double h, do
     return CS_STEP_OK;
 }
 
-static void symplectic_euler_row(const struct row *row) {
+CS_CLONES static void symplectic_euler_row(const struct row *row) {
     const double h = row->h, *restrict w = row->inv_mass, *restrict f = row->a;
     double *restrict x = row->x, *restrict v = row->v;
     for (size_t i = 0; i < row->count; i++) {
@@ -115,7 +115,7 @@ enum cs_step step_symplectic_euler(struct fixed_step *loop, double t, double h, 
     return CS_STEP_OK;
 }
 
-static void averaged_euler_row(const struct row *row) {
+CS_CLONES static void averaged_euler_row(const struct row *row) {
     const double h = row->h, *restrict w = row->inv_mass, *restrict f = row->a;
     double *restrict x = row->x, *restrict v = row->v;
     for (size_t i = 0; i < row->count; i++) {
@@ -132,7 +132,7 @@ enum cs_step step_averaged_euler(struct fixed_step *loop, double t, double h, do
     return CS_STEP_OK;
 }
 
-static void accelerate_row(const struct row *row) {
+CS_CLONES static void accelerate_row(const struct row *row) {
     const double *restrict w = row->inv_mass;
     double *restrict a = row->a;
     for (size_t i = 0; i < row->count; i++)
@@ -140,7 +140,7 @@ static void accelerate_row(const struct row *row) {
 }
 
 /* v goes through v + h a, which is what damping and drag see at the new time */
-static void drift_row(const struct row *row) {
+CS_CLONES static void drift_row(const struct row *row) {
     const double h = row->h, *restrict a = row->a;
     double *restrict x = row->x, *restrict v = row->v, *restrict old_a = row->kept[0];
     for (size_t i = 0; i < row->count; i++) {
@@ -150,7 +150,7 @@ static void drift_row(const struct row *row) {
     }
 }
 
-static void kick_row(const struct row *row) {
+CS_CLONES static void kick_row(const struct row *row) {
     const double h = row->h, *restrict w = row->inv_mass, *restrict old_a = row->kept[0];
     double *restrict v = row->v, *restrict a = row->a;
     for (size_t i = 0; i < row->count; i++) {
@@ -172,14 +172,14 @@ enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, d
     return CS_STEP_OK;
 }
 
-static void last_half_step_row(const struct row *row) {
+CS_CLONES static void last_half_step_row(const struct row *row) {
     const double h = row->h, *restrict v = row->v, *restrict a = row->a;
     double *restrict u = row->kept[0];
     for (size_t i = 0; i < row->count; i++)
         u[i] = v[i] - h / 2 * a[i];
 }
 
-static void position_verlet_row(const struct row *row) {
+CS_CLONES static void position_verlet_row(const struct row *row) {
     const double h = row->h, loss = row->loss, *restrict a = row->a;
     double *restrict x = row->x, *restrict v = row->v, *restrict u = row->kept[0];
     for (size_t i = 0; i < row->count; i++) {
@@ -212,7 +212,7 @@ enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, d
 }
 
 /* kept: a stage's x and v, and the sums of both slopes */
-static void rk4_begin_row(const struct row *row) {
+CS_CLONES static void rk4_begin_row(const struct row *row) {
     const double *restrict x = row->x, *restrict v = row->v;
     double *restrict stage_x = row->kept[0], *restrict stage_v = row->kept[1];
     double *restrict sum_x = row->kept[2], *restrict sum_v = row->kept[3];
@@ -223,7 +223,7 @@ static void rk4_begin_row(const struct row *row) {
     }
 }
 
-static void rk4_stage_row(const struct row *row) {
+CS_CLONES static void rk4_stage_row(const struct row *row) {
     const double weight = row->weight, forth = row->forth;
     const double *restrict x = row->x, *restrict v = row->v;
     const double *restrict w = row->inv_mass, *restrict f = row->a;
@@ -238,7 +238,7 @@ static void rk4_stage_row(const struct row *row) {
     }
 }
 
-static void rk4_end_row(const struct row *row) {
+CS_CLONES static void rk4_end_row(const struct row *row) {
     const double h = row->h;
     const double *restrict sum_x = row->kept[2], *restrict sum_v = row->kept[3];
     double *restrict x = row->x, *restrict v = row->v;

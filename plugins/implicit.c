@@ -85,7 +85,7 @@ static void start_solve(struct linearised *self, double h) {
             self->dv[c * n + i] = falls ? h * self->external[c * n + i] * view->inv_mass[i] : 0;
 }
 
-static void move(size_t n, double h, const double *dv, double *x, double *v) {
+CS_CLONES static void move(size_t n, double h, const double *dv, double *x, double *v) {
     for (size_t i = 0; i < 3 * n; i++) {
         v[i] += dv[i];
         x[i] += h * v[i];
@@ -95,7 +95,7 @@ static void move(size_t n, double h, const double *dv, double *x, double *v) {
 /* b = h (f + h K v) with h^2 K v = M v - h D v - A v, the K that is in A: the exact K of a
  * spring that is nearly closed would be huge here and clamped there, and throw the particles
  * apart. */
-static void build_right_side(struct linearised *self) {
+CS_CLONES static void build_right_side(struct linearised *self) {
     const struct cs_host *host = self->loop.host;
     const double *mass = host->view->mass;
     const size_t n = host->view->n;
@@ -145,8 +145,8 @@ static enum cs_step restart_linearised(void *object, double t, const double *x,
 }
 
 /* The matrix of particle i, m I - h D_ii - h^2 K_ii. */
-static inline void block_of(const struct block *self, size_t i, double h, const double k[6],
-                            double a[6]) {
+CS_INLINE void block_of(const struct block *self, size_t i, double h, const double k[6],
+                        double a[6]) {
     const struct cs_view *view = self->loop.host->view;
     double d[6];
     cs_sym3_read(view->n, self->dvv, i, d);
@@ -157,8 +157,8 @@ static inline void block_of(const struct block *self, size_t i, double h, const 
 
 /* dv of some particles from `first` on. No particle is treated apart, and dv lies where no
  * other pointer leads, so that the loop vectorises. false: a block is singular. */
-static inline bool solve_piece(const struct block *self, size_t first, size_t count, double h,
-                               const double *v, double dv[3][PIECE]) {
+CS_INLINE bool solve_piece(const struct block *self, size_t first, size_t count, double h,
+                           const double *v, double dv[3][PIECE]) {
     const size_t n = self->loop.host->view->n;
     double determinant[PIECE];
     for (size_t i = 0; i < count; i++) {
@@ -183,7 +183,7 @@ static inline bool solve_piece(const struct block *self, size_t first, size_t co
 }
 
 /* dv of every particle, over its force; false: a block is singular. */
-static bool solve_blocks(struct block *self, double h, const double *v) {
+CS_CLONES static bool solve_blocks(struct block *self, double h, const double *v) {
     const struct cs_view *view = self->loop.host->view;
     const size_t n = view->n;
     bool regular = true;

@@ -4,6 +4,8 @@
 
 #include "sundials_solver.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,6 +55,17 @@ static bool passes_through(const struct sundials *self, double t, const double *
     return self->from && host->max_share(host->ctx, t, self->from, t, x) < 1;
 }
 
+/* from forces; true where one is not a number, or infinite */
+CS_CLONES static bool accelerate(size_t n, const double *restrict inv_mass,
+                                 double *restrict f) {
+    int broken = 0;
+    for (size_t i = 0; i < n; i++) {
+        f[i] *= inv_mass[i];
+        broken |= !(fabs(f[i]) <= DBL_MAX);
+    }
+    return broken;
+}
+
 int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t parts,
                    bool moves, N_Vector slope) {
     const struct cs_host *host = self->host;
@@ -62,14 +75,14 @@ int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t p
     if (self->library->recovers && passes_through(self, t, x))
         return 1;
     host->force(host->ctx, t, x, v, parts, dv);
-    double finite = 0; /* 0, or not a number */
+    if (moves)
+        memcpy(dx, v, 3 * n * sizeof *dx);
+    else
+        memset(dx, 0, 3 * n * sizeof *dx);
+    bool broken = false;
     for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < n; i++) {
-            dx[c * n + i] = moves ? v[c * n + i] : 0;
-            dv[c * n + i] *= host->view->inv_mass[i];
-            finite += 0 * dv[c * n + i];
-        }
-    return finite == 0 ? 0 : 1;
+        broken |= accelerate(n, host->view->inv_mass, dv + c * n);
+    return broken;
 }
 
 int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {

@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+/* numbers of an array that several loops pass over while it stays in the cache */
+enum { BLOCK = 512 };
+
 static struct sundials_vectors *pool_of(N_Vector vector) {
     return ((struct sundials_slot *)vector->content)->pool;
 }
@@ -33,29 +36,33 @@ static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_V
                                          sundials_data(z));
 }
 
-static void set_constant(sunrealtype c, N_Vector z) {
+CS_CLONES static void set_constant(sunrealtype c, N_Vector z) {
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = c;
 }
 
-static void multiply(N_Vector x, N_Vector y, N_Vector z) {
+CS_CLONES static void multiply(N_Vector x, N_Vector y, N_Vector z) {
     const double *a = sundials_data(x), *b = sundials_data(y);
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = a[i] * b[i];
 }
 
-static void divide(N_Vector x, N_Vector y, N_Vector z) {
+CS_CLONES static void divide(N_Vector x, N_Vector y, N_Vector z) {
     const double *a = sundials_data(x), *b = sundials_data(y);
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = a[i] / b[i];
 }
 
-static void scale(sunrealtype c, N_Vector x, N_Vector z) {
+CS_CLONES static void scale(sunrealtype c, N_Vector x, N_Vector z) {
     const double *a = sundials_data(x);
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = c * a[i];
     if (c == 1 && x != z) {
@@ -64,40 +71,56 @@ static void scale(sunrealtype c, N_Vector x, N_Vector z) {
     }
 }
 
-static void absolute(N_Vector x, N_Vector z) {
+CS_CLONES static void absolute(N_Vector x, N_Vector z) {
     const double *a = sundials_data(x);
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = fabs(a[i]);
 }
 
-static void invert(N_Vector x, N_Vector z) {
+CS_CLONES static void invert(N_Vector x, N_Vector z) {
     const double *a = sundials_data(x);
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = 1 / a[i];
 }
 
-static void add_constant(N_Vector x, sunrealtype b, N_Vector z) {
+CS_CLONES static void add_constant(N_Vector x, sunrealtype b, N_Vector z) {
     const double *a = sundials_data(x);
     double *out = sundials_data(z);
+    CS_INDEPENDENT
     for (size_t i = 0, n = length_of(z); i < n; i++)
         out[i] = a[i] + b;
 }
 
 /* z = sum of c_k x_k, in their order; x_0 may be z. In blocks that stay in the cache. */
-static int combine(int n, sunrealtype *c, N_Vector *x, N_Vector z) {
-    enum { BLOCK = 512 };
+CS_CLONES static int combine(int n, sunrealtype *c, N_Vector *x, N_Vector z) {
     const struct cs_vector_kernels *vector = pool_of(z)->host->vector;
     const size_t length = length_of(z);
     for (size_t start = 0; start < length; start += BLOCK) {
         const size_t count = length - start < BLOCK ? length - start : BLOCK;
         const double *first = sundials_data(x[0]) + start;
         double *out = sundials_data(z) + start;
+        CS_INDEPENDENT
         for (size_t i = 0; i < count; i++)
             out[i] = c[0] * first[i];
         for (int k = 1; k < n; k++)
             vector->linear_sum(count, c[k], sundials_data(x[k]) + start, 1, out, out);
+    }
+    return 0;
+}
+
+/* z_k = a_k x + y_k; z_k may be y_k. Block by block, so that x is read once. */
+static int add_multiples(int n, sunrealtype *a, N_Vector x, N_Vector *y, N_Vector *z) {
+    const struct cs_vector_kernels *vector = pool_of(x)->host->vector;
+    const size_t length = length_of(x);
+    for (size_t start = 0; start < length; start += BLOCK) {
+        const size_t count = length - start < BLOCK ? length - start : BLOCK;
+        for (int k = 0; k < n; k++)
+            vector->linear_sum(count, a[k], sundials_data(x) + start, 1,
+                               sundials_data(y[k]) + start, sundials_data(z[k]) + start);
     }
     return 0;
 }
@@ -145,6 +168,7 @@ static const struct _generic_N_Vector_Ops operations = {
     .nvwrmsnorm = weighted_norm,
     .nvmin = smallest,
     .nvlinearcombination = combine,
+    .nvscaleaddmulti = add_multiples,
 };
 
 enum cs_step sundials_vectors_init(struct sundials_vectors *pool, const struct cs_host *host,

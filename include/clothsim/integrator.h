@@ -27,6 +27,7 @@
 #ifndef CLOTHSIM_INTEGRATOR_H
 #define CLOTHSIM_INTEGRATOR_H
 
+#include <clothsim/clones.h>
 #include <clothsim/option.h>
 #include <clothsim/system.h>
 

@@ -4,7 +4,9 @@
 
 #include "base/pool.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
+#include <string.h>
 
 enum {
     BLOCK = 4096,
@@ -65,9 +67,10 @@ double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, siz
     return sum;
 }
 
-static double lanes_sum(const double s[LANES]) {
-    return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
-}
+/* the lanes of a sum at once, and as they lie in an array */
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
+typedef double loaded
+    __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 /* what a kernel works on; b and z of a linear sum alone */
 struct arrays {
@@ -75,17 +78,27 @@ struct arrays {
     double a, b, *z;
 };
 
-static double dot_part(const void *arg, size_t begin, size_t end) {
+/* what is left of an array after whole vectors goes to the first lanes */
+CS_INLINE double sum_lanes(const lanes whole, const double *rest, size_t n) {
+    double s[LANES];
+    memcpy(s, &whole, sizeof s);
+    for (size_t l = 0; l < n; l++)
+        s[l] += rest[l];
+    return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
+
+CS_CLONES static double dot_part(const void *arg, size_t begin, size_t end) {
     const struct arrays *arrays = arg;
-    const double *x = arrays->x, *y = arrays->y;
-    double lanes[LANES] = {0};
-    size_t i = begin;
-    for (; i + LANES <= end; i += LANES)
-        for (size_t l = 0; l < LANES; l++)
-            lanes[l] += x[i + l] * y[i + l];
-    for (size_t l = 0; i < end; i++, l++)
-        lanes[l] += x[i] * y[i];
-    return lanes_sum(lanes);
+    const double *x = arrays->x + begin, *y = arrays->y + begin;
+    const size_t n = end - begin;
+    double rest[LANES];
+    lanes sum = {0};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES)
+        sum += *(const loaded *)(x + i) * *(const loaded *)(y + i);
+    for (size_t l = 0; i + l < n; l++)
+        rest[l] = x[i + l] * y[i + l];
+    return sum_lanes(sum, rest, n - i);
 }
 
 double cs_vector_dot(size_t n, const double *x, const double *y) {
@@ -93,17 +106,20 @@ double cs_vector_dot(size_t n, const double *x, const double *y) {
     return cs_vector_sum(n, dot_part, &arrays);
 }
 
-static double weighted_part(const void *arg, size_t begin, size_t end) {
+CS_CLONES static double weighted_part(const void *arg, size_t begin, size_t end) {
     const struct arrays *arrays = arg;
-    const double *x = arrays->x, *w = arrays->y;
-    double lanes[LANES] = {0};
-    size_t i = begin;
-    for (; i + LANES <= end; i += LANES)
-        for (size_t l = 0; l < LANES; l++)
-            lanes[l] += x[i + l] * w[i + l] * (x[i + l] * w[i + l]);
-    for (size_t l = 0; i < end; i++, l++)
-        lanes[l] += x[i] * w[i] * (x[i] * w[i]);
-    return lanes_sum(lanes);
+    const double *x = arrays->x + begin, *w = arrays->y + begin;
+    const size_t n = end - begin;
+    double rest[LANES];
+    lanes sum = {0};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        const lanes weighted = *(const loaded *)(x + i) * *(const loaded *)(w + i);
+        sum += weighted * weighted;
+    }
+    for (size_t l = 0; i + l < n; l++)
+        rest[l] = x[i + l] * w[i + l] * (x[i + l] * w[i + l]);
+    return sum_lanes(sum, rest, n - i);
 }
 
 static double weighted_square(size_t n, const double *x, const double *w) {
@@ -111,10 +127,12 @@ static double weighted_square(size_t n, const double *x, const double *w) {
     return cs_vector_sum(n, weighted_part, &arrays);
 }
 
-static void linear_part(void *arg, size_t begin, size_t end) {
+/* z may be x or y */
+CS_CLONES static void linear_part(void *arg, size_t begin, size_t end) {
     const struct arrays *arrays = arg;
     const double a = arrays->a, b = arrays->b, *x = arrays->x, *y = arrays->y;
     double *z = arrays->z;
+    CS_INDEPENDENT
     for (size_t i = begin; i < end; i++)
         z[i] = a * x[i] + b * y[i];
 }

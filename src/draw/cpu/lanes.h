@@ -6,8 +6,7 @@
 #ifndef CS_DRAW_LANES_H
 #define CS_DRAW_LANES_H
 
-#include "base/clones.h"
-
+#include <clothsim/clones.h>
 #include <stdint.h>
 
 typedef float cs_f4 __attribute__((vector_size(16)));

@@ -7,8 +7,9 @@
 #ifndef CS_DRAW_LENS_H
 #define CS_DRAW_LENS_H
 
-#include "base/clones.h"
 #include "draw/view.h"
+
+#include <clothsim/clones.h>
 
 enum { CS_ATTRIBUTES = 5 }; /* normal, then a value, or texture coordinates */
 

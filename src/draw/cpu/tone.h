@@ -2,8 +2,7 @@
 #ifndef CS_DRAW_TONE_H
 #define CS_DRAW_TONE_H
 
-#include "base/clones.h"
-
+#include <clothsim/clones.h>
 #include <stdint.h>
 
 /* Zero: not made. */

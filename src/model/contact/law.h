@@ -17,7 +17,7 @@
 #ifndef CS_CONTACT_LAW_H
 #define CS_CONTACT_LAW_H
 
-#include "base/clones.h"
+#include <clothsim/clones.h>
 
 #define CS_LAW_CORE 0.05 /* y below which the stiffness is constant */
 

@@ -1,7 +1,7 @@
 /* The energy of contact that a step does not see, particle by particle. */
 #include "model/contact/share.h"
 
-#include "base/clones.h"
+#include <clothsim/clones.h>
 #include "base/vector.h"
 #include "model/contact/law.h"
 #include "model/contact/obstacle.h"

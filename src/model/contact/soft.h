@@ -2,7 +2,7 @@
 #ifndef CS_CONTACT_SOFT_H
 #define CS_CONTACT_SOFT_H
 
-#include "base/clones.h"
+#include <clothsim/clones.h>
 
 /* The positive part of t made smooth over -e..e: 0 below, t above, else
  * 2e z^4 (z^2 - 3z + 5/2) with z = (t + e)/2e; three continuous derivatives. out: value, first

@@ -3,8 +3,7 @@
  * nothing, since its law is 0. */
 #include "model/force/contact_rows.h"
 
-#include "base/clones.h"
-
+#include <clothsim/clones.h>
 #include <math.h>
 
 enum { ROW = 64 };

@@ -5,8 +5,7 @@
 #ifndef CS_LANES_H
 #define CS_LANES_H
 
-#include "base/clones.h"
-
+#include <clothsim/clones.h>
 #include <stddef.h>
 #include <stdint.h>
 

@@ -1,10 +1,11 @@
 /* Aggregation multigrid as a preconditioner: one V-cycle for each body, in single precision. */
 #include "model/solver/multigrid.h"
 
-#include "base/clones.h"
 #include "base/pool.h"
 #include "model/force/terms.h"
 #include "scene/shape.h"
+
+#include <clothsim/clones.h>
 
 enum { ROW = 4096 }; /* particles of a mesh that are handled as a row; cells of a block */
 

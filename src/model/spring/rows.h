@@ -6,9 +6,9 @@
 #ifndef CS_ROWS_H
 #define CS_ROWS_H
 
-#include "base/clones.h"
 #include "model/spring/runs.h"
 
+#include <clothsim/clones.h>
 #include <clothsim/integrator.h>
 
 enum { PIECE = 256 }; /* springs whose forces a buffer on the stack holds */

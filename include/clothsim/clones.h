@@ -1,4 +1,5 @@
-/* clones.h - hot kernels compiled for several instruction sets, chosen when the program starts.
+/* clones.h - hot loops compiled for several instruction sets, chosen when the program starts,
+ * of the program and of modules: CS_CLONES before a function is all.
  *
  * The bits are the same in each: contraction is off, and vectors only do several independent
  * elements at once. Clang 14 refuses the attribute on some of these functions; gcc 12 fails on
