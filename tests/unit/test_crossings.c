@@ -208,6 +208,29 @@ START_TEST(shares_are_those_of_all_pairs) {
 }
 END_TEST
 
+/* Two sheets of 4 x 4, 0.2 m above each other, with a spike of 0.15 m over the middle of a
+ * triangle: its tip is the nearest point, whichever body has it. */
+START_TEST(spikes_of_either_body_are_seen) {
+    for (size_t spiked = 0; spiked < 2; spiked++) {
+        struct sheet sheet;
+        char bodies[1024];
+        snprintf(bodies, sizeof bodies, SHEET ", " SHEET, 4, 4, 1.2, 1.2, 0.0, 0.0, 0.0, "", 4,
+                 4, 1.2, 1.2, 0.1, 0.16, 0.2, "");
+        open(&sheet, bodies);
+        const double up = spiked ? -0.15 : 0.15;
+        sheet.x[2 * sheet.n + 16 * spiked + 5] += up;
+        double *to = malloc(3 * sheet.n * sizeof *to);
+        memcpy(to, sheet.x, 3 * sheet.n * sizeof *to);
+        for (size_t i = 16; i < 32; i++)
+            to[2 * sheet.n + i] -= 0.1;
+        const double share = cs_crossings_share(&sheet.system, sheet.x, to);
+        ck_assert_msg(share < 0.5 && share > 0.44, "%zu: %g", spiked, share);
+        free(to);
+        sheet_close(&sheet);
+    }
+}
+END_TEST
+
 /* a fall of a metre together, and states that are not finite */
 START_TEST(shared_moves_and_blow_ups) {
     struct sheet sheet;
@@ -246,10 +269,14 @@ START_TEST(bytes_are_told) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {
-        sheets_through_each_other,     sheet_in_a_column_of_another,
-        columns_in_each_other,         what_lies_in_a_plane_does_not_cross,
-        counts_are_those_of_all_pairs, shares_are_those_of_all_pairs,
-        shared_moves_and_blow_ups,     bytes_are_told};
+    const TTest *const tests[] = {sheets_through_each_other,
+                                  sheet_in_a_column_of_another,
+                                  columns_in_each_other,
+                                  what_lies_in_a_plane_does_not_cross,
+                                  counts_are_those_of_all_pairs,
+                                  shares_are_those_of_all_pairs,
+                                  shared_moves_and_blow_ups,
+                                  spikes_of_either_body_are_seen,
+                                  bytes_are_told};
     return unit_run("crossings", tests, sizeof tests / sizeof *tests);
 }
