@@ -2,8 +2,8 @@
 #include "draw/overlay.h"
 
 #include "draw/extent.h"
-#include "draw/prods.h"
 #include "draw/style.h"
+#include "draw/viewpoint_forces.h"
 
 #include <math.h>
 
@@ -40,8 +40,8 @@ void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *fr
     }
     if (render->look == CS_LOOK_GOALS && frame->goals)
         cs_net_draw_goals(net, lines, frame->x, frame->goals);
-    if (render->prods)
-        cs_prods_draw(net, lines, frame);
+    if (render->viewpoint_forces)
+        cs_viewpoint_forces_draw(net, lines, frame);
     if (cs_look_has_bar(render->look))
         cs_bar_draw(&overlay->bar, lines, frame->range);
 }

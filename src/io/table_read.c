@@ -163,6 +163,16 @@ static const char *nearest_key(const struct cs_table *table, const char *apart,
     return cs_nearest(key, names);
 }
 
+/* the new name, if the table has it, of a key that had another one; or NULL */
+static const char *new_name(const struct cs_table *table, const char *key) {
+    static const char *const names[][2] = {{"prod", "viewpoint_force"},
+                                           {"prods", "viewpoint_forces"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!strcmp(key, names[i][0]) && cs_option_find(table, names[i][1]))
+            return names[i][1];
+    return NULL;
+}
+
 static enum cs_status read_member(struct cs_reader *reader, const struct cs_json *member,
                                   const struct cs_table *table, void *object) {
     const char *key = cs_json_key(member);
@@ -172,6 +182,10 @@ static enum cs_status read_member(struct cs_reader *reader, const struct cs_json
     const size_t outside = cs_reader_enter(reader, key);
     const struct cs_option *row = cs_option_find(table, key);
     if (!row) {
+        const char *renamed = new_name(table, key);
+        if (renamed)
+            return cs_reader_fail(reader, member, true, "this key is now called \"%s\"",
+                                  renamed);
         const char *nearest = nearest_key(table, apart, key);
         return nearest ? cs_reader_fail(reader, member, true,
                                         "unknown key; did you mean \"%s\"?", nearest)

@@ -6,7 +6,7 @@
 #include "model/commit/contact.h"
 #include "model/cross/crossings.h"
 #include "model/event/events.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
 #include "model/shares.h"
 #include "model/solver/multigrid.h"
@@ -128,8 +128,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "a body has strain_limit", "no strain_limit");
     decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, cs_events_bytes(scene, plan->n),
            "the scene has events", "no events");
-    decide(plan, CS_FEATURE_PRODS, cs_prods_any(scene), cs_prods_bytes(scene, plan->n),
-           "an event is a prod; it needs a test of what is seen", "no event is a prod");
+    decide(plan, CS_FEATURE_VIEWPOINT_FORCES, cs_viewpoint_forces_any(scene),
+           cs_viewpoint_forces_bytes(scene, plan->n),
+           "an event is a viewpoint_force; it needs a test of what is seen",
+           "no event is a viewpoint_force");
     /* ends and kind; length, stiffness and damping; axial or not */
     decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
            s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),

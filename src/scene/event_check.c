@@ -131,40 +131,43 @@ static void complete_viewpoint(const struct cs_scene *scene, struct cs_viewpoint
 }
 
 /* a blow has a duration, a wind looks anew */
-static enum cs_status check_lengths(const struct look *at, bool once, struct cs_prod *prod) {
-    double *used = once ? &prod->duration : &prod->refresh;
-    const double other = once ? prod->refresh : prod->duration;
+static enum cs_status check_lengths(const struct look *at, bool once,
+                                    struct cs_viewpoint_force *viewpoint_force) {
+    double *used = once ? &viewpoint_force->duration : &viewpoint_force->refresh;
+    const double other = once ? viewpoint_force->refresh : viewpoint_force->duration;
     if (!isnan(other))
-        return once ? refuse(at, ".prod.refresh", "a blow is seen once, expected from and to")
-                    : refuse(at, ".prod.duration", "it lasts until to, expected at");
+        return once ? refuse(at, ".viewpoint_force.refresh",
+                             "a blow is seen once, expected from and to")
+                    : refuse(at, ".viewpoint_force.duration", "it lasts until to, expected at");
     if (isnan(*used))
         *used = once ? 1.0 / 60 : 60;
     return CS_OK;
 }
 
-static enum cs_status check_prod(const struct look *at, bool once, struct cs_prod *prod) {
-    const struct cs_viewpoint *from = &prod->viewpoint;
-    const double *rectangle = prod->rectangle;
+static enum cs_status check_viewpoint_force(const struct look *at, bool once,
+                                            struct cs_viewpoint_force *viewpoint_force) {
+    const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
+    const double *rectangle = viewpoint_force->rectangle;
     const char *key, *fault;
     char place[64];
     /* keys of the camera stand in first: the view is checked as it will be used */
-    complete_viewpoint(at->scene, &prod->viewpoint);
+    complete_viewpoint(at->scene, &viewpoint_force->viewpoint);
     fault = cs_viewpoint_fault(from->eye, from->target, from->up, &key);
-    snprintf(place, sizeof place, ".prod.viewpoint.%s", fault ? key : "");
+    snprintf(place, sizeof place, ".viewpoint_force.viewpoint.%s", fault ? key : "");
     if (fault)
         return refuse(at, place, "%s", fault);
     if (!(rectangle[0] < rectangle[2]))
-        return refuse(at, ".prod.rectangle", "left = %.9g is not below right = %.9g",
+        return refuse(at, ".viewpoint_force.rectangle", "left = %.9g is not below right = %.9g",
                       rectangle[0], rectangle[2]);
     if (!(rectangle[1] < rectangle[3]))
-        return refuse(at, ".prod.rectangle", "top = %.9g is not below bottom = %.9g",
+        return refuse(at, ".viewpoint_force.rectangle", "top = %.9g is not below bottom = %.9g",
                       rectangle[1], rectangle[3]);
-    if (isnan(prod->force))
-        return refuse(at, ".prod", "found no force");
-    if (prod->body >= at->scene->bodies.n)
-        return refuse(at, ".prod.body", "body %lld does not exist (0..%u)",
-                      (long long)prod->body, at->scene->bodies.n - 1);
-    return check_lengths(at, once, prod);
+    if (isnan(viewpoint_force->force))
+        return refuse(at, ".viewpoint_force", "found no force");
+    if (viewpoint_force->body >= at->scene->bodies.n)
+        return refuse(at, ".viewpoint_force.body", "body %lld does not exist (0..%u)",
+                      (long long)viewpoint_force->body, at->scene->bodies.n - 1);
+    return check_lengths(at, once, viewpoint_force);
 }
 
 static enum cs_status check_ramp(const struct look *at, const struct cs_event *event) {
@@ -256,8 +259,8 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
                    : check_aim(at, ".impact", &event->impact.aim);
     if (event->wind.present)
         return check_wind(at, &event->wind);
-    if (event->prod.present)
-        return check_prod(at, !isnan(event->at), &event->prod);
+    if (event->viewpoint_force.present)
+        return check_viewpoint_force(at, !isnan(event->at), &event->viewpoint_force);
     if (event->ramp.present)
         return check_ramp(at, event);
     if (event->grab.present)

@@ -52,24 +52,24 @@ static const struct cs_option viewpoint_rows[] = {
 static const struct cs_table viewpoint_table = {ROWS(viewpoint_rows),
                                                 .size = sizeof(struct cs_viewpoint)};
 static const double whole[4] = {0, 0, 1, 1};
-static const struct cs_option prod_rows[] = {
-    TABLE(struct cs_prod, viewpoint, viewpoint_table,
+static const struct cs_option viewpoint_force_rows[] = {
+    TABLE(struct cs_viewpoint_force, viewpoint, viewpoint_table,
           "from where; the force is along its view"),
-    VECTOR(struct cs_prod, rectangle, 4, "", whole, 0, 1,
+    VECTOR(struct cs_viewpoint_force, rectangle, 4, "", whole, 0, 1,
            "left, top, right, bottom: shares of what is seen, from its top left corner"),
     REAL(
-        struct cs_prod, force, "N", ABSENT, -BIG, BIG,
+        struct cs_viewpoint_force, force, "N", ABSENT, -BIG, BIG,
         "on each particle that is seen in it, along the view; below 0 towards the eye; must be "
         "given"),
-    REAL(struct cs_prod, duration, "s", ABSENT, 1e-9, BIG,
+    REAL(struct cs_viewpoint_force, duration, "s", ABSENT, 1e-9, BIG,
          "with at: the blow is force times this on each particle; absent: 1/60"),
-    REAL(struct cs_prod, refresh, "1/s", ABSENT, 0, 1e5,
+    REAL(struct cs_viewpoint_force, refresh, "1/s", ABSENT, 0, 1e5,
          "with from and to: how often it is seen anew; 0: at from alone; absent: 60"),
-    INT(struct cs_prod, body, "", -1, 0, 4294967295.0,
+    INT(struct cs_viewpoint_force, body, "", -1, 0, 4294967295.0,
         "number of the body from 0 that it acts on; absent: every body"),
 };
-static const struct cs_table prod_table = {ROWS(prod_rows), .size = sizeof(struct cs_prod),
-                                           .optional = true};
+static const struct cs_table viewpoint_force_table = {
+    ROWS(viewpoint_force_rows), .size = sizeof(struct cs_viewpoint_force), .optional = true};
 
 static const struct cs_option ramp_rows[] = {
     TEXT(struct cs_ramp, key,
@@ -136,7 +136,7 @@ static const struct cs_option event_rows[] = {
     TABLE(struct cs_event, impact, impact_table, "a blow to particles or bodies"),
     TABLE(struct cs_event, wind, gust_table,
           "another wind; over an interval its vector changes linearly"),
-    TABLE(struct cs_event, prod, prod_table,
+    TABLE(struct cs_event, viewpoint_force, viewpoint_force_table,
           "a blow, or over an interval a wind, to the particles that are seen in a rectangle "
           "from a viewpoint"),
     TABLE(struct cs_event, ramp, ramp_table,

@@ -240,7 +240,7 @@ struct cs_viewpoint {
     double fov;                      /* degrees, vertical; NAN: absent */
     double aspect;                   /* width over height; NAN: absent */
 };
-struct cs_prod {
+struct cs_viewpoint_force {
     bool present;
     struct cs_viewpoint viewpoint;
     double
@@ -280,7 +280,7 @@ struct cs_event {
     double at, from, to; /* s; NAN: absent */
     struct cs_impact impact;
     struct cs_gust wind;
-    struct cs_prod prod;
+    struct cs_viewpoint_force viewpoint_force;
     struct cs_ramp ramp;
     struct cs_grab grab;
     struct cs_hold pin, release;
@@ -317,10 +317,10 @@ struct cs_render {
     int64_t samples; /* of multisampling: 1 or 4 */
     int32_t look;    /* enum cs_look */
     double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
-    double background[3]; /* linear RGB */
-    bool prods;           /* show what viewpoint forces see, and from where */
-    bool ground;          /* draw a grid on the plane y = ground_height */
-    double ground_height; /* m */
+    double background[3];  /* linear RGB */
+    bool viewpoint_forces; /* show what viewpoint forces see, and from where */
+    bool ground;           /* draw a grid on the plane y = ground_height */
+    double ground_height;  /* m */
 };
 
 /* one integrator option as text, checked when the integrator is known */

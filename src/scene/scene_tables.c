@@ -345,8 +345,8 @@ static const struct cs_option render_rows[] = {
     VECTOR(struct cs_render, range, 2, "N or 1", absent9, -BIG, BIG,
            "force or strain at the ends of the colours; absent: from each frame"),
     VECTOR(struct cs_render, background, 3, "", paper, 0, 1, "linear RGB"),
-    BOOL(struct cs_render, prods, 0,
-         "draw what the prods under way see, and their rectangles from their eyes"),
+    BOOL(struct cs_render, viewpoint_forces, 0,
+         "draw what the viewpoint forces under way see, and their rectangles from their eyes"),
     BOOL(struct cs_render, ground, 0, "draw a grid of lines on the ground"),
     REAL(struct cs_render, ground_height, "m", 0, -BIG, BIG, "the grid lies at y = this"),
 };

@@ -100,7 +100,7 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
     if (!read_textures(picture, error) && !take_arrays(picture, error) &&
         !cs_renderer_open(cs_renderer_folder(), kind, &picture->renderer, error)) {
         /* what viewpoint forces see is drawn from the events, which move on with the run */
-        const bool apart = beside && !picture->scene->render.prods;
+        const bool apart = beside && !picture->scene->render.viewpoint_forces;
         picture->hand = apart ? cs_hand_create() : NULL;
         cs_hand_give(picture->hand, make_canvas, picture);
         cs_picture_end(picture, error);

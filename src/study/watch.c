@@ -2,7 +2,7 @@
 #include "study/watch.h"
 
 #include "model/event/events.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -81,8 +81,9 @@ static double push_of(const struct cs_system *system, size_t i, bool with_energy
 /* and by the viewpoint forces, were it seen by all */
 static double seen_push(const struct cs_system *system, size_t i) {
     const struct cs_events *events = system->events;
-    return events && events->prods
-               ? cs_prods_force(events->prods, system->scene) * system->inv_mass[i]
+    return events && events->viewpoint_forces
+               ? cs_viewpoint_forces_force(events->viewpoint_forces, system->scene) *
+                     system->inv_mass[i]
                : 0;
 }
 

@@ -167,14 +167,15 @@ START_TEST(impacts_are_the_closed_form) {
 END_TEST
 
 /* Both sheets are seen whole: 0.8 N on 0.1 kg along -z, for 0.35 s, or for 0.2 s at once. */
-START_TEST(prods_are_the_closed_form) {
+START_TEST(viewpoint_forces_are_the_closed_form) {
     for (size_t k = 0; k < 2; k++) {
         const bool steady = k == 0;
         const double gain = -8 * (steady ? 0.35 : 0.2);
         const double moved = gain * (steady ? T - 0.35 / 2 : T - 0.25);
         double start[2 * CS_FORCE_VALUES];
         struct cs_probe probe;
-        run_scene(&probe, steady ? "a steady prod" : "a prod at once", start);
+        run_scene(&probe, steady ? "a steady viewpoint force" : "a viewpoint force at once",
+                  start);
         for (size_t i = 0; i < 3 * probe.n; i++) {
             const double v0 = start[3 * probe.n + i];
             const bool along = i / probe.n == 2;
@@ -208,11 +209,14 @@ START_TEST(ramp_of_gravity_is_the_closed_form) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {
-        every_force_has_a_scene_to_itself, every_ramp_has_a_scene,
-        gravity_is_the_closed_form,        drag_is_the_closed_form,
-        wind_is_the_closed_form,           impacts_are_the_closed_form,
-        prods_are_the_closed_form,         ramp_of_gravity_is_the_closed_form};
+    const TTest *const tests[] = {every_force_has_a_scene_to_itself,
+                                  every_ramp_has_a_scene,
+                                  gravity_is_the_closed_form,
+                                  drag_is_the_closed_form,
+                                  wind_is_the_closed_form,
+                                  impacts_are_the_closed_form,
+                                  viewpoint_forces_are_the_closed_form,
+                                  ramp_of_gravity_is_the_closed_form};
     TCase *group = tcase_create("conform scenes");
     Suite *suite = suite_create("conform scenes");
     tcase_set_timeout(group, 0);

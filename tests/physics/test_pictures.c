@@ -114,15 +114,16 @@ START_TEST(moved_colliders_are_drawn_where_they_are) {
 END_TEST
 
 /* their rectangles and marks come from the events, which a step changes */
-START_TEST(what_prods_see_is_drawn_at_once) {
+START_TEST(what_viewpoint_forces_see_is_drawn_at_once) {
     struct fixture cloth;
     struct cs_picture picture;
     struct cs_error error = {0};
-    fixture_open(&cloth, "symplectic-euler",
-                 "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}}], "
-                 "\"events\": [{\"from\": 0, \"to\": 1, \"prod\": {\"viewpoint\": {\"eye\": "
-                 "[0, 0, 2]}, \"rectangle\": [0.4, 0.4, 0.6, 0.6], \"force\": 0.01}}], "
-                 "\"render\": {\"size\": [160, 120], \"prods\": true}}");
+    fixture_open(
+        &cloth, "symplectic-euler",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}}], "
+        "\"events\": [{\"from\": 0, \"to\": 1, \"viewpoint_force\": {\"viewpoint\": {\"eye\": "
+        "[0, 0, 2]}, \"rectangle\": [0.4, 0.4, 0.6, 0.6], \"force\": 0.01}}], "
+        "\"render\": {\"size\": [160, 120], \"viewpoint_forces\": true}}");
     fixture_start(&cloth);
     cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, true, &error);
     ck_assert_msg(!error.status, "%s", error.message);
@@ -171,6 +172,6 @@ END_TEST
 int main(void) {
     const TTest *const tests[] = {
         pictures_beside_the_run_are_those_at_once, moved_colliders_are_drawn_where_they_are,
-        what_prods_see_is_drawn_at_once, a_renderer_that_fails_is_told};
+        what_viewpoint_forces_see_is_drawn_at_once, a_renderer_that_fails_is_told};
     return fixture_run("pictures", tests, sizeof tests / sizeof *tests);
 }

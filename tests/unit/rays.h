@@ -133,10 +133,11 @@ static inline void look_past_obstacles(struct verdict *verdict, const struct she
     }
 }
 
-static inline struct verdict look_at(const struct sheet *sheet, const struct cs_prod *prod,
+static inline struct verdict look_at(const struct sheet *sheet,
+                                     const struct cs_viewpoint_force *viewpoint_force,
                                      uint32_t i) {
     struct verdict verdict = {true, 1};
-    const struct cs_viewpoint *from = &prod->viewpoint;
+    const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
     double eye[3], way[3], view[3], right[3], up[3];
     for (size_t c = 0; c < 3; c++) {
         eye[c] = from->eye[c];
@@ -154,10 +155,10 @@ static inline struct verdict look_at(const struct sheet *sheet, const struct cs_
                                     (2 * depth * length * slope * from->aspect);
     const double down = 0.5 - dot(way, up) / sqrt(dot(up, up)) / (2 * depth * length * slope);
     require(&verdict, depth);
-    require(&verdict, across - prod->rectangle[0]);
-    require(&verdict, prod->rectangle[2] - across);
-    require(&verdict, down - prod->rectangle[1]);
-    require(&verdict, prod->rectangle[3] - down);
+    require(&verdict, across - viewpoint_force->rectangle[0]);
+    require(&verdict, viewpoint_force->rectangle[2] - across);
+    require(&verdict, down - viewpoint_force->rectangle[1]);
+    require(&verdict, viewpoint_force->rectangle[3] - down);
     look_past_triangles(&verdict, sheet, i, eye, way);
     look_past_obstacles(&verdict, sheet, eye, way);
     return verdict;

@@ -28,12 +28,12 @@ static void looker_open(struct looker *looker, const char *scene) {
     looker->seen = cs_arena_take_n(&looker->arena, n, sizeof *looker->seen, &error);
 }
 
-static uint32_t look(struct looker *looker, const struct cs_prod *prod) {
+static uint32_t look(struct looker *looker, const struct cs_viewpoint_force *viewpoint_force) {
     struct cs_sight sight;
     uint32_t count = 0;
-    cs_sight_make(&sight, prod);
-    cs_sight_find(&sight, &looker->sheet.system, 0, looker->sheet.x, prod->body, &looker->work,
-                  looker->seen);
+    cs_sight_make(&sight, viewpoint_force);
+    cs_sight_find(&sight, &looker->sheet.system, 0, looker->sheet.x, viewpoint_force->body,
+                  &looker->work, looker->seen);
     for (size_t i = 0; i < looker->sheet.n; i++)
         count += looker->seen[i];
     return count;
@@ -44,17 +44,17 @@ static void looker_close(struct looker *looker) {
     sheet_close(&looker->sheet);
 }
 
-static void draw_prod(struct cs_prod *prod, double distance) {
-    *prod = (struct cs_prod){.viewpoint = {.fov = 70 + 60 * draw(), .aspect = 1.5 + draw()},
-                             .body = -1};
+static void draw_viewpoint_force(struct cs_viewpoint_force *viewpoint_force, double distance) {
+    *viewpoint_force = (struct cs_viewpoint_force){
+        .viewpoint = {.fov = 70 + 60 * draw(), .aspect = 1.5 + draw()}, .body = -1};
     for (int c = 0; c < 3; c++) {
-        prod->viewpoint.eye[c] = distance * draw();
-        prod->viewpoint.target[c] = 0.3 * draw();
-        prod->viewpoint.up[c] = draw();
+        viewpoint_force->viewpoint.eye[c] = distance * draw();
+        viewpoint_force->viewpoint.target[c] = 0.3 * draw();
+        viewpoint_force->viewpoint.up[c] = draw();
     }
     for (int c = 0; c < 2; c++) {
-        prod->rectangle[c] = 0.25 + 0.25 * draw();
-        prod->rectangle[2 + c] = 0.75 + 0.25 * draw();
+        viewpoint_force->rectangle[c] = 0.25 + 0.25 * draw();
+        viewpoint_force->rectangle[2 + c] = 0.75 + 0.25 * draw();
     }
 }
 
@@ -65,14 +65,14 @@ START_TEST(same_as_by_brute_force) {
     looker_open(&looker, SCENE);
     const size_t n = looker.sheet.n;
     for (int k = 0; k < 60; k++) {
-        struct cs_prod prod;
+        struct cs_viewpoint_force viewpoint_force;
         memcpy(looker.sheet.x, looker.sheet.system.start, 3 * n * sizeof(double));
         for (size_t i = 0; i < 3 * n; i++)
             looker.sheet.x[i] += 0.02 * (1 + k % 5) * draw();
-        draw_prod(&prod, k % 3 ? 3 : 0.5);
-        look(&looker, &prod);
+        draw_viewpoint_force(&viewpoint_force, k % 3 ? 3 : 0.5);
+        look(&looker, &viewpoint_force);
         for (uint32_t i = 0; i < n; i++) {
-            const struct verdict expected = look_at(&looker.sheet, &prod, i);
+            const struct verdict expected = look_at(&looker.sheet, &viewpoint_force, i);
             if (expected.margin < 1e-8) {
                 unclear++;
                 continue;
@@ -92,18 +92,19 @@ END_TEST
 /* One body at a time: the others still hide it. */
 START_TEST(bodies_are_looked_at_alone) {
     struct looker looker;
-    struct cs_prod prod;
+    struct cs_viewpoint_force viewpoint_force;
     looker_open(&looker, SCENE);
-    draw_prod(&prod, 0);
-    prod.viewpoint.eye[1] = prod.viewpoint.eye[2] = 2;
-    const uint32_t all = look(&looker, &prod);
+    draw_viewpoint_force(&viewpoint_force, 0);
+    viewpoint_force.viewpoint.eye[1] = viewpoint_force.viewpoint.eye[2] = 2;
+    const uint32_t all = look(&looker, &viewpoint_force);
     uint32_t sum = 0, most = 0;
-    for (prod.body = 0; prod.body < 3; prod.body++) {
-        const uint32_t alone = look(&looker, &prod);
+    for (viewpoint_force.body = 0; viewpoint_force.body < 3; viewpoint_force.body++) {
+        const uint32_t alone = look(&looker, &viewpoint_force);
         sum += alone;
         most = alone > most ? alone : most;
         for (uint32_t i = 0; i < looker.sheet.n; i++) {
-            const struct cs_body_range *body = looker.sheet.system.bodies + prod.body;
+            const struct cs_body_range *body =
+                looker.sheet.system.bodies + viewpoint_force.body;
             const bool is_its = i >= body->first && i < body->first + body->count;
             ck_assert(!looker.seen[i] || is_its);
         }
@@ -120,13 +121,13 @@ END_TEST
     " {\"cloth\": {\"grid\": [9, 9], \"size\": " size ", \"place\": {\"translate\":"           \
     " [0, 0, -2]}}, \"mass\": {\"total\": 1}}], \"colliders\": [" colliders "]}"
 
-static const struct cs_prod front = {.viewpoint = {.eye = {0, 0, 2},
-                                                   .target = {0, 0, 0},
-                                                   .up = {0, 1, 0},
-                                                   .fov = 90,
-                                                   .aspect = 1},
-                                     .rectangle = {0, 0, 1, 1},
-                                     .body = -1};
+static const struct cs_viewpoint_force front = {.viewpoint = {.eye = {0, 0, 2},
+                                                              .target = {0, 0, 0},
+                                                              .up = {0, 1, 0},
+                                                              .fov = 90,
+                                                              .aspect = 1},
+                                                .rectangle = {0, 0, 1, 1},
+                                                .body = -1};
 
 /* The second cloth is twice as large and twice as far away, so that every line to it goes
  * through a corner of the first: nothing is seen through seams, and of a third as large what
@@ -153,22 +154,23 @@ START_TEST(edges_are_tight) {
     looker_open(&looker, PAIR("[1, 1]", ""));
     const size_t n = looker.sheet.n;
     for (int k = 0; k < 50; k++) {
-        struct cs_prod prod = front;
+        struct cs_viewpoint_force viewpoint_force = front;
         for (int c = 0; c < 3; c++)
-            prod.viewpoint.eye[c] += draw();
+            viewpoint_force.viewpoint.eye[c] += draw();
         for (size_t i = 81; i < n; i++) {
             /* inside an edge between two particles, across, down or diagonal */
             const size_t row = 1 + i % 6, column = 1 + i / 6 % 6, from = 9 * row + column;
             const size_t to = from + (size_t[]){1, 9, 8}[(i + (size_t)k) % 3];
             const double share = 0.5 + 0.4 * draw(), depth = 1.5 + 0.4 * draw();
             for (size_t c = 0; c < 3; c++) {
-                const double *x = looker.sheet.x + c * n, eye = prod.viewpoint.eye[c];
+                const double *x = looker.sheet.x + c * n,
+                             eye = viewpoint_force.viewpoint.eye[c];
                 const double point = x[from] + share * (x[to] - x[from]);
                 looker.sheet.x[c * n + i] = eye + depth * (point - eye);
             }
         }
-        prod.body = 1;
-        ck_assert_uint_eq(look(&looker, &prod), 0);
+        viewpoint_force.body = 1;
+        ck_assert_uint_eq(look(&looker, &viewpoint_force), 0);
     }
     looker_close(&looker);
 }
@@ -202,10 +204,10 @@ START_TEST(obstacles_hide_what_is_behind) {
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct looker looker;
-        struct cs_prod prod = front;
-        prod.body = 0;
+        struct cs_viewpoint_force viewpoint_force = front;
+        viewpoint_force.body = 0;
         looker_open(&looker, rows[k].scene);
-        ck_assert_msg(look(&looker, &prod) == rows[k].seen, "obstacle %zu", k);
+        ck_assert_msg(look(&looker, &viewpoint_force) == rows[k].seen, "obstacle %zu", k);
         looker_close(&looker);
     }
 }
@@ -216,8 +218,8 @@ START_TEST(what_lies_on_a_surface_is_seen) {
     struct looker looker;
     looker_open(&looker, PAIR("[1, 1]", ""));
     for (int k = 0; k < 50; k++) {
-        struct cs_prod prod = front;
-        prod.viewpoint.eye[2] *= k % 2 ? 1 : -1;
+        struct cs_viewpoint_force viewpoint_force = front;
+        viewpoint_force.viewpoint.eye[2] *= k % 2 ? 1 : -1;
         for (size_t i = 0; i < looker.sheet.n; i++) {
             const double x = 0.4 * draw(), y = 0.4 * draw();
             const double at[3] = {x, y, 0.3 * x - 0.2 * y};
@@ -228,9 +230,9 @@ START_TEST(what_lies_on_a_surface_is_seen) {
                     0.3 * looker.sheet.x[i] - 0.2 * looker.sheet.x[looker.sheet.n + i];
         }
         for (int c = 0; c < 3; c++)
-            prod.viewpoint.eye[c] += draw();
-        prod.body = 1;
-        ck_assert_uint_eq(look(&looker, &prod), 81);
+            viewpoint_force.viewpoint.eye[c] += draw();
+        viewpoint_force.body = 1;
+        ck_assert_uint_eq(look(&looker, &viewpoint_force), 81);
     }
     looker_close(&looker);
 }
@@ -239,16 +241,16 @@ END_TEST
 /* A ground of two triangles that go on behind the eye hides what is below it. */
 START_TEST(ground_reaches_behind_the_eye) {
     struct looker looker;
-    struct cs_prod prod = front;
+    struct cs_viewpoint_force viewpoint_force = front;
     looker_open(&looker, "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [20, 20],"
                          " \"start\": \"flat\", \"place\": {\"translate\": [0, -0.5, 0]}},"
                          " \"mass\": {\"total\": 1}},"
                          " {\"cloth\": {\"grid\": [9, 9], \"size\": [2, 2], \"place\":"
                          " {\"translate\": [0, 0, -2]}}, \"mass\": {\"total\": 1}}]}");
-    prod.viewpoint.eye[2] = 0;
-    prod.viewpoint.target[2] = -1;
-    prod.body = 1;
-    ck_assert_uint_eq(look(&looker, &prod), 7 * 9);
+    viewpoint_force.viewpoint.eye[2] = 0;
+    viewpoint_force.viewpoint.target[2] = -1;
+    viewpoint_force.body = 1;
+    ck_assert_uint_eq(look(&looker, &viewpoint_force), 7 * 9);
     looker_close(&looker);
 }
 END_TEST
@@ -270,11 +272,11 @@ START_TEST(rectangle_is_of_the_picture) {
     struct looker looker;
     looker_open(&looker, PAIR("[1, 1]", ""));
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        struct cs_prod prod = front;
-        memcpy(prod.rectangle, rows[k].rectangle, sizeof prod.rectangle);
-        prod.viewpoint.aspect = rows[k].aspect;
-        prod.viewpoint.fov = rows[k].fov;
-        const uint32_t seen = look(&looker, &prod);
+        struct cs_viewpoint_force viewpoint_force = front;
+        memcpy(viewpoint_force.rectangle, rows[k].rectangle, sizeof viewpoint_force.rectangle);
+        viewpoint_force.viewpoint.aspect = rows[k].aspect;
+        viewpoint_force.viewpoint.fov = rows[k].fov;
+        const uint32_t seen = look(&looker, &viewpoint_force);
         ck_assert_msg(seen == rows[k].seen, "%zu: %u", k, seen);
         /* the ones to the right and above */
         ck_assert(k != 2 || (looker.seen[4] && looker.seen[8] && !looker.seen[3]));
@@ -285,10 +287,10 @@ END_TEST
 
 START_TEST(view_is_a_tangent) {
     for (double fov = 1; fov <= 170; fov += 0.5) {
-        struct cs_prod prod = front;
+        struct cs_viewpoint_force viewpoint_force = front;
         struct cs_sight sight;
-        prod.viewpoint.fov = fov;
-        cs_sight_make(&sight, &prod);
+        viewpoint_force.viewpoint.fov = fov;
+        cs_sight_make(&sight, &viewpoint_force);
         const double slope = tan(fov * (3.14159265358979323846 / 360));
         ck_assert_msg(fabs(sight.high[1] / slope - 1) < 1e-14, "%g degrees", fov);
         ck_assert(sight.low[1] == -sight.high[1] && sight.high[0] == sight.high[1]);

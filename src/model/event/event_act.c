@@ -4,7 +4,7 @@
 #include "model/event/event_move.h"
 #include "model/event/event_path.h"
 #include "model/event/event_times.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 #include "scene/shape.h"
 
 #include <math.h>
@@ -60,8 +60,8 @@ void cs_event_sum_pushes(struct cs_system *system) {
         if (state->active && impact->present)
             strike(system, impact, impact->impulse / (state->end - state->begin), system->push);
     }
-    if (events->prods)
-        cs_prods_add_push(system, system->push);
+    if (events->viewpoint_forces)
+        cs_viewpoint_forces_add_push(system, system->push);
 }
 
 /* the marked particles are held by an event, which says how they move */
@@ -164,8 +164,8 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
     if (of->impact.present && !state->active)
         strike(system, &of->impact, of->impact.impulse,
                system->state + 3 * (size_t)system->view.n);
-    if (of->prod.present)
-        cs_prod_start(system, event);
+    if (of->viewpoint_force.present)
+        cs_viewpoint_force_start(system, event);
     if (of->grab.present)
         begin_grab(system, event);
     if (of->move.present)
@@ -188,8 +188,8 @@ void cs_event_finish(struct cs_system *system, uint32_t event) {
     events->states[event].active = false;
     if (of->ramp.present || of->wind.present)
         end_value(system, event);
-    if (of->prod.present)
-        cs_prod_finish(system, event);
+    if (of->viewpoint_force.present)
+        cs_viewpoint_force_finish(system, event);
     if (of->move.present)
         cs_event_end_move(system, event, events->begin);
     for (uint32_t i = 0; i < system->view.n; i++)

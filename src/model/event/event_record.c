@@ -3,7 +3,7 @@
 
 #include "model/contact/obstacle.h"
 #include "model/event/event_act.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 
 /* the state of one event, but for where its value lies, which is a matter of this process */
 static void record_event(struct cs_event_state *state, struct cs_record *record) {
@@ -15,9 +15,10 @@ static void record_event(struct cs_event_state *state, struct cs_record *record)
         CS_RECORD(record, *value);
 }
 
-static void record_prods(struct cs_prods *prods, uint32_t n, struct cs_record *record) {
-    for (uint32_t k = 0; k < prods->n; k++) {
-        struct cs_prod_state *state = prods->states + k;
+static void record_viewpoint_forces(struct cs_viewpoint_forces *viewpoint_forces, uint32_t n,
+                                    struct cs_record *record) {
+    for (uint32_t k = 0; k < viewpoint_forces->n; k++) {
+        struct cs_viewpoint_force_state *state = viewpoint_forces->states + k;
         cs_record_bytes(record, state->seen, n * sizeof *state->seen);
         CS_RECORD(record, state->active);
         CS_RECORD(record, state->looks);
@@ -47,8 +48,8 @@ void cs_events_record(struct cs_system *system, struct cs_record *record) {
     cs_record_bytes(record, events->holders, n * sizeof *events->holders);
     if (events->offsets)
         cs_record_bytes(record, events->offsets, 3 * n * sizeof *events->offsets);
-    if (events->prods)
-        record_prods(events->prods, system->view.n, record);
+    if (events->viewpoint_forces)
+        record_viewpoint_forces(events->viewpoint_forces, system->view.n, record);
     if (system->push)
         cs_record_bytes(record, system->push, 3 * n * sizeof *system->push);
     if (system->motions)

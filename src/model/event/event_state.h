@@ -17,7 +17,7 @@ struct cs_event_state {
     double origin[3];               /* m, of a move: the shift that its path starts from */
 };
 
-struct cs_prods;
+struct cs_viewpoint_forces;
 
 struct cs_events {
     struct cs_scene scene; /* the scene's values now; system->scene points to it */
@@ -27,11 +27,11 @@ struct cs_events {
     struct cs_event_state *states; /* (scene.events.n) */
     uint32_t *holders;             /* (n) number of the event that holds a particle + 1, or 0 */
     bool *marks;                   /* (n) work */
-    double *offsets;        /* (3,n) in m, from the point of the path; NULL without grabs */
-    struct cs_prods *prods; /* NULL without */
-    double look;            /* s, of the next visibility test; HUGE_VAL: none */
-    double now;             /* s, of the ramps' values */
-    bool ramps, grabs;      /* some are under way in the segment */
+    double *offsets; /* (3,n) in m, from the point of the path; NULL without grabs */
+    struct cs_viewpoint_forces *viewpoint_forces; /* NULL without */
+    double look;       /* s, of the next visibility test; HUGE_VAL: none */
+    double now;        /* s, of the ramps' values */
+    bool ramps, grabs; /* some are under way in the segment */
 };
 
 #endif

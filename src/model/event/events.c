@@ -6,7 +6,7 @@
 #include "model/event/event_move.h"
 #include "model/event/event_path.h"
 #include "model/event/event_times.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 #include "model/force/bounds.h"
 #include "scene/event_key.h"
 
@@ -14,7 +14,7 @@
 #include <string.h>
 
 static bool pushes(const struct cs_event *event) {
-    return (event->impact.present || event->prod.present) && isnan(event->at);
+    return (event->impact.present || event->viewpoint_force.present) && isnan(event->at);
 }
 static bool grabs(const struct cs_event *event) {
     return event->grab.present;
@@ -102,7 +102,8 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
     events->look = HUGE_VAL;
     system->events = events;
     system->scene = &events->scene;
-    return cs_prods_any(system->scene) ? cs_prods_build(system, error) : CS_OK;
+    return cs_viewpoint_forces_any(system->scene) ? cs_viewpoint_forces_build(system, error)
+                                                  : CS_OK;
 }
 
 /* what hangs on values that ramps change */
@@ -145,7 +146,7 @@ double cs_events_next(const struct cs_events *events) {
 }
 
 uint32_t cs_events_cuts(const struct cs_events *events, double t) {
-    return events->n_times + cs_prods_cuts(&events->scene, t);
+    return events->n_times + cs_viewpoint_forces_cuts(&events->scene, t);
 }
 
 static void list_pinned(struct cs_system *system) {
@@ -196,11 +197,11 @@ bool cs_events_apply(struct cs_system *system, double t) {
     const bool turns = events->end <= t;
     if (turns)
         turn(system, t);
-    const bool others = events->prods && cs_prods_look(system, t);
+    const bool others = events->viewpoint_forces && cs_viewpoint_forces_look(system, t);
     if (turns || others)
         cs_event_sum_pushes(system);
-    if (events->prods)
-        events->look = cs_prods_next(events->prods);
+    if (events->viewpoint_forces)
+        events->look = cs_viewpoint_forces_next(events->viewpoint_forces);
     return turns || others;
 }
 

@@ -23,11 +23,11 @@ static inline double most(double a, double b) {
     return a > b ? a : b;
 }
 
-void cs_sight_make(struct cs_sight *sight, const struct cs_prod *prod) {
-    const struct cs_viewpoint *from = &prod->viewpoint;
+void cs_sight_make(struct cs_sight *sight, const struct cs_viewpoint_force *viewpoint_force) {
+    const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
     const double slope =
         cs_quarter_sine(from->fov / 180) / cs_quarter_sine(1 - from->fov / 180);
-    const double *rectangle = prod->rectangle;
+    const double *rectangle = viewpoint_force->rectangle;
     double(*axes)[3] = sight->axes;
     for (int c = 0; c < 3; c++) {
         sight->eye[c] = from->eye[c];

@@ -10,8 +10,8 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
     const struct cs_event *events = cs_scene_events(scene);
     struct cs_plan_row row = {0};
     for (uint32_t e = 0; e < scene->events.n; e++)
-        row.built |=
-            (events[e].impact.present || events[e].prod.present) && isnan(events[e].at);
+        row.built |= (events[e].impact.present || events[e].viewpoint_force.present) &&
+                     isnan(events[e].at);
     return row;
 }
 

@@ -18,7 +18,7 @@
     X(CROSSINGS, "crossings")                                                                  \
     X(STRAIN_LIMIT, "strain limit")                                                            \
     X(EVENTS, "events")                                                                        \
-    X(PRODS, "prods")                                                                          \
+    X(VIEWPOINT_FORCES, "viewpoints")                                                          \
     X(SPRING_LIST, "spring list")                                                              \
     X(CLUSTERS, "clusters")                                                                    \
     X(SOLVER, "linear solver")                                                                 \

@@ -26,7 +26,7 @@ enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
     X("force-damping", force_damping, SPRINGS, "under axial and relative dampers, each")       \
     X("force-drag", force_drag, ANY, "under drag of each particle, and by area")               \
     X("force-wind", force_wind, ANY, "under wind on each particle, and by area")               \
-    X("force-push", force_push, ANY, "under impacts and prods")                                \
+    X("force-push", force_push, ANY, "under impacts and viewpoint forces")                     \
     X("force-contact", force_contact, ANY, "near an obstacle, by contact.law force")           \
     X("unequal-masses", unequal_masses, ANY, "under all forces, with unequal masses")          \
     X("time-dependence", time_dependence, ANY, "forces that change with time are followed")    \

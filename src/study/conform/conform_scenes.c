@@ -38,18 +38,19 @@
 #define WIND(strength, unit)                                                                   \
     "\"wind\": {\"direction\": [1, 2, 3], \"strength\": " strength                             \
     ", \"strength_unit\": \"" unit "\"}"
-#define PROD(times, more)                                                                      \
-    times ", \"prod\": {\"viewpoint\": {\"eye\": [1, 0, 6], \"target\": [1, 0, 0], \"fov\":"   \
+#define VIEWPOINT_FORCE(times, more)                                                           \
+    times ", \"viewpoint_force\": {\"viewpoint\": {\"eye\": [1, 0, 6], \"target\": [1, 0, "    \
+          "0], \"fov\":"                                                                       \
           " 60, \"aspect\": 1.5}, \"force\": 0.8, " more "}"
 
-/* A sheet that comes near a plane it is parallel to, and slides: all its particles feel the same.
- * It stays in the range, where the force is smooth. */
+/* A sheet that comes near a plane it is parallel to, and slides: all its particles feel the
+ * same. It stays in the range, where the force is smooth. */
 #define CONTACT(friction, events)                                                              \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0.2, -0.3]},"              \
-    " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY            \
-    "}, \"colliders\": [{\"plane\": {\"point\": [0, 0, -0.2], \"normal\": [0, 0, 1]},"           \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0.2, -0.3]},"            \
+    " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
+    "}, \"colliders\": [{\"plane\": {\"point\": [0, 0, -0.2], \"normal\": [0, 0, 1]},"         \
     " \"thickness\": 0.4, \"friction\": " friction                                             \
-    "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"                 \
+    "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"               \
     " \"friction_speed\": 0.2}, \"events\": [" events "], " FIVE_FRAMES "}"
 
 // ends of ramps lie between frames
@@ -88,11 +89,11 @@ const struct cs_force_scene cs_force_scenes[] = {
     {"force-push", "an impact at once",
      SHEETS_WITH(NO_GRAVITY, "\"at\": 0.25, \"impact\": {\"body\": 0,"
                  " \"direction\": [1, -2, 1], \"impulse\": 1}"), 4, false, false},
-    {"force-push", "a steady prod",
-     SHEETS_WITH(NO_GRAVITY, PROD("\"from\": 0, \"to\": 0.35", "\"refresh\": 0")),
+    {"force-push", "a steady viewpoint force",
+     SHEETS_WITH(NO_GRAVITY, VIEWPOINT_FORCE("\"from\": 0, \"to\": 0.35", "\"refresh\": 0")),
      4, false, false},
-    {"force-push", "a prod at once",
-     SHEETS_WITH(NO_GRAVITY, PROD("\"at\": 0.25", "\"duration\": 0.2")), 4, false, false},
+    {"force-push", "a viewpoint force at once",
+     SHEETS_WITH(NO_GRAVITY, VIEWPOINT_FORCE("\"at\": 0.25", "\"duration\": 0.2")), 4, false, false},
 
     {"force-contact", "contact by force, without friction", CONTACT("0", ""), 9, true, false},
     {"force-contact", "contact by force, with friction", CONTACT("0.5", ""), 9, true, false},

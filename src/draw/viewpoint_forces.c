@@ -1,21 +1,22 @@
 /* Draws viewpoint forces over a picture: viewpoint, rectangle and the particles affected. */
-#include "draw/prods.h"
+#include "draw/viewpoint_forces.h"
 
 #include "draw/colour.h"
 #include "draw/matrix.h"
 #include "draw/mesh.h"
 #include "model/event/event_times.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 
 // what is of a time is seen on the picture that follows it
-static bool acted(const struct cs_system *system, const struct cs_prod_state *state, double t) {
+static bool acted(const struct cs_system *system, const struct cs_viewpoint_force_state *state,
+                  double t) {
     const struct cs_event_state *of = system->events->states + state->event;
     const double blow = of->begin + 1 / system->scene->time.fps + CS_EVENT_SAME;
     return of->begin < t && t <= (of->end > of->begin ? of->end : blow);
 }
 
 static void add_seen(const struct cs_net *net, struct cs_lines *lines,
-                     const struct cs_prod_state *state, const double *x) {
+                     const struct cs_viewpoint_force_state *state, const double *x) {
     double place[3];
     for (uint32_t i = 0; i < net->system->view.n; i++)
         if (state->seen[i]) {
@@ -25,14 +26,15 @@ static void add_seen(const struct cs_net *net, struct cs_lines *lines,
 }
 
 // corners of the rectangle in the plane through the target
-static void find_corners(const struct cs_system *system, const struct cs_prod_state *state,
-                         double corners[4][3]) {
+static void find_corners(const struct cs_system *system,
+                         const struct cs_viewpoint_force_state *state, double corners[4][3]) {
     const struct cs_sight *sight = &state->sight;
-    const struct cs_prod *prod = &cs_scene_events(system->scene)[state->event].prod;
+    const struct cs_viewpoint_force *viewpoint_force =
+        &cs_scene_events(system->scene)[state->event].viewpoint_force;
     const double right[4] = {sight->low[0], sight->high[0], sight->high[0], sight->low[0]};
     const double up[4] = {sight->low[1], sight->low[1], sight->high[1], sight->high[1]};
     double view[3];
-    cs_subtract(prod->viewpoint.target, sight->eye, view);
+    cs_subtract(viewpoint_force->viewpoint.target, sight->eye, view);
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             corners[k][c] = sight->eye[c] +
@@ -41,7 +43,7 @@ static void find_corners(const struct cs_system *system, const struct cs_prod_st
 }
 
 static void draw(const struct cs_net *net, struct cs_lines *lines,
-                 const struct cs_prod_state *state, const double *x) {
+                 const struct cs_viewpoint_force_state *state, const double *x) {
     struct cs_line_style style = {.alpha = 1, .lift = 2 * net->lift};
     double corners[4][3];
     cs_colour_linear(0xff5a00, style.colour);
@@ -60,10 +62,11 @@ static void draw(const struct cs_net *net, struct cs_lines *lines,
     cs_lines_draw(lines, &style);
 }
 
-void cs_prods_draw(const struct cs_net *net, struct cs_lines *lines,
-                   const struct cs_frame *frame) {
+void cs_viewpoint_forces_draw(const struct cs_net *net, struct cs_lines *lines,
+                              const struct cs_frame *frame) {
     const struct cs_events *events = net->system->events;
-    for (uint32_t k = 0; events && events->prods && k < events->prods->n; k++)
-        if (acted(net->system, events->prods->states + k, frame->t))
-            draw(net, lines, events->prods->states + k, frame->x);
+    for (uint32_t k = 0; events && events->viewpoint_forces && k < events->viewpoint_forces->n;
+         k++)
+        if (acted(net->system, events->viewpoint_forces->states + k, frame->t))
+            draw(net, lines, events->viewpoint_forces->states + k, frame->x);
 }

@@ -2,7 +2,7 @@
 #include "fixture.h"
 
 #include "model/event/events.h"
-#include "model/event/prods.h"
+#include "model/event/viewpoint_forces.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,15 +37,18 @@ START_TEST(momentum_is_force_times_time) {
         const char *event;
         double p;
     } rows[] = {
-        {"{\"at\": 0.03, \"prod\": {\"force\": 3}}", 16 * 3 / 60.0},
-        {"{\"at\": 0.05, \"prod\": {\"force\": -3, \"duration\": 0.5}}", -16 * 3 * 0.5},
-        {"{\"from\": 0.02, \"to\": 0.07, \"prod\": {\"force\": 0.5}}", 16 * 0.5 * 0.05},
-        {"{\"from\": 0.02, \"to\": 0.07, \"prod\": {\"force\": 0.5, \"refresh\": 777}}",
+        {"{\"at\": 0.03, \"viewpoint_force\": {\"force\": 3}}", 16 * 3 / 60.0},
+        {"{\"at\": 0.05, \"viewpoint_force\": {\"force\": -3, \"duration\": 0.5}}",
+         -16 * 3 * 0.5},
+        {"{\"from\": 0.02, \"to\": 0.07, \"viewpoint_force\": {\"force\": 0.5}}",
          16 * 0.5 * 0.05},
-        {"{\"from\": 0, \"to\": 0.05, \"prod\": {\"force\": 0.5, \"refresh\": 0,"
+        {"{\"from\": 0.02, \"to\": 0.07, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": "
+         "777}}",
+         16 * 0.5 * 0.05},
+        {"{\"from\": 0, \"to\": 0.05, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": 0,"
          " \"rectangle\": [0.5, 0, 1, 0.5]}}",
          4 * 0.5 * 0.05},
-        {"{\"from\": 0, \"to\": 0.05, \"prod\": {\"force\": 0.5,"
+        {"{\"from\": 0, \"to\": 0.05, \"viewpoint_force\": {\"force\": 0.5,"
          " \"viewpoint\": {\"target\": [0, 0, 4]}}}",
          0},
     };
@@ -67,11 +70,12 @@ START_TEST(momentum_is_force_times_time) {
 }
 END_TEST
 
-/* A prod that sees all of them is an impact of as much. To the bit: the numbers are powers of
- * two. */
+/* A viewpoint force that sees all of them is an impact of as much. To the bit: the numbers are
+ * powers of two. */
 START_TEST(same_as_an_impact) {
     static const char *const events[] = {
-        "{\"from\": 0.0375, \"to\": 0.2, \"prod\": {\"force\": 0.5, \"refresh\": 0}}",
+        "{\"from\": 0.0375, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": "
+        "0}}",
         "{\"from\": 0.0375, \"to\": 0.2, \"impact\": {\"direction\": [0, 0, -1]}}"};
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture dust[2];
@@ -96,8 +100,8 @@ END_TEST
 /* From a frame on, every look is at a frame: no method notices those that see the same. */
 START_TEST(looks_that_see_the_same_change_nothing) {
     static const char *const events[] = {
-        "{\"from\": 0.05, \"to\": 0.2, \"prod\": {\"force\": 0.5}}",
-        "{\"from\": 0.05, \"to\": 0.2, \"prod\": {\"force\": 0.5, \"refresh\": 0}}"};
+        "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5}}",
+        "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": 0}}"};
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture dust[2];
         for (size_t e = 0; e < 2; e++) {
@@ -105,7 +109,7 @@ START_TEST(looks_that_see_the_same_change_nothing) {
             fixture_start(dust + e);
             fixture_frames(dust + e, 15);
         }
-        ck_assert(dust[0].system->events->prods->states->looks == 9);
+        ck_assert(dust[0].system->events->viewpoint_forces->states->looks == 9);
         ck_bits(dust[0].x, dust[1].x, 6 * dust[0].n, methods[k]);
         for (size_t e = 0; e < 2; e++)
             fixture_close(dust + e);
@@ -120,7 +124,7 @@ START_TEST(runs_are_joined_at_looks) {
         struct fixture dust, parts;
         /* seen until it has left the rectangle by 0.05 s: at 0.1 s, frame 6, that is found */
         static const char event[] =
-            "{\"from\": 0, \"to\": 1, \"prod\": {\"force\": 0.25, \"refresh\": 10,"
+            "{\"from\": 0, \"to\": 1, \"viewpoint_force\": {\"force\": 0.25, \"refresh\": 10,"
             " \"rectangle\": [0.4, 0.4, 0.6, 0.6]}}";
         fixture_open(&dust, methods[k], DUST, "0", event);
         fixture_open(&parts, methods[k], DUST, "0",
@@ -167,12 +171,14 @@ START_TEST(only_what_is_seen_moves) {
         " {\"translate\": [0, -1.2, 0]}}, \"mass\": {\"total\": 1}}],"
         " \"forces\": {\"gravity\": [0, 0, 0]},"
         " \"colliders\": [{\"sphere\": {\"centre\": [0, -0.9, 0.75], \"radius\": 0.3}}],"
-        " \"events\": [{\"from\": 0, \"to\": 0.1, \"prod\": {\"force\": 0.01, \"viewpoint\":"
+        " \"events\": [{\"from\": 0, \"to\": 0.1, \"viewpoint_force\": {\"force\": 0.01, "
+        "\"viewpoint\":"
         " {\"eye\": [0, 0, 3], \"target\": [0, 0, 0], \"fov\": 60, \"aspect\": 1}}},"
-        " {\"at\": 0, \"prod\": {\"force\": 0.01, \"body\": 3, \"viewpoint\":"
+        " {\"at\": 0, \"viewpoint_force\": {\"force\": 0.01, \"body\": 3, \"viewpoint\":"
         " {\"eye\": [0, 0, 3], \"target\": [0, 0, 0], \"fov\": 60, \"aspect\": 1}}}]}");
     const struct cs_body_range *bodies = cloths.system->bodies;
-    const struct cs_prod_state *states = cloths.system->events->prods->states;
+    const struct cs_viewpoint_force_state *states =
+        cloths.system->events->viewpoint_forces->states;
     fixture_start(&cloths);
     fixture_frames(&cloths, 1);
     uint32_t seen[2][5] = {{0}};
@@ -191,20 +197,21 @@ START_TEST(only_what_is_seen_moves) {
 END_TEST
 
 /* From two sides, and twice from one: forces add up, and opposite ones leave nothing. */
-START_TEST(prods_add_up) {
+START_TEST(viewpoint_forces_add_up) {
     static const char side[] = "\"viewpoint\": {\"eye\": [2, 0, 2], \"target\": [0, 0, 0]}";
     static const char back[] = "\"viewpoint\": {\"eye\": [0, 0, -2], \"target\": [0, 0, 0]}";
     struct fixture dust;
     char events[800];
     double p[3], l[3];
-    snprintf(events, sizeof events,
-             "{\"from\": 0, \"to\": 0.5, \"prod\": {\"force\": 0.1}},"
-             "{\"from\": 0.1, \"to\": 0.2, \"prod\": {\"force\": 0.1}},"
-             "{\"from\": 0, \"to\": 0.5, \"prod\": {\"force\": 0.1, %s}},"
-             "{\"from\": 0, \"to\": 0.5, \"impact\": {\"direction\": [0, 1, 0],"
-             " \"impulse\": 2}},"
-             "{\"from\": 0, \"to\": 0.5, \"prod\": {\"force\": 0.2, \"refresh\": 0, %s}}",
-             back, side);
+    snprintf(
+        events, sizeof events,
+        "{\"from\": 0, \"to\": 0.5, \"viewpoint_force\": {\"force\": 0.1}},"
+        "{\"from\": 0.1, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.1}},"
+        "{\"from\": 0, \"to\": 0.5, \"viewpoint_force\": {\"force\": 0.1, %s}},"
+        "{\"from\": 0, \"to\": 0.5, \"impact\": {\"direction\": [0, 1, 0],"
+        " \"impulse\": 2}},"
+        "{\"from\": 0, \"to\": 0.5, \"viewpoint_force\": {\"force\": 0.2, \"refresh\": 0, %s}}",
+        back, side);
     fixture_open(&dust, "velocity-verlet:dt=0.001", DUST, "0", events);
     fixture_start(&dust);
     fixture_frames(&dust, 40);
@@ -223,8 +230,8 @@ START_TEST(pinned_ones_stay) {
     double p[3], l[3];
     fixture_open(&dust, "velocity-verlet", DUST, "0",
                  "{\"from\": 0, \"to\": 1, \"pin\": {\"particles\": [\"left\"]}},"
-                 "{\"from\": 0, \"to\": 0.1, \"prod\": {\"force\": 1}},"
-                 "{\"at\": 0.2, \"prod\": {\"force\": 1}}");
+                 "{\"from\": 0, \"to\": 0.1, \"viewpoint_force\": {\"force\": 1}},"
+                 "{\"at\": 0.2, \"viewpoint_force\": {\"force\": 1}}");
     fixture_start(&dust);
     fixture_frames(&dust, 15);
     fixture_momentum(&dust, p, l);
@@ -237,12 +244,15 @@ END_TEST
 /* The view is the camera's unless it is given: fixed, while the camera looks from elsewhere. */
 START_TEST(viewpoint_is_the_cameras_by_default) {
     struct fixture dust;
-    fixture_open(&dust, "velocity-verlet", DUST, "0",
-                 "{\"at\": 0, \"prod\": {\"force\": 1}},"
-                 "{\"at\": 0, \"prod\": {\"force\": 1, \"viewpoint\": {\"eye\": [5, 6, 7],"
-                 " \"fov\": 20, \"aspect\": 1}}}");
-    const struct cs_viewpoint *a = &cs_scene_events(&dust.session.scene)[0].prod.viewpoint;
-    const struct cs_viewpoint *b = &cs_scene_events(&dust.session.scene)[1].prod.viewpoint;
+    fixture_open(
+        &dust, "velocity-verlet", DUST, "0",
+        "{\"at\": 0, \"viewpoint_force\": {\"force\": 1}},"
+        "{\"at\": 0, \"viewpoint_force\": {\"force\": 1, \"viewpoint\": {\"eye\": [5, 6, 7],"
+        " \"fov\": 20, \"aspect\": 1}}}");
+    const struct cs_viewpoint *a =
+        &cs_scene_events(&dust.session.scene)[0].viewpoint_force.viewpoint;
+    const struct cs_viewpoint *b =
+        &cs_scene_events(&dust.session.scene)[1].viewpoint_force.viewpoint;
     const struct cs_camera *camera = &dust.session.scene.camera;
     ck_assert_mem_eq(a->eye, camera->eye, sizeof a->eye);
     ck_assert_mem_eq(b->target, camera->target, sizeof a->target);
@@ -265,17 +275,18 @@ START_TEST(methods_agree) {
                                      "velocity-verlet:dt=0.0005", "velocity-verlet:dt=0.001"};
     struct fixture cloths[3];
     for (size_t k = 0; k < 3; k++) {
-        fixture_open(
-            cloths + k, by[k], CLOTH,
-            "{\"from\": 0.02, \"to\": 0.3, \"prod\": {\"force\": 0.03,"
-            " \"rectangle\": [0.37, 0.31, 0.63, 0.67]}},"
-            "{\"from\": 0.05, \"to\": 0.2, \"prod\": {\"force\": 0.02, \"refresh\": 35,"
-            " \"viewpoint\": {\"eye\": [-2, 0, 1]}, \"rectangle\": [0, 0.5, 1, 1]}},"
-            "{\"at\": 0.1, \"prod\": {\"force\": 0.5}}");
+        fixture_open(cloths + k, by[k], CLOTH,
+                     "{\"from\": 0.02, \"to\": 0.3, \"viewpoint_force\": {\"force\": 0.03,"
+                     " \"rectangle\": [0.37, 0.31, 0.63, 0.67]}},"
+                     "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.02, "
+                     "\"refresh\": 35,"
+                     " \"viewpoint\": {\"eye\": [-2, 0, 1]}, \"rectangle\": [0, 0.5, 1, 1]}},"
+                     "{\"at\": 0.1, \"viewpoint_force\": {\"force\": 0.5}}");
         fixture_start(cloths + k);
         fixture_frames(cloths + k, 18);
-        ck_assert_mem_eq(cloths[k].system->events->prods->states[0].seen,
-                         cloths[0].system->events->prods->states[0].seen, cloths[0].n);
+        ck_assert_mem_eq(cloths[k].system->events->viewpoint_forces->states[0].seen,
+                         cloths[0].system->events->viewpoint_forces->states[0].seen,
+                         cloths[0].n);
     }
     const size_t n = 3 * cloths[0].n;
     const double fine = cs_rms_difference(cloths[0].x, cloths[1].x, n);
@@ -290,22 +301,25 @@ END_TEST
 /* The plan says what they take; without any there is nothing, and blows alone push nothing. */
 START_TEST(bytes_are_planned) {
     struct fixture with, blow, without;
-    fixture_open(&with, "velocity-verlet", CLOTH,
-                 "{\"from\": 0.1, \"to\": 0.2, \"prod\": {\"force\": 1}},"
-                 "{\"from\": 0.3, \"to\": 1e8, \"prod\": {\"force\": 1, \"refresh\": 1e5}}");
-    fixture_open(&blow, "velocity-verlet", CLOTH, "{\"at\": 0.1, \"prod\": {\"force\": 1}}");
+    fixture_open(
+        &with, "velocity-verlet", CLOTH,
+        "{\"from\": 0.1, \"to\": 0.2, \"viewpoint_force\": {\"force\": 1}},"
+        "{\"from\": 0.3, \"to\": 1e8, \"viewpoint_force\": {\"force\": 1, \"refresh\": 1e5}}");
+    fixture_open(&blow, "velocity-verlet", CLOTH,
+                 "{\"at\": 0.1, \"viewpoint_force\": {\"force\": 1}}");
     fixture_open(&without, "velocity-verlet", CLOTH, "");
     const struct cs_plan_row *rows = with.session.plan.rows;
     const size_t more = with.system->arena.used - without.system->arena.used;
-    ck_assert_uint_eq(more, rows[CS_FEATURE_EVENTS].bytes + rows[CS_FEATURE_PRODS].bytes);
-    ck_assert(!without.session.plan.rows[CS_FEATURE_PRODS].built);
-    ck_assert_uint_eq(without.session.plan.rows[CS_FEATURE_PRODS].bytes, 0);
+    ck_assert_uint_eq(more,
+                      rows[CS_FEATURE_EVENTS].bytes + rows[CS_FEATURE_VIEWPOINT_FORCES].bytes);
+    ck_assert(!without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].built);
+    ck_assert_uint_eq(without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes, 0);
     ck_assert_ptr_null(blow.system->push);
     fixture_close(&with);
     fixture_close(&blow);
     fixture_close(&without);
     fixture_open(&without, "velocity-verlet", CLOTH, "{\"at\": 0.1, \"release\": {}}");
-    ck_assert_ptr_null(without.system->events->prods);
+    ck_assert_ptr_null(without.system->events->viewpoint_forces);
     fixture_close(&without);
 }
 END_TEST
@@ -321,7 +335,8 @@ START_TEST(cuts_are_counted) {
         struct fixture dust;
         char event[200];
         snprintf(event, sizeof event,
-                 "{\"from\": 0.1, \"to\": 0.5, \"prod\": {\"force\": 1, \"refresh\": %g}}",
+                 "{\"from\": 0.1, \"to\": 0.5, \"viewpoint_force\": {\"force\": 1, "
+                 "\"refresh\": %g}}",
                  rows[k].refresh);
         fixture_open(&dust, "velocity-verlet", DUST, "0", event);
         const uint32_t cuts = cs_events_cuts(dust.system->events, 1);
@@ -334,10 +349,10 @@ END_TEST
 /* A look within a nanosecond of an end is made there: no step of rounding errors. */
 START_TEST(looks_and_ends_are_one) {
     struct fixture dust;
-    fixture_open(
-        &dust, "velocity-verlet", DUST, "0",
-        "{\"from\": 0.002, \"to\": 0.015, \"prod\": {\"force\": 1, \"refresh\": 1000}},"
-        "{\"at\": 0.0110000000003, \"release\": {}}");
+    fixture_open(&dust, "velocity-verlet", DUST, "0",
+                 "{\"from\": 0.002, \"to\": 0.015, \"viewpoint_force\": {\"force\": 1, "
+                 "\"refresh\": 1000}},"
+                 "{\"at\": 0.0110000000003, \"release\": {}}");
     fixture_start(&dust);
     fixture_frames(&dust, 1);
     ck_assert_uint_eq(dust.session.run.counts.steps, 15);
@@ -349,7 +364,7 @@ END_TEST
  * what is pushed for long is none. */
 START_TEST(bound_goes_on_over_looks) {
     static const char *const events[] = {
-        "", "{\"from\": 0, \"to\": 9, \"prod\": {\"force\": 0.01, \"refresh\": 240,"
+        "", "{\"from\": 0, \"to\": 9, \"viewpoint_force\": {\"force\": 0.01, \"refresh\": 240,"
             " \"rectangle\": [0.3, 0.3, 0.5, 0.7]}}"};
     uint32_t frames[2];
     for (size_t k = 0; k < 2; k++) {
@@ -369,7 +384,7 @@ START_TEST(bound_goes_on_over_looks) {
 
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet", DUST, "0",
-                 "{\"from\": 0, \"to\": 20, \"prod\": {\"force\": 1, \"rectangle\":"
+                 "{\"from\": 0, \"to\": 20, \"viewpoint_force\": {\"force\": 1, \"rectangle\":"
                  " [0.4, 0.4, 0.6, 0.6]}}");
     fixture_start(&dust);
     fixture_frames(&dust, 1200);
@@ -383,7 +398,7 @@ int main(void) {
                                   looks_that_see_the_same_change_nothing,
                                   runs_are_joined_at_looks,
                                   only_what_is_seen_moves,
-                                  prods_add_up,
+                                  viewpoint_forces_add_up,
                                   pinned_ones_stay,
                                   viewpoint_is_the_cameras_by_default,
                                   methods_agree,
@@ -391,5 +406,5 @@ int main(void) {
                                   cuts_are_counted,
                                   looks_and_ends_are_one,
                                   bound_goes_on_over_looks};
-    return fixture_run("prods", tests, sizeof tests / sizeof *tests);
+    return fixture_run("viewpoint_forces", tests, sizeof tests / sizeof *tests);
 }

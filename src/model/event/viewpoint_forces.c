@@ -1,0 +1,178 @@
+/* Viewpoint forces (the event `viewpoint_force`): the particles that they act on, and the times
+ * at which visibility is tested again. */
+#include "model/event/viewpoint_forces.h"
+
+#include "model/event/event_times.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct cs_viewpoint_force *viewpoint_force_of(const struct cs_scene *scene,
+                                                           uint32_t event) {
+    return &cs_scene_events(scene)[event].viewpoint_force;
+}
+
+static uint32_t count(const struct cs_scene *scene) {
+    uint32_t n = 0;
+    for (uint32_t e = 0; e < scene->events.n; e++)
+        n += viewpoint_force_of(scene, e)->present;
+    return n;
+}
+
+bool cs_viewpoint_forces_any(const struct cs_scene *scene) {
+    return count(scene) > 0;
+}
+
+size_t cs_viewpoint_forces_bytes(const struct cs_scene *scene, uint32_t n) {
+    return sizeof(struct cs_viewpoint_forces) +
+           count(scene) * (sizeof(struct cs_viewpoint_force_state) + n * sizeof(bool)) +
+           cs_sight_bytes(n);
+}
+
+enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_error *error) {
+    const struct cs_scene *scene = system->scene;
+    const uint32_t n = system->view.n;
+    struct cs_arena *arena = &system->arena;
+    struct cs_viewpoint_forces *viewpoint_forces =
+        cs_arena_take(arena, sizeof *viewpoint_forces, error);
+    if (!viewpoint_forces)
+        return error->status;
+    viewpoint_forces->states =
+        cs_arena_take_n(arena, count(scene), sizeof *viewpoint_forces->states, error);
+    for (uint32_t e = 0; e < scene->events.n && !error->status; e++) {
+        if (!viewpoint_force_of(scene, e)->present)
+            continue;
+        bool *seen = cs_arena_take_n(arena, n, sizeof *seen, error);
+        struct cs_viewpoint_force_state *state =
+            viewpoint_forces->states + viewpoint_forces->n++;
+        *state = (struct cs_viewpoint_force_state){.event = e, .seen = seen, .next = HUGE_VAL};
+        cs_sight_make(&state->sight, viewpoint_force_of(scene, e));
+    }
+    /* shared work: nobody keeps anything in it between two calls */
+    viewpoint_forces->marks = system->events->marks;
+    system->events->viewpoint_forces = viewpoint_forces;
+    return cs_sight_work_init(&viewpoint_forces->work, n, arena, error);
+}
+
+static struct cs_viewpoint_force_state *
+state_of(const struct cs_viewpoint_forces *viewpoint_forces, uint32_t event) {
+    uint32_t k = 0;
+    while (viewpoint_forces->states[k].event != event)
+        k++;
+    return viewpoint_forces->states + k;
+}
+
+/* tests visibility again; true if other particles are seen than before */
+static bool look(const struct cs_system *system, struct cs_viewpoint_force_state *state,
+                 double t) {
+    const struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
+    const struct cs_viewpoint_force *viewpoint_force =
+        viewpoint_force_of(system->scene, state->event);
+    const size_t bytes = system->view.n * sizeof *state->seen;
+    cs_sight_find(&state->sight, system, t, system->state, viewpoint_force->body,
+                  &viewpoint_forces->work, viewpoint_forces->marks);
+    const bool changed = memcmp(state->seen, viewpoint_forces->marks, bytes) != 0;
+    memcpy(state->seen, viewpoint_forces->marks, bytes);
+    return changed;
+}
+
+/* out (3,n) += factor N (or N s) along the view, over the mass, where seen and free */
+static void add(const struct cs_system *system, const struct cs_viewpoint_force_state *state,
+                double factor, double *out) {
+    const size_t n = system->view.n;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            if (state->seen[i] && system->inv_mass[i] > 0)
+                out[c * n + i] += state->sight.axes[2][c] * (factor / system->mass[i]);
+}
+
+/* time of the visibility test number `looks`, in s */
+static double time_of(const struct cs_scene *scene,
+                      const struct cs_viewpoint_force *viewpoint_force, double begin,
+                      double looks) {
+    return viewpoint_force->refresh > 0
+               ? cs_event_time_snap(scene, begin + looks / viewpoint_force->refresh)
+               : HUGE_VAL;
+}
+
+static void plan_next(const struct cs_system *system, struct cs_viewpoint_force_state *state,
+                      double t) {
+    const struct cs_event_state *of = system->events->states + state->event;
+    const struct cs_viewpoint_force *viewpoint_force =
+        viewpoint_force_of(system->scene, state->event);
+    do
+        state->next = time_of(system->scene, viewpoint_force, of->begin, ++state->looks);
+    while (state->next <= t + CS_EVENT_SAME);
+}
+
+void cs_viewpoint_force_start(struct cs_system *system, uint32_t event) {
+    const struct cs_events *events = system->events;
+    const struct cs_event_state *of = events->states + event;
+    const struct cs_viewpoint_force *viewpoint_force = viewpoint_force_of(system->scene, event);
+    struct cs_viewpoint_force_state *state = state_of(events->viewpoint_forces, event);
+    look(system, state, of->begin);
+    state->active = of->end > of->begin;
+    state->looks = 0;
+    if (state->active)
+        plan_next(system, state, of->begin);
+    else
+        add(system, state, viewpoint_force->force * viewpoint_force->duration,
+            system->state + 3 * (size_t)system->view.n);
+}
+
+void cs_viewpoint_force_finish(struct cs_system *system, uint32_t event) {
+    struct cs_viewpoint_force_state *state = state_of(system->events->viewpoint_forces, event);
+    state->active = false;
+    state->next = HUGE_VAL;
+}
+
+bool cs_viewpoint_forces_look(struct cs_system *system, double t) {
+    struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
+    bool changed = false;
+    for (uint32_t k = 0; k < viewpoint_forces->n; k++) {
+        if (viewpoint_forces->states[k].next > t + CS_EVENT_SAME)
+            continue;
+        changed |= look(system, viewpoint_forces->states + k, t);
+        plan_next(system, viewpoint_forces->states + k, t);
+    }
+    return changed;
+}
+
+double cs_viewpoint_forces_next(const struct cs_viewpoint_forces *viewpoint_forces) {
+    double next = HUGE_VAL;
+    for (uint32_t k = 0; k < viewpoint_forces->n; k++)
+        next = fmin(next, viewpoint_forces->states[k].next);
+    return next;
+}
+
+void cs_viewpoint_forces_add_push(const struct cs_system *system, double *push) {
+    const struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
+    for (uint32_t k = 0; k < viewpoint_forces->n; k++)
+        if (viewpoint_forces->states[k].active)
+            add(system, viewpoint_forces->states + k,
+                viewpoint_force_of(system->scene, viewpoint_forces->states[k].event)->force,
+                push);
+}
+
+double cs_viewpoint_forces_force(const struct cs_viewpoint_forces *viewpoint_forces,
+                                 const struct cs_scene *scene) {
+    double force = 0;
+    for (uint32_t k = 0; k < viewpoint_forces->n; k++)
+        if (viewpoint_forces->states[k].active)
+            force += fabs(viewpoint_force_of(scene, viewpoint_forces->states[k].event)->force);
+    return force;
+}
+
+uint32_t cs_viewpoint_forces_cuts(const struct cs_scene *scene, double t) {
+    uint32_t cuts = 0;
+    for (uint32_t e = 0; e < scene->events.n; e++) {
+        const struct cs_event *event = cs_scene_events(scene) + e;
+        const double end =
+            event->viewpoint_force.present && isnan(event->at) ? fmin(event->to, t) : 0;
+        for (double looks = 1, at;
+             at = time_of(scene, &event->viewpoint_force, event->from, looks), at < end;
+             looks++)
+            cuts += at * scene->time.fps != floor(at * scene->time.fps + 0.5);
+    }
+    return cuts;
+}
