@@ -144,6 +144,15 @@ void cs_output_release(struct cs_output *output) {
     *output = (struct cs_output){0};
 }
 
+void cs_output_rows(const char *path, const struct cs_text *rows, struct cs_error *error) {
+    struct cs_error failure = {0};
+    if (!path || rows->failed)
+        return;
+    cs_file_write(path, rows->bytes, rows->length, &failure);
+    if (!error->status)
+        *error = failure;
+}
+
 enum cs_status cs_output_state(const char *folder, uint32_t number, const double *x,
                                const double *v, uint32_t n, struct cs_error *error) {
     char name[32], path[PATH_BYTES];

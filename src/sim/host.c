@@ -1,29 +1,19 @@
 /* host.c - what the model does for a method, call by call: checked, timed and counted. */
 #include "sim/host.h"
 
-#include "base/clock.h"
 #include "base/vector.h"
-#include "model/commit/limit.h"
 #include "model/force/bounds.h"
 #include "model/force/measure.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "model/pair/pairs.h"
+#include "sim/account.h"
 #include "sim/passage.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-static double stage_begin(const struct cs_run_host *host) {
-    return host->settings.timed ? cs_clock_wall() : 0;
-}
-
-static void stage_end(struct cs_run_host *host, enum cs_stage stage, double begin) {
-    if (host->settings.timed)
-        host->run->stage_seconds[stage] += cs_clock_wall() - begin;
-}
 
 static void *host_alloc(void *ctx, size_t bytes) {
     struct cs_run_host *host = ctx;
@@ -59,36 +49,30 @@ static void host_note(void *ctx, const char *format, ...) {
         memcpy(run->notes[run->n_notes++], message, sizeof message);
 }
 
-/* ramps move on with every time that the method asks about */
-static void move_values(struct cs_run_host *host, double t) {
-    if (host->run->system->events)
-        cs_events_move_values(host->run->system, t);
-}
-
 static void update_normals(struct cs_run_host *host, const double *x, uint32_t parts) {
     if (!cs_terms_need_normals(host->run->system, parts))
         return;
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     cs_normals_update(host->run->system, x);
     host->run->counts.normals++;
-    stage_end(host, CS_STAGE_NORMALS, begin);
+    cs_stage_end(host, CS_STAGE_NORMALS, begin);
 }
 
 static void host_force(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                        double *f) {
     struct cs_run_host *host = ctx;
-    move_values(host, t);
+    cs_move_values(host, t);
     update_normals(host, x, parts);
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
     cs_terms_force(host->run->system, &at, f);
     host->run->counts.forces++;
-    stage_end(host, CS_STAGE_FORCE, begin);
+    cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
 static double host_energy(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
-    move_values(host, t);
+    cs_move_values(host, t);
     host->run->counts.energies++;
     const struct cs_energy energy = cs_measure_energy(host->run->system, t, x, v);
     return cs_energy_whole(&energy);
@@ -97,24 +81,24 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
 static void host_jvp(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                      const double *dx, const double *dv, double *df) {
     struct cs_run_host *host = ctx;
-    move_values(host, t);
+    cs_move_values(host, t);
     update_normals(host, x, parts);
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts, .dx = dx, .dv = dv};
     cs_terms_jvp(host->run->system, &at, df);
     host->run->counts.jvps++;
-    stage_end(host, CS_STAGE_FORCE, begin);
+    cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
 static void host_diagonal(void *ctx, double t, const double *x, const double *v, double *kxx,
                           double *dvv) {
     struct cs_run_host *host = ctx;
-    move_values(host, t);
-    const double begin = stage_begin(host);
+    cs_move_values(host, t);
+    const double begin = cs_stage_begin(host);
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_LINEARISED};
     cs_terms_diagonal(host->run->system, &at, kxx, dvv);
     host->run->counts.diagonals++;
-    stage_end(host, CS_STAGE_FORCE, begin);
+    cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
 /* an exact matrix that is not positive definite is made so, and that is counted */
@@ -129,13 +113,13 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
                                      double cm, double cd, double ck, uint32_t flags) {
     struct cs_run_host *host = ctx;
     const size_t bytes = 3 * sizeof *x * host->run->system->view.n;
-    move_values(host, t);
+    cs_move_values(host, t);
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
     if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
         return host_fail(ctx, "solve wants cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm,
                          cd, ck);
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     host->run->counts.solve_setups++;
     host->clamped = flags & CS_SOLVE_PSD;
     // kept, since a solve may have to set up again, and the method may have moved on by then
@@ -152,7 +136,7 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
                                      .bound = flags & CS_SOLVE_BOUND};
     if (!cs_linear_setup(&host->linear, &matrix) && !host->clamped)
         clamp(host);
-    stage_end(host, CS_STAGE_SOLVE, begin);
+    cs_stage_end(host, CS_STAGE_SOLVE, begin);
     return CS_STEP_OK;
 }
 
@@ -162,7 +146,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     double residual = 0;
     if (!host->linear.system)
         return host_fail(ctx, "solve was used without CS_NEED_SOLVE");
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     host->run->counts.solves++;
     enum cs_linear_end end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
     host->run->counts.solve_iterations += iterations;
@@ -173,7 +157,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
         end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
         host->run->counts.solve_iterations += iterations;
     }
-    stage_end(host, CS_STAGE_SOLVE, begin);
+    cs_stage_end(host, CS_STAGE_SOLVE, begin);
     if (end == CS_LINEAR_LIMIT)
         return host_fail(
             ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
@@ -187,29 +171,29 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
 
 static void host_apply(void *ctx, const double *p, double *y) {
     struct cs_run_host *host = ctx;
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     cs_linear_mul(&host->linear, p, y);
     host->run->counts.jvps++;
-    stage_end(host, CS_STAGE_SOLVE, begin);
+    cs_stage_end(host, CS_STAGE_SOLVE, begin);
 }
 
 static void host_rate(void *ctx, double t, const double *x, const double *v, double *omega,
                       double *delta) {
     struct cs_run_host *host = ctx;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
-    move_values(host, t);
-    const double begin = stage_begin(host);
+    cs_move_values(host, t);
+    const double begin = cs_stage_begin(host);
     cs_bounds_rate(host->run->system, &at, host->rate_work, omega, delta);
-    stage_end(host, CS_STAGE_CONTACT, begin);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
 static double host_max_share(void *ctx, double t0, const double *x0, double t1,
                              const double *x1) {
     struct cs_run_host *host = ctx;
-    const double begin = stage_begin(host);
+    const double begin = cs_stage_begin(host);
     const double share = cs_passage_share(host->run->system, t0, x0, t1, x1);
     host->run->counts.cut_steps += share < 1;
-    stage_end(host, CS_STAGE_CONTACT, begin);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return share;
 }
 
@@ -218,12 +202,12 @@ static void host_blocks(void *ctx, double t, const double *x, const double *v, d
     struct cs_run_host *host = ctx;
     const struct cs_matrix matrix = {
         .t = t, .x = x, .v = v, .cd = -h, .ck = -h * h, .psd = true, .bound = true};
-    move_values(host, t);
-    const double begin = stage_begin(host);
+    cs_move_values(host, t);
+    const double begin = cs_stage_begin(host);
     cs_terms_blocks(host->run->system, &matrix, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
                     blocks);
     host->run->counts.diagonals++;
-    stage_end(host, CS_STAGE_FORCE, begin);
+    cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
 /* only where it is asked for: methods leave out what is NULL */
@@ -246,11 +230,11 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
 static double host_longest_step(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
     struct cs_contact *contact = &host->contact;
-    const double begin = stage_begin(host);
-    move_values(host, t);
+    const double begin = cs_stage_begin(host);
+    cs_move_values(host, t);
     cs_obstacles_at(contact->system, t, contact->obstacles);
     const double step = cs_reach_step(contact->system, contact->obstacles, host->reach, x, v);
-    stage_end(host, CS_STAGE_CONTACT, begin);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return step;
 }
 
@@ -265,102 +249,6 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
     if (host->reach < HUGE_VAL)
         host->calls.longest_step = host_longest_step;
     return CS_OK;
-}
-
-static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
-                         bool *changed) {
-    const double begin = stage_begin(host);
-    const uint64_t moves = cs_limit_apply(host->run->system, dt, x, v);
-    host->run->counts.limit_moves += moves;
-    *changed |= moves > 0;
-    stage_end(host, CS_STAGE_LIMIT, begin);
-}
-
-static void resolve_contact(struct cs_run_host *host, double t, double dt, double *x, double *v,
-                            bool *changed) {
-    const double begin = stage_begin(host);
-    *changed |= cs_contact_resolve(&host->contact, t, dt, x, v);
-    host->run->counts.contact_tests = host->contact.counts.tests;
-    host->run->counts.contacts = host->contact.counts.pushed;
-    stage_end(host, CS_STAGE_CONTACT, begin);
-}
-
-struct loss {
-    double *v, kept;
-};
-
-static void lose_part(void *arg, size_t begin, size_t end) {
-    const struct loss *loss = arg;
-    for (size_t i = begin; i < end; i++)
-        loss->v[i] *= loss->kept;
-}
-
-static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
-    struct loss loss = {v, 1 - host->run->system->scene->forces.velocity_loss};
-    cs_vector_share(3 * (size_t)host->run->system->view.n, lose_part, &loss);
-    *changed = true;
-}
-
-/* whether the run goes on from here */
-static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
-                          const double *v) {
-    const volatile sig_atomic_t *stop = host->settings.stop;
-    if (cs_bound_is_passed(&host->bound, host->run, t, x, v))
-        return CS_STEP_HALT;
-    if (stop && *stop) {
-        host->run->outcome = CS_INTERRUPTED;
-        return CS_STEP_HALT;
-    }
-    if (cs_budget_is_over(&host->budget)) {
-        host->run->outcome = CS_OVER_BUDGET;
-        return CS_STEP_HALT;
-    }
-    return CS_STEP_OK;
-}
-
-/* what follows a first crossing has no meaning, where the scene says so */
-static enum cs_step stop_crossings(struct cs_run_host *host, double t, const double *x) {
-    const double begin = stage_begin(host);
-    struct cs_text why = {0};
-    enum cs_step step = CS_STEP_OK;
-    if (cs_passage_stops(host->run->system, t, x, &why))
-        step = host_fail(host, "%s", cs_text_get(&why));
-    cs_text_finish(&why);
-    stage_end(host, CS_STAGE_CONTACT, begin);
-    return step;
-}
-
-static enum cs_step host_commit(void *ctx, double t, double dt, double *x, double *v,
-                                bool *changed) {
-    struct cs_run_host *host = ctx;
-    const struct cs_plan_row *rows = host->run->system->plan.rows;
-    const struct cs_run_settings *settings = &host->settings;
-    *changed = false;
-    host->run->counts.steps++;
-    host->left.committed = t;
-    move_values(host, t);
-    // the limit may move particles into obstacles, so contact comes after it; last are the
-    // grabbed ones, which stay on their path whatever moved them
-    if (rows[CS_FEATURE_STRAIN_LIMIT].built)
-        limit_strain(host, dt, x, v, changed);
-    if (rows[CS_FEATURE_CONTACT].built)
-        resolve_contact(host, t, dt, x, v, changed);
-    if (rows[CS_FEATURE_VELOCITY_LOSS].built)
-        lose_velocity(host, v, changed);
-    if (rows[CS_FEATURE_EVENTS].built)
-        cs_events_place(host->run->system, t, x, v);
-    if (host->run->system->pairs && host->run->system->pairs->failed)
-        return host_fail(ctx, "out of memory for the pairs of contact");
-    enum cs_step step = judge(host, t, x, v);
-    if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
-        step = stop_crossings(host, t, x);
-    bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
-    // a step that ends the run is observed too
-    if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))
-        moved = *changed = true;
-    if (rows[CS_FEATURE_CONTACT].built)
-        cs_contact_keep(&host->contact, x, v, !moved);
-    return step;
 }
 
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
@@ -382,7 +270,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .solve_setup = host_solve_setup,
         .solve = host_solve,
         .apply = host_apply,
-        .commit = host_commit,
+        .commit = cs_host_commit,
     };
     cs_bound_set(&host->bound, system, 0);
     if (add_rate(host, error) || add_contact(host, error))
@@ -411,6 +299,8 @@ bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     const bool changed = cs_events_apply(system, t);
     if (changed)
         cs_bound_follow_events(&host->bound, system, t);
+    if (changed && host->settings.account)
+        cs_account_keep(host->settings.account, t, host->run->x, host->run->v);
     if (changed && system->plan.rows[CS_FEATURE_CONTACT].built)
         cs_contact_keep(&host->contact, host->run->x, host->run->v, false);
     return changed;

@@ -50,6 +50,7 @@ struct cs_blow_up {
 
 enum { CS_NOTES_MAX = 8 };
 
+struct cs_account;
 struct cs_run_host;
 
 /* Must stay where it is between begin and finish. */
@@ -82,7 +83,8 @@ struct cs_run_settings {
     /* Called at the end of every commit, and may move the state: returns whether it did. May be
      * NULL. */
     bool (*observe)(void *ctx, double t, double dt, double *x, double *v);
-    void *ctx; /* of observe */
+    void *ctx;                  /* of observe */
+    struct cs_account *account; /* kept step by step, see account.h; NULL: none */
 };
 
 #endif

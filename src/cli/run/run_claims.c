@@ -62,3 +62,14 @@ enum cs_status cs_run_check_claims(const struct cs_session *session,
     free(claims);
     return error->status;
 }
+
+enum cs_status cs_run_check_fresh(const struct cs_run_outputs *outputs,
+                                  struct cs_error *error) {
+    const char *const files[] = {outputs->json, outputs->watch, outputs->ledger};
+    if (cs_output_check(outputs->folder, cs_output_is_picture, error))
+        return error->status;
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++)
+        if (files[k] && strcmp(files[k], "-") != 0 && cs_output_check_file(files[k], error))
+            return error->status;
+    return cs_output_check(outputs->states, cs_output_is_state, error);
+}

@@ -17,4 +17,7 @@ enum cs_status cs_run_check_claims(const struct cs_session *session,
                                    const struct cs_run_outputs *outputs,
                                    struct cs_error *error);
 
+/* CS_ERR_FILE names the first that is there already. */
+enum cs_status cs_run_check_fresh(const struct cs_run_outputs *outputs, struct cs_error *error);
+
 #endif

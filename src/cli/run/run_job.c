@@ -46,28 +46,18 @@ static bool uses_folder(const struct cs_job_settings *settings) {
     return settings->session.render || makes_checkpoints(settings);
 }
 
-static enum cs_status check_claims(const struct cs_job *job, struct cs_error *error) {
+static enum cs_status check_outputs(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const struct cs_run_outputs outputs = {.json = settings->json,
                                            .watch = settings->watch,
+                                           .ledger = settings->ledger,
                                            .states = settings->states,
                                            .folder =
                                                uses_folder(settings) ? settings->folder : NULL};
-    return cs_run_check_claims(&job->session, &outputs, error);
-}
-
-static enum cs_status check_outputs(const struct cs_job_settings *settings,
-                                    struct cs_error *error) {
-    if (settings->overwrite || settings->resume)
-        return CS_OK;
-    if (uses_folder(settings) && cs_output_check(settings->folder, cs_output_is_picture, error))
-        return error->status;
-    if (settings->json && strcmp(settings->json, "-") &&
-        cs_output_check_file(settings->json, error))
-        return error->status;
-    if (settings->watch && cs_output_check_file(settings->watch, error))
-        return error->status;
-    return cs_output_check(settings->states, cs_output_is_state, error);
+    return cs_run_check_claims(&job->session, &outputs, error) || settings->overwrite ||
+                   settings->resume
+               ? error->status
+               : cs_run_check_fresh(&outputs, error);
 }
 
 /* more than one, so that drawing and encoding can overlap the run */
@@ -202,15 +192,16 @@ static enum cs_status print_hash(uint32_t number, const char *hash, struct cs_er
     return cs_print_out(stdout, &line, error);
 }
 
-/* Looks whether the run is still sound, and keeps the row for --watch. */
+/* Looks whether the run is still sound, and keeps the rows for --watch and --ledger. */
 static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
     struct cs_watch_row row;
     cs_watch_look(&job->watch, &job->session.run, &row);
-    if (!job->settings->watch)
-        return CS_OK;
-    cs_watch_print_row(&row, job->session.run.frame, &job->watch_rows);
-    if (job->watch_rows.failed)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for --watch");
+    if (job->settings->watch)
+        cs_watch_print_row(&row, job->session.run.frame, &job->watch_rows);
+    if (job->settings->ledger)
+        cs_account_print_row(&job->account, job->session.run.frame, &job->ledger_rows);
+    if (job->watch_rows.failed || job->ledger_rows.failed)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of frames");
     return CS_OK;
 }
 
@@ -219,18 +210,9 @@ static enum cs_status begin_watch(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (job->settings->watch)
         cs_watch_print_head(&job->watch_rows);
+    if (job->settings->ledger)
+        cs_account_print_head(&job->ledger_rows);
     return watch_frame(job, error);
-}
-
-/* Also of a run that failed: its last rows say how. */
-static void write_watch(struct cs_job *job, struct cs_error *error) {
-    struct cs_error failure = {0};
-    if (!job->settings->watch || job->watch_rows.failed)
-        return;
-    cs_file_write(job->settings->watch, job->watch_rows.bytes, job->watch_rows.length,
-                  &failure);
-    if (!error->status)
-        *error = failure;
 }
 
 /* Everything that one finished frame leaves behind. */
@@ -282,6 +264,8 @@ static void record_job(void *ctx, struct cs_record *record) {
     CS_RECORD(record, job->hash);
     CS_RECORD(record, job->drawn);
     cs_record_text(record, &job->watch_rows);
+    cs_record_text(record, &job->ledger_rows);
+    CS_RECORD(record, job->account.work);
     CS_RECORD(record, n);
     if (record->loading && (record->failed || n > record->length || !has_room(job, n)))
         record->failed = true;
@@ -298,11 +282,11 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
     const struct cs_job_settings *settings = job->settings;
     cs_text_add(&job->outputs,
                 "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
-                "%s\nwatch: %s\nJSON: %s\n",
+                "%s\nwatch: %s\nledger: %s\nJSON: %s\n",
                 settings->session.render ? cs_text_get(&job->renderer) : "none",
                 settings->every, settings->level, yes(settings->fast),
                 yes(settings->states != NULL), yes(settings->watch != NULL),
-                yes(cs_job_wants_json(settings)));
+                yes(settings->ledger != NULL), yes(cs_job_wants_json(settings)));
     if (job->outputs.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for checkpoints");
     const struct cs_resume_of of = {.scene = cs_text_get(&job->scene),
@@ -353,13 +337,30 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return begin_watch(job, error);
 }
 
+/* Its account goes on from the state that was loaded. */
+static enum cs_status go_on(struct cs_job *job, struct cs_error *error) {
+    if (!cs_resume_load(&job->checkpoints, error) && job->settings->ledger)
+        cs_account_go_on(&job->account, job->session.run.t);
+    return error->status;
+}
+
+/* The run, and the account that it keeps. */
+static enum cs_status open_session(struct cs_job *job, struct cs_error *error) {
+    struct cs_session_settings settings = job->settings->session;
+    const bool kept = job->settings->ledger != NULL;
+    settings.run.account = kept ? &job->account : NULL;
+    return cs_session_open(&job->session, &settings, error) || !kept
+               ? error->status
+               : cs_account_open(&job->account, &job->session.system, 0, error);
+}
+
 enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
                           struct cs_error *error) {
     const double start = cs_clock_wall();
     job->settings = settings;
-    if (cs_session_open(&job->session, &settings->session, error) || describe(job, error) ||
+    if (open_session(job, error) || describe(job, error) ||
         cs_resume_check_pace(&job->session, &settings->checkpoint, error) ||
-        check_claims(job, error) || check_outputs(settings, error) || open_outputs(job, error))
+        check_outputs(job, error) || open_outputs(job, error))
         return error->status;
     const struct cs_scene *scene = &job->session.scene;
     job->frames = settings->frames ? settings->frames : frames_of_one_second(scene);
@@ -370,10 +371,11 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
 
     if (makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
-    if (!(settings->resume ? cs_resume_load(&job->checkpoints, error) : begin(job, error)))
+    if (!(settings->resume ? go_on(job, error) : begin(job, error)))
         run_frames(job, error);
     /* also after a failure: rows and frames that were finished are kept */
-    write_watch(job, error);
+    cs_output_rows(settings->watch, &job->watch_rows, error);
+    cs_output_rows(settings->ledger, &job->ledger_rows, error);
     finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;
@@ -391,6 +393,8 @@ void cs_job_finish(struct cs_job *job) {
     cs_text_finish(&job->method);
     cs_text_finish(&job->renderer);
     cs_text_finish(&job->watch_rows);
+    cs_text_finish(&job->ledger_rows);
+    cs_account_close(&job->account);
     cs_text_finish(&job->outputs);
     cs_resume_finish(&job->checkpoints);
     free(job->kept);

@@ -7,6 +7,7 @@
 #include "cli/run/run_resume.h"
 #include "cli/run_output.h"
 #include "io/frames.h"
+#include "sim/account.h"
 #include "study/picture.h"
 #include "study/session.h"
 #include "study/tally.h"
@@ -18,6 +19,7 @@ struct cs_job_settings {
     uint32_t every;                     /* draw every n-th frame */
     const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
     const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
+    const char *ledger;                 /* CSV of where energy went; NULL: none */
     int renderer;                       /* enum cs_renderer_kind */
     uint32_t level;                     /* zlib */
     struct cs_resume_pace checkpoint;   /* zeroed: none */
@@ -53,6 +55,8 @@ struct cs_job {
     struct cs_watch watch;           /* is it still sound */
     struct cs_tally tally;           /* of crossings, where the scene asks for it */
     struct cs_text watch_rows;       /* CSV; empty unless asked for */
+    struct cs_account account;       /* open where it is asked for */
+    struct cs_text ledger_rows;      /* CSV of it */
     struct cs_text scene;            /* the resolved scene, indented by two */
     struct cs_text warning;          /* about bodies that nothing keeps apart; mostly empty */
     struct cs_text method;           /* "NAME:key=value,..." with every option */

@@ -1,0 +1,116 @@
+/* Follows each step of a method: corrections in their order, and whether the run goes on. */
+#include "sim/commit.h"
+
+#include "base/vector.h"
+#include "model/commit/limit.h"
+#include "sim/account.h"
+#include "sim/passage.h"
+
+static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
+                         bool *changed) {
+    const double begin = cs_stage_begin(host);
+    const uint64_t moves = cs_limit_apply(host->run->system, dt, x, v);
+    host->run->counts.limit_moves += moves;
+    *changed |= moves > 0;
+    cs_stage_end(host, CS_STAGE_LIMIT, begin);
+}
+
+static void resolve_contact(struct cs_run_host *host, double t, double dt, double *x, double *v,
+                            bool *changed) {
+    const double begin = cs_stage_begin(host);
+    *changed |= cs_contact_resolve(&host->contact, t, dt, x, v);
+    host->run->counts.contact_tests = host->contact.counts.tests;
+    host->run->counts.contacts = host->contact.counts.pushed;
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
+}
+
+struct loss {
+    double *v, kept;
+};
+
+static void lose_part(void *arg, size_t begin, size_t end) {
+    const struct loss *loss = arg;
+    for (size_t i = begin; i < end; i++)
+        loss->v[i] *= loss->kept;
+}
+
+static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
+    struct loss loss = {v, 1 - host->run->system->scene->forces.velocity_loss};
+    cs_vector_share(3 * (size_t)host->run->system->view.n, lose_part, &loss);
+    *changed = true;
+}
+
+/* whether the run goes on from here */
+static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
+                          const double *v) {
+    const volatile sig_atomic_t *stop = host->settings.stop;
+    if (cs_bound_is_passed(&host->bound, host->run, t, x, v))
+        return CS_STEP_HALT;
+    if (stop && *stop) {
+        host->run->outcome = CS_INTERRUPTED;
+        return CS_STEP_HALT;
+    }
+    if (cs_budget_is_over(&host->budget)) {
+        host->run->outcome = CS_OVER_BUDGET;
+        return CS_STEP_HALT;
+    }
+    return CS_STEP_OK;
+}
+
+/* what follows a first crossing has no meaning, where the scene says so */
+static enum cs_step stop_crossings(struct cs_run_host *host, double t, const double *x) {
+    const double begin = cs_stage_begin(host);
+    struct cs_text why = {0};
+    enum cs_step step = CS_STEP_OK;
+    if (cs_passage_stops(host->run->system, t, x, &why))
+        step = host->calls.fail(host, "%s", cs_text_get(&why));
+    cs_text_finish(&why);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
+    return step;
+}
+
+static void account_for(const struct cs_run_host *host, enum cs_work work, double t,
+                        const double *x, const double *v) {
+    if (host->settings.account)
+        cs_account_change(host->settings.account, work, t, x, v);
+}
+
+enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
+                            bool *changed) {
+    struct cs_run_host *host = ctx;
+    const struct cs_plan_row *rows = host->run->system->plan.rows;
+    const struct cs_run_settings *settings = &host->settings;
+    *changed = false;
+    host->run->counts.steps++;
+    host->left.committed = t;
+    cs_move_values(host, t);
+    if (settings->account)
+        cs_account_step(settings->account, t, x, v);
+    // the limit may move particles into obstacles, so contact comes after it; last are the
+    // grabbed ones, which stay on their path whatever moved them
+    if (rows[CS_FEATURE_STRAIN_LIMIT].built)
+        limit_strain(host, dt, x, v, changed);
+    account_for(host, CS_WORK_LIMIT, t, x, v);
+    if (rows[CS_FEATURE_CONTACT].built)
+        resolve_contact(host, t, dt, x, v, changed);
+    account_for(host, CS_WORK_PROJECTION, t, x, v);
+    if (rows[CS_FEATURE_VELOCITY_LOSS].built)
+        lose_velocity(host, v, changed);
+    account_for(host, CS_WORK_LOSS, t, x, v);
+    if (rows[CS_FEATURE_EVENTS].built)
+        cs_events_place(host->run->system, t, x, v);
+    if (host->run->system->pairs && host->run->system->pairs->failed)
+        return host->calls.fail(ctx, "out of memory for the pairs of contact");
+    enum cs_step step = judge(host, t, x, v);
+    if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
+        step = stop_crossings(host, t, x);
+    bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
+    // a step that ends the run is observed too
+    if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))
+        moved = *changed = true;
+    if (settings->account)
+        cs_account_keep(settings->account, t, x, v);
+    if (rows[CS_FEATURE_CONTACT].built)
+        cs_contact_keep(&host->contact, x, v, !moved);
+    return step;
+}
