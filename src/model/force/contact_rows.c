@@ -95,3 +95,44 @@ CS_CLONES void cs_contact_add_rows(const struct cs_near *near, size_t n,
     else
         add(near, n, at, parts, false, f);
 }
+
+/* Adds the bounds of one row: those of cs_touch_bound, whose gradient is of length 1 here. */
+CS_INLINE void bound(const struct cs_near *near, size_t n, const double *v, size_t count,
+                     const bool sphere, const struct row *row, double *restrict stiffness,
+                     double *restrict damping) {
+    const double *normal = near->pose.axes[1], *u = near->pose.velocity;
+    const double k = near->pairing.k, range = near->pairing.range;
+    const double least = near->ev * near->ev;
+    for (size_t i = 0; i < count; i++) {
+        const double gx = sphere ? row->x[i] : normal[0];
+        const double gy = sphere ? row->y[i] : normal[1];
+        const double gz = sphere ? row->z[i] : normal[2];
+        const struct cs_law law = cs_law_at(row->d[i], range, k);
+        const double vx = v[i] - u[0], vy = v[n + i] - u[1], vz = v[2 * n + i] - u[2];
+        const double approach = gx * vx + gy * vy + gz * vz;
+        const double tx = vx - gx * approach, ty = vy - gy * approach, tz = vz - gz * approach;
+        stiffness[i] += law.stiffness;
+        damping[i] += near->tau * law.stiffness +
+                      near->mu * law.force / sqrt(tx * tx + ty * ty + tz * tz + least);
+    }
+}
+
+CS_INLINE void add_bounds(const struct cs_near *near, size_t n, const struct cs_eval *at,
+                          const bool sphere, const struct cs_row_sums *sums) {
+    for (size_t start = 0; start < n; start += ROW) {
+        const size_t left = n - start, count = left < ROW ? left : ROW;
+        struct row row;
+        if (measure(near, n, at->x + start, count, sphere, &row) > 0)
+            bound(near, n, at->v + start, count, sphere, &row, sums->stiffness + start,
+                  sums->damping + start);
+    }
+}
+
+CS_CLONES void cs_contact_add_row_bounds(const struct cs_near *near, size_t n,
+                                         const struct cs_eval *at,
+                                         const struct cs_row_sums *sums) {
+    if (near->pose.kind == CS_OBSTACLE_SPHERE)
+        add_bounds(near, n, at, true, sums);
+    else
+        add_bounds(near, n, at, false, sums);
+}

@@ -5,6 +5,7 @@
 #include "model/contact/obstacle.h"
 #include "model/contact/pairing.h"
 #include "model/contact/touch.h"
+#include "model/force/term.h"
 
 /* An obstacle as it is at one time, and how it rubs. */
 struct cs_near {
@@ -19,5 +20,9 @@ bool cs_contact_has_rows(const struct cs_near *near);
 /* f (3,n) += the force of touch.h at the particles of at->block: the same but for rounding. */
 void cs_contact_add_rows(const struct cs_near *near, size_t n, const struct cs_eval *at,
                          struct cs_touch_parts parts, double *f);
+
+/* sums += the bounds of touch.h at all particles, likewise. */
+void cs_contact_add_row_bounds(const struct cs_near *near, size_t n, const struct cs_eval *at,
+                               const struct cs_row_sums *sums);
 
 #endif

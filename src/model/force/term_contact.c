@@ -150,6 +150,10 @@ static void add_bound_at(const struct cs_system *system, const struct cs_eval *a
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;
+        if (cs_contact_has_rows(&near)) {
+            cs_contact_add_row_bounds(&near, n, at, sums);
+            continue;
+        }
         for (size_t i = 0; i < n; i++)
             if (touch_of(&near, n, at->x, at->v, i, &touch)) {
                 double stiffness, damping;
