@@ -50,7 +50,6 @@ struct cs_mesh_source {
 };
 
 struct cs_clusters;
-
 /* a body that is drawn back to its shape (Mueller et al. 2005), not held by springs */
 struct cs_shape_matching {
     bool present;
@@ -72,7 +71,6 @@ struct cs_mass {
     double total;         /* kg, shared equally */
     double degree;        /* kg for each spring at the particle */
 };
-
 enum cs_damping_model { CS_DAMPING_RELATIVE, CS_DAMPING_AXIAL };
 enum cs_stiffness_unit { CS_STIFFNESS_N_PER_M, CS_STIFFNESS_N };
 

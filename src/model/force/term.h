@@ -64,9 +64,10 @@ struct cs_term {
     void (*add_blocks)(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks);
     /* Where a force has entries between particles beside its blocks, in any pattern: found at
-     * the matrix's state before add_blocks, kept until the next if `kept` (else good for
-     * add_blocks alone), and added to products; the solver's preconditioner has the blocks
-     * alone. Both or neither; by all threads. */
+     * the matrix's state before add_blocks, and added to products; the solver's preconditioner
+     * has the blocks alone. kept: until the next that is kept. Else add_blocks alone follows,
+     * and with matrix->bound the blocks must then be above the whole share. Both or neither; by
+     * all threads. */
     void (*prepare_matrix)(const struct cs_system *system, const struct cs_matrix *matrix,
                            bool kept);
     /* y += those entries times p. */

@@ -144,6 +144,7 @@ void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at,
 void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                      uint32_t parts, double *blocks) {
     memset(blocks, 0, 6 * sizeof *blocks * system->view.n);
+    cs_terms_prepare_matrix(system, matrix, false);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->parts & parts)
             add_share(system, matrix, system->terms[k], blocks);

@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "model/pair/nearness.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -197,21 +198,35 @@ void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix,
         .at = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
         .matrix = matrix};
     set->exact = !matrix->psd;
+    set->alone = !kept && matrix->bound;
     do_lots(&job);
     gather(pairs, set);
     pairs->blocks = set;
 }
 
-/* block += that of corner k of a pair with itself */
+/* block += that of corner k of a pair with itself, each part times its factor */
 static void add_own(const struct cs_pair *pair, const struct cs_pair_turn *full, uint32_t k,
-                    double block[6]) {
+                    const double factor[2], double block[6]) {
     static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double *g = pair->to[k], w = pair->share[k];
+    const double along = factor[0] * pair->along, rub = factor[1] * w * w;
     for (int e = 0; e < 6; e++) {
-        block[e] += pair->along * (g[row[e]] * g[column[e]]) + w * w * pair->of[e];
+        block[e] += along * (g[row[e]] * g[column[e]]) + rub * pair->of[e];
         if (full)
             block[e] += full->of[3 * k + row[e]][3 * k + column[e]];
     }
+}
+
+/* by how much a block must grow for all four together to be above what the pair couples */
+static void find_growth(const struct cs_pair *pair, uint32_t k, double factor[2]) {
+    double length[4], sum = 0, shares = 0;
+    for (int j = 0; j < 4; j++) {
+        length[j] = sqrt(cs_vec3_dot(pair->to[j], pair->to[j]));
+        sum += length[j];
+        shares += fabs(pair->share[j]);
+    }
+    factor[0] = length[k] > 0 ? sum / length[k] : 1;
+    factor[1] = pair->share[k] != 0 ? shares / fabs(pair->share[k]) : 1;
 }
 
 static const struct cs_pair_turn *turn_of(const struct cs_pair_set *set,
@@ -227,8 +242,10 @@ void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
     for (size_t i = begin; i < end && set->n; i++)
         for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++) {
             const struct cs_pair_end *at = set->ends + e;
-            double block[6] = {0};
-            add_own(at->pair, turn_of(set, at), at->corner, block);
+            double block[6] = {0}, factor[2] = {1, 1};
+            if (set->alone)
+                find_growth(at->pair, at->corner, factor);
+            add_own(at->pair, turn_of(set, at), at->corner, factor, block);
             for (size_t c = 0; c < 6; c++)
                 blocks[c * n + i] += block[c];
         }
@@ -257,7 +274,7 @@ static void multiply_pair(struct cs_pair *pair, const struct cs_pair_turn *full,
                            s[2] * v[0] + s[4] * v[1] + s[5] * v[2]};
     for (uint32_t k = 0; k < 4; k++) {
         double b[6] = {0};
-        add_own(pair, full, k, b);
+        add_own(pair, full, k, (double[2]){1, 1}, b);
         const double own[3] = {b[0] * p[k][0] + b[1] * p[k][1] + b[2] * p[k][2],
                                b[1] * p[k][0] + b[3] * p[k][1] + b[4] * p[k][2],
                                b[2] * p[k][0] + b[4] * p[k][1] + b[5] * p[k][2]};

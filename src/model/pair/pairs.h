@@ -36,6 +36,7 @@ struct cs_pair_lot {
 struct cs_pair_set {
     struct cs_pair_lot *lots; /* as many as the search has */
     size_t n;
+    bool alone;               /* of a matrix: blocks that are above the whole of it */
     bool exact;               /* of a matrix: lots have `full` */
     struct cs_pair_end *ends; /* (4 n) those of particle i: ends[starts[i]..starts[i + 1]) */
     size_t ends_room;
@@ -65,7 +66,9 @@ void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at);
 double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
 
 /* Sets pairs->blocks to the shares of a matrix. kept: in pairs->matrix, for cs_pairs_multiply;
- * else in pairs->now. */
+ * else in pairs->now; and then with matrix->bound the diagonal blocks alone are above all of
+ * the shares: (sum a_i)^2 <= sum |a_i| sum a_i^2/|a_i| of the weights, or the gradient, at
+ * four. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept);
 
 /* blocks (6,n) += the diagonal blocks at particles [begin, end). */
