@@ -29,6 +29,7 @@ enum {
     COMPARE_FRESH,
     COMPARE_PICTURES,
     COMPARE_RENDERER,
+    COMPARE_SHARD,
     COMPARE_REPORT,
     COMPARE_STRICT,
     COMPARE_QUIET,
@@ -74,6 +75,8 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                           false},
     [COMPARE_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
                           false},
+    [COMPARE_SHARD] = {"shard", 0, "K/N",
+                       "run the K-th of N shares of the cells; see: clothsim merge", false},
     [COMPARE_REPORT] = {"report", 0, NULL,
                         "write compare.html as well: one file with diagrams, tables, verdict, "
                         "machine and the command",
@@ -168,6 +171,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     if (cs_args_choice(args, COMPARE_RANK, cs_norm_names, &rank, error) ||
         cs_args_whole(args, COMPARE_RUNS, 1, CS_ROUNDS_MOST, &settings->runs, error) ||
         cs_args_real(args, COMPARE_BUDGET, &settings->budget, error) ||
+        cs_args_shard(args, COMPARE_SHARD, &settings->shard, error) ||
         cs_args_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||
         read_reference(args, settings, error) ||
         cs_args_overrides(args, COMPARE_SET, &session->overrides, &session->n_overrides,

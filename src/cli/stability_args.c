@@ -48,6 +48,8 @@ const struct cs_arg cs_stability_rows[STABILITY_ROWS] = {
                            false},
     [STABILITY_FOLDER] = {"folder", 0, "DIR",
                           "the catalogue's folder (default: scenes/extreme)", false},
+    [STABILITY_SHARD] = {"shard", 0, "K/N",
+                         "do the K-th of N shares of the columns; see: clothsim merge", false},
     [STABILITY_JSON] = {"json", 0, "FILE",
                         "with --extreme: write the rows as JSON too; -: to standard output",
                         false},
@@ -114,6 +116,7 @@ enum cs_status cs_stability_read(struct cs_args *args, struct cs_stability_setti
         cs_args_whole(args, STABILITY_JOBS, 1, CS_WORKERS_MOST, &settings->workers, error) ||
         cs_args_real(args, STABILITY_TIME, &settings->seconds, error) ||
         cs_args_real(args, STABILITY_BUDGET, &settings->budget, error) ||
+        cs_args_shard(args, STABILITY_SHARD, &settings->shard, error) ||
         read_axis(args, settings, error) ||
         read_range(args, STABILITY_DT, &settings->dt, error) ||
         cs_args_overrides(args, STABILITY_SET, &settings->session.overrides,

@@ -67,6 +67,13 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
     return error->status;
 }
 
+/* A share of the columns is no map yet. */
+static void tell_shard(const struct cs_stability *map, bool quiet) {
+    if (!quiet)
+        printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,
+               map->settings->shard.number, map->settings->shard.of, map->journal.path);
+}
+
 static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
     uint32_t bad = 0;
     for (uint32_t c = 0; c < map->n_columns; c++)
@@ -98,8 +105,10 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
                 "interrupted; what was found is in %s, and the same command goes on from it",
                 map.journal.path);
     }
-    if (!error->status && !cs_folder_make(folder, error) &&
-        !write_files(args, &map, folder, &drawn, error) && !quiet) {
+    if (!error->status && !map.complete)
+        tell_shard(&map, quiet);
+    else if (!error->status && !cs_folder_make(folder, error) &&
+             !write_files(args, &map, folder, &drawn, error) && !quiet) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];
         cs_series_file_name(map.series, name);

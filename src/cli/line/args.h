@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "io/scene_read.h"
+#include "study/shard.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -66,6 +67,10 @@ enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t 
 /* An option as a number above 0 and up to 1e9; *value is left alone where it was not given. */
 enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *value,
                             struct cs_error *error);
+
+/* An option "k/n" as a share of a study; *shard is left alone where it was not given. */
+enum cs_status cs_args_shard(const struct cs_args *args, uint32_t row, struct cs_shard *shard,
+                             struct cs_error *error);
 
 /* An option as one of names (closed by NULL); *index is left alone where it was not given. */
 enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,

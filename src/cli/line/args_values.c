@@ -1,6 +1,7 @@
 /* Reads the values of options as numbers, choices and overrides, and checks them. */
 #include "cli/line/args.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,22 @@ enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t 
                        "--%s: expected a whole number from %u to %u, found \"%.60s\"",
                        args->command->rows[row].name, min, max, text);
     *value = (uint32_t)read;
+    return CS_OK;
+}
+
+enum cs_status cs_args_shard(const struct cs_args *args, uint32_t row, struct cs_shard *shard,
+                             struct cs_error *error) {
+    const char *text = cs_args_get(args, row);
+    char end;
+    unsigned number, of;
+    if (!text)
+        return CS_OK;
+    if (strspn(text, "0123456789/") < strlen(text) || strlen(text) > 13 ||
+        sscanf(text, "%u/%u%c", &number, &of, &end) != 2 || number < 1 || number > of)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--%s: expected K/N with K from 1 to N, found \"%.60s\"",
+                       args->command->rows[row].name, text);
+    *shard = (struct cs_shard){number, of};
     return CS_OK;
 }
 

@@ -108,6 +108,16 @@ static enum cs_status check_methods(struct cs_compare *compare, struct cs_error 
     return error->status;
 }
 
+/* The cells that this process is to run. */
+static void keep_shard(struct cs_compare *compare) {
+    struct cs_sweep *sweep = &compare->sweep;
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < sweep->n; k++)
+        if (cs_shard_holds(&compare->settings->shard, k))
+            sweep->cells[kept++] = sweep->cells[k];
+    sweep->n = kept;
+}
+
 static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_session_settings *session = &compare->settings->course.session;
     const struct cs_sweep_settings asked = {.list = compare->settings->methods,
@@ -116,8 +126,10 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
                                             .fps = compare->fps,
                                             .omega = compare->omega,
                                             .size = compare->size};
-    if (!cs_sweep_make(&compare->sweep, &asked, error) && !check_methods(compare, error))
+    if (!cs_sweep_make(&compare->sweep, &asked, error) && !check_methods(compare, error)) {
+        keep_shard(compare);
         share_time(compare);
+    }
     return error->status;
 }
 

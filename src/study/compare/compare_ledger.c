@@ -165,3 +165,42 @@ void cs_ledger_close(struct cs_ledger *ledger) {
     free(ledger->old);
     *ledger = (struct cs_ledger){0};
 }
+
+/* Adds the rows of one file. */
+static enum cs_status add_file(struct cs_sweep *sweep, const char *path, const char *here,
+                               struct cs_error *error) {
+    struct cs_cell *cells;
+    uint32_t n;
+    if (access(path, F_OK) || cs_csv_read(path, &cells, &n, error))
+        return error->status;
+    for (uint32_t k = 0; k < n && !error->status; k++) {
+        cs_cell_name_machine(cells + k, here);
+        if (strncmp(cells[k].key, sweep->n ? sweep->cells[0].key : cells[k].key,
+                    CS_COMPARE_DIGITS) != 0)
+            cs_fail(error, CS_ERR_USAGE, "%s is of another scene, time or reference", path);
+        else
+            cs_sweep_add(sweep, cells + k, error);
+    }
+    free(cells);
+    return error->status;
+}
+
+enum cs_status cs_ledger_merge(const char *const *folders, uint32_t n_folders, const char *out,
+                               uint32_t *n, struct cs_error *error) {
+    struct cs_ledger ledger = {0};
+    struct cs_compare compare = {0};
+    char path[4096];
+    cs_machine_name(compare.machine);
+    snprintf(ledger.path, sizeof ledger.path, "%s/compare.csv", out);
+    // what is in the whole already is a part of it
+    add_file(&compare.sweep, ledger.path, compare.machine, error);
+    for (uint32_t k = 0; k < n_folders && !error->status; k++) {
+        snprintf(path, sizeof path, "%s/compare.csv", folders[k]);
+        add_file(&compare.sweep, path, compare.machine, error);
+    }
+    *n = compare.sweep.n;
+    if (!error->status && *n > 0)
+        write_rows(&ledger, &compare, false, error);
+    cs_sweep_finish(&compare.sweep);
+    return error->status;
+}

@@ -24,6 +24,10 @@ enum cs_status cs_ledger_refresh(struct cs_ledger *ledger, struct cs_compare *co
 /* Writes all cells in their order, and behind them those that others have added. */
 enum cs_status cs_ledger_rewrite(struct cs_ledger *ledger, const struct cs_compare *compare,
                                  struct cs_error *error);
+/* Joins the compare.csv of the folders, where they have one, into that of the folder out; *n:
+ * rows. CS_ERR_USAGE where they are of different comparisons. */
+enum cs_status cs_ledger_merge(const char *const *folders, uint32_t n_folders, const char *out,
+                               uint32_t *n, struct cs_error *error);
 void cs_ledger_close(struct cs_ledger *ledger);
 
 #endif

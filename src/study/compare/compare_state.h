@@ -6,6 +6,7 @@
 #include "study/compare/compare_reference_state.h"
 #include "study/compare/rounds.h"
 #include "study/compare/sweep.h"
+#include "study/shard.h"
 
 /* The default budget: s of processor time for the cells of a comparison and for their rounds,
  * without its reference, and the most that a run may take. */
@@ -27,6 +28,7 @@ struct cs_compare_settings {
     const char *folder;       /* for compare.csv */
     const char *command;      /* that repeats it, for the report; may be NULL */
     bool html;                /* one HTML file as well */
+    struct cs_shard shard;    /* of the cells; zeroed: all */
     const char *cache;        /* folder of references */
     bool fresh;               /* an earlier compare.csv is written over */
     /* may be NULL; taken: the row is of an earlier run */

@@ -84,7 +84,11 @@ static enum cs_status make_task(void *ctx, uint32_t task, struct cs_error *error
     struct work *work = ctx;
     struct cs_arena arena = {0};
     /* the last columns are the slowest: they go first */
-    make_column(work, work->map->columns + (work->map->n_columns - 1 - task), &arena, error);
+    const uint32_t column = work->map->n_columns - 1 - task;
+    if (cs_shard_holds(&work->map->settings->shard, column))
+        make_column(work, work->map->columns + column, &arena, error);
+    else
+        cs_workers_tick(&work->workers, work->map->n_rows + TRIALS_OF_BORDER);
     cs_arena_finish(&arena);
     return error->status;
 }
@@ -177,6 +181,14 @@ static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) 
     return error->status;
 }
 
+/* Columns of other shards may be there too, by way of the journal. */
+static bool is_complete(const struct cs_stability *map) {
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        if (!cs_shard_holds(&map->settings->shard, c) && !map->columns[c].has_border)
+            return false;
+    return true;
+}
+
 enum cs_status cs_stability_run(struct cs_stability *map,
                                 const struct cs_stability_settings *settings,
                                 struct cs_error *error) {
@@ -195,7 +207,8 @@ enum cs_status cs_stability_run(struct cs_stability *map,
         cs_journal_close(map, false);
         return error->status;
     }
-    cs_journal_close(map, true);
+    map->complete = is_complete(map);
+    cs_journal_close(map, map->complete);
     map->wall = cs_clock_wall() - begin;
     return CS_OK;
 }

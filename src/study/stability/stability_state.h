@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "sim/series.h"
+#include "study/shard.h"
 #include "study/stability/stability_axis.h"
 #include "study/stability/stability_border.h"
 
@@ -14,8 +15,9 @@ struct cs_stability_settings {
     enum cs_axis axis;
     struct cs_range values, dt; /* of the axis, of the rows */
     uint32_t columns, rows;
-    double seconds; /* simulated by every cell, but not more than CS_CELL_STEPS steps */
-    double budget;  /* s of processor time for a cell */
+    double seconds;        /* simulated by every cell, but not more than CS_CELL_STEPS steps */
+    double budget;         /* s of processor time for a cell */
+    struct cs_shard shard; /* of the columns; zeroed: all */
     uint32_t workers;
     /* about ten times a second, with the cells done; may be NULL */
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
@@ -44,9 +46,10 @@ struct cs_stability {
     struct cs_session session;           /* the scene as it is given */
     struct cs_stability_column *columns; /* (n_columns); workers see them */
     uint32_t n_columns, n_rows;
-    double own;  /* the scene's own value on the axis */
-    double *dt;  /* (n_rows) rising */
-    double wall; /* s */
+    double own;    /* the scene's own value on the axis */
+    double *dt;    /* (n_rows) rising */
+    bool complete; /* else columns of other shards are not there */
+    double wall;   /* s */
     struct cs_journal journal;
     struct cs_arena arena;
 };
