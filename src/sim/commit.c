@@ -3,6 +3,7 @@
 
 #include "base/vector.h"
 #include "model/commit/limit.h"
+#include "model/pair/pairs.h"
 #include "sim/account.h"
 #include "sim/passage.h"
 

@@ -8,6 +8,7 @@
 #include "model/force/terms.h"
 #include "model/pair/pairs.h"
 #include "sim/account.h"
+#include "sim/commit.h"
 #include "sim/passage.h"
 
 #include <math.h>
