@@ -3,6 +3,7 @@
  * CVODE goes on across frames, and after commits that moved the state: see cvode_history.h.
  */
 #include "cvode_history.h"
+#include "cvode_order.h"
 
 #include "sundials_common.h"
 
@@ -10,8 +11,17 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 /* Below this damping ratio the orders above 2 of BDF are held back by their stability near the
- * imaginary axis, and follow no tolerance. */
+ * imaginary axis: see cvode_order.h. */
 #define WEAK_DAMPING 0.05
+
+/* A step whose best length is within these factors of the last keeps its length. CVODE lets it
+ * grow by 1.5 and more only, to spare factorisations; here a change costs nothing. */
+#define KEPT_FROM 0.9
+#define KEPT_TO   1.2
+
+/* The share of the local error that the nonlinear iteration may leave. CVODE's 0.1 suits a
+ * matrix of long ago; here each iteration has its own. */
+#define NONLINEAR_SHARE 1
 
 /* Most that a step may grow by after a new start; CVODE allows 1e4 there, after which the next
  * is mostly thrown away. */
@@ -38,8 +48,9 @@ struct cvode_options {
 static const struct cs_option bdf_rows[] = {
     COMMON_ROWS(1e-14),
     CS_OPTION(struct cvode_options, max_order, "", 0, 0, 5,
-              "highest order; 0: 2 where rtol is at least 1e-3 or damping is weak, else 5; "
-              "above 2 with detection of the stability limit"),
+              "highest order; 0: 5 where damping is strong and rtol below 1e-3, else 2, and 5 "
+              "while steps are below 1/omega; an order above 2 that is asked for, and strong "
+              "damping's, come with detection of the stability limit"),
     CS_OPTION(struct cvode_options, linear_rtol, "", 1e-4, 1e-14, 0.5,
               "relative residual of the linear solves"),
 };
@@ -54,6 +65,7 @@ struct cvode {
     struct cvode_options asked;
     SUNNonlinearSolver iteration; /* owned: of Adams; NULL: CVODE's own Newton */
     struct cvode_history history;
+    struct cvode_order order;
     struct cs_stats done; /* counted before the last start */
 };
 
@@ -88,8 +100,11 @@ static int start_anew(struct cvode *self, double t, double step) {
     struct sundials *base = &self->base;
     add_counts(self, &self->done);
     cvode_history_watch(&self->history, base);
-    const int code = CVodeReInit(base->memory, t, base->state);
+    int code = CVodeReInit(base->memory, t, base->state);
     cvode_history_find(&self->history, base);
+    cvode_order_forget(&self->order);
+    if (code == CV_SUCCESS && self->order.chosen)
+        code = CVodeSetMaxOrd(base->memory, CVODE_ORDER_LOW);
     return code == CV_SUCCESS ? CVodeSetInitStep(base->memory, step) : code;
 }
 
@@ -107,33 +122,56 @@ static int moved(struct sundials *base, double t, double dt) {
     return code == CV_SUCCESS ? start_anew(self, t, next) : code;
 }
 
+/* One step; then the order may be another one. CVODE cannot lower it without a new start. */
+static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached, int task) {
+    int code = CVode(memory, t1, y, reached, task);
+    void *object = NULL;
+    double h = 0;
+    if (code < 0 || CVodeGetUserData(memory, &object) != CV_SUCCESS)
+        return code;
+    struct cvode *self = object;
+    if (!self->order.chosen || CVodeGetLastStep(memory, &h) != CV_SUCCESS ||
+        !cvode_order_watch(&self->order, h * self->base.host->view->omega))
+        return code;
+    if (self->order.high)
+        return CVodeSetMaxOrd(memory, CVODE_ORDER_HIGH);
+    code = start_anew(self, *reached, h);
+    return code == CV_SUCCESS && *reached < t1 ? CVodeSetStopTime(memory, t1) : code;
+}
+
 static const struct sundials_library library = {
     .recovers = true,
     .name = "CVODE",
     .code_name = CVodeGetReturnFlagName,
     .set_stop = CVodeSetStopTime,
-    .evolve = CVode,
+    .evolve = evolve,
     .one_step = CV_ONE_STEP,
     .system = newton_system,
     .moved = moved,
 };
 
-static int64_t choose_bdf_order(const struct cvode *self) {
+/* the highest order to begin with */
+static int choose_bdf_order(struct cvode *self) {
     const struct cs_host *host = self->base.host;
     const bool weak = host->view->delta < WEAK_DAMPING * host->view->omega;
     if (self->asked.max_order > 0)
-        return self->asked.max_order;
-    const int64_t order = self->asked.rtol >= 1e-3 || weak ? 2 : 5;
-    host->note(host->ctx, "max_order automatic: %d (rtol %g, damping %s)", (int)order,
-               self->asked.rtol, weak ? "weak" : "strong");
-    return order;
+        return (int)self->asked.max_order;
+    if (weak || self->asked.rtol >= 1e-3)
+        cvode_order_begin(&self->order);
+    host->note(host->ctx, "max_order automatic: %s (rtol %g, damping %s)",
+               self->order.chosen ? "2, and 5 while steps are short" : "5", self->asked.rtol,
+               weak ? "weak" : "strong");
+    return self->order.chosen ? CVODE_ORDER_LOW : CVODE_ORDER_HIGH;
 }
 
 static int set_bdf_solver(struct cvode *self, int order) {
-    int code = CVodeSetLinearSolver(self->base.memory, &self->base.solver, NULL);
+    void *memory = self->base.memory;
+    int code = CVodeSetLinearSolver(memory, &self->base.solver, NULL);
     if (code == CV_SUCCESS && order > 2)
-        code = CVodeSetStabLimDet(self->base.memory, SUNTRUE);
-    return code;
+        code = CVodeSetStabLimDet(memory, SUNTRUE);
+    if (code == CV_SUCCESS && self->order.chosen)
+        code = CVodeSetEtaFixedStepBounds(memory, KEPT_FROM, KEPT_TO);
+    return code == CV_SUCCESS ? CVodeSetNonlinConvCoef(memory, NONLINEAR_SHARE) : code;
 }
 
 static int set_adams_solver(struct cvode *self) {
@@ -152,7 +190,7 @@ static int open_memory(struct cvode *self, int family) {
 #if SUNDIALS_VERSION_MAJOR < 7
     code = CVodeSetErrHandlerFn(base->memory, sundials_keep_message, base);
 #endif
-    const int order = (int)(family == CV_BDF ? choose_bdf_order(self) : asked->max_order);
+    const int order = family == CV_BDF ? choose_bdf_order(self) : (int)asked->max_order;
     /* 0: rtol of 1 m and 1 m/s */
     const double atol = asked->atol > 0 ? asked->atol : asked->rtol;
     if (code == CV_SUCCESS)

@@ -128,9 +128,10 @@ START_TEST(failures_have_reasons) {
 }
 END_TEST
 
-/* A failure of the host's solver ends the run with the host's words, and no step follows it. */
+/* A failure of the host's solver ends the run with the host's words, and no step follows it.
+ * CVODE asks for no solve where the residual is small: not so at that tolerance. */
 START_TEST(failed_solve_ends_the_run) {
-    static const char *const implicit[] = {"cvode-bdf", "ark-dirk", "ark-imex"};
+    static const char *const implicit[] = {"cvode-bdf:rtol=1e-2", "ark-dirk", "ark-imex"};
     for (size_t k = 0; k < sizeof implicit / sizeof *implicit; k++) {
         struct fixture cloth;
         struct cs_error error = {0};
