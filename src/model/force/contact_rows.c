@@ -18,6 +18,7 @@ bool cs_contact_has_rows(const struct cs_near *near) {
 /* distances of one row, and what lies between the obstacle and its particles */
 struct row {
     double d[ROW], x[ROW], y[ROW], z[ROW];
+    size_t start, count; /* of a row of bounds */
 };
 
 /* Distance and gradient of `count` particles; returns how many are in range. */
@@ -97,13 +98,15 @@ CS_CLONES void cs_contact_add_rows(const struct cs_near *near, size_t n,
 }
 
 /* Adds the bounds of one row: those of cs_touch_bound, whose gradient is of length 1 here. */
-CS_INLINE void bound(const struct cs_near *near, size_t n, const double *v, size_t count,
-                     const bool sphere, const struct row *row, double *restrict stiffness,
-                     double *restrict damping) {
+CS_INLINE void bound(const struct cs_near *near, const struct cs_eval *at, size_t n,
+                     const struct row *row, const bool sphere, const struct cs_row_sums *sums) {
     const double *normal = near->pose.axes[1], *u = near->pose.velocity;
+    const double *v = at->v + row->start;
+    double *restrict stiffness = sums->stiffness + row->start;
+    double *restrict damping = sums->damping + row->start;
     const double k = near->pairing.k, range = near->pairing.range;
     const double least = near->ev * near->ev;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < row->count; i++) {
         const double gx = sphere ? row->x[i] : normal[0];
         const double gy = sphere ? row->y[i] : normal[1];
         const double gz = sphere ? row->z[i] : normal[2];
@@ -120,11 +123,11 @@ CS_INLINE void bound(const struct cs_near *near, size_t n, const double *v, size
 CS_INLINE void add_bounds(const struct cs_near *near, size_t n, const struct cs_eval *at,
                           const bool sphere, const struct cs_row_sums *sums) {
     for (size_t start = 0; start < n; start += ROW) {
-        const size_t left = n - start, count = left < ROW ? left : ROW;
+        const size_t left = n - start;
         struct row row;
-        if (measure(near, n, at->x + start, count, sphere, &row) > 0)
-            bound(near, n, at->v + start, count, sphere, &row, sums->stiffness + start,
-                  sums->damping + start);
+        row.start = start, row.count = left < ROW ? left : ROW;
+        if (measure(near, n, at->x + start, row.count, sphere, &row) > 0)
+            bound(near, at, n, &row, sphere, sums);
     }
 }
 
