@@ -6,7 +6,6 @@
 #include "model/force/measure.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
-#include "model/pair/pairs.h"
 #include "sim/account.h"
 #include "sim/commit.h"
 #include "sim/passage.h"
