@@ -156,7 +156,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
            cs_surfaces_bytes(scene) + cs_crossings_bytes(scene),
-           wanted ? "crossings is not ignore" : "they are drawn", "crossings is ignore");
+           cs_scene_crossings_by_pairs(scene) ? "bodies keep off each other or themselves"
+           : wanted                           ? "crossings is not ignore"
+                                              : "they are drawn",
+           "crossings is ignore");
     decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
            cs_linear_bytes(scene, n, s, forced) + (forced ? 6 : 3) * n * real,
            levels ? "the integrator asks for it; multigrid for stiff steps"

@@ -2,7 +2,7 @@
 #ifndef CS_SCENE_CROSSINGS_H
 #define CS_SCENE_CROSSINGS_H
 
-#include "scene/scene.h"
+#include "scene/pairs.h"
 
 enum cs_crossings_policy {
     CS_CROSSINGS_IGNORE, /* nothing: they are not looked for */
@@ -11,7 +11,15 @@ enum cs_crossings_policy {
     CS_CROSSINGS_STOP    /* counted after each step: the first ends the run */
 };
 
+/* Where the scene does not say it: limit for bodies that keep off each other or themselves, and
+ * for no others. */
+static inline bool cs_scene_crossings_by_pairs(const struct cs_scene *scene) {
+    return scene->crossings < 0 && cs_scene_any_meet(scene);
+}
+
 static inline enum cs_crossings_policy cs_scene_crossings(const struct cs_scene *scene) {
+    if (cs_scene_crossings_by_pairs(scene))
+        return CS_CROSSINGS_LIMIT;
     return scene->crossings < 0 ? CS_CROSSINGS_IGNORE
                                 : (enum cs_crossings_policy)scene->crossings;
 }

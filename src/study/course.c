@@ -58,6 +58,8 @@ enum cs_status cs_course_open(struct cs_course *course,
     *course = (struct cs_course){.frames = settings->frames};
     asked.integrator = integrator;
     asked.smooth = true;
+    // a crossing is a property of a method at its step
+    asked.only_count = true;
     if (!cs_session_open_system(&course->session, &asked, error) && keep_start(course, error))
         cs_course_close(course);
     return error->status;

@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "model/plan.h"
 #include "model/system_build.h"
+#include "scene/crossings.h"
 #include "scene/shape.h"
 #include "sim/folders.h"
 #include "study/perturb.h"
@@ -133,6 +134,8 @@ static void change_scene(struct cs_session *session) {
     const struct cs_session_settings *settings = &session->settings;
     if (settings->smooth)
         make_smooth(&session->scene);
+    if (settings->only_count && cs_scene_crossings_by_pairs(&session->scene))
+        session->scene.crossings = CS_CROSSINGS_COUNT;
     if (settings->fps > 0)
         session->scene.time.fps = settings->fps;
     if (settings->change)

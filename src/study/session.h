@@ -18,10 +18,11 @@ struct cs_session_settings {
     uint32_t n_overrides;
     /* changes the scene once it was checked; may be NULL */
     void (*change)(struct cs_scene *scene, void *ctx);
-    void *ctx;   /* of change */
-    bool smooth; /* leaves out what acts after steps: contact by projection, strain limit,
-                    velocity loss */
-    double fps;  /* frames a second; 0: the scene's */
+    void *ctx;       /* of change */
+    bool smooth;     /* leaves out what acts after steps: contact by projection, strain limit,
+                        velocity loss */
+    bool only_count; /* crossings that the scene says nothing about: no step is cut for them */
+    double fps;      /* frames a second; 0: the scene's */
 
     const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */
     const char *const *plugins; /* (n_plugins) module files */

@@ -113,6 +113,7 @@ enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settin
     struct cs_session session;
     *trial = (struct cs_trial){0};
     asked.fps = choose_fps(settings);
+    asked.only_count = true;
     if (cs_session_open_system(&session, &asked, error))
         return error->status;
     if (!cs_session_begin(&session, NULL, error))

@@ -135,9 +135,52 @@ START_TEST(limits_cost_no_bit_until_they_act) {
 }
 END_TEST
 
+#define BODY(x, y, speed)                                                                      \
+    "{\"cloth\": {\"grid\": [5, 5], \"size\": [0.4, 0.4], \"start\": \"flat\", \"velocity\": " \
+    "[0, " speed ", 0], \"place\": {\"translate\": [" x ", " y ", 0.02]}, \"bump\": 0.05}, "   \
+    "\"mass\": {\"total\": 0.1}, \"springs\": {\"damping\": 0.01}}"
+#define MEETING                                                                                \
+    "{\"bodies\": [" BODY("0.03", "0.1", "-3") ", " BODY("0", "0", "1") ", " BODY(             \
+        "0.05", "0.2", "-4") "], \"forces\": {\"gravity\": [0, 0, 0]}, \"contact\": "          \
+                             "\"force\", \"pairs\": %s, \"time\": {\"fps\": 100}}"
+
+/* by frames; the scene says nothing of crossings */
+static uint64_t run_meeting(struct fixture *fixture, const char *method, const char *pairs) {
+    struct cs_run *run = &fixture->session.run;
+    struct cs_error error = {0};
+    uint64_t most = 0;
+    fixture_open(fixture, method, MEETING, pairs);
+    fixture_start(fixture);
+    ck_assert_ptr_nonnull(fixture->system->crossings);
+    while (run->frame < 12 && !cs_run_frame(run, &error)) {
+        const uint64_t found = cs_crossings_count(fixture->system, run->x).n;
+        most = found > most ? found : most;
+    }
+    ck_assert_msg(!error.status && run->frame == 12, "%s: %s", method, error.message);
+    return most;
+}
+
+/* of three families; steps are limited where bodies keep off each other, and only these bodies
+ */
+START_TEST(contact_is_limited_by_itself) {
+    static const char *const asked[] = {"velocity-verlet:dt=0.001",
+                                        "implicit-linearised:dt=0.01", "cvode-bdf:rtol=1e-2"};
+    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
+        struct fixture fixture;
+        ck_assert_uint_eq(run_meeting(&fixture, asked[k], "\"all\""), 0);
+        fixture_close(&fixture);
+        const uint64_t most =
+            run_meeting(&fixture, asked[k], "{\"list\": [{\"bodies\": [0, 1]}]}");
+        ck_assert_msg(most > 0, "%s", asked[k]);
+        fixture_close(&fixture);
+    }
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {counted_sheets_pass_through_each_other,
                                   limited_sheets_stop_before_they_meet, stopped_sheets_say_when,
-                                  limits_cost_no_bit_until_they_act};
+                                  limits_cost_no_bit_until_they_act,
+                                  contact_is_limited_by_itself};
     return fixture_run("crossings", tests, sizeof tests / sizeof *tests);
 }

@@ -160,7 +160,7 @@ START_TEST(messages_name_the_place) {
          "s.json:1:24: camera.eye[1]: found null, expected a number"},
         {"{\"render\": {\"look\": \"strian\"}}",
          "s.json:1:21: render.look: unknown choice \"strian\"; did you mean \"strain\"? "
-         "(lit, wireframe, springs, force, strain, goals)"},
+         "(lit, wireframe, springs, force, strain, goals, crossings)"},
         {"{\"render\": {\"look\": 3}}",
          "s.json:1:21: render.look: found 3, expected one of lit, "
          "wireframe, springs, force, strain, goals"},

@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "model/cross/gap.h"
 #include "model/cross/pierce.h"
+#include "scene/crossings.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,8 +17,23 @@ struct found {
 
 struct cs_crossings {
     struct cs_parts parts;
+    bool *apart;         /* (bodies, bodies) pairs whose moves are limited; NULL: all of them */
     struct found *found; /* (CS_BOX_JOBS_MOST) */
 };
+
+/* only where the limit comes of the pairs of contact: others go through each other as ever */
+static void list_apart(const struct cs_scene *scene, bool *apart) {
+    const uint32_t n = scene->bodies.n;
+    double friction;
+    for (uint32_t a = 0; a < n; a++)
+        for (uint32_t b = 0; b < n; b++)
+            apart[(size_t)a * n + b] = cs_scene_bodies_meet(scene, a, b, &friction);
+}
+
+static size_t pairs_of_bodies(const struct cs_scene *scene) {
+    const size_t n = scene->bodies.n;
+    return cs_scene_crossings_by_pairs(scene) ? n * n : 0;
+}
 
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
     struct cs_crossings *crossings = cs_arena_take(&system->arena, sizeof *crossings, error);
@@ -25,6 +41,10 @@ enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *err
         return error->status;
     crossings->found =
         cs_arena_take_n(&system->arena, CS_BOX_JOBS_MOST, sizeof *crossings->found, error);
+    const size_t pairs = pairs_of_bodies(system->scene);
+    if (pairs &&
+        (crossings->apart = cs_arena_take_n(&system->arena, pairs, sizeof(bool), error)))
+        list_apart(system->scene, crossings->apart);
     if (!error->status && !cs_parts_build(system, &crossings->parts, error))
         system->crossings = crossings;
     return error->status;
@@ -32,14 +52,15 @@ enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *err
 
 size_t cs_crossings_bytes(const struct cs_scene *scene) {
     return sizeof(struct cs_crossings) + CS_BOX_JOBS_MOST * sizeof(struct found) +
-           cs_parts_bytes(scene);
+           pairs_of_bodies(scene) * sizeof(bool) + cs_parts_bytes(scene);
 }
 
 /* One question to all pairs, and where the job at work puts its answer. */
 struct question {
     const struct cs_parts *parts;
     const double *x0, *x1;
-    uint8_t *marks; /* NULL: none are asked for */
+    const bool *apart; /* of struct cs_crossings */
+    uint8_t *marks;    /* NULL: none are asked for */
     struct found *found;
     cs_box_visit *visit;
 };
@@ -199,6 +220,11 @@ static void try_edges(const struct asking *asking, uint32_t part, uint32_t other
 }
 
 static void try_parts(void *arg, uint32_t i, uint32_t j) {
+    const struct question *question = ((const struct asking *)arg)->question;
+    const uint32_t *bodies = question->parts->bodies;
+    if (question->apart &&
+        !question->apart[(size_t)bodies[i] * question->parts->surfaces->n_bodies + bodies[j]])
+        return;
     try_points(arg, i, j);
     try_points(arg, j, i);
     try_edges(arg, i, j);
@@ -209,6 +235,7 @@ double cs_crossings_share(const struct cs_system *system, const double *x0, cons
     struct question question = {.parts = &crossings->parts,
                                 .x0 = x0,
                                 .x1 = x1,
+                                .apart = crossings->apart,
                                 .found = crossings->found,
                                 .visit = try_parts};
     double share = 1;

@@ -23,6 +23,7 @@ static uint32_t number_body(const struct cs_surfaces *surfaces, uint32_t body, u
     for (uint32_t t = surfaces->first_triangle[body]; t < surfaces->first_triangle[body + 1];
          t++) {
         numbering->of_triangles[t] = part;
+        parts->bodies[part] = body;
         parts->triangles[part++] = t;
     }
     for (uint32_t e = surfaces->first_edge[body]; e < surfaces->first_edge[body + 1]; e++) {
@@ -31,6 +32,7 @@ static uint32_t number_body(const struct cs_surfaces *surfaces, uint32_t body, u
             continue;
         }
         numbering->of_edges[e] = part;
+        parts->bodies[part] = body;
         parts->triangles[part++] = CS_NO_TRIANGLE;
     }
     return part;
@@ -103,6 +105,7 @@ static void take_arrays(struct cs_parts *parts, struct cs_arena *arena,
                         struct cs_error *error) {
     const size_t n = parts->n, word = sizeof(uint32_t);
     parts->triangles = cs_arena_take_n(arena, n, word, error);
+    parts->bodies = cs_arena_take_n(arena, n, word, error);
     parts->first_edge = cs_arena_take_n(arena, n + 1, word, error);
     parts->edges = cs_arena_take_n(arena, parts->surfaces->n_edges, word, error);
     parts->first_point = cs_arena_take_n(arena, n + 1, word, error);
@@ -163,7 +166,7 @@ size_t cs_parts_bytes(const struct cs_scene *scene) {
         edges += body_edges;
         particles += (size_t)cs_shape_count(bodies + b);
     }
-    return (3 * n + 2 + edges + particles) * sizeof(uint32_t) +
+    return (4 * n + 2 + edges + particles) * sizeof(uint32_t) +
            cs_box_tree_bytes(n, scene->bodies.n);
 }
 

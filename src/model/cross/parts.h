@@ -13,6 +13,7 @@ struct cs_parts {
     const struct cs_surfaces *surfaces; /* borrowed from the system */
     uint32_t n, n_particles;
     uint32_t *triangles;            /* (n); CS_NO_TRIANGLE: an edge of a rope */
+    uint32_t *bodies;               /* (n) */
     uint32_t *first_edge, *edges;   /* (n + 1), (n_edges): its own, ascending */
     uint32_t *first_point, *points; /* (n + 1), particles: its own, ascending */
     struct cs_box_tree tree;        /* over the parts */
