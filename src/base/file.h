@@ -35,6 +35,11 @@ enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
 enum cs_status cs_file_write_lasting(const char *path, const void *bytes, size_t length,
                                      struct cs_error *error);
 
+/* Adds whole lines to a file, which is made where there is none. A last line without its end,
+ * of a process that was killed, is taken away first. Callers hold a lock. */
+enum cs_status cs_file_append(const char *path, const char *lines, size_t length,
+                              struct cs_error *error);
+
 /* Makes a folder and its parents; one that is there already is fine. */
 enum cs_status cs_folder_make(const char *path, struct cs_error *error);
 

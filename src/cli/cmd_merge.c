@@ -1,7 +1,8 @@
-/* clothsim merge: joins the folders of comparisons and maps that several processes filled. */
+/* clothsim merge: joins the folders of studies that several processes filled. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "study/compare/compare_ledger.h"
+#include "study/product.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -57,18 +58,20 @@ static enum cs_status append_maps(const char *folder, const char *out, uint32_t 
 
 static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     const char *given = cs_args_get(args, MERGE_OUT), *out = given ? given : "merged";
-    uint32_t cells = 0, maps = 0;
+    uint32_t cells = 0, rows_of_sweep = 0, maps = 0;
     for (uint32_t k = 0; k < args->n_operands; k++)
         if (!strcmp(args->operands[k], out))
             return cs_fail(error, CS_ERR_USAGE, "%s is both a part and the whole", out);
     if (cs_folder_make(out, error) ||
-        cs_ledger_merge(args->operands, args->n_operands, out, &cells, error))
+        cs_ledger_merge(args->operands, args->n_operands, out, &cells, error) ||
+        cs_product_merge(args->operands, args->n_operands, out, &rows_of_sweep, error))
         return error->status;
+    cells += rows_of_sweep;
     for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
         append_maps(args->operands[k], out, &maps, error);
     if (!error->status && cells + maps == 0)
         return cs_fail(error, CS_ERR_FILE,
-                       "no folder holds a compare.csv or the .partial of a map");
+                       "no folder holds a compare.csv, a sweep.csv or the .partial of a map");
     if (!error->status && !cs_args_get(args, MERGE_QUIET))
         printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps,
                args->n_operands, out);
@@ -78,7 +81,7 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_merge = {
     .name = "merge",
     .operands = "DIR...",
-    .summary = "join what shards of a comparison or a map have found",
+    .summary = "join what shards of a comparison, a sweep or a map have found",
     .notes =
         "The command of the study, without --shard and with -o DIR, then makes the report\n"
         "or map of the whole.\n\n"

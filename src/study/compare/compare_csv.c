@@ -1,6 +1,7 @@
 /* Writes the cells of a comparison as CSV (RFC 4180), and reads them back. */
 #include "study/compare/compare_csv.h"
 
+#include "base/csv.h"
 #include "base/file.h"
 
 #include <math.h>
@@ -9,19 +10,6 @@
 #include <string.h>
 
 enum { FILE_BYTES_MAX = 1 << 28, FIELDS_MAX = 128 };
-
-/* quoted where it must be (RFC 4180); a line stays a line */
-static void add_field(struct cs_text *out, const char *text) {
-    if (!strpbrk(text, ",\"\r\n")) {
-        cs_text_add(out, "%s", text);
-        return;
-    }
-    cs_text_add(out, "\"");
-    for (; *text; text++)
-        cs_text_add(out, "%s%c", *text == '"' ? "\"" : "",
-                    *text == '\n' || *text == '\r' ? ' ' : *text);
-    cs_text_add(out, "\"");
-}
 
 void cs_csv_add_head(struct cs_text *out) {
     for (uint32_t c = 0; c < cs_n_columns; c++)
@@ -36,42 +24,13 @@ void cs_csv_add_cell(struct cs_text *out, const struct cs_cell *cell) {
         if (c)
             cs_text_add(out, ",");
         if (column->type == CS_CELL_TEXT)
-            add_field(out, field);
+            cs_csv_add_field(out, field);
         else if (column->type == CS_CELL_FLAG)
             cs_text_add(out, "%d", *(const bool *)field);
         else if (isfinite(cs_cell_number(cell, column)))
             cs_text_add_real(out, cs_cell_number(cell, column));
     }
     cs_text_add(out, "\n");
-}
-
-/* Cuts one line into fields in place, without their quotes; returns what is behind the line,
- * NULL where the line has no end. */
-static char *cut_line(char *line, char *fields[FIELDS_MAX], uint32_t *n) {
-    char *in = line;
-    for (*n = 0;;) {
-        /* in place: a field without its quotes is never longer */
-        char *out = in;
-        const bool quoted = *in == '"';
-        char *field = out;
-        if (quoted)
-            in++;
-        while (*in && (quoted ? *in != '"' || in[1] == '"' : *in != ',' && *in != '\n')) {
-            if (quoted && *in == '"')
-                in++;
-            *out++ = *in++;
-        }
-        if (quoted && *in == '"')
-            in++;
-        const char end = *in;
-        *out = 0;
-        /* fields beyond that are passed over, not written past the array */
-        if (*n < FIELDS_MAX)
-            fields[(*n)++] = field;
-        if (end != ',')
-            return end == '\n' ? in + 1 : NULL;
-        in++;
-    }
 }
 
 static void set_field(struct cs_cell *cell, const struct cs_column *column, const char *text) {
@@ -90,7 +49,7 @@ static enum cs_status read_rows(const char *path, char *rest, struct cs_cell *ce
     const struct cs_column *columns[FIELDS_MAX];
     char *fields[FIELDS_MAX];
     uint32_t n_columns, n_fields;
-    rest = cut_line(rest, fields, &n_columns);
+    rest = cs_csv_cut_line(rest, fields, FIELDS_MAX, &n_columns);
     for (uint32_t c = 0; c < n_columns; c++)
         columns[c] = cs_column_find(fields[c]);
     if (!rest || !cs_column_find(fields[0]))
@@ -98,7 +57,7 @@ static enum cs_status read_rows(const char *path, char *rest, struct cs_cell *ce
                        "%s: the first line does not name the columns of a comparison", path);
     while (*rest) {
         struct cs_cell *cell = cells + *n;
-        rest = cut_line(rest, fields, &n_fields);
+        rest = cs_csv_cut_line(rest, fields, FIELDS_MAX, &n_fields);
         // a line that was cut off is as good as none
         if (!rest)
             break;

@@ -5,7 +5,6 @@
 #include "base/lock.h"
 #include "study/compare/compare_csv.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,18 +111,6 @@ enum cs_status cs_ledger_open(struct cs_ledger *ledger, struct cs_compare *compa
     return error->status;
 }
 
-static enum cs_status append(const struct cs_ledger *ledger, const struct cs_text *line,
-                             struct cs_error *error) {
-    FILE *file = fopen(ledger->path, "ae");
-    const bool written =
-        file && fwrite(line->bytes, 1, line->length, file) == line->length && !fflush(file);
-    if (!written)
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", ledger->path, strerror(errno));
-    if (file)
-        fclose(file);
-    return error->status;
-}
-
 enum cs_status cs_ledger_append(struct cs_ledger *ledger, const struct cs_cell *cell,
                                 struct cs_error *error) {
     struct cs_text line = {0};
@@ -132,7 +119,7 @@ enum cs_status cs_ledger_append(struct cs_ledger *ledger, const struct cs_cell *
     if (line.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
     else if (!cs_lock_take(&lock, ledger->lock, error)) {
-        append(ledger, &line, error);
+        cs_file_append(ledger->path, line.bytes, line.length, error);
         cs_lock_give(&lock);
     }
     cs_text_finish(&line);
