@@ -16,10 +16,11 @@ static const struct row {
 } rows[CELLS] = {
     {"keeps", "finished", 1 / 60.0, 0, 30, 2e-2, 3e-2, 0.03, 1.0e-3},
     {"keeps", "finished", 1 / 120.0, 0, 60, 5e-3, 6e-3, 0.01, 2.0e-3},
-    {"keeps", "over budget", 1 / 240.0, 0, 40, NAN, NAN, NAN, 4.0e-3},
+    {"keeps", "over budget", 1 / 240.0, 0, 40, (double)NAN, (double)NAN, (double)NAN, 4.0e-3},
     {"loses", "finished", 1 / 60.0, 0, 30, 3e-2, 4e-2, 0.89, 0.8e-3},
     {"loses", "finished", 1 / 240.0, 0, 120, 8e-4, 9e-4, 0.3, 4.0e-3},
-    {"bursts", "blew up: not finite", 1 / 60.0, 0, 3, NAN, NAN, NAN, 0.1e-3},
+    {"bursts", "blew up: not finite", 1 / 60.0, 0, 3, (double)NAN, (double)NAN, (double)NAN,
+     0.1e-3},
     {"bursts", "finished", 2e-3, 0, 250, 9e-5, 8e-3, 0.002, 4.1e-3},
     {"cuts", "finished", 1 / 60.0, 0, 55, 7e-4, 8e-4, 0.04, 4.05e-3},
     {"adapts", "finished", 0, 1e-3, 40, 9.5e-5, 1e-4, 0.001, 4.2e-3},
