@@ -163,7 +163,7 @@ START_TEST(messages_name_the_place) {
          "(lit, wireframe, springs, force, strain, goals, crossings)"},
         {"{\"render\": {\"look\": 3}}",
          "s.json:1:21: render.look: found 3, expected one of lit, "
-         "wireframe, springs, force, strain, goals"},
+         "wireframe, springs, force, strain, goals, crossings"},
         {"{\"render\": {\"ground\": 1}}",
          "s.json:1:23: render.ground: found 1, expected true or false"},
         {"{\"bodies\": {}}", "s.json:1:12: bodies: found an object, expected a list"},
