@@ -16,10 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool cs_job_wants_json(const struct cs_job_settings *settings) {
-    return settings->session.render || settings->json;
-}
-
 /* The scene with every value, its hash, and the method. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     const struct cs_session *session = &job->session;

@@ -80,6 +80,8 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
 void cs_job_finish(struct cs_job *job);
 
 /* true where the run is written as JSON somewhere. */
-bool cs_job_wants_json(const struct cs_job_settings *settings);
+static inline bool cs_job_wants_json(const struct cs_job_settings *settings) {
+    return settings->session.render || settings->json;
+}
 
 #endif
