@@ -1,4 +1,5 @@
 /* Picks the command, prints its error and sets the exit code. */
+#include "base/arithmetic.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/line/print.h"
@@ -116,6 +117,9 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
 
 int main(int argc, char **argv) {
     struct cs_error error = {0};
+    const char *fault = cs_arithmetic_fault();
+    if (fault)
+        cs_print_message(fault);
     /* a file that grew too long comes back from the write as an error, and is reported */
     signal(SIGXFSZ, SIG_IGN);
     if (!dispatch(argc, argv, &error) && (fflush(stdout) || ferror(stdout)))

@@ -1,4 +1,5 @@
 /* Prints run.json: what is needed to repeat a run and to see that it gave the same result. */
+#include "base/arithmetic.h"
 #include "base/pool.h"
 #include "cli/run/run_report.h"
 
@@ -23,6 +24,16 @@ static void add_versions(const struct cs_job *job, struct cs_text *out) {
     else
         cs_text_add(out, "null");
     cs_text_add(out, ",\n  \"threads\": %u,\n", cs_pool_threads());
+}
+
+/* only where the hashes of the report are not to be compared with those of other builds */
+static void add_arithmetic(struct cs_text *out) {
+    const char *fault = cs_arithmetic_fault();
+    if (!fault)
+        return;
+    cs_text_add(out, "  \"arithmetic\": ");
+    cs_text_add_json(out, fault);
+    cs_text_add(out, ",\n");
 }
 
 static void add_outcome(const struct cs_job *job, struct cs_text *out) {
@@ -162,6 +173,7 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     cs_text_add(out, "{\n  \"schema\": %d,\n", SCHEMA_VERSION);
     add_versions(job, out);
+    add_arithmetic(out);
     cs_text_add(out, "  \"scene_file\": ");
     cs_text_add_json(out, job->session.scene.path);
     cs_text_add(out, ",\n  \"scene_hash\": \"%s\",\n  \"method\": ", job->scene_hash);
