@@ -20,10 +20,10 @@
 #define CS_WORK_LIST(X)                                                                        \
     X(DAMPERS, "dampers")                                                                      \
     X(DRAG, "drag")                                                                            \
-    X(WIND, "wind") X(FRICTION, "friction") X(PUSH, "push") X(PINS, "pins")                    \
-        X(VALUES, "values") X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit")               \
-            X(PROJECTION, "projection") X(ABSORPTION, "absorption") X(LOSS, "velocity_loss")   \
-                X(EVENTS, "events")
+    X(WIND, "wind")                                                                            \
+    X(FRICTION, "friction") X(PUSH, "push") X(PINS, "pins") X(VALUES, "values")                \
+        X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit") X(PROJECTION, "projection")       \
+            X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
 
 enum cs_holding {
 #define X(name, column) CS_HOLDING_##name,
