@@ -58,11 +58,8 @@ static bool divide(struct cs_cells *cells, const double extent[3], double size, 
 void cs_cells_span(const struct cs_cells *cells, const struct cs_cell_box *box,
                    uint32_t first[3], uint32_t last[3]) {
     for (int c = 0; c < 3; c++) {
-        const double end = cells->dim[c] - 1;
-        const double a = (box->low[c] - cells->low[c]) * cells->inverse;
-        const double b = (box->high[c] - cells->low[c]) * cells->inverse;
-        first[c] = (uint32_t)(a > 0 ? a < end ? a : end : 0);
-        last[c] = (uint32_t)(b > 0 ? b < end ? b : end : 0);
+        first[c] = cs_cells_along(cells, box->low[c], c);
+        last[c] = cs_cells_along(cells, box->high[c], c);
     }
 }
 

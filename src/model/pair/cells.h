@@ -28,6 +28,13 @@ bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint
 void cs_cells_span(const struct cs_cells *cells, const struct cs_cell_box *box,
                    uint32_t first[3], uint32_t last[3]);
 
+/* Cell along one axis of a place, the first or last one outside. */
+static inline uint32_t cs_cells_along(const struct cs_cells *cells, double place, int axis) {
+    const double end = cells->dim[axis] - 1;
+    const double at = (place - cells->low[axis]) * cells->inverse;
+    return (uint32_t)(at > 0 ? at < end ? at : end : 0);
+}
+
 /* Number of a cell. */
 static inline size_t cs_cells_at(const struct cs_cells *cells, uint32_t x, uint32_t y,
                                  uint32_t z) {

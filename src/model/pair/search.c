@@ -160,10 +160,12 @@ static bool is_near(const struct job *job, enum cs_stencil_kind kind, const uint
     uint32_t at[4];
     double p[4][3];
     cs_search_corners(search->system->surfaces, kind, pair, at);
+    if (share_corner(at, kind))
+        return false;
     const double range =
         cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range;
     const double reach = (range + 2 * search->held) * (1 + 1e-9);
-    if (!(range > 0) || share_corner(at, kind))
+    if (!(range > 0))
         return false;
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
@@ -195,8 +197,19 @@ static void sort_row(uint32_t *pairs, size_t n) {
     }
 }
 
-/* Pairs of one point or edge. Two boxes meet in several cells: the one that counts is the cell
- * of the lower corner of what they share. */
+/* Two boxes meet in several cells. The one that counts is that of the lower corner of what they
+ * share: the higher of both first cells along each axis. The other box is in the cell `at`, so
+ * that its first cell is not above it. */
+static bool is_first_cell(const struct cs_cells *cells, const struct cs_cell_box *other,
+                          const uint32_t first[3], const uint32_t at[3]) {
+    bool counts = true;
+    for (int c = 0; c < 3; c++)
+        counts =
+            counts && (at[c] == first[c] || cs_cells_along(cells, other->low[c], c) == at[c]);
+    return counts;
+}
+
+/* Pairs of one point or edge. */
 static void find_pairs(const struct job *job, struct cs_search_lot *lot, uint32_t item) {
     const struct cs_search *search = job->search;
     const struct cs_surfaces *surfaces = search->system->surfaces;
@@ -216,12 +229,7 @@ static void find_pairs(const struct job *job, struct cs_search_lot *lot, uint32_
                     const uint32_t other = cells->items[s];
                     if ((edges && other <= item) || !overlap(&box, boxes + other))
                         continue;
-                    struct cs_cell_box shared = box;
-                    uint32_t low[3], high[3];
-                    for (int c = 0; c < 3; c++)
-                        shared.low[c] = fmax(box.low[c], boxes[other].low[c]);
-                    cs_cells_span(cells, &shared, low, high);
-                    if (!memcmp(low, at, sizeof low) &&
+                    if (is_first_cell(cells, boxes + other, first, at) &&
                         is_near(job, lot->kind, (uint32_t[2]){item, other}))
                         keep(lot, item, other);
                 }
