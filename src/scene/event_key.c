@@ -23,7 +23,7 @@ static const struct {
     {"bodies.cloth", "it says how the body starts"},
     {"bodies.mesh", "it says how the body starts"},
     {"bodies.network", "springs are made at the start"},
-    {"bodies.shape_matching", "a run keeps its shapes and how they are held"},
+    {"bodies.shape_matching", "shape matching is fixed during a run"},
     {"bodies.pins", "particles are held and let go by the events pin and release"},
     {"bodies.material", "it is of the pictures, not of the motion"},
     {"camera", "it is of the pictures, not of the motion"},
@@ -136,8 +136,8 @@ static enum cs_status check_changeable(const struct walk *walk, const struct cs_
                            fixed[k].why);
     if (!strncmp(walk->plain, "forces.", 7) && (row->type == CS_REAL || row->type == CS_VECTOR))
         return CS_OK;
-    return cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: it is no plain number",
-                   walk->path);
+    return cs_fail(walk->error, CS_ERR_SCENE,
+                   "%.120s cannot be ramped (see clothsim-scene(5), Events)", walk->path);
 }
 
 /* the body that a key of bodies belongs to */

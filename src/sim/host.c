@@ -163,9 +163,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
             ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
             (unsigned long long)iterations, residual);
     if (end == CS_LINEAR_INDEFINITE)
-        return host_fail(ctx,
-                         "the linear solver met a direction without stiffness: numbers out "
-                         "of the range of doubles");
+        return host_fail(ctx, "conjugate gradients broke down: p.Ap is not positive");
     return CS_STEP_OK;
 }
 

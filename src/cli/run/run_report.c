@@ -98,7 +98,7 @@ static void add_measures(const struct cs_job *job, struct cs_text *out) {
     add_row(out, "largest strain", "%.4g %%", 100 * cs_measure_strain(run->system, run->x));
     add_row(out, "memory", "%zu bytes in arrays, %.1f a particle", cs_run_bytes(run),
             (double)cs_run_bytes(run) / run->system->view.n);
-    add_row(out, "wall time", "%.3g s, %.3g s of it in the method", job->wall_seconds,
+    add_row(out, "wall time", "%.3g s, %.3g s of it in the integrator", job->wall_seconds,
             run->advance_seconds);
 }
 

@@ -163,7 +163,7 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
         }
         cs_probe_close(&sheet);
     }
-    cs_row_state(row, hidden, 0, "absurd runs of 3 that ended as if all were well (%s)", which);
+    cs_row_state(row, hidden, 0, "of 3 invalid runs were not reported as failures (%s)", which);
 }
 
 void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row *row) {
