@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Looks at a word before going to sleep over it: some microseconds, less than a wake-up takes.
  * Longer would hold up whoever needs the core. */
@@ -145,8 +146,14 @@ void cs_pool_run(uint32_t blocks, void (*task)(void *arg, uint32_t block), void 
 }
 
 uint32_t cs_pool_processors(uint32_t most) {
+#ifdef __linux__
     cpu_set_t allowed;
     const int n = sched_getaffinity(0, sizeof allowed, &allowed) ? 1 : CPU_COUNT(&allowed);
+#else
+    /* other systems have no mask, or no common call for it */
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    const int n = online > 0 && online < 65536 ? (int)online : 1;
+#endif
     return (uint32_t)n < most ? (uint32_t)n : most;
 }
 

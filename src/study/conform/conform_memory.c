@@ -3,8 +3,10 @@
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
-#include <malloc.h>
 #include <stdlib.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 /* The C library keeps a few freed pieces of each small size for the thread, and counts them as
  * handed out: memory taken and given back in a step would not show. With these shelves empty it
@@ -19,12 +21,13 @@ struct ledger {
 
 /* bytes, 0 where there is no such account */
 static size_t handed_out(void) {
+#if defined(__GLIBC__) && defined(__GLIBC_PREREQ)
 #if __GLIBC_PREREQ(2, 33)
     const struct mallinfo2 account = mallinfo2();
     return account.uordblks + account.hblkhd;
-#else
-    return 0;
 #endif
+#endif
+    return 0;
 }
 
 static bool look(struct cs_probe *probe, double t, double dt, double *x, double *v) {
