@@ -10,6 +10,7 @@ static bool take_arrays(struct constant_matrix *matrix) {
     return (matrix->drag = host->alloc(host->ctx, vector)) &&
            (matrix->first = host->alloc(host->ctx, vector)) &&
            (matrix->last = host->alloc(host->ctx, vector)) &&
+           (matrix->inv_mass = host->alloc(host->ctx, vector)) &&
            (matrix->springs =
                 host->alloc(host->ctx, 2 * sizeof(double) * (size_t)host->view->n_springs));
 }
@@ -79,6 +80,17 @@ static bool follow_springs(struct constant_matrix *matrix) {
     return true;
 }
 
+/* Takes over the pins as they are, which a commit may have changed; whether the factor has
+ * others. */
+static bool follow_pins(struct constant_matrix *matrix) {
+    const struct cs_view *view = matrix->host->view;
+    const size_t bytes = view->n * sizeof *matrix->inv_mass;
+    if (!memcmp(matrix->inv_mass, view->inv_mass, bytes))
+        return false;
+    memcpy(matrix->inv_mass, view->inv_mass, bytes);
+    return true;
+}
+
 static void add_entry(cholmod_triplet *list, size_t row, size_t column, double value) {
     ((int *)list->i)[list->nnz] = (int)row;
     ((int *)list->j)[list->nnz] = (int)column;
@@ -138,7 +150,7 @@ static enum cs_step factor(struct constant_matrix *matrix, double h) {
 }
 
 enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h) {
-    const bool others = follow_springs(matrix);
+    const bool springs = follow_springs(matrix), others = follow_pins(matrix) || springs;
     if (matrix->drag_changes)
         follow_drag(matrix, t + h);
     // frames differ in length by rounding
@@ -157,6 +169,7 @@ void constant_matrix_archive(struct constant_matrix *matrix, const struct cs_arc
 enum cs_step constant_matrix_load(struct constant_matrix *matrix,
                                   const struct cs_archive *archive) {
     constant_matrix_archive(matrix, archive);
+    follow_pins(matrix);
     return matrix->h > 0 ? factor(matrix, matrix->h) : CS_STEP_OK;
 }
 

@@ -20,6 +20,7 @@ struct constant_matrix {
     double begin, end;          /* s, of the advance */
     bool drag_changes;          /* within the advance */
     double *springs;            /* (2,n_springs): stiffness and damping in the factor */
+    double *inv_mass;           /* (n) in 1/kg: 0 where a particle is pinned in the factor */
     double h;                   /* the step that the factor belongs to; 0: none */
     cholmod_common common;
     bool started;
@@ -39,8 +40,8 @@ void constant_matrix_read_drag(struct constant_matrix *matrix, double t0, double
                                const double *x, double *ones, double *f);
 
 /* Factors A for the step of h from t on, with the springs as they are, unless the factor at
- * hand is for the same ones and, up to rounding, the same step: it is then kept, and matrix->h
- * is the step to use. */
+ * hand is for the same ones, the same pins and, up to rounding, the same step: it is then kept,
+ * and matrix->h is the step to use. */
 enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, double h);
 
 /* For save: the step, the drag and the springs that the factor was made with. For load: takes

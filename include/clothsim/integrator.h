@@ -211,8 +211,10 @@ struct cs_host {
 
     /* [advance] You MUST call it after every accepted internal step, of length dt, that ended
      * at time t. It limits strains, resolves contact, takes the velocity loss, looks for a
-     * blow-up, and counts. It may move x and v; then *changed is true, and a method that keeps
-     * history starts anew. What is not CS_STEP_OK goes upwards at once. */
+     * blow-up, and counts. It may move x and v, and, with contact by projection, pin
+     * particles that rest on an obstacle or let them go (view->inv_mass); then *changed is
+     * true, and a method that keeps history starts anew. What is not CS_STEP_OK goes upwards
+     * at once. */
     enum cs_step (*commit)(void *ctx, double t, double dt, double *x, double *v, bool *changed);
 
     /* Below: only where the scene has forces whose stiffness depends on the state (contact), or

@@ -25,6 +25,25 @@ static void resolve_contact(struct cs_run_host *host, double t, double dt, doubl
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
+void cs_host_pin(struct cs_run_host *host, bool held) {
+    if (host->run->system->plan.rows[CS_FEATURE_CONTACT].built)
+        (held ? cs_stick_pin : cs_stick_unpin)(&host->contact.stick);
+}
+
+/* who is held in the next step, and where it starts; true: others are held */
+static bool keep_contact(struct cs_run_host *host, double t, const double *x, const double *v,
+                         bool observed, bool moved) {
+    struct cs_contact *contact = &host->contact;
+    const double begin = cs_stage_begin(host);
+    cs_contact_keep(contact, x, v, !moved);
+    if (observed)
+        cs_stick_forget(&contact->stick);
+    const bool others = cs_contact_hold(contact, t, x, v);
+    cs_host_pin(host, true);
+    cs_stage_end(host, CS_STAGE_CONTACT, begin);
+    return others;
+}
+
 struct loss {
     double *v, kept;
 };
@@ -85,6 +104,7 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     host->run->counts.steps++;
     host->left.committed = t;
     cs_move_values(host, t);
+    cs_host_pin(host, false);
     if (settings->account)
         cs_account_step(settings->account, t, x, v);
     // the limit may move particles into obstacles, so contact comes after it; last are the
@@ -107,11 +127,12 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
         step = stop_crossings(host, t, x);
     bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
     // a step that ends the run is observed too
-    if (settings->observe && settings->observe(settings->ctx, t, dt, x, v))
-        moved = *changed = true;
+    const bool observed = settings->observe && settings->observe(settings->ctx, t, dt, x, v);
+    moved |= observed;
+    *changed |= observed;
     if (settings->account)
         cs_account_keep(settings->account, t, x, v);
     if (rows[CS_FEATURE_CONTACT].built)
-        cs_contact_keep(&host->contact, x, v, !moved);
+        *changed |= keep_contact(host, t, x, v, observed, moved);
     return step;
 }

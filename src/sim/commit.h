@@ -9,4 +9,8 @@
 enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
                             bool *changed);
 
+/* Particles that contact holds are pinned while the method acts, and free for all that moves
+ * particles after a step, or looks on. */
+void cs_host_pin(struct cs_run_host *host, bool held);
+
 #endif

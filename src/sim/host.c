@@ -237,12 +237,13 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
 }
 
 static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
-    const struct cs_system *system = host->run->system;
+    struct cs_system *system = host->run->system;
     if (!system->plan.rows[CS_FEATURE_CONTACT].built)
         return CS_OK;
     if (cs_contact_init(&host->contact, system, &host->arena, error))
         return error->status;
-    cs_contact_keep(&host->contact, host->run->x, host->run->v, false);
+    host->contact.stick.off = host->run->integrator->fidelity == CS_FIDELITY_OTHER;
+    cs_contact_start(&host->contact, 0, host->run->x, host->run->v);
     host->reach = cs_reach_depth(system);
     if (host->reach < HUGE_VAL)
         host->calls.longest_step = host_longest_step;
@@ -300,6 +301,6 @@ bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     if (changed && host->settings.account)
         cs_account_keep(host->settings.account, t, host->run->x, host->run->v);
     if (changed && system->plan.rows[CS_FEATURE_CONTACT].built)
-        cs_contact_keep(&host->contact, host->run->x, host->run->v, false);
+        cs_contact_start(&host->contact, t, host->run->x, host->run->v);
     return changed;
 }

@@ -9,8 +9,8 @@
 bool cs_passage_is_judged(const struct cs_system *system);
 
 /* Of the move from x0 (3,n) at t0 to x1 at t1: 1, or less where it is to be taken back. Contact
- * by force knows only that it is too far: then half of it may be tried; where t1 is t0, as within an
- * iteration, it is not asked. */
+ * by force knows only that it is too far: then half of it may be tried; where t1 is t0, as
+ * within an iteration, it is not asked. */
 double cs_passage_share(const struct cs_system *system, double t0, const double *x0, double t1,
                         const double *x1);
 

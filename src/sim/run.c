@@ -3,6 +3,7 @@
 #include "sim/run.h"
 
 #include "base/clock.h"
+#include "sim/commit.h"
 #include "sim/crash.h"
 #include "sim/host.h"
 
@@ -47,7 +48,9 @@ static void watch(const struct cs_run *run, const char *place) {
 
 static enum cs_step restart(struct cs_run *run, double t) {
     watch(run, "in restart");
+    cs_host_pin(run->host, true);
     const enum cs_step step = run->integrator->restart(run->host->self, t, run->x, run->v);
+    cs_host_pin(run->host, false);
     cs_crash_forget();
     return step;
 }
@@ -67,8 +70,10 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
     if (!run->host->settings.unchecked)
         cs_left_begin(&run->host->left, run->system, from);
     watch(run, "in advance");
+    cs_host_pin(run->host, true);
     const enum cs_step step =
         run->integrator->advance(run->host->self, from, to, run->x, run->v);
+    cs_host_pin(run->host, false);
     cs_crash_forget();
     return step == CS_STEP_OK ? check_left(run, to) : step;
 }
@@ -101,7 +106,9 @@ enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
                               const struct cs_archive *archive, struct cs_error *error) {
     const struct cs_guard guard = cs_guard_take();
     watch(run, "in save or load");
+    cs_host_pin(run->host, true);
     const enum cs_step step = call(run->host->self, archive);
+    cs_host_pin(run->host, false);
     cs_crash_forget();
     return judge(run, step, guard, error);
 }

@@ -2,15 +2,17 @@
 #ifndef CS_RESPONSE_H
 #define CS_RESPONSE_H
 
+#include "model/commit/pins.h"
 #include "model/solver/linear.h"
 
 struct cs_response {
     struct cs_linear linear; /* its own: a method may keep the matrix of another */
+    struct cs_pins pins;     /* pushed particles, for the solver's preconditioner */
     uint64_t solves, iterations;
 };
 
 /* Takes the arrays from arena; nothing where the system has no springs. CS_ERR_MEMORY. */
-enum cs_status cs_response_init(struct cs_response *response, const struct cs_system *system,
+enum cs_status cs_response_init(struct cs_response *response, struct cs_system *system,
                                 struct cs_arena *arena, struct cs_error *error);
 
 /* Bytes that init takes. */

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* shortens the part of a that is across n by `lost`, or takes all of it */
-static void rub(double a[3], const double n[3], double lost) {
+/* shortens the part of a that is across n by `lost`, or takes all of it: true */
+static bool rub(double a[3], const double n[3], double lost) {
     const double along = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
     double across[3], squared = 0;
     for (int c = 0; c < 3; c++) {
@@ -14,6 +14,7 @@ static void rub(double a[3], const double n[3], double lost) {
     const double length = sqrt(squared), kept = length > lost ? 1 - lost / length : 0;
     for (int c = 0; c < 3; c++)
         a[c] = kept * across[c] + along * n[c];
+    return kept == 0;
 }
 
 /* share of the inward velocity that is changed: above 1 it is turned round */
@@ -22,42 +23,39 @@ static double share_of(const struct cs_collider *collider) {
     return ka < 0 ? 1 - ka : ka;
 }
 
-static void absorb(const struct cs_collider *collider, const double n[3], double v[3]) {
+/* true: nothing of the velocity is left */
+static bool absorb(const struct cs_collider *collider, const double n[3], double v[3]) {
     const double inward = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
     if (inward >= 0)
-        return;
+        return false;
     const double changed = -inward * share_of(collider);
-    rub(v, n, collider->friction * changed);
+    const bool held = rub(v, n, collider->friction * changed) && collider->absorption == 1;
     for (int c = 0; c < 3; c++)
-        v[c] += changed * n[c];
+        v[c] = held ? 0 : v[c] + changed * n[c];
+    return held;
 }
 
-bool cs_touch_resolve(const struct cs_obstacle *obstacle, double dt, const double last[3],
-                      double p[3], double v[3], struct cs_touch *touch) {
+enum cs_touch cs_touch_resolve(const struct cs_obstacle *obstacle, double dt,
+                               const double last[3], double p[3], double v[3]) {
     const struct cs_collider *collider = obstacle->collider;
-    double n[3], unused[3], carried[3], from[3];
+    double n[3], carried[3], from[3], move[3];
     const double gap = cs_obstacle_gap(obstacle, p, n);
     if (!(gap < 0))
-        return false;
+        return CS_TOUCH_NONE;
 
     /* where the particle would be had it moved with the obstacle */
     cs_obstacle_velocity(obstacle, p, carried);
-    for (int c = 0; c < 3; c++)
-        from[c] = last[c] + dt * carried[c];
-    const double gap_before = fmin(cs_obstacle_gap(obstacle, from, unused), 0);
-    touch->depth = -gap;
-    touch->fresh = fmax(gap_before - gap, 0);
-
-    double move[3];
     for (int c = 0; c < 3; c++) {
-        v[c] -= carried[c];
+        from[c] = last[c] + dt * carried[c];
         move[c] = p[c] - from[c];
+        v[c] -= carried[c];
     }
-    absorb(collider, n, v);
-    rub(move, n, collider->friction * fmin(share_of(collider), 1) * -gap);
+    const bool stopped = absorb(collider, n, v);
+    const bool kept = rub(move, n, collider->friction * fmin(share_of(collider), 1) * -gap);
     for (int c = 0; c < 3; c++) {
         v[c] += carried[c];
         p[c] = from[c] + move[c] - gap * n[c];
     }
-    return true;
+    return stopped && kept && !(carried[0] || carried[1] || carried[2]) ? CS_TOUCH_STUCK
+                                                                        : CS_TOUCH_PUSHED;
 }

@@ -5,9 +5,11 @@
 
 #include "model/contact/obstacle.h"
 
-struct cs_touch {
-    double depth; /* m, how far it was behind the surface and its thickness */
-    double fresh; /* m of it that the last step has added */
+enum cs_touch {
+    CS_TOUCH_NONE, /* it is in front, or not finite, and nothing changes */
+    CS_TOUCH_PUSHED,
+    CS_TOUCH_STUCK /* it is at rest on an obstacle at rest: all of velocity and move were taken
+                    */
 };
 
 /* Moves a particle that is behind the surface, moved out by the obstacle's thickness, at p with
@@ -18,9 +20,8 @@ struct cs_touch {
  *     turns the normal velocity round and multiplies it by |ka|);
  *   - Coulomb: the tangential velocity loses at most `friction` times the normal velocity that
  *     was changed, and the tangential move since `last` at most `friction` times the depth
- *     (Macklin et al. 2014), so that what friction holds stays where it is.
- * false: it is in front, or not finite, and nothing changes. */
-bool cs_touch_resolve(const struct cs_obstacle *obstacle, double dt, const double last[3],
-                      double p[3], double v[3], struct cs_touch *touch);
+ *     (Macklin et al. 2014), so that what friction holds stays where it is. */
+enum cs_touch cs_touch_resolve(const struct cs_obstacle *obstacle, double dt,
+                               const double last[3], double p[3], double v[3]);
 
 #endif
