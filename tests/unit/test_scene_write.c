@@ -203,7 +203,7 @@ START_TEST(schema_says_what_the_tables_say) {
     ck_assert_str_eq(cs_json_text(FIND(grid, "items", "type")), "integer");
     ck_assert_ptr_nonnull(FIND(root, "properties", "integrator", "anyOf"));
     ck_assert_uint_eq(
-        cs_json_count(FIND(root, "properties", "render", "properties", "look", "enum")), 6);
+        cs_json_count(FIND(root, "properties", "render", "properties", "look", "enum")), 7);
     cs_json_destroy(root);
     cs_text_finish(&text);
 }

@@ -53,6 +53,16 @@
     "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"               \
     " \"friction_speed\": 0.2}, \"events\": [" events "], " FIVE_FRAMES "}"
 
+/* Two sheets that come near each other, and slide; they stay in the range. */
+#define PAIRS(friction)                                                                        \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.15, 0.1, 0.1]},"               \
+    " \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4, " FREE_OF_SPRINGS "},"               \
+    " {\"cloth\": {\"grid\": [2, 2], \"velocity\": [-0.15, -0.1, -0.1], \"place\":"             \
+    " {\"translate\": [0.2, 0.1, 0.3]}}, \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4,"    \
+    " " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY "}, \"pairs\": {\"among\": \"all\","      \
+    " \"friction\": " friction "}, \"contact\": {\"law\": \"force\", \"stiffness\": 1,"           \
+    " \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES "}"
+
 // ends of ramps lie between frames
 #define RAMP(key, value)                                                                       \
     "\"from\": 0.05, \"to\": 0.45, \"ramp\": {\"key\": \"" key "\", \"value\": " value "}"
@@ -97,6 +107,7 @@ const struct cs_force_scene cs_force_scenes[] = {
 
     {"force-contact", "contact by force, without friction", CONTACT("0", ""), 9, true, false},
     {"force-contact", "contact by force, with friction", CONTACT("0.5", ""), 9, true, false},
+    {"force-contact", "two sheets that meet by force", PAIRS("0.3"), 12, true, true},
 
     {"unequal-masses", "two sheets in gravity, wind and drag",
      "{" SHEETS_OF("0.1", "0.3") ", \"forces\": {\"gravity\": [1, -3, 2], \"drag\": 0.4, "
