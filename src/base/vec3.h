@@ -3,6 +3,7 @@
 #define CS_VEC3_H
 
 #include <math.h>
+#include <stdbool.h>
 
 static inline double cs_vec3_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -20,6 +21,10 @@ static inline void cs_vec3_normalise(double a[3]) {
     const double length = sqrt(cs_vec3_dot(a, a));
     for (int c = 0; c < 3; c++)
         a[c] /= length;
+}
+
+static inline bool cs_vec3_is_zero(const double a[3]) {
+    return a[0] == 0 && a[1] == 0 && a[2] == 0;
 }
 
 #endif

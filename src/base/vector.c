@@ -78,10 +78,11 @@ struct arrays {
     double a, b, *z;
 };
 
-/* what is left of an array after whole vectors goes to the first lanes */
-CS_INLINE double sum_lanes(const lanes whole, const double *rest, size_t n) {
+/* What is left of an array after whole vectors goes to the first lanes. By address: how a
+ * vector is passed depends on the instruction set. */
+CS_INLINE double sum_lanes(const lanes *whole, const double *rest, size_t n) {
     double s[LANES];
-    memcpy(s, &whole, sizeof s);
+    memcpy(s, whole, sizeof s);
     for (size_t l = 0; l < n; l++)
         s[l] += rest[l];
     return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
@@ -98,7 +99,7 @@ CS_CLONES static double dot_part(const void *arg, size_t begin, size_t end) {
         sum += *(const loaded *)(x + i) * *(const loaded *)(y + i);
     for (size_t l = 0; i + l < n; l++)
         rest[l] = x[i + l] * y[i + l];
-    return sum_lanes(sum, rest, n - i);
+    return sum_lanes(&sum, rest, n - i);
 }
 
 double cs_vector_dot(size_t n, const double *x, const double *y) {
@@ -119,7 +120,7 @@ CS_CLONES static double weighted_part(const void *arg, size_t begin, size_t end)
     }
     for (size_t l = 0; i + l < n; l++)
         rest[l] = x[i + l] * w[i + l] * (x[i + l] * w[i + l]);
-    return sum_lanes(sum, rest, n - i);
+    return sum_lanes(&sum, rest, n - i);
 }
 
 static double weighted_square(size_t n, const double *x, const double *w) {

@@ -1,6 +1,7 @@
 /* stick.c - the cone of friction, and pins that come and go with it; see stick.h. */
 #include "model/commit/stick.h"
 
+#include "base/vec3.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "scene/scene.h"
@@ -114,12 +115,12 @@ void cs_stick_forget(struct cs_stick *stick) {
 static uint32_t find_on(const struct cs_stick *stick, const struct cs_obstacle *obstacles,
                         const double p[3], const double v[3]) {
     double n[3], carried[3];
-    if (v[0] || v[1] || v[2])
+    if (!cs_vec3_is_zero(v))
         return 0;
     for (uint32_t k = 0; k < stick->system->scene->colliders.n; k++) {
         cs_obstacle_velocity(obstacles + k, p, carried);
         if (fabs(cs_obstacle_gap(obstacles + k, p, n)) <= TOUCHING &&
-            !(carried[0] || carried[1] || carried[2]) && obstacles[k].collider->absorption == 1)
+            cs_vec3_is_zero(carried) && obstacles[k].collider->absorption == 1)
             return k + 1;
     }
     return 0;

@@ -1,6 +1,8 @@
 /* touch.c - one particle against one obstacle: normal push, absorption and friction. */
 #include "model/commit/touch.h"
 
+#include "base/vec3.h"
+
 #include <math.h>
 
 /* shortens the part of a that is across n by `lost`, or takes all of it: true */
@@ -56,6 +58,5 @@ enum cs_touch cs_touch_resolve(const struct cs_obstacle *obstacle, double dt,
         v[c] += carried[c];
         p[c] = from[c] + move[c] - gap * n[c];
     }
-    return stopped && kept && !(carried[0] || carried[1] || carried[2]) ? CS_TOUCH_STUCK
-                                                                        : CS_TOUCH_PUSHED;
+    return stopped && kept && cs_vec3_is_zero(carried) ? CS_TOUCH_STUCK : CS_TOUCH_PUSHED;
 }
