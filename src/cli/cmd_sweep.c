@@ -5,7 +5,6 @@
 #include "study/product.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {

@@ -9,7 +9,6 @@
 #include "model/system/clusters.h"
 #include "scene/shape.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,6 @@
 /* Parses a command's options and operands by its table of options. */
 #include "cli/line/args.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { LONGEST_TABLE = 31 };

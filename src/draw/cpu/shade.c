@@ -8,7 +8,6 @@
 #include "draw/cpu/lanes.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 enum { N = CS_FRAGMENTS };
 

@@ -7,8 +7,6 @@
 #include "model/force/contact_rows.h"
 #include "model/force/terms.h"
 
-#include <math.h>
-
 /* a scene with the other law has no line of it */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,

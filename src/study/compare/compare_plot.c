@@ -5,7 +5,6 @@
 #include "io/gnuplot.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { COLOURS = 8 };

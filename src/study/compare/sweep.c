@@ -1,7 +1,6 @@
 /* Keeps the cells of a comparison, those of a series together. */
 #include "study/compare/sweep.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,9 +2,6 @@
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_drum.h"
 
-#include <math.h>
-#include <stdio.h>
-
 #define STEP (CS_DRUM_FRAME / 8) /* large: w h is near 1, so that iterations matter */
 
 static const struct cs_drum drum = {.damping = 0};

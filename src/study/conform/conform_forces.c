@@ -11,7 +11,6 @@
 #include "study/conform/conform_scenes.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define DURATION (CS_FORCE_FRAMES * CS_FORCE_FRAME)

@@ -4,7 +4,6 @@
 #include "study/conform/conform_drum.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* the distance s beyond rest obeys s'' + 2 d s' + w^2 s = 0, w^2 = 2 k/m, d = c/m */
