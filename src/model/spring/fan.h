@@ -3,12 +3,16 @@
  * The springs of a row fan out in up to six ways: right, two to the right, down, both
  * diagonals, two down. A kernel does the ways of a tile of particles side by side, sums what
  * each particle gets from its own springs in registers, and the tile is then added to three
- * rows, once each: own row     sum over the ways - (right[i - 1] + right two[i - 2]) next row
- * - (down[i] + forth[i - 1] + back[i + 1]) after next  - down two[i] Tiles begin at multiples
- * of TILE particles of the row, whatever block of particles is asked for: so no sum depends on
- * the number of threads. Loops run over whole tiles: what they read beside the ends of a row
- * belongs to other particles, and what they make of it is dropped. The last two rows of a grid,
- * where that would lie behind the arrays, are done way by way. */
+ * rows, once each:
+ *
+ *   own row      sum over the ways - (right[i - 1] + right two[i - 2])
+ *   next row     - (down[i] + forth[i - 1] + back[i + 1])
+ *   after next   - down two[i]
+ *
+ * Tiles begin at multiples of TILE particles of the row, whatever block of particles is asked
+ * for: so no sum depends on the number of threads. Loops run over whole tiles: what they read
+ * beside the ends of a row belongs to other particles, and what they make of it is dropped. The
+ * last two rows of a grid, where that would lie behind the arrays, are done way by way. */
 #ifndef CS_FAN_H
 #define CS_FAN_H
 
