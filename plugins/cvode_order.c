@@ -6,9 +6,8 @@ enum { LONG = 20, PATIENCE = 100 };
 
 /* Below the first the tolerance asks for steps that the high order can take as well: without
  * damping order 5 makes a motion grow by (h omega)^6 / 6 a step, its error term, which is 4e-5
- * there and would be 3e-3 at twice the step. From the
- * second on the high order's steps may be held by stability, and a step of the low order beyond
- * the third shows that they were. */
+ * there and would be 3e-3 at twice the step. From the second on the high order's steps may be
+ * held by stability, and a step of the low order beyond the third shows that they were. */
 #define SHORT 0.25
 #define HELD  0.3
 #define FAR   1.0
