@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* clones.h - hot loops compiled for several instruction sets, chosen when the program starts,
  * of the program and of modules: CS_CLONES before a function is all.
  *
