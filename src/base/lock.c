@@ -12,7 +12,8 @@ enum cs_status cs_lock_take(struct cs_lock *lock, const char *path, struct cs_er
     const int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0)
         return cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", path, strerror(errno));
-    // a signal ends the wait: whoever is told to stop hears of it behind the lock
+    // a signal interrupts the wait, not the lock: who is told to stop looks at that once it is
+    // held, and no owner waits long. A file system without locks has no owners.
     while (flock(descriptor, LOCK_EX) && errno == EINTR)
         ;
     lock->descriptor = descriptor;
