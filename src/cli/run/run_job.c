@@ -311,8 +311,7 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
 }
 
 /* Also of a run that failed: its last picture is of a frame that was fine, and so is the last
- * checkpoint. The first failure
- * wins: a later one of drawing or writing changes nothing. */
+ * checkpoint. The first failure wins: a later one of drawing or writing changes nothing. */
 static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
     if (settle_pictures(job, &later) == CS_OK)
