@@ -334,7 +334,7 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
 
 /* Its account goes on from the state that was loaded. */
 static enum cs_status go_on(struct cs_job *job, struct cs_error *error) {
-    if (!cs_resume_load(&job->checkpoints, error) && job->settings->ledger)
+    if (!cs_resume_load(&job->checkpoints, job->frames, error) && job->settings->ledger)
         cs_account_go_on(&job->account, job->session.run.t);
     return error->status;
 }
@@ -366,8 +366,10 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
 
     if (makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
-    if (!(settings->resume ? go_on(job, error) : begin(job, error)))
-        run_frames(job, error);
+    /* a checkpoint that is refused leaves the rows of the run that it is of */
+    if (settings->resume ? go_on(job, error) : begin(job, error))
+        return error->status;
+    run_frames(job, error);
     /* also after a failure: rows and frames that were finished are kept */
     cs_output_rows(settings->watch, &job->watch_rows, error);
     cs_output_rows(settings->ledger, &job->ledger_rows, error);

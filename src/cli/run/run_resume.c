@@ -95,7 +95,8 @@ static void record_pace(struct cs_resume *resume) {
     CS_RECORD(&resume->record, resume->pace.seconds);
 }
 
-enum cs_status cs_resume_load(struct cs_resume *resume, struct cs_error *error) {
+enum cs_status cs_resume_load(struct cs_resume *resume, uint32_t frames,
+                              struct cs_error *error) {
     struct cs_fact facts[FACTS];
     struct cs_error said = {0};
     struct cs_record *record = &resume->record;
@@ -110,6 +111,9 @@ enum cs_status cs_resume_load(struct cs_resume *resume, struct cs_error *error) 
     if (!cs_record_is_done(record))
         return cs_fail(error, CS_ERR_FILE, "\"%s\": it holds more or less than a run",
                        resume->path);
+    if (run->frame > frames)
+        return cs_fail(error, CS_ERR_USAGE, "--frames: found %u, but \"%s\" is of frame %u",
+                       frames, resume->path, run->frame);
     resume->kept = resume->written = run->frame;
     return CS_OK;
 }

@@ -46,8 +46,10 @@ enum cs_status cs_resume_begin(struct cs_resume *resume, struct cs_session *sess
                                const struct cs_resume_of *of, const char *folder,
                                const struct cs_resume_pace *pace, struct cs_error *error);
 
-/* Goes on from the checkpoint in the folder, at its pace. CS_ERR_FILE says what differs. */
-enum cs_status cs_resume_load(struct cs_resume *resume, struct cs_error *error);
+/* Goes on from the checkpoint in the folder, at its pace. CS_ERR_FILE says what differs;
+ * CS_ERR_USAGE: it is of more than `frames` frames. */
+enum cs_status cs_resume_load(struct cs_resume *resume, uint32_t frames,
+                              struct cs_error *error);
 
 /* After each frame: keeps what it has come to; *due: it is to be written. */
 enum cs_status cs_resume_keep(struct cs_resume *resume, bool *due, struct cs_error *error);
