@@ -234,7 +234,8 @@ static void find_pairs(const struct job *job, struct cs_search_lot *lot, uint32_
                         keep(lot, item, other);
                 }
             }
-    sort_row(lot->pairs + 2 * before, lot->n - before);
+    if (lot->n > before)
+        sort_row(lot->pairs + 2 * before, lot->n - before);
 }
 
 static void list_lot(void *arg, uint32_t number) {

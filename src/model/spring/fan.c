@@ -35,7 +35,7 @@ CS_INLINE size_t end_of(unsigned way, size_t columns) {
 CS_INLINE struct fan_way way_of(struct tile *tile, unsigned way) {
     const struct cs_spring_run *run = tile->fan->ways[way];
     const struct job *job = tile->job;
-    const size_t before = tile->start + run->row - run->a;
+    const ptrdiff_t before = (ptrdiff_t)(tile->start + run->row) - (ptrdiff_t)run->a;
     return (struct fan_way){
         .k = asked_of(run, job->at.parts).k,
         .length = run->length,
@@ -158,7 +158,7 @@ CS_INLINE void add_own(struct tile *tile, size_t k, const double sign, double *t
     CS_INDEPENDENT
     for (size_t i = 0; i < count; i++)
         to[i] += (right[i] + two[i] + (down[i] + forth[i] + back[i]) + after[i]) +
-                 sign * (right[i - 1] + two[i - 2]);
+                 sign * ((right - 1)[i] + (two - 2)[i]);
 }
 
 /* What particles get from the row before; the last of a tile waits for what the next tile has
@@ -173,7 +173,7 @@ CS_INLINE void add_next(struct tile *tile, size_t k, const double sign, double *
     double *from_late = to - late;
     CS_INDEPENDENT
     for (size_t i = 0; i < count; i++)
-        from_late[i] += sign * (down[i] + forth[i - 1] + back[i + 1]);
+        from_late[i] += sign * (down[i] + (forth - 1)[i] + back[i + 1]);
 }
 
 CS_INLINE void add_after(struct tile *tile, size_t k, const double sign, double *to) {
