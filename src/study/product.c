@@ -6,7 +6,9 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/lock.h"
+#include "io/input.h"
 #include "model/force/measure.h"
+#include "sim/folders.h"
 #include "study/machine.h"
 
 #include <math.h>
@@ -324,15 +326,29 @@ static enum cs_status count(struct cs_product *product, struct cs_error *error) 
     return CS_OK;
 }
 
+/* of the bytes that the cells read: of a file, an installed one, or standard input */
+static enum cs_status hash_scene(const char *path, char hash[CS_HASH_DIGITS],
+                                 struct cs_error *error) {
+    const bool given = strcmp(path, CS_INPUT_NAME) == 0;
+    char installed[CS_DATA_PATH_MAX], *bytes = NULL;
+    const char *text = NULL;
+    size_t length = 0;
+    if (given)
+        cs_input_read(FILE_BYTES_MAX, &text, &length, error);
+    else if (!cs_file_read(cs_data_find(path, installed, sizeof installed), FILE_BYTES_MAX,
+                           &bytes, &length, error))
+        text = bytes;
+    if (!error->status)
+        cs_hash_bytes(text, length, hash);
+    free(bytes);
+    return error->status;
+}
+
 enum cs_status cs_product_run(struct cs_product *product, struct cs_error *error) {
     struct table table = {0};
-    char *bytes = NULL, scene[CS_HASH_DIGITS];
-    size_t length;
-    if (count(product, error) ||
-        cs_file_read(product->session.scene, FILE_BYTES_MAX, &bytes, &length, error))
+    char scene[CS_HASH_DIGITS];
+    if (count(product, error) || hash_scene(product->session.scene, scene, error))
         return error->status;
-    cs_hash_bytes(bytes, length, scene);
-    free(bytes);
     if (!open_table(&table, product->folder, error) && !begin(product, &table, error)) {
         for (uint32_t k = 0; k < product->cells && !error->status; k++) {
             do_cell(product, &table, scene, k, error);
