@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "model/event/events.h"
+#include "scene/pairs.h"
 #include "study/compare/compare_ledger.h"
 #include "study/compare/compare_measure.h"
 #include "study/compare/compare_reference.h"
@@ -49,7 +50,8 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
         compare->omega = fmax(system->view.omega, 1e-3);
         compare->size = size_of(&course);
         compare->time = settings->frames / compare->fps;
-        compare->contact = course.session.scene.colliders.n > 0;
+        compare->contact =
+            course.session.scene.colliders.n > 0 || cs_scene_any_meet(&course.session.scene);
         compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;
     }
     cs_course_close(&course);

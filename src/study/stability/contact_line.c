@@ -3,12 +3,13 @@
 
 #include "model/contact/law.h"
 #include "model/contact/pairing.h"
+#include "scene/pairs.h"
 
 #include <math.h>
 
 void cs_contact_line_add(const struct cs_scene *scene, const char *before,
                          struct cs_text *out) {
-    if (scene->colliders.n > 0)
+    if (scene->colliders.n > 0 || cs_scene_any_meet(scene))
         cs_text_add(out, "%s%s", before,
                     scene->contact.law == CS_CONTACT_FORCE
                         ? "contact is a force, in linear theory and in runs"

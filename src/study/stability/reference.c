@@ -1,6 +1,8 @@
 /* Runs a trusted reference, and follows the limits of linear theory along its trajectory. */
 #include "study/stability/reference.h"
 
+#include "model/force/bounds.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +29,7 @@ static void look(void *ctx, const struct cs_run *run, const struct cs_energy *en
     way->theory->modes.t = run->t;
     cs_theory_lower(way->theory, run->x, &way->reference->worst, way->error);
     // other bounds than those of contact hold for the whole run
-    if (!way->error->status && run->system->pairings)
+    if (!way->error->status && cs_bounds_have_rate(run->system))
         cs_theory_row_sums(way->theory, run->x, &way->reference->row_sums, way->error);
 }
 

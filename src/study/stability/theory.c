@@ -104,7 +104,7 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
  * that is only damped: the fastest of those is searched by itself. */
 static enum cs_status consider_friction(struct cs_theory *theory, const double *x,
                                         struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!theory->modes.system->pairings)
+    if (!cs_bounds_have_rate(theory->modes.system))
         return CS_OK;
     theory->modes.warm = false;
     const struct cs_mode mode = cs_modes_largest(&theory->modes, x, 0, 1);
