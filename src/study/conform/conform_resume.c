@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-/* all that changes between frames: values, pins, obstacles, contact, and forces that the last
- * test of visibility has chosen */
+/* much of what changes between frames: values, pins, and contact */
 #define EVENTFUL                                                                               \
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"bump\": 0.02}, \"mass\": {\"particle\": "  \
     "0.05}, \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"     \
