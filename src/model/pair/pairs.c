@@ -132,6 +132,9 @@ static void do_lots(struct job *job) {
         job->set->n += job->set->lots[l].n;
         pairs->failed = pairs->failed || job->set->lots[l].failed;
     }
+    // what was left out is not to be looked for behind the end of a lot
+    if (pairs->failed)
+        job->set->n = 0;
 }
 
 /* --- by particles --- */
