@@ -83,6 +83,10 @@ static enum cs_status read_keys(struct cs_args *args, struct cs_product *product
         char *copy = cs_arena_take_n(&args->arena, bytes, 1, error);
         if (copy)
             read_key(args, memcpy(copy, texts[k], bytes), product->keys + k, error);
+        for (uint32_t other = 0; other < k && !error->status; other++)
+            if (!strcmp(product->keys[other].path, product->keys[k].path))
+                cs_fail(error, CS_ERR_USAGE, "--set: %.60s is there twice",
+                        product->keys[k].path);
     }
     return error->status;
 }
@@ -111,6 +115,9 @@ static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     if (!error->status && !quiet)
         printf("%u of %u cells are in %s/sweep.csv, %u of them from before\n", product.done,
                product.cells, product.folder, product.taken);
+    if (!error->status && !quiet && product.refused)
+        printf("warning: %u of them refused or failed, the first by: %s\n", product.refused,
+               product.why.message);
     return error->status;
 }
 

@@ -193,16 +193,18 @@ static void add_result(const struct cs_session *session, const char *outcome, do
 }
 
 /* A scene or a method that refuses is a row; what the command line has wrong is none. */
-static enum cs_status add_failure(struct cs_error *failure, struct cs_text *out,
-                                  struct cs_error *error) {
+static enum cs_status add_failure(struct cs_product *product, struct cs_error *failure,
+                                  struct cs_text *out, struct cs_error *error) {
     if (failure->status != CS_ERR_SCENE && failure->status != CS_ERR_MODULE)
         return cs_fail(error, failure->status, "%s", failure->message);
+    if (!product->refused++)
+        product->why = *failure;
     add_text(out, failure->status == CS_ERR_SCENE ? "refused" : "failed");
     cs_text_add(out, ",,,,,,,,,,,");
     return CS_OK;
 }
 
-static enum cs_status run_cell(const struct cs_product *product, const struct cell *cell,
+static enum cs_status run_cell(struct cs_product *product, const struct cell *cell,
                                struct cs_text *out, struct cs_error *error) {
     struct cs_session session = {0};
     struct cs_session_settings asked = product->session;
@@ -223,13 +225,13 @@ static enum cs_status run_cell(const struct cs_product *product, const struct ce
         if (session.run.outcome == CS_INTERRUPTED)
             cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
         else if (failure.status)
-            add_failure(&failure, out, error);
+            add_failure(product, &failure, out, error);
         else
             add_result(&session, cs_outcome_text(session.run.outcome), cs_clock_cpu() - begin,
                        out);
     } else {
         add_text(out, cell->method ? cell->method : "");
-        add_failure(&failure, out, error);
+        add_failure(product, &failure, out, error);
     }
     cs_session_close(&session);
     cs_machine_name(machine);

@@ -27,6 +27,8 @@ struct cs_product {
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
     uint32_t cells, done, taken; /* out: in all; there now; of those, from earlier runs */
+    uint32_t refused;            /* out: cells of now that were refused or failed */
+    struct cs_error why;         /* out: of the first of them */
 };
 
 /* Runs the cells of the shard that sweep.csv does not have. A row is kept as it comes, whoever
