@@ -100,11 +100,12 @@ static enum cs_status place(const struct cs_args *args, struct film *film,
 
 enum { ARGUMENTS = 48 };
 
-/* The line for ffmpeg, closed by NULL. The colours are told as those of ITU-R BT.709, which
- * players take for them; an odd size is padded by a pixel, as 4:2:0 asks for. */
+/* The line for ffmpeg, closed by NULL. A damaged picture is an error. The colours are told as
+ * those of ITU-R BT.709, which players take for them; an odd size is padded by a pixel, as
+ * 4:2:0 asks for. */
 static void fill(const struct film *film, const char *rate, const char *out,
                  const char *arguments[ARGUMENTS]) {
-    static const char *const before[] = {"ffmpeg",   "-loglevel", "error",
+    static const char *const before[] = {"ffmpeg",   "-loglevel", "error",     "-xerror",
                                          "-nostdin", "-y",        "-framerate"};
     static const char *const between[] = {
         "-pattern_type",
