@@ -1,6 +1,7 @@
 /* Prints advice: a line a method, and below it what binds the step. */
 #include "study/stability/advise_print.h"
 
+#include "scene/pairs.h"
 #include "study/stability/contact_line.h"
 
 #include <math.h>
@@ -97,7 +98,7 @@ static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
     double speed = 0;
     for (uint32_t k = 0; k < advise->n; k++)
         speed = fmax(speed, advise->rows[k].speed);
-    if (!system->scene->colliders.n)
+    if (!system->scene->colliders.n && !cs_scene_any_meet(system->scene))
         return;
     cs_contact_line_add(system->scene, "", out);
     cs_text_add(out, "\n");
