@@ -3,9 +3,9 @@
  * Orders above 2 are not stable near the imaginary axis: on weakly damped cloth they follow no
  * tolerance, and their steps h stay near h omega = 0.5, omega being the largest frequency,
  * where order 2 could go far beyond. Where the tolerance itself asks for steps below that they
- * are the better ones by far. So BDF begins with order 2 at most; it may take 5 after LONG short
- * steps in a row; and it begins anew, with 2, after many steps in a row that look as if stability
- * held them, each time after twice as many.
+ * are the better ones by far. So BDF begins with order 2 at most; it may take 5 after LONG
+ * short steps in a row; and it begins anew, with 2, after many steps in a row that look as if
+ * stability held them, each time after twice as many.
  */
 #ifndef CVODE_ORDER_H
 #define CVODE_ORDER_H

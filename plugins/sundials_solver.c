@@ -41,7 +41,8 @@ static int solve_reduced(SUNLinearSolver solver, SUNMatrix none, N_Vector z, N_V
     if (self->status != CS_STEP_OK)
         return SOLVE_FAILED;
 
-    // no force acts on pinned particles; b is not 0 there while the library has a history of them
+    // no force acts on pinned particles; b is not 0 there while the library has a history of
+    // them
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             if (host->view->inv_mass[i] == 0)

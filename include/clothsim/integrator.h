@@ -241,9 +241,9 @@ struct cs_host {
     /* [advance] Only where contact is a force, else NULL; and not in hosts whose size ends
      * before it. What contact adds to the mass of each particle in an implicit Euler step of
      * length h: blocks (6,n) in kg = -h df/dv - h h df/dx of CS_PART_POTENTIAL and
-     * CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and CS_SOLVE_BOUND have it: xx, xy,
-     * xz, yy, yz, zz. For methods that move particles one after the other: with h h f they make
-     * a step towards where contact and the rest are in balance. */
+     * CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and CS_SOLVE_BOUND have it: xx,
+     * xy, xz, yy, yz, zz. For methods that move particles one after the other: with h h f they
+     * make a step towards where contact and the rest are in balance. */
     void (*blocks)(void *ctx, double t, const double *x, const double *v, double h,
                    double *blocks);
 };

@@ -21,9 +21,10 @@
     X(DAMPERS, "dampers")                                                                      \
     X(DRAG, "drag")                                                                            \
     X(WIND, "wind")                                                                            \
-    X(FRICTION, "friction") X(PUSH, "push") X(PINS, "pins") X(VALUES, "values")                \
-        X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit") X(PROJECTION, "projection")       \
-            X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
+    X(FRICTION, "friction")                                                                    \
+    X(PUSH, "push") X(PINS, "pins") X(VALUES, "values") X(INTEGRATOR, "integrator")            \
+        X(LIMIT, "strain_limit") X(PROJECTION, "projection") X(ABSORPTION, "absorption")       \
+            X(LOSS, "velocity_loss") X(EVENTS, "events")
 
 enum cs_holding {
 #define X(name, column) CS_HOLDING_##name,

@@ -1,12 +1,12 @@
 /* The energy of contact that a step does not see, particle by particle. */
 #include "model/contact/share.h"
 
-#include <clothsim/clones.h>
 #include "base/vector.h"
 #include "model/contact/law.h"
 #include "model/contact/obstacle.h"
 #include "model/contact/pairing.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 
 /* points of one move, at most; particles of a row */

@@ -5,9 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    FRAMES = 50
-}; /* five seconds: 50 periods of the fastest mode, 10 of the slowest */
+enum { FRAMES = 50 }; /* five seconds: 50 periods of the fastest mode, 10 of the slowest */
 
 /* Runs to the end, turns all velocities round, and runs back. A symmetric method is at the
  * start again but for rounding. */

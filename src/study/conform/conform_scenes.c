@@ -55,12 +55,12 @@
 
 /* Two sheets that come near each other, and slide; they stay in the range. */
 #define PAIRS(friction)                                                                        \
-    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.15, 0.1, 0.1]},"               \
-    " \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4, " FREE_OF_SPRINGS "},"               \
-    " {\"cloth\": {\"grid\": [2, 2], \"velocity\": [-0.15, -0.1, -0.1], \"place\":"             \
-    " {\"translate\": [0.2, 0.1, 0.3]}}, \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4,"    \
-    " " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY "}, \"pairs\": {\"among\": \"all\","      \
-    " \"friction\": " friction "}, \"contact\": {\"law\": \"force\", \"stiffness\": 1,"           \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.15, 0.1, 0.1]},"            \
+    " \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4, " FREE_OF_SPRINGS "},"                \
+    " {\"cloth\": {\"grid\": [2, 2], \"velocity\": [-0.15, -0.1, -0.1], \"place\":"            \
+    " {\"translate\": [0.2, 0.1, 0.3]}}, \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4,"   \
+    " " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY "}, \"pairs\": {\"among\": \"all\","    \
+    " \"friction\": " friction "}, \"contact\": {\"law\": \"force\", \"stiffness\": 1,"        \
     " \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES "}"
 
 // ends of ramps lie between frames
