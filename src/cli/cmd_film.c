@@ -136,13 +136,26 @@ static void fill(const struct film *film, const char *rate, const char *out,
     arguments[n] = NULL;
 }
 
-/* the line as it would be typed in the folder: what a shell reads is quoted */
+/* a word as it is typed: what a shell reads otherwise is quoted */
+static void add_word(struct cs_text *line, const char *word) {
+    if (!strpbrk(word, "*()' $&;\"\\")) {
+        cs_text_add(line, " %s", word);
+        return;
+    }
+    cs_text_add(line, " '");
+    for (const char *c = word; *c; c++)
+        cs_text_add(line, "%.*s", *c == '\'' ? 4 : 1, *c == '\'' ? "'\\''" : c);
+    cs_text_add(line, "'");
+}
+
 static enum cs_status refuse(const struct film *film, const char *const *arguments,
                              struct cs_error *error) {
     struct cs_text line = {0};
+    add_word(&line, film->folder);
+    cs_text_add(&line, " &&");
     for (const char *const *a = arguments; *a; a++)
-        cs_text_add(&line, strpbrk(*a, "*()' ") ? " '%s'" : " %s", *a);
-    cs_fail(error, CS_ERR_FILE, "ffmpeg was not found; where it is: cd %s &&%s", film->folder,
+        add_word(&line, *a);
+    cs_fail(error, CS_ERR_FILE, "ffmpeg is not installed; once it is, type: cd%s",
             cs_text_get(&line));
     cs_text_finish(&line);
     return error->status;
