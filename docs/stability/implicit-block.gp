@@ -18,9 +18,9 @@ set xrange [4.64159:215443]
 set yrange [7.51872e-05:0.0399004]
 plot \
   'implicit-block.csv' using 1:($4==0?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#9fd3b5' title 'bounded', \
-  'implicit-block.csv' using 1:($4==1?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#a9c9e8' title 'damped away', \
+  'implicit-block.csv' using 1:($4==1?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#a9c9e8' title 'over-damped', \
   'implicit-block.csv' using 1:($4==4?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#e8825a' title 'global instability', \
-  'implicit-block_border.csv' using 1:5 every ::1 with lines lw 2 dt (4,4) lc rgb '#6b7078' title 'theory: row sums', \
+  'implicit-block_border.csv' using 1:5 every ::1 with lines lw 2 dt (4,4) lc rgb '#6b7078' title 'theory: Gershgorin', \
   'implicit-block_border.csv' using 1:4 every ::1 with lines lw 2 dt (10,5) lc rgb '#23262b' title 'theory: at the start', \
   'implicit-block_border.csv' using 1:3 every ::1 with lines lw 3 lc rgb '#23262b' title 'theory: worst on the way', \
   'implicit-block_border.csv' using 1:2 every ::1 with points pt 7 ps 1.5 lc rgb '#23262b' title 'border, bisected', \

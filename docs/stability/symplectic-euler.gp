@@ -20,7 +20,7 @@ plot \
   'symplectic-euler.csv' using 1:($4==0?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#9fd3b5' title 'bounded', \
   'symplectic-euler.csv' using 1:($4==2?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#e3f1e8' title 'not run to the end', \
   'symplectic-euler.csv' using 1:($4==4?$2:NaN):8:9:10:11 every ::1 with boxxyerror fc rgb '#e8825a' title 'global instability', \
-  'symplectic-euler_border.csv' using 1:5 every ::1 with lines lw 2 dt (4,4) lc rgb '#6b7078' title 'theory: row sums', \
+  'symplectic-euler_border.csv' using 1:5 every ::1 with lines lw 2 dt (4,4) lc rgb '#6b7078' title 'theory: Gershgorin', \
   'symplectic-euler_border.csv' using 1:4 every ::1 with lines lw 2 dt (10,5) lc rgb '#23262b' title 'theory: at the start', \
   'symplectic-euler_border.csv' using 1:3 every ::1 with lines lw 3 lc rgb '#23262b' title 'theory: worst on the way', \
   'symplectic-euler_border.csv' using 1:2 every ::1 with points pt 7 ps 1.5 lc rgb '#23262b' title 'border, bisected', \

@@ -11,13 +11,13 @@
 enum { PLOT_X, PLOT_Y, PLOT_OUT, PLOT_TITLE, PLOT_QUIET, PLOT_ROWS };
 
 static const struct cs_arg rows[PLOT_ROWS] = {
-    [PLOT_X] = {"x", 'x', "COLUMN", "what lies to the right (default: cpu)", false},
-    [PLOT_Y] = {"y", 'y', "COLUMN", "what goes up (default: error)", false},
+    [PLOT_X] = {"x", 'x', "COLUMN", "column of the x axis (default: cpu)", false},
+    [PLOT_Y] = {"y", 'y', "COLUMN", "column of the y axis (default: error)", false},
     [PLOT_OUT] = {"out", 'o', "NAME",
                   "writes NAME.gp, and NAME.png and NAME.svg where gnuplot is found (default: "
                   "Y_X beside FILE)",
                   false},
-    [PLOT_TITLE] = {"title", 0, "TEXT", "above the diagram (default: FILE)", false},
+    [PLOT_TITLE] = {"title", 0, "TEXT", "title above the diagram (default: FILE)", false},
     [PLOT_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
 };
 

@@ -30,7 +30,7 @@ static void add_json(const struct cs_extreme_row *row, struct cs_text *out) {
     add_member(out, "scene", row->scene);
     add_member(out, "method", row->method);
     add_member(out, "expected", row->expected);
-    add_member(out, "verdict", cs_fate_word(row->verdict));
+    add_member(out, "verdict", cs_stability_word(row->verdict));
     add_member(out, "message", row->message);
     cs_text_add(out, "\"met\": %s, \"seconds\": %.3g}", row->met ? "true" : "false",
                 row->seconds);
@@ -42,8 +42,8 @@ static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
     if ((row->met && cs_args_get(sink->args, STABILITY_QUIET)) || takes_stdout(sink->args))
         return;
     printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n", row->met ? "ok" : "MISSED",
-           row->scene, row->method, cs_fate_word(row->verdict), row->expected, row->seconds,
-           *row->message ? "  " : "", row->message);
+           row->scene, row->method, cs_stability_word(row->verdict), row->expected,
+           row->seconds, *row->message ? "  " : "", row->message);
     fflush(stdout);
 }
 

@@ -78,7 +78,7 @@ static enum cs_status check_cells(const struct cs_stability *map, struct cs_erro
     uint32_t bad = 0;
     for (uint32_t c = 0; c < map->n_columns; c++)
         for (uint32_t r = 0; r < map->n_rows; r++)
-            bad += !cs_fate_is_sound(map->columns[c].cells[r].verdict);
+            bad += !cs_stability_is_sound(map->columns[c].cells[r].verdict);
     return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%s: %u of %u cells are not stable",
                          map->series, bad, map->n_columns * map->n_rows)
                : CS_OK;

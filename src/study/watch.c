@@ -157,14 +157,14 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     const double held = cs_energy_held(&row->energy);
     /* first, because no comparison with NAN is true */
     if (!isfinite(held + row->speed + row->strain))
-        row->verdict = CS_FATE_NOT_FINITE;
+        row->verdict = CS_STABILITY_NOT_FINITE;
     else if (held > row->energy_limit)
-        row->verdict = CS_FATE_GLOBAL;
+        row->verdict = CS_STABILITY_GLOBAL;
     else if (row->particles)
-        row->verdict = CS_FATE_LOCAL;
+        row->verdict = CS_STABILITY_LOCAL;
     if (row->verdict > watch->worst)
         watch->worst = row->verdict;
-    if (row->verdict >= CS_FATE_LOCAL && !watch->found) {
+    if (row->verdict >= CS_STABILITY_LOCAL && !watch->found) {
         watch->found = true;
         watch->first = *row;
     }
@@ -175,8 +175,8 @@ void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system
     const struct cs_watch_row *first = &watch->first;
     if (!watch->found)
         return;
-    cs_text_add(out, "%s from t = %.6g s on: ", cs_fate_word(first->verdict), first->t);
-    if (first->verdict == CS_FATE_GLOBAL)
+    cs_text_add(out, "%s from t = %.6g s on: ", cs_stability_word(first->verdict), first->t);
+    if (first->verdict == CS_STABILITY_GLOBAL)
         cs_text_add(out, "%.3g J in motion and springs, where %.3g J can be",
                     cs_energy_held(&first->energy), first->energy_limit / ENERGY_FACTOR);
     else {
@@ -186,7 +186,7 @@ void cs_watch_print(const struct cs_watch *watch, const struct cs_system *system
         cs_text_add(out, " at %.3g m/s beyond %.3g m/s", first->speed, first->speed_limit);
     }
     if (watch->worst > first->verdict)
-        cs_text_add(out, "; later %s", cs_fate_word(watch->worst));
+        cs_text_add(out, "; later %s", cs_stability_word(watch->worst));
 }
 
 void cs_watch_print_head(struct cs_text *out) {
@@ -205,5 +205,6 @@ void cs_watch_print_row(const struct cs_watch_row *row, uint32_t frame, struct c
         if (isfinite(values[k]))
             cs_text_add_real(out, values[k]);
     }
-    cs_text_add(out, ",%u,%u,%s\n", row->particle, row->particles, cs_fate_word(row->verdict));
+    cs_text_add(out, ",%u,%u,%s\n", row->particle, row->particles,
+                cs_stability_word(row->verdict));
 }

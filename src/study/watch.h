@@ -10,7 +10,7 @@
 #define CS_WATCH_H
 
 #include "sim/run.h"
-#include "study/fate.h"
+#include "study/stability_verdict.h"
 
 /* What a run has at one time. */
 struct cs_watch_row {
@@ -21,7 +21,8 @@ struct cs_watch_row {
     uint32_t particles;      /* faster than the limit */
     double speed_limit;      /* m/s */
     double energy_limit;     /* J, of kinetic + elastic */
-    enum cs_fate verdict;    /* BOUNDED, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
+    /* BOUNDED, LOCAL, GLOBAL or NOT_FINITE, of this time alone */
+    enum cs_stability_verdict verdict;
 };
 
 struct cs_watch {
@@ -33,7 +34,7 @@ struct cs_watch {
     double mass, wind_mass;    /* kg that can move; of it times (wind/gravity) for its work */
     bool found;                /* a local instability was seen */
     struct cs_watch_row first; /* when it began */
-    enum cs_fate worst;
+    enum cs_stability_verdict worst;
 };
 
 /* At the start of a run (before its first frame), and after each frame. */

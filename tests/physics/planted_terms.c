@@ -39,7 +39,7 @@ static void resist_scalar(const struct cs_system *system, const struct cs_matrix
         diagonal[i] -= matrix->cd * planted.resist * system->mass[i];
 }
 
-static void resist_bound(const struct cs_system *system, const struct cs_row_sums *sums) {
+static void resist_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     for (size_t i = 0; i < system->view.n; i++)
         sums->damping[i] += planted.resist * system->mass[i];
 }
@@ -128,7 +128,7 @@ static void trap_blocks(const struct cs_system *system, const struct cs_matrix *
 }
 
 static void trap_bound(const struct cs_system *system, const struct cs_eval *at,
-                       const struct cs_row_sums *sums) {
+                       const struct cs_gershgorin *sums) {
     for (size_t i = 0; i < system->view.n; i++) {
         const double q = depth(system, at->x, i);
         sums->stiffness[i] += 3 * planted.trap * q * q;

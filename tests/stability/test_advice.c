@@ -72,8 +72,8 @@ static void check_advice(const struct row *row, const struct cs_advice *advice) 
               (advice->kind == CS_ADVICE_LOWERED && is_forward(advice->method)));
     ck_assert_msg(ratio > least && ratio < 1.2, "%s, %s: %.6g s predicted, %.6g found",
                   row->scene, advice->method, advice->limit, advice->measured);
-    ck_assert_msg(cs_fate_is_stable(advice->verdict), "%s, %s: advised %.6g s, but %s",
-                  row->scene, advice->method, advice->safe, cs_fate_word(advice->verdict));
+    ck_assert_msg(cs_stability_is_stable(advice->verdict), "%s, %s: advised %.6g s, but %s",
+                  row->scene, advice->method, advice->safe, cs_stability_word(advice->verdict));
 }
 
 static void check_scene(const struct row *row) {

@@ -90,19 +90,19 @@ START_TEST(watch_tells_local_from_global) {
     ck_assert_int_eq(cs_watch_begin(&watch, &cloth.session.run, &error), CS_OK);
     fixture_frames(&cloth, 30);
     cs_watch_look(&watch, &cloth.session.run, &row);
-    ck_assert_int_eq(row.verdict, CS_FATE_BOUNDED);
+    ck_assert_int_eq(row.verdict, CS_STABILITY_BOUNDED);
     cloth.v[250] = 1.2 * row.speed_limit;
     cs_watch_look(&watch, &cloth.session.run, &row);
-    ck_assert_int_eq(row.verdict, CS_FATE_LOCAL);
+    ck_assert_int_eq(row.verdict, CS_STABILITY_LOCAL);
     ck_assert_uint_eq(row.particle, 250);
     ck_assert_uint_eq(row.particles, 1);
     for (size_t i = 100; i < 400; i++)
         cloth.v[i] = row.speed_limit;
     cs_watch_look(&watch, &cloth.session.run, &row);
-    ck_assert_int_eq(row.verdict, CS_FATE_GLOBAL);
+    ck_assert_int_eq(row.verdict, CS_STABILITY_GLOBAL);
     cloth.v[7] = (double)NAN;
     cs_watch_look(&watch, &cloth.session.run, &row);
-    ck_assert_int_eq(row.verdict, CS_FATE_NOT_FINITE);
+    ck_assert_int_eq(row.verdict, CS_STABILITY_NOT_FINITE);
     ck_assert_uint_eq(watch.first.particle, 250);
     fixture_close(&cloth);
 }

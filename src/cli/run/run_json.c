@@ -53,7 +53,7 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
         add_real(out, ", \"bound\": ", run->blow_up.bound);
         cs_text_add(out, "}");
     }
-    cs_text_add(out, ",\n  \"verdict\": \"%s\"", cs_fate_word(job->watch.worst));
+    cs_text_add(out, ",\n  \"verdict\": \"%s\"", cs_stability_word(job->watch.worst));
     if (job->watch.found) {
         add_real(out, ",\n  \"unstable_from\": {\"time\": ", job->watch.first.t);
         cs_text_add(out, ", \"particle\": %u, \"particles\": %u}", job->watch.first.particle,

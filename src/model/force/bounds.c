@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static void take_largest(const struct cs_system *system, const struct cs_row_sums *sums,
+static void take_largest(const struct cs_system *system, const struct cs_gershgorin *sums,
                          double *squared, double *delta) {
     *squared = *delta = 0;
     for (size_t i = 0; i < system->view.n; i++) {
@@ -18,7 +18,7 @@ static void take_largest(const struct cs_system *system, const struct cs_row_sum
 void cs_bounds_at(const struct cs_system *system, const struct cs_eval *at, double *work,
                   double *omega, double *delta) {
     const size_t n = system->view.n;
-    const struct cs_row_sums sums = {work, work + n};
+    const struct cs_gershgorin sums = {work, work + n};
     double squared;
     memset(work, 0, 2 * n * sizeof *work);
     for (uint32_t k = 0; k < system->n_terms; k++) {
@@ -46,7 +46,7 @@ bool cs_bounds_have_rate(const struct cs_system *system) {
 void cs_bounds_rate(const struct cs_system *system, const struct cs_eval *at, double *work,
                     double *omega, double *delta) {
     const size_t n = system->view.n;
-    const struct cs_row_sums sums = {work, work + n};
+    const struct cs_gershgorin sums = {work, work + n};
     double squared;
     memset(work, 0, 2 * n * sizeof *work);
     for (uint32_t k = 0; k < system->n_terms; k++)

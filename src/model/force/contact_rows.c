@@ -99,7 +99,8 @@ CS_CLONES void cs_contact_add_rows(const struct cs_near *near, size_t n,
 
 /* Adds the bounds of one row: those of cs_touch_bound, whose gradient is of length 1 here. */
 CS_INLINE void bound(const struct cs_near *near, const struct cs_eval *at, size_t n,
-                     const struct row *row, const bool sphere, const struct cs_row_sums *sums) {
+                     const struct row *row, const bool sphere,
+                     const struct cs_gershgorin *sums) {
     const double *normal = near->pose.axes[1], *u = near->pose.velocity;
     const double *v = at->v + row->start;
     double *restrict stiffness = sums->stiffness + row->start;
@@ -121,7 +122,7 @@ CS_INLINE void bound(const struct cs_near *near, const struct cs_eval *at, size_
 }
 
 CS_INLINE void add_bounds(const struct cs_near *near, size_t n, const struct cs_eval *at,
-                          const bool sphere, const struct cs_row_sums *sums) {
+                          const bool sphere, const struct cs_gershgorin *sums) {
     for (size_t start = 0; start < n; start += ROW) {
         const size_t left = n - start;
         struct row row;
@@ -133,7 +134,7 @@ CS_INLINE void add_bounds(const struct cs_near *near, size_t n, const struct cs_
 
 CS_CLONES void cs_contact_add_row_bounds(const struct cs_near *near, size_t n,
                                          const struct cs_eval *at,
-                                         const struct cs_row_sums *sums) {
+                                         const struct cs_gershgorin *sums) {
     if (near->pose.kind == CS_OBSTACLE_SPHERE)
         add_bounds(near, n, at, true, sums);
     else

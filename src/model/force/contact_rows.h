@@ -23,6 +23,6 @@ void cs_contact_add_rows(const struct cs_near *near, size_t n, const struct cs_e
 
 /* sums += the bounds of touch.h at all particles, likewise. */
 void cs_contact_add_row_bounds(const struct cs_near *near, size_t n, const struct cs_eval *at,
-                               const struct cs_row_sums *sums);
+                               const struct cs_gershgorin *sums);
 
 #endif

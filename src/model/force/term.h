@@ -17,7 +17,7 @@ enum cs_term_use {
 
 /* For the Gershgorin bounds of bounds.h, at each particle: the sum of the norms of the 3x3
  * blocks in its row of a force's derivative, the diagonal block and those of its neighbours. */
-struct cs_row_sums {
+struct cs_gershgorin {
     double *stiffness, *damping; /* (n) of df/dx in N/m and of df/dv in N s/m */
 };
 
@@ -80,10 +80,10 @@ struct cs_term {
     /* --- how strong it is --- */
     /* Adds its Gershgorin bounds that hold for the whole run, with the values that the scene
      * has now. NULL: none, or none that holds for every state. */
-    void (*add_bound)(const struct cs_system *system, const struct cs_row_sums *sums);
+    void (*add_bound)(const struct cs_system *system, const struct cs_gershgorin *sums);
     /* Bounds at a state, instead of those above. NULL: they hold at any. */
     void (*add_bound_at)(const struct cs_system *system, const struct cs_eval *at,
-                         const struct cs_row_sums *sums);
+                         const struct cs_gershgorin *sums);
     /* Greatest force in N that it can exert on particle i whatever the state is. NULL: energy
      * that is there bounds what it can do, or it only takes energy away. */
     double (*strongest)(const struct cs_system *system, size_t i);

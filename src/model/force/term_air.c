@@ -51,7 +51,7 @@ static void drag_scalar(const struct cs_system *system, const struct cs_matrix *
         diagonal[i] -= matrix->cd * drag_of(system, i);
 }
 
-static void drag_bound(const struct cs_system *system, const struct cs_row_sums *sums) {
+static void drag_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     for (size_t i = 0; i < system->view.n; i++)
         sums->damping[i] += drag_of(system, i);
 }

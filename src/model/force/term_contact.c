@@ -143,7 +143,7 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
-                         const struct cs_row_sums *sums) {
+                         const struct cs_gershgorin *sums) {
     const size_t n = system->view.n;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_near near = near_of(system, c, at->t);

@@ -50,7 +50,7 @@ static void add_product(const struct cs_system *system, const double *p, double 
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
-                         const struct cs_row_sums *sums) {
+                         const struct cs_gershgorin *sums) {
     cs_pairs_add_bound(system->pairs, at, sums->stiffness, sums->damping);
 }
 

@@ -35,7 +35,7 @@ static void add_diagonal(const struct cs_system *system, const double *x, double
 
 /* A row has k u u^T of each spring at the particle, and the same again at its other ends; while
  * no spring is shorter than half its rest length neither part of it is above k. */
-static void add_bound(const struct cs_system *system, const struct cs_row_sums *sums) {
+static void add_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
         for (uint32_t i = 0; i < run->count; i++) {

@@ -84,7 +84,7 @@ static void judge(struct cs_compare_reference *reference) {
     if (!reference->agree)
         snprintf(reference->reason, sizeof reference->reason,
                  "%.*s and %.*s differ by %.2g m, but by %.2g m and %.2g m from their own "
-                 "tighter twins: one of them solves another problem",
+                 "tighter twins: the two families do not solve the same problem",
                  (int)strcspn(first, ":"), first, (int)strcspn(second, ":"), second,
                  differences[2], differences[0], differences[1]);
 }

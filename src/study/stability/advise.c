@@ -26,10 +26,10 @@ static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_sett
     struct cs_trial trial;
     asked.session.dt = row->safe;
     asked.seconds = reference->seconds;
-    asked.limits = cs_fate_limits(&reference->trial);
+    asked.limits = cs_stability_limits(&reference->trial);
     if (cs_trial_run(&trial, &asked, error))
         return error->status;
-    row->verdict = cs_fate_of(&trial, &reference->trial, true);
+    row->verdict = cs_stability_judge(&trial, &reference->trial, true);
     row->watched = trial.end;
     if (trial.failed)
         snprintf(row->message, sizeof row->message, "%s", trial.message);
@@ -53,7 +53,7 @@ static enum cs_status try_shorter(struct cs_advice *row,
         row->safe /= 2;
     }
     snprintf(row->message, sizeof row->message, "no step was found stable down to %.3g s: %s",
-             2 * row->safe, cs_fate_word(row->verdict));
+             2 * row->safe, cs_stability_word(row->verdict));
     row->kind = CS_ADVICE_NONE;
     row->safe = 0;
     return CS_OK;

@@ -17,11 +17,11 @@ enum cs_advice_kind {
 struct cs_advice {
     const char *method;
     enum cs_advice_kind kind;
-    double limit, safe;       /* s: largest stable step, and the one advised */
-    double theory;            /* s, limit of linear theory; HUGE_VAL: none */
-    struct cs_mode mode;      /* that limits it, where theory has a limit */
-    enum cs_fate verdict;     /* of a run with the safe step */
-    double watched;           /* s, that this run lasted */
+    double limit, safe;                /* s: largest stable step, and the one advised */
+    double theory;                     /* s, limit of linear theory; HUGE_VAL: none */
+    struct cs_mode mode;               /* that limits it, where theory has a limit */
+    enum cs_stability_verdict verdict; /* of a run with the safe step */
+    double watched;                    /* s, that this run lasted */
     double growth;            /* 1/s, of the worst mode at the safe step; 0: it does not grow */
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
     double speed;             /* m/s, largest of a particle in the trusted run; 0: none */
@@ -31,7 +31,7 @@ struct cs_advice {
 
 /* What the watch of its own run calls unstable is never advised. */
 static inline bool cs_advice_is_unstable(const struct cs_advice *row) {
-    return !cs_fate_is_stable(row->verdict) && row->verdict != CS_FATE_OVER_BUDGET;
+    return !cs_stability_is_stable(row->verdict) && row->verdict != CS_STABILITY_OVER_BUDGET;
 }
 
 struct cs_advise {

@@ -1,4 +1,4 @@
-/* Prints advice: a line a method, and below it what binds the step. */
+/* Prints advice: a line a method, and below it what limits the step. */
 #include "study/stability/advise_print.h"
 
 #include "scene/pairs.h"
@@ -80,9 +80,9 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
         cs_text_add(out, "%s%s",
                     row->kind == CS_ADVICE_REFUSED || row->kind == CS_ADVICE_NONE ? "" : "; ",
                     row->message);
-    else if (row->verdict != CS_FATE_BOUNDED && row->kind != CS_ADVICE_NONE)
-        cs_text_add(out, "; %s", cs_fate_word(row->verdict));
-    if (row->verdict == CS_FATE_OVER_BUDGET)
+    else if (row->verdict != CS_STABILITY_BOUNDED && row->kind != CS_ADVICE_NONE)
+        cs_text_add(out, "; %s", cs_stability_word(row->verdict));
+    if (row->verdict == CS_STABILITY_OVER_BUDGET)
         cs_text_add(out, " after %.3g s: not watched longer", row->watched);
 }
 

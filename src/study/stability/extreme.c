@@ -37,36 +37,36 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
     while (run->frame < frames && run->outcome == CS_RUNNING && !cs_run_frame(run, &failure))
         if (run->outcome == CS_RUNNING) {
             cs_watch_look(&watch, run, &look);
-            ending->silent |= look.verdict == CS_FATE_NOT_FINITE;
+            ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
         }
     row->verdict = watch.worst;
     cs_watch_print(&watch, run->system, &text);
     /* the method's own error is an outcome, any other one ends the study */
     if (failure.status == CS_ERR_MODULE) {
         ending->refused = true;
-        row->verdict = CS_FATE_FAILED;
+        row->verdict = CS_STABILITY_FAILED;
         say(row, failure.message);
     } else if (failure.status)
         *error = failure;
     else if (run->outcome == CS_OVER_BUDGET)
-        row->verdict = CS_FATE_OVER_BUDGET;
+        row->verdict = CS_STABILITY_OVER_BUDGET;
     else if (run->outcome == CS_NOT_FINITE)
-        row->verdict = CS_FATE_NOT_FINITE;
+        row->verdict = CS_STABILITY_NOT_FINITE;
     else if (run->outcome == CS_UNBOUNDED)
-        row->verdict = CS_FATE_GLOBAL;
+        row->verdict = CS_STABILITY_GLOBAL;
     if (!*row->message)
         say(row, cs_text_get(&text));
     cs_text_finish(&text);
 }
 
-static bool is_blown(enum cs_fate verdict) {
-    return verdict == CS_FATE_GLOBAL || verdict == CS_FATE_NOT_FINITE;
+static bool is_blown(enum cs_stability_verdict verdict) {
+    return verdict == CS_STABILITY_GLOBAL || verdict == CS_STABILITY_NOT_FINITE;
 }
 
 static bool is_met(const struct cs_extreme_row *row, double dt, const struct ending *ending) {
-    const bool bounded = cs_fate_is_stable(row->verdict);
-    const bool finite = bounded || row->verdict == CS_FATE_LOCAL;
-    const bool blown = is_blown(row->verdict) || row->verdict == CS_FATE_LOCAL;
+    const bool bounded = cs_stability_is_stable(row->verdict);
+    const bool finite = bounded || row->verdict == CS_STABILITY_LOCAL;
+    const bool blown = is_blown(row->verdict) || row->verdict == CS_STABILITY_LOCAL;
     if (ending->silent)
         return false;
     if (cs_extreme_expects(row->expected, "theory") &&
@@ -79,7 +79,7 @@ static bool is_met(const struct cs_extreme_row *row, double dt, const struct end
            (cs_extreme_expects(row->expected, "blows up") && is_blown(row->verdict)) ||
            (cs_extreme_expects(row->expected, "refused") && ending->refused) ||
            (cs_extreme_expects(row->expected, "over budget") &&
-            row->verdict == CS_FATE_OVER_BUDGET);
+            row->verdict == CS_STABILITY_OVER_BUDGET);
 }
 
 static enum cs_status find_theory(struct cs_session *session, double seconds, double *limit,
@@ -102,7 +102,7 @@ static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *en
         error->status == CS_ERR_USAGE)
         return error->status;
     ending->refused = true;
-    row->verdict = CS_FATE_FAILED;
+    row->verdict = CS_STABILITY_FAILED;
     say(row, error->message);
     *error = (struct cs_error){0};
     return CS_OK;
@@ -198,7 +198,7 @@ static void report_rows(struct catalogue *catalogue, bool all) {
         struct cs_extreme_row *row = catalogue->rows + catalogue->reported++;
         if (!row->done) {
             row->met = cs_extreme_expects(row->expected, "over budget");
-            row->verdict = CS_FATE_OVER_BUDGET;
+            row->verdict = CS_STABILITY_OVER_BUDGET;
             say(row, "no step ended within twice the budget");
         }
         *(row->met ? &extreme->met : &extreme->missed) += 1;

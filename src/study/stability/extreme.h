@@ -24,7 +24,7 @@ struct cs_extreme_row {
     const char *method;
     const char *expected;
     bool met, done;
-    enum cs_fate verdict;
+    enum cs_stability_verdict verdict;
     char message[320]; /* more about it, or "" */
     double seconds;    /* wall time */
 };

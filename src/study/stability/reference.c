@@ -15,7 +15,7 @@ enum { STEPS = 200 };
 struct way {
     struct cs_theory *theory; /* NULL: no limits are asked for */
     struct cs_reference *reference;
-    double row_sums; /* s, at the start */
+    double gershgorin; /* s, at the start */
     struct cs_error *error;
 };
 
@@ -30,7 +30,7 @@ static void look(void *ctx, const struct cs_run *run, const struct cs_energy *en
     cs_theory_lower(way->theory, run->x, &way->reference->worst, way->error);
     // other bounds than those of contact hold for the whole run
     if (!way->error->status && cs_bounds_have_rate(run->system))
-        cs_theory_row_sums(way->theory, run->x, &way->reference->row_sums, way->error);
+        cs_theory_gershgorin(way->theory, run->x, &way->reference->gershgorin, way->error);
 }
 
 /* one run; false: it was not stable by what it can be judged without a reference */
@@ -44,7 +44,7 @@ static bool run_once(struct cs_reference *reference, const struct cs_trial_setti
     asked.ctx = way;
     // what a run that failed went through does not count
     reference->worst = reference->at_rest;
-    reference->row_sums = way->row_sums;
+    reference->gershgorin = way->gershgorin;
     return !cs_trial_run(&reference->trial, &asked, error) && !way->error->status &&
            reference->trial.outcome == CS_RUNNING && !reference->trial.failed;
 }
@@ -88,17 +88,18 @@ static enum cs_status run_with(struct cs_reference *reference, struct cs_session
                                const struct cs_trial_settings *settings,
                                struct cs_error *error) {
     struct cs_theory theory = {0};
-    struct way way = {.reference = reference, .row_sums = HUGE_VAL, .error = error};
-    reference->row_sums = reference->at_rest.dt = reference->worst.dt = HUGE_VAL;
+    struct way way = {.reference = reference, .gershgorin = HUGE_VAL, .error = error};
+    reference->gershgorin = reference->at_rest.dt = reference->worst.dt = HUGE_VAL;
     if (cs_method_takes_dt(session->method.integrator)) {
         way.theory = &theory;
         if (cs_theory_init(&theory, &session->system, session->method.integrator,
                            session->method.options, growth_of(&session->system, settings),
                            error) ||
-            cs_theory_row_sums(&theory, session->system.state, &reference->row_sums, error) ||
+            cs_theory_gershgorin(&theory, session->system.state, &reference->gershgorin,
+                                 error) ||
             cs_theory_at(&theory, session->system.state, &reference->at_rest, error))
             goto done;
-        way.row_sums = reference->row_sums;
+        way.gershgorin = reference->gershgorin;
     }
     run_way(reference, settings,
             choose_dt(&session->system, settings->seconds / settings->samples), &way, error);

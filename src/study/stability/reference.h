@@ -2,15 +2,15 @@
 #ifndef CS_REFERENCE_H
 #define CS_REFERENCE_H
 
-#include "study/fate.h"
 #include "study/stability/theory.h"
+#include "study/stability_verdict.h"
 
 struct cs_reference {
     bool found; /* else only theory at rest is there, and message says why */
     char message[320];
     double seconds;        /* simulated: enough for 200 steps at the limit */
     struct cs_trial trial; /* velocity-verlet with a small step */
-    double row_sums; /* s, limit by Gershgorin bounds (row sums), of contact along the way */
+    double gershgorin;     /* s, limit by Gershgorin bounds, of contact along the way */
     struct cs_theory_limit at_rest; /* before the start is perturbed */
     struct cs_theory_limit worst;   /* along the way */
 };

@@ -26,17 +26,17 @@ static enum cs_status find_border(struct cs_stability_column *column, uint32_t n
                                   const struct cs_trial_settings *trial,
                                   struct cs_error *error) {
     uint32_t row = 0;
-    while (row < n_rows && cs_fate_is_sound(column->cells[row].verdict))
+    while (row < n_rows && cs_stability_is_sound(column->cells[row].verdict))
         row++;
     column->border = HUGE_VAL;
     if (row == n_rows)
         return CS_OK;
     /* a row that ran out of time says nothing */
-    if (column->cells[row].verdict == CS_FATE_OVER_BUDGET) {
+    if (column->cells[row].verdict == CS_STABILITY_OVER_BUDGET) {
         column->border = (double)NAN;
         return CS_OK;
     }
-    const bool known = row && cs_fate_is_stable(column->cells[row - 1].verdict);
+    const bool known = row && cs_stability_is_stable(column->cells[row - 1].verdict);
     return cs_stability_border(trial, &column->reference, known ? column->cells[row - 1].dt : 0,
                                column->cells[row].dt, &column->border, error);
 }

@@ -16,12 +16,13 @@ static enum cs_status try_step(const struct cs_trial_settings *settings,
     struct cs_trial trial;
     asked.session.dt = dt;
     asked.seconds = fmin(reference->seconds, most_seconds);
-    asked.limits = cs_fate_limits(&reference->trial);
+    asked.limits = cs_stability_limits(&reference->trial);
     if (cs_trial_run(&trial, &asked, error))
         return error->status;
     *cell = (struct cs_stability_cell){
         .dt = dt,
-        .verdict = cs_fate_of(&trial, &reference->trial, asked.seconds >= reference->seconds),
+        .verdict =
+            cs_stability_judge(&trial, &reference->trial, asked.seconds >= reference->seconds),
         .drift = (double)NAN,
         .time = trial.end,
         .particles = trial.excess.particles,
@@ -29,13 +30,13 @@ static enum cs_status try_step(const struct cs_trial_settings *settings,
     };
     /* drift compares the energies at the end, which both runs must have reached */
     if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)
-        cell->drift = cs_fate_drift(&trial, &reference->trial);
+        cell->drift = cs_stability_drift(&trial, &reference->trial);
     /* the time that is told is that of the first sign, not that of the end */
     if (trial.outcome == CS_UNBOUNDED || trial.outcome == CS_NOT_FINITE)
         cell->time = trial.blow_up.time;
-    if (cell->verdict == CS_FATE_GLOBAL && trial.beyond)
+    if (cell->verdict == CS_STABILITY_GLOBAL && trial.beyond)
         cell->time = trial.beyond_time;
-    else if (cell->verdict == CS_FATE_LOCAL)
+    else if (cell->verdict == CS_STABILITY_LOCAL)
         cell->time = trial.excess.time;
     return CS_OK;
 }
@@ -57,10 +58,10 @@ static enum cs_status enclose(const struct cs_trial_settings *settings,
             break;
         if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
             return error->status;
-        *known = cell.verdict != CS_FATE_OVER_BUDGET;
+        *known = cell.verdict != CS_STABILITY_OVER_BUDGET;
         if (!*known)
             break;
-        *(cs_fate_is_stable(cell.verdict) ? stable : unstable) = dt;
+        *(cs_stability_is_stable(cell.verdict) ? stable : unstable) = dt;
     }
     return CS_OK;
 }
@@ -82,11 +83,11 @@ enum cs_status cs_stability_border(const struct cs_trial_settings *settings,
         const double dt = sqrt(stable * unstable);
         if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
             return error->status;
-        if (cell.verdict == CS_FATE_OVER_BUDGET) {
+        if (cell.verdict == CS_STABILITY_OVER_BUDGET) {
             *border = (double)NAN;
             return CS_OK;
         }
-        *(cs_fate_is_stable(cell.verdict) ? &stable : &unstable) = dt;
+        *(cs_stability_is_stable(cell.verdict) ? &stable : &unstable) = dt;
     }
     *border = sqrt(stable * unstable);
     return CS_OK;

@@ -8,14 +8,14 @@ enum { CS_CELL_STEPS = 20000 };
 
 struct cs_stability_cell {
     double dt;
-    enum cs_fate verdict;
-    double drift;       /* see cs_fate_drift; NAN where the run did not come to its end */
+    enum cs_stability_verdict verdict;
+    double drift;       /* see cs_stability_drift; NAN where the run did not come to its end */
     double time;        /* s, where the verdict showed; the end of a stable one */
     uint32_t particles; /* of a local instability: most at one time */
     double crossings;   /* most of all samples; NAN where they are not counted */
 };
 
-/* One cell, judged by a reference; CS_FATE_SHORT where CS_CELL_STEPS ended a sound run. */
+/* One cell, judged by a reference; CS_STABILITY_SHORT where CS_CELL_STEPS ended a sound run. */
 enum cs_status cs_stability_try(const struct cs_trial_settings *settings,
                                 const struct cs_reference *reference, double dt,
                                 struct cs_stability_cell *cell, struct cs_error *error);

@@ -25,7 +25,8 @@ static void add_dt(struct cs_text *out, double dt) {
 static void add_row(const struct cs_stability *map, uint32_t row, struct cs_text *out) {
     cs_text_add(out, "%-*.4g", NAME_WIDTH, map->dt[row]);
     for (uint32_t c = 0; c < map->n_columns; c++)
-        cs_text_add(out, "%*c", CELL_WIDTH, cs_fate_letter(map->columns[c].cells[row].verdict));
+        cs_text_add(out, "%*c", CELL_WIDTH,
+                    cs_stability_letter(map->columns[c].cells[row].verdict));
     cs_text_add(out, "\n");
 }
 
@@ -41,13 +42,13 @@ static double value_of(const struct cs_stability_column *column, enum line line)
     case LINE_REST:
         return reference->at_rest.dt;
     default:
-        return reference->row_sums;
+        return reference->gershgorin;
     }
 }
 
 static void add_lines(const struct cs_stability *map, struct cs_text *out) {
     static const char *const names[LINES] = {"border", "worst on way", "at the start",
-                                             "row sums"};
+                                             "Gershgorin"};
     for (enum line line = 0; line < LINES; line++) {
         cs_text_add(out, "%-*s", NAME_WIDTH, names[line]);
         for (uint32_t c = 0; c < map->n_columns; c++)
@@ -71,7 +72,7 @@ static double last_stable(const struct cs_stability *map, uint32_t c, bool cross
     for (uint32_t r = 0; r < map->n_rows; r++) {
         const struct cs_stability_cell *cell = map->columns[c].cells + r;
         const double value = crossings ? cell->crossings : cell->drift;
-        if (!cs_fate_is_sound(cell->verdict))
+        if (!cs_stability_is_sound(cell->verdict))
             break;
         last = isnan(value) ? last : value;
     }
@@ -101,14 +102,16 @@ static void add_crossings(const struct cs_stability *map, struct cs_text *out) {
 }
 
 static void add_legend(const struct cs_stability *map, struct cs_text *out) {
-    for (int v = 0; v < CS_FATES; v++) {
+    for (int v = 0; v < CS_STABILITY_VERDICTS; v++) {
         bool there = false;
         for (uint32_t c = 0; c < map->n_columns; c++)
             for (uint32_t r = 0; r < map->n_rows; r++)
                 there |= (int)map->columns[c].cells[r].verdict == v;
         if (there)
-            cs_text_add(out, "  %c  %s: %s\n", cs_fate_letter((enum cs_fate)v),
-                        cs_fate_word((enum cs_fate)v), cs_fate_help((enum cs_fate)v));
+            cs_text_add(out, "  %c  %s: %s\n",
+                        cs_stability_letter((enum cs_stability_verdict)v),
+                        cs_stability_word((enum cs_stability_verdict)v),
+                        cs_stability_help((enum cs_stability_verdict)v));
     }
 }
 
@@ -174,7 +177,7 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     const double above = dt_at(map, r + 1);
     cs_text_add_real(out, value);
     add_field(out, cell->dt);
-    cs_text_add(out, ",%s,%d", cs_fate_word(cell->verdict), (int)cell->verdict);
+    cs_text_add(out, ",%s,%d", cs_stability_word(cell->verdict), (int)cell->verdict);
     add_field(out, cell->drift);
     add_field(out, cell->time);
     cs_text_add(out, ",%u", cell->particles);
@@ -197,15 +200,15 @@ void cs_stability_print_csv(const struct cs_stability *map, struct cs_text *out)
 }
 
 void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_text *out) {
-    cs_text_add(out,
-                "%s,border,worst_on_way,at_start,row_sums,omega,damping_rate,particle,share\n",
-                cs_axis_names[map->settings->axis]);
+    cs_text_add(
+        out, "%s,border,worst_on_way,at_start,gershgorin,omega,damping_rate,particle,share\n",
+        cs_axis_names[map->settings->axis]);
     for (uint32_t c = 0; c < map->n_columns; c++) {
         const struct cs_stability_column *column = map->columns + c;
         const struct cs_reference *reference = &column->reference;
         const struct cs_mode *mode = &reference->worst.mode;
         const double dts[] = {column->border, reference->worst.dt, reference->at_rest.dt,
-                              reference->row_sums};
+                              reference->gershgorin};
         cs_text_add_real(out, column->value);
         /* 0 stands for no stable step, which no logarithmic scale shows */
         for (int k = 0; k < 4; k++)
@@ -232,13 +235,13 @@ static void add_json_column(const struct cs_stability *map, uint32_t c, struct c
     add_member(out, ", \"border\": ", column->border);
     add_member(out, ", \"worst_on_way\": ", reference->worst.dt);
     add_member(out, ", \"at_start\": ", reference->at_rest.dt);
-    add_member(out, ", \"row_sums\": ", reference->row_sums);
+    add_member(out, ", \"gershgorin\": ", reference->gershgorin);
     add_member(out, ", \"reference_step\": ", reference->trial.step);
     cs_text_add(out, ", \"cells\": [");
     for (uint32_t r = 0; r < map->n_rows; r++) {
         const struct cs_stability_cell *cell = column->cells + r;
         add_member(out, r ? ",\n      {\"dt\": " : "\n      {\"dt\": ", cell->dt);
-        cs_text_add(out, ", \"verdict\": \"%s\"", cs_fate_word(cell->verdict));
+        cs_text_add(out, ", \"verdict\": \"%s\"", cs_stability_word(cell->verdict));
         add_member(out, ", \"energy_drift\": ", cell->drift);
         add_member(out, ", \"time\": ", cell->time);
         cs_text_add(out, ", \"particles\": %u", cell->particles);
@@ -265,11 +268,11 @@ void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out
 /* --- the diagram --- */
 
 /* green to red for eyes of every kind, then violet and greys; by verdict */
-static const char *const colours[CS_FATES] = {
-    [CS_FATE_BOUNDED] = "#9fd3b5", [CS_FATE_DAMPED] = "#a9c9e8",
-    [CS_FATE_SHORT] = "#e3f1e8",   [CS_FATE_LOCAL] = "#f6d365",
-    [CS_FATE_GLOBAL] = "#e8825a",  [CS_FATE_NOT_FINITE] = "#8e5c86",
-    [CS_FATE_FAILED] = "#7f858d",  [CS_FATE_OVER_BUDGET] = "#dfe1e4"};
+static const char *const colours[CS_STABILITY_VERDICTS] = {
+    [CS_STABILITY_BOUNDED] = "#9fd3b5", [CS_STABILITY_DAMPED] = "#a9c9e8",
+    [CS_STABILITY_SHORT] = "#e3f1e8",   [CS_STABILITY_LOCAL] = "#f6d365",
+    [CS_STABILITY_GLOBAL] = "#e8825a",  [CS_STABILITY_NOT_FINITE] = "#8e5c86",
+    [CS_STABILITY_FAILED] = "#7f858d",  [CS_STABILITY_OVER_BUDGET] = "#dfe1e4"};
 
 static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
     const enum cs_axis axis = map->settings->axis;
@@ -319,7 +322,7 @@ void cs_stability_print_plot(const struct cs_stability *map, const char *name,
         int column;
         const char *style, *title;
     } curves[] = {
-        {5, "lines lw 2 dt (4,4) lc rgb '#6b7078'", "theory: row sums"},
+        {5, "lines lw 2 dt (4,4) lc rgb '#6b7078'", "theory: Gershgorin"},
         {4, "lines lw 2 dt (10,5) lc rgb '#23262b'", "theory: at the start"},
         {3, "lines lw 3 lc rgb '#23262b'", "theory: worst on the way"},
         {2, "points pt 7 ps 1.5 lc rgb '#23262b'", "border, bisected"},
@@ -328,14 +331,14 @@ void cs_stability_print_plot(const struct cs_stability *map, const char *name,
     add_head(map, name, out);
     add_ranges(map, out);
     cs_text_add(out, "plot \\\n");
-    for (int v = 0; v < CS_FATES; v++)
+    for (int v = 0; v < CS_STABILITY_VERDICTS; v++)
         /* only verdicts that occur have a line in the legend */
         if (is_there(map, v))
             cs_text_add(
                 out,
                 "  '%s.csv' using 1:($4==%d?$2:NaN):8:9:10:11 every ::1 with boxxyerror "
                 "fc rgb '%s' title '%s', \\\n",
-                name, v, colours[v], cs_fate_word((enum cs_fate)v));
+                name, v, colours[v], cs_stability_word((enum cs_stability_verdict)v));
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)
         cs_text_add(out, "  '%s_border.csv' using 1:%d every ::1 with %s %s'%s'%s\n", name,
                     curves[k].column, curves[k].style, *curves[k].title ? "title " : "notitle ",

@@ -18,8 +18,8 @@ void cs_theory_finish(struct cs_theory *theory) {
     cs_modes_finish(&theory->modes);
 }
 
-enum cs_status cs_theory_row_sums(struct cs_theory *theory, const double *x, double *dt,
-                                  struct cs_error *error) {
+enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
+                                    struct cs_error *error) {
     const struct cs_modes *modes = &theory->modes;
     const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zero, .parts = CS_PART_ALL};
     double omega, delta, free = HUGE_VAL, damped = HUGE_VAL;

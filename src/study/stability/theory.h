@@ -32,8 +32,8 @@ void cs_theory_finish(struct cs_theory *theory);
 /* Lowers *dt to the limit by Gershgorin bounds: of springs and dampers while no spring is
  * shorter than half its rest length, and of contact by force as it is at the positions x, with
  * friction as of what rests. The smaller of the limits with and without damping. */
-enum cs_status cs_theory_row_sums(struct cs_theory *theory, const double *x, double *dt,
-                                  struct cs_error *error);
+enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
+                                    struct cs_error *error);
 
 /* At the positions x: of all motions the one with the smallest limit. */
 enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,

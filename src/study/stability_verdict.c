@@ -1,5 +1,5 @@
 /* Derives the verdict on a run by comparing it with a trusted run of the same scene. */
-#include "study/fate.h"
+#include "study/stability_verdict.h"
 
 #include <math.h>
 
@@ -12,23 +12,23 @@ static const struct {
     char letter;
 } verdicts[] = {
 #define X(name, word, letter, help) [name] = {word, help, letter},
-    CS_FATE_LIST(X)
+    CS_STABILITY_LIST(X)
 #undef X
 };
 
-const char *cs_fate_word(enum cs_fate verdict) {
+const char *cs_stability_word(enum cs_stability_verdict verdict) {
     return verdicts[verdict].word;
 }
 
-const char *cs_fate_help(enum cs_fate verdict) {
+const char *cs_stability_help(enum cs_stability_verdict verdict) {
     return verdicts[verdict].help;
 }
 
-char cs_fate_letter(enum cs_fate verdict) {
+char cs_stability_letter(enum cs_stability_verdict verdict) {
     return verdicts[verdict].letter;
 }
 
-struct cs_trial_limits cs_fate_limits(const struct cs_trial *reference) {
+struct cs_trial_limits cs_stability_limits(const struct cs_trial *reference) {
     const double held = fmax(reference->held, LEAST_ENERGY);
     return (struct cs_trial_limits){
         .speed = 5 * fmax(reference->speed, LEAST_SPEED),
@@ -42,26 +42,26 @@ static bool is_growing(const struct cs_trial *trial, const struct cs_trial *refe
            trial->mean_kinetic > 10 * fmax(reference->mean_kinetic, LEAST_ENERGY);
 }
 
-enum cs_fate cs_fate_of(const struct cs_trial *trial, const struct cs_trial *reference,
-                        bool whole) {
+enum cs_stability_verdict cs_stability_judge(const struct cs_trial *trial,
+                                             const struct cs_trial *reference, bool whole) {
     if (trial->outcome == CS_NOT_FINITE)
-        return CS_FATE_NOT_FINITE;
+        return CS_STABILITY_NOT_FINITE;
     if (trial->outcome == CS_UNBOUNDED || (trial->beyond && is_growing(trial, reference)))
-        return CS_FATE_GLOBAL;
+        return CS_STABILITY_GLOBAL;
     if (trial->failed)
-        return CS_FATE_FAILED;
+        return CS_STABILITY_FAILED;
     if (trial->excess.found)
-        return CS_FATE_LOCAL;
+        return CS_STABILITY_LOCAL;
     if (trial->outcome == CS_OVER_BUDGET)
-        return CS_FATE_OVER_BUDGET;
+        return CS_STABILITY_OVER_BUDGET;
     if (!whole)
-        return CS_FATE_SHORT;
+        return CS_STABILITY_SHORT;
     if (reference->kinetic > LEAST_ENERGY &&
         trial->mean_kinetic < 0.5 * reference->mean_kinetic)
-        return CS_FATE_DAMPED;
-    return CS_FATE_BOUNDED;
+        return CS_STABILITY_DAMPED;
+    return CS_STABILITY_BOUNDED;
 }
 
-double cs_fate_drift(const struct cs_trial *trial, const struct cs_trial *reference) {
+double cs_stability_drift(const struct cs_trial *trial, const struct cs_trial *reference) {
     return (trial->end_energy - reference->end_energy) / fmax(reference->held, LEAST_ENERGY);
 }
