@@ -195,7 +195,8 @@ static void destroy(void *object) {
 #define ARKODE(rows_)                                                                          \
     .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct ark_options),   \
-    .restart = sundials_restart, .advance = advance, .stats = stats, .destroy = destroy
+    .restart = sundials_restart, .advance = advance, .stats = stats, .destroy = destroy,       \
+    .library = "SUNDIALS " SUNDIALS_VERSION
 
 static const struct cs_integrator ark_erk = {
     ARKODE(erk_rows),

@@ -247,7 +247,8 @@ static void destroy(void *object) {
     .source = "Hindmarsh et al. 2005; Gardner et al. 2022", .fidelity = CS_FIDELITY_ODE,       \
     .options = rows_, .n_options = sizeof rows_ / sizeof rows_[0],                             \
     .options_size = sizeof(struct cvode_options), .restart = sundials_restart,                 \
-    .advance = sundials_advance, .stats = stats, .destroy = destroy
+    .advance = sundials_advance, .stats = stats, .destroy = destroy,                           \
+    .library = "SUNDIALS " SUNDIALS_VERSION
 
 static const struct cs_integrator cvode_bdf = {
     CVODE(bdf_rows),

@@ -183,6 +183,10 @@ static enum cs_step load(void *object, const struct cs_archive *archive) {
     return status == CS_STEP_OK ? fixed_step_archive(self, archive) : status;
 }
 
+/* a number of the preprocessor as a text */
+#define TEXT_OF(number) #number
+#define TEXT(number)    TEXT_OF(number)
+
 static const struct cs_integrator fast_mass_spring = {
     .size = sizeof(struct cs_integrator),
     .name = "fast-mass-spring",
@@ -203,6 +207,8 @@ static const struct cs_integrator fast_mass_spring = {
     .destroy = destroy,
     .save = save,
     .load = load,
+    .library = "CHOLMOD " TEXT(CHOLMOD_MAIN_VERSION) "." TEXT(CHOLMOD_SUB_VERSION) "." TEXT(
+        CHOLMOD_SUBSUB_VERSION),
 };
 
 static const struct cs_integrator *const integrators[] = {&fast_mass_spring};

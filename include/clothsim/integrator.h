@@ -350,6 +350,11 @@ struct cs_integrator {
      * CS_HAS(integrator, load). */
     enum cs_step (*save)(void *self, const struct cs_archive *archive);
     enum cs_step (*load)(void *self, const struct cs_archive *archive);
+
+    /* With CS_LIBRARY_BITS: the library and its version, "SUNDIALS 6.4.1", which golden states
+     * are kept for; else NULL. Later than the first release: the host asks
+     * CS_HAS(integrator, library). */
+    const char *library;
 };
 
 /* The symbol that a module exports: CS_EXPORT const struct cs_module clothsim_module. */

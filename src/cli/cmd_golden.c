@@ -71,7 +71,7 @@ static void add_json(const struct cs_golden_row *row, const char *verdict,
 static void print_row(void *ctx, const struct cs_golden_row *row) {
     struct sink *sink = ctx;
     const struct cs_args *args = sink->args;
-    const bool differs = row->message.length > 0;
+    const bool differs = row->message.length > 0 && (row->added || !row->skipped);
     const char *verdict = row->skipped ? "skip" : !differs ? "ok" : "DIFFERS";
     if (differs && cs_args_get(args, GOLDEN_ACCEPT))
         verdict = "accepted";
@@ -85,7 +85,7 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
         printf("  %s", row->run.integrator);
     if (strcmp(row->run.overrides, "-"))
         printf("  %s", row->run.overrides);
-    printf("  frame %u%s%s\n", row->run.frames, differs ? ": " : "",
+    printf("  frame %u%s%s\n", row->run.frames, row->message.length ? ": " : "",
            cs_text_get(&row->message));
     fflush(stdout);
 }

@@ -143,6 +143,8 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
     cs_print_hanging("source", integrator->source, DETAIL_COLUMN, &out);
     cs_print_hanging("order", cs_text_get(&order), DETAIL_COLUMN, &out);
     cs_print_hanging("traits", list.length ? cs_text_get(&list) : "none", DETAIL_COLUMN, &out);
+    if (CS_HAS(integrator, library) && integrator->library)
+        cs_print_hanging("library", integrator->library, DETAIL_COLUMN, &out);
     cs_print_hanging("fidelity", fidelity_text(integrator->fidelity), DETAIL_COLUMN, &out);
     /* only a method that names checks it fails has this line */
     struct cs_text fails = {0};

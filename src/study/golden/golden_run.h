@@ -15,13 +15,16 @@ struct cs_golden_run {
 /* A line of a table: a run, and what belongs to it. Fields are owned by the row. */
 struct cs_golden_row {
     struct cs_golden_run run;
-    char *line;  /* the fields above point into it */
-    char *hash;  /* of the state (hash.tsv) or of the pixels (image.tsv) */
-    char *note;  /* builds ("any", or the library that is needed) or the image's renderer */
+    char *line; /* the fields above point into it */
+    char *hash; /* of the state (hash.tsv) or of the pixels (image.tsv) */
+    char *note; /* "any", or the library and version that the bits are of ("SUNDIALS 6.4.1"), or
+                   the image's renderer */
     char *image; /* name of the picture; NULL in hash.tsv */
     char found[CS_HASH_DIGITS], renderer[256];
-    struct cs_text message; /* what differs; empty: nothing */
-    bool skipped;           /* the integrator's library is not in this build */
+    struct cs_text message; /* what differs, or why the row was skipped; empty: nothing */
+    bool skipped;     /* the integrator's library is not in this build, or of another version */
+    char library[64]; /* that version; "": not skipped for it */
+    bool added;       /* accepted for that version, in a row of its own */
 };
 
 struct cs_golden {
