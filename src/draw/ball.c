@@ -1,66 +1,90 @@
-/* Makes a unit sphere by subdividing an icosahedron, without sines. */
+/* Makes the seen side of a sphere: rings about the line of sight, the last on its outline. */
 #include "draw/ball.h"
 
 #include "draw/matrix.h"
 
-enum { CUTS = 4, N_TRIANGLES = 20 << (2 * CUTS) };
+enum { STEP = CS_BALL_OUTLINE / CS_BALL_SPOKES };
 
-// a is 1 and b the golden ratio before they are made unit vectors
-static const signed char corners[12][3] = {{-1, 2, 0}, {1, 2, 0}, {-1, -2, 0}, {1, -2, 0},
-                                           {0, -1, 2}, {0, 1, 2}, {0, -1, -2}, {0, 1, -2},
-                                           {2, 0, -1}, {2, 0, 1}, {-2, 0, -1}, {-2, 0, 1}};
-static const unsigned char faces[20][3] = {
-    {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+struct turn {
+    double cosine, sine;
+};
 
-static void set_vertex(struct cs_vertex *vertex, const double p[3]) {
+struct ball {
+    const double *centre;
+    double radius, across[3], third[3], along[3]; // unit vectors, the last towards the eye
+    struct turn rings[CS_BALL_RINGS + 1];         // from the middle to the outline
+    struct turn spokes[CS_BALL_OUTLINE];
+    struct cs_vertex *out; // the next vertex
+};
+
+// of an angle of 0..pi
+static struct turn halved(struct turn t) {
+    return (struct turn){sqrt((1 + t.cosine) / 2), sqrt((1 - t.cosine) / 2)};
+}
+
+static struct turn sum(struct turn a, struct turn b) {
+    return (struct turn){a.cosine * b.cosine - a.sine * b.sine,
+                         a.sine * b.cosine + a.cosine * b.sine};
+}
+
+// all multiples of an angle, from 0 on
+static void fill_turns(struct turn step, int n, struct turn *turns) {
+    turns[0] = (struct turn){1, 0};
+    for (int k = 1; k < n; k++)
+        turns[k] = sum(turns[k - 1], step);
+}
+
+static void aim(struct ball *ball, const float eye[4]) {
+    const double far = (double)eye[3];
     for (int i = 0; i < 3; i++)
-        vertex->place[i] = vertex->normal[i] = (float)p[i];
+        ball->along[i] = (double)eye[i] - far * ball->centre[i];
+    const double distance = cs_length(ball->along);
+    cs_normalise(ball->along);
+    cs_frame_across(ball->along, ball->across, ball->third);
+    // the outline is where sight touches the sphere
+    const double least = far > 0 ? ball->radius : 0;
+    const double cosine = distance > least ? least / distance : -1;
+    struct turn ring = {cosine, 0}, spoke = {0, 1};
+    for (int n = CS_BALL_RINGS; n > 1; n /= 2)
+        ring = halved(ring);
+    for (int n = CS_BALL_OUTLINE; n > 4; n /= 2)
+        spoke = halved(spoke);
+    fill_turns(ring, CS_BALL_RINGS + 1, ball->rings);
+    fill_turns(spoke, CS_BALL_OUTLINE, ball->spokes);
+}
+
+static void add_vertex(struct ball *ball, int ring, int spoke) {
+    const struct turn out = ball->rings[ring], around = ball->spokes[spoke % CS_BALL_OUTLINE];
+    struct cs_vertex *vertex = ball->out++;
+    for (int i = 0; i < 3; i++) {
+        const double side = around.cosine * ball->across[i] + around.sine * ball->third[i];
+        const double d = out.cosine * ball->along[i] + out.sine * side;
+        vertex->place[i] = (float)(ball->centre[i] + ball->radius * d);
+        vertex->normal[i] = (float)d;
+    }
     vertex->value = 0;
 }
 
-// cuts the triangle p until `cuts` is 0; corners are not shared, the same ones come out equal
-static struct cs_vertex *cut(double p[3][3], int cuts, struct cs_vertex *out) {
-    if (cuts == 0) {
-        for (int i = 0; i < 3; i++)
-            set_vertex(out++, p[i]);
-        return out;
+// between two spokes and two rings; the outer side in so many parts
+static void add_cell(struct ball *ball, int ring, int spoke, int parts) {
+    for (int k = 0; k < parts; k++) {
+        add_vertex(ball, ring, spoke);
+        add_vertex(ball, ring + 1, spoke + k * (STEP / parts));
+        add_vertex(ball, ring + 1, spoke + (k + 1) * (STEP / parts));
     }
-    double middle[3][3];
-    for (int i = 0; i < 3; i++) {
-        for (int axis = 0; axis < 3; axis++)
-            middle[i][axis] = p[i][axis] + p[(i + 1) % 3][axis];
-        /* the middle of an edge lies inside the sphere: pushed out onto it */
-        cs_normalise(middle[i]);
-    }
-    for (int i = 0; i < 3; i++) {
-        /* corners in the order of the parent's, so that every triangle faces outwards */
-        double part[3][3];
-        memcpy(part[0], p[i], sizeof part[0]);
-        memcpy(part[1], middle[i], sizeof part[1]);
-        memcpy(part[2], middle[(i + 2) % 3], sizeof part[2]);
-        out = cut(part, cuts - 1, out);
-    }
-    return cut(middle, cuts - 1, out);
+    // in the middle the inner side is a point
+    if (ring == 0)
+        return;
+    add_vertex(ball, ring, spoke);
+    add_vertex(ball, ring + 1, spoke + STEP);
+    add_vertex(ball, ring, spoke + STEP);
 }
 
-enum cs_status cs_ball_make(struct cs_vertex **vertices, uint32_t *n, struct cs_arena *arena,
-                            struct cs_error *error) {
-    const double golden = (1 + sqrt(5)) / 2;
-    struct cs_vertex *out = cs_arena_take_n(arena, 3 * N_TRIANGLES, sizeof *out, error);
-    *vertices = out;
-    *n = 3 * N_TRIANGLES;
-    for (int face = 0; out && face < 20; face++) {
-        double p[3][3];
-        for (int i = 0; i < 3; i++) {
-            for (int axis = 0; axis < 3; axis++) {
-                const int c = corners[faces[face][i]][axis];
-                p[i][axis] = c == 2 ? golden : c == -2 ? -golden : c;
-            }
-            cs_normalise(p[i]);
-        }
-        out = cut(p, CUTS, out);
-    }
-    return error->status;
+void cs_ball_fill(const double centre[3], double radius, const float eye[4],
+                  struct cs_vertex *out) {
+    struct ball ball = {.centre = centre, .radius = radius, .out = out};
+    aim(&ball, eye);
+    for (int ring = 0; ring < CS_BALL_RINGS; ring++)
+        for (int spoke = 0; spoke < CS_BALL_OUTLINE; spoke += STEP)
+            add_cell(&ball, ring, spoke, ring + 1 < CS_BALL_RINGS ? 1 : STEP);
 }

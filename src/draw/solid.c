@@ -1,4 +1,5 @@
-/* Makes planes as squares, boxes and capsules as cubes blown up to balls and pulled apart.
+/* Makes planes as squares, spheres as balls, boxes and capsules as cubes blown up to balls and
+ * pulled apart.
  *
  * Each face of a cube has a grid of directions, evenly spaced by angle. A direction d stands
  * for the point sign(d) core + radius d of the surface. Where a component is 0 the grid has the
@@ -7,6 +8,7 @@
  */
 #include "draw/solid.h"
 
+#include "draw/ball.h"
 #include "draw/matrix.h"
 
 /* lines of a face's grid between its middle and its rim, less one */
@@ -40,7 +42,7 @@ uint32_t cs_solid_count(const struct cs_obstacle *obstacle) {
     if (!obstacle->collider->visible)
         return 0;
     if (!is_curved(obstacle))
-        return obstacle->kind == CS_OBSTACLE_PLANE ? 6 : 0;
+        return obstacle->kind == CS_OBSTACLE_PLANE ? 6 : CS_BALL_VERTICES;
     for (int k = 0; k < 3; k++)
         n[k] = make_lines(obstacle->core[k], lines) - 1;
     for (int k = 0; k < 3; k++)
@@ -108,9 +110,12 @@ static struct cs_vertex *fill_face(const struct cs_obstacle *obstacle, int axis,
     return out;
 }
 
-void cs_solid_fill(const struct cs_obstacle *obstacle, double cell, struct cs_vertex *out) {
+void cs_solid_fill(const struct cs_obstacle *obstacle, double cell, const float eye[4],
+                   struct cs_vertex *out) {
     if (obstacle->kind == CS_OBSTACLE_PLANE)
         fill_square(obstacle, 0.03 * cell, out);
+    if (obstacle->kind == CS_OBSTACLE_SPHERE)
+        cs_ball_fill(obstacle->centre, obstacle->radius, eye, out);
     for (int axis = 0; axis < 3 && is_curved(obstacle); axis++)
         for (int side = -1; side <= 1; side += 2)
             out = fill_face(obstacle, axis, side, out);

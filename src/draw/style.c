@@ -17,8 +17,7 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
     *style = (struct cs_surface_style){.ambient = material->ambient,
                                        .diffuse = material->diffuse,
                                        .specular = material->specular,
-                                       .shininess = material->shininess,
-                                       .scale = 1};
+                                       .shininess = material->shininess};
     memcpy(style->front, material->colour, sizeof style->front);
     memcpy(style->back, has_back ? material->back_colour : material->colour,
            sizeof style->back);
@@ -59,14 +58,9 @@ void cs_style_solid(struct cs_surface_style *style, const struct cs_obstacle *ob
     *style = (struct cs_surface_style){.ambient = 1,
                                        .diffuse = 1,
                                        .specular = flat ? 0.04 : 0.22,
-                                       .shininess = flat ? 12 : 40,
-                                       .scale = 1};
+                                       .shininess = flat ? 12 : 40};
     memcpy(style->front, collider->colour, sizeof style->front);
     memcpy(style->back, collider->colour, sizeof style->back);
     style->fade = collider->floor.present ? collider->floor.extent : 0;
     style->sink = sink_of(obstacle, cell);
-    if (obstacle->kind != CS_OBSTACLE_SPHERE)
-        return;
-    memcpy(style->centre, obstacle->centre, sizeof style->centre);
-    style->scale = obstacle->radius;
 }

@@ -18,9 +18,8 @@ struct cs_surface_style {
     unsigned texture;         /* the renderer's name of it */
     double front[3], back[3]; /* linear RGB */
     double ambient, diffuse, specular, shininess;
-    double centre[3], scale; /* placement of the vertices */
-    double sink;             /* m by which the depth is moved away */
-    double fade;             /* m about the origin where it has melted; 0: none */
+    double sink; /* m by which the depth is moved away */
+    double fade; /* m about the origin where it has melted; 0: none */
 };
 
 /* Looks that colour by a value, and those of them that have a bar. */
@@ -31,8 +30,7 @@ bool cs_look_has_bar(int32_t look);
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look);
 
-/* The style of a collider under cloth as coarse as `cell` (m): spheres are placed, and what is
- * curved is sunk. */
+/* The style of a collider under cloth as coarse as `cell` (m): what is curved is sunk. */
 void cs_style_solid(struct cs_surface_style *style, const struct cs_obstacle *obstacle,
                     double cell);
 

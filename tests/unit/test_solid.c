@@ -1,4 +1,5 @@
 /* Colliders as triangles: on the surface, outwards, closed, of the right volume. */
+#include "draw/ball.h"
 #include "draw/solid.h"
 
 #include "unit.h"
@@ -21,13 +22,14 @@ enum { CURVED = 4, PLANE = 4, FLOOR, SPHERE, HIDDEN, N_COLLIDERS };
 
 static struct cs_scene scene = {.colliders = {colliders, N_COLLIDERS}};
 static const struct cs_system rest = {.scene = &scene};
+static const float camera[4] = {0, 0, 5, 1};
 
 static struct cs_vertex *make(uint32_t k, struct cs_obstacle *of, uint32_t *n) {
     cs_obstacle_at(&rest, k, 0, of);
     *n = cs_solid_count(of);
     struct cs_vertex *vertices = calloc(*n + 1, sizeof *vertices);
     ck_assert_ptr_nonnull(vertices);
-    cs_solid_fill(of, 0.02, vertices);
+    cs_solid_fill(of, 0.02, camera, vertices);
     ck_assert(vertices[*n].normal[0] == 0 && vertices[*n].normal[1] == 0);
     return vertices;
 }
@@ -109,17 +111,113 @@ START_TEST(planes_are_squares) {
 }
 END_TEST
 
-START_TEST(balls_and_hidden_ones_have_no_triangles) {
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* corners of a triangle from the middle of a sphere */
+static void take(const struct cs_vertex *v, double p[3][3]) {
+    for (int j = 0; j < 3; j++)
+        for (int c = 0; c < 3; c++)
+            p[j][c] = (double)v[j].place[c];
+}
+
+/* twice the area of a triangle, as a vector to its outside */
+static void area_of(double p[3][3], double area[3]) {
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        area[c] = (p[1][d] - p[0][d]) * (p[2][e] - p[0][e]) -
+                  (p[1][e] - p[0][e]) * (p[2][d] - p[0][d]);
+    }
+}
+
+/* From afar the triangles lie side by side within the outline, a regular polygon, all facing
+ * the eye: what they cover along the line of sight is its area. */
+START_TEST(a_ball_covers_its_outline) {
+    static const float light[4] = {0.6f, 0, 0.8f, 0};
+    const double to[3] = {(double)light[0], (double)light[1], (double)light[2]};
     struct cs_obstacle of;
+    struct cs_vertex *v;
+    double sum = 0;
     cs_obstacle_at(&rest, SPHERE, 0, &of);
-    ck_assert_uint_eq(cs_solid_count(&of), 0);
+    ck_assert_uint_eq(cs_solid_count(&of), CS_BALL_VERTICES);
+    v = calloc(CS_BALL_VERTICES, sizeof *v);
+    ck_assert_ptr_nonnull(v);
+    cs_solid_fill(&of, 0.02, light, v);
+    for (uint32_t i = 0; i < CS_BALL_VERTICES; i += 3) {
+        double p[3][3], area[3];
+        take(v + i, p);
+        area_of(p, area);
+        ck_assert_double_gt(dot(area, to), 0);
+        sum += dot(area, to) / 2;
+    }
+    const double turn = 2 * acos(-1) / CS_BALL_OUTLINE;
+    ck_assert_double_eq_tol(sum, 0.5 * CS_BALL_OUTLINE * sin(turn), 1e-5);
+    free(v);
+}
+END_TEST
+
+/* From a place at twice the radius: all points lie on the sphere on this side of the circle
+ * where sight touches it, and the outline on that circle: (p - c) . (eye - p) = 0. */
+START_TEST(a_ball_ends_where_sight_touches_it) {
+    static const float eye[4] = {1.2f, 1.6f, 0, 1};
+    struct cs_obstacle of;
+    struct cs_vertex v[CS_BALL_VERTICES];
+    uint32_t outline = 0;
+    cs_obstacle_at(&rest, SPHERE, 0, &of);
+    cs_solid_fill(&of, 0.02, eye, v);
+    for (uint32_t i = 0; i < CS_BALL_VERTICES; i += 3) {
+        double p[3][3];
+        take(v + i, p);
+        for (int j = 0; j < 3; j++) {
+            double sight = 0;
+            for (int c = 0; c < 3; c++) {
+                sight += p[j][c] * ((double)eye[c] - p[j][c]);
+                ck_assert_double_eq_tol((double)v[i + (uint32_t)j].normal[c], p[j][c], 1e-6);
+            }
+            ck_assert_double_eq_tol(dot(p[j], p[j]), 1, 1e-6);
+            ck_assert_double_ge(sight, -1e-6);
+            outline += sight < 1e-6;
+        }
+    }
+    // each chord of the outline has a triangle of its own, each spoke's end one more
+    ck_assert_uint_eq(outline, 2 * CS_BALL_OUTLINE + CS_BALL_SPOKES);
+}
+END_TEST
+
+/* From within, the whole of it is there: its volume, as above. */
+START_TEST(a_ball_is_whole_from_within) {
+    static const float eye[4] = {0.1f, 0.2f, 0.3f, 1};
+    struct cs_obstacle of;
+    struct cs_vertex v[CS_BALL_VERTICES];
+    double six = 0;
+    cs_obstacle_at(&rest, SPHERE, 0, &of);
+    cs_solid_fill(&of, 0.02, eye, v);
+    for (uint32_t i = 0; i < CS_BALL_VERTICES; i += 3) {
+        double p[3][3], area[3];
+        take(v + i, p);
+        area_of(p, area);
+        six += dot(p[0], area);
+    }
+    ck_assert_double_le(six / 6, 4 * acos(-1) / 3);
+    ck_assert_double_ge(six / 6, 0.98 * 4 * acos(-1) / 3);
+}
+END_TEST
+
+START_TEST(hidden_ones_have_no_triangles) {
+    struct cs_obstacle of;
     cs_obstacle_at(&rest, HIDDEN, 0, &of);
     ck_assert_uint_eq(cs_solid_count(&of), 0);
 }
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {vertices_lie_on_the_surface, volume_is_that_of_the_solid,
-                                  planes_are_squares, balls_and_hidden_ones_have_no_triangles};
+    const TTest *const tests[] = {vertices_lie_on_the_surface,
+                                  volume_is_that_of_the_solid,
+                                  planes_are_squares,
+                                  a_ball_covers_its_outline,
+                                  a_ball_ends_where_sight_touches_it,
+                                  a_ball_is_whole_from_within,
+                                  hidden_ones_have_no_triangles};
     return unit_run("solid", tests, sizeof tests / sizeof *tests);
 }

@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "draw/cpu/mips.h"
-#include "draw/cpu/tone.h"
+#include "draw/tone.h"
 
 #include <math.h>
 
@@ -10,6 +10,10 @@ static struct cs_tone tone;
 
 static double encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+static double decode(double c) {
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
 /* the nearest byte, but where the formula is within its own rounding of the middle of two */
@@ -50,6 +54,28 @@ START_TEST(blending_is_a_mean) {
                 wrong += (share == 0 && found != under) || (share == 255 && found != over);
             }
     ck_assert_double_le(most, 1);
+    ck_assert_uint_eq(wrong, 0);
+}
+END_TEST
+
+/* Four samples give the byte of the mean of their light; whoever of them comes first. */
+START_TEST(samples_give_the_mean_of_their_light) {
+    uint32_t wrong = 0;
+    cs_tone_make(&tone);
+    for (uint32_t a = 0; a < 256; a++)
+        for (uint32_t b = 0; b < 256; b += 3) {
+            const uint32_t pair[2] = {a << 16 | b << 8 | 255, b << 16 | a << 8};
+            const double light = 0.75 * decode(a / 255.0) + 0.25 * decode(b / 255.0);
+            for (uint32_t odd = 0; odd < 4; odd++) {
+                uint32_t samples[4] = {pair[0], pair[0], pair[0], pair[0]};
+                wrong += cs_tone_mean(&tone, samples) != pair[0];
+                samples[odd] = pair[1];
+                const double found = cs_tone_mean(&tone, samples) >> 16;
+                wrong += fabs(found - 255 * encode(light)) > 0.5 + 1e-4;
+                // three parts of white light and one of none
+                wrong += (cs_tone_mean(&tone, samples) & 255) != 225;
+            }
+        }
     ck_assert_uint_eq(wrong, 0);
 }
 END_TEST
@@ -118,8 +144,11 @@ START_TEST(a_texture_repeats_and_is_blended) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {a_byte_is_the_nearest_of_the_curve, bytes_come_back,
-                                  blending_is_a_mean, copies_are_means,
+    const TTest *const tests[] = {a_byte_is_the_nearest_of_the_curve,
+                                  bytes_come_back,
+                                  blending_is_a_mean,
+                                  samples_give_the_mean_of_their_light,
+                                  copies_are_means,
                                   a_texture_repeats_and_is_blended};
     return unit_run("tone", tests, sizeof tests / sizeof *tests);
 }

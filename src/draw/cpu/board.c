@@ -1,4 +1,4 @@
-/* board.c - memory of a band, and the mean of its samples: of bytes, as OpenGL takes it. */
+/* board.c - memory of a band, and the mean of its samples. */
 #include "draw/cpu/board.h"
 
 static enum cs_status take_samples(struct cs_samples *samples, int width,
@@ -46,23 +46,18 @@ void cs_board_clear(struct cs_board *board, int top, int rows) {
     board->n_colours = board->n_glazes = board->n_behind = 0;
 }
 
-// bytes of red and blue are summed side by side
-static uint32_t mean(const uint32_t *colours, uint32_t code) {
-    uint32_t red_blue = 0x00020002, green = 0x0200;
-    for (int s = 0; s < 8; s += 2) {
-        const uint32_t c = colours[code >> s & 3];
-        red_blue += c & 0xff00ff;
-        green += c & 0xff00;
-    }
-    return (red_blue >> 2 & 0xff00ff) | (green >> 2 & 0xff00);
-}
-
-void cs_board_resolve(const struct cs_board *board, struct cs_image *image) {
+void cs_board_resolve(const struct cs_board *board, const struct cs_tone *tone,
+                      struct cs_image *image) {
     const size_t n = (size_t)board->samples.width * (size_t)board->samples.rows;
     uint8_t *out = image->rgb + 3 * (size_t)board->samples.top * (size_t)board->samples.width;
     for (size_t i = 0; i < n; i++, out += 3) {
-        const uint32_t *colours = board->colours + board->base[i];
-        const uint32_t c = board->codes[i] ? mean(colours, board->codes[i]) : *colours;
+        const uint32_t *colours = board->colours + board->base[i], code = board->codes[i];
+        uint32_t c = *colours;
+        if (code) {
+            const uint32_t samples[4] = {colours[code & 3], colours[code >> 2 & 3],
+                                         colours[code >> 4 & 3], colours[code >> 6]};
+            c = cs_tone_mean(tone, samples);
+        }
         out[0] = (uint8_t)c;
         out[1] = (uint8_t)(c >> 8);
         out[2] = (uint8_t)(c >> 16);

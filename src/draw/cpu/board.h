@@ -64,6 +64,7 @@ CS_INLINE void cs_board_lay(struct cs_board *board, size_t pixel, unsigned mask,
 }
 
 /* Averages the samples into the picture's rows. */
-void cs_board_resolve(const struct cs_board *board, struct cs_image *image);
+void cs_board_resolve(const struct cs_board *board, const struct cs_tone *tone,
+                      struct cs_image *image);
 
 #endif

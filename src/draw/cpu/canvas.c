@@ -82,7 +82,7 @@ static void init_view(struct cs_canvas *canvas) {
 static void add_solids(struct cs_canvas *canvas) {
     struct cs_drawing *drawing = &canvas->drawing;
     drawing->triangles.n = 0;
-    cs_solids_add(&canvas->solids, &canvas->lens, drawing->easel.rays.eye, drawing->coats,
+    cs_solids_add(&canvas->solids, &canvas->lens, canvas->view.block.eye, drawing->coats,
                   &drawing->triangles, &drawing->n_squares);
     drawing->n_fixed = drawing->triangles.n;
 }
@@ -187,7 +187,8 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame, 
         return;
     if (changed || moved) {
         canvas->light_fixed.n = 0;
-        cs_solids_add_shadow(&canvas->solids, &canvas->lightmap.lens, &canvas->light_fixed);
+        cs_solids_add_shadow(&canvas->solids, &canvas->lightmap.lens, canvas->view.block.light,
+                             &canvas->light_fixed);
     }
     canvas->light_moving.n = 0;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)

@@ -194,5 +194,5 @@ void cs_drawing_band(const struct cs_drawing *drawing, uint32_t band, struct cs_
     if (drawing->grid.present)
         cs_grid_draw(&drawing->grid, (int32_t)drawing->n_fixed, drawing->pattern, board);
     cs_strokes_draw(&drawing->strokes, band, drawing->pattern, board);
-    cs_board_resolve(board, drawing->image);
+    cs_board_resolve(board, drawing->easel.tone, drawing->image);
 }

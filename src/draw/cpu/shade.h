@@ -4,8 +4,8 @@
 
 #include "draw/cpu/lightmap.h"
 #include "draw/cpu/mips.h"
-#include "draw/cpu/tone.h"
 #include "draw/style.h"
+#include "draw/tone.h"
 
 enum { CS_FRAGMENTS = 256 };
 

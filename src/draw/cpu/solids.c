@@ -1,7 +1,6 @@
 /* solids.c - colliders and the ground's square become triangles. */
 #include "draw/cpu/solids.h"
 
-#include "draw/ball.h"
 #include "draw/extent.h"
 #include "draw/solid.h"
 
@@ -11,7 +10,6 @@
 enum cs_status cs_solids_init(struct cs_solids *solids, const struct cs_system *system,
                               const struct cs_obstacle *obstacles, struct cs_arena *arena,
                               struct cs_error *error) {
-    struct cs_vertex *ball;
     uint32_t most = 0;
     solids->n = system->scene->colliders.n;
     solids->cell = cs_extent_cell(system);
@@ -21,12 +19,9 @@ enum cs_status cs_solids_init(struct cs_solids *solids, const struct cs_system *
     }
     solids->obstacles = cs_arena_take_n(arena, solids->n, sizeof *solids->obstacles, error);
     solids->vertices = cs_arena_take_n(arena, most, sizeof *solids->vertices, error);
-    if (error->status || cs_ball_make(&ball, &solids->n_ball, arena, error))
-        return error->status;
-    solids->ball = ball;
-    if (solids->n > 0)
+    if (!error->status && solids->n > 0)
         memcpy(solids->obstacles, obstacles, solids->n * sizeof *obstacles);
-    return CS_OK;
+    return error->status;
 }
 
 bool cs_solids_move(struct cs_solids *solids, const struct cs_obstacle *obstacles) {
@@ -58,11 +53,12 @@ static void sink(const struct cs_lens *lens, const float place[3], const float e
 // who sees the triangles, and where they go
 struct projection {
     const struct cs_lens *lens;
-    const float *eye; // NULL: nothing sinks, as for a light
+    const float *eye; // a place and 1, or a direction and 0
+    bool sinks;       // not for a light
     struct cs_triangles *triangles;
 };
 
-// triangles of three vertices each, placed by the style
+// triangles of three vertices each
 static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
                          const struct cs_surface_style *style,
                          const struct cs_triangle_kind *kind,
@@ -72,13 +68,11 @@ static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
         const struct cs_corner *three[3] = {corners, corners + 1, corners + 2};
         for (uint32_t i = 0; i < 3; i++) {
             const struct cs_vertex *vertex = vertices + v + i;
-            float place[3];
-            for (int k = 0; k < 3; k++)
-                place[k] = (float)style->centre[k] + (float)style->scale * vertex->place[k];
-            cs_lens_corner(projection->lens, place, corners + i);
+            cs_lens_corner(projection->lens, vertex->place, corners + i);
             memcpy(corners[i].attributes, vertex->normal, sizeof vertex->normal);
-            if (projection->eye && style->sink > 0)
-                sink(projection->lens, place, projection->eye, (float)style->sink, corners + i);
+            if (projection->sinks && style->sink > 0)
+                sink(projection->lens, vertex->place, projection->eye, (float)style->sink,
+                     corners + i);
         }
         cs_triangles_add(projection->triangles, projection->lens, three, kind);
     }
@@ -89,17 +83,14 @@ static void add_obstacle(const struct cs_solids *solids, uint32_t i,
                          const struct cs_triangle_kind *kind,
                          const struct projection *projection) {
     const struct cs_obstacle *obstacle = solids->obstacles + i;
-    const bool ball = obstacle->kind == CS_OBSTACLE_SPHERE;
-    if (!ball)
-        cs_solid_fill(obstacle, solids->cell, solids->vertices);
-    add_vertices(ball ? solids->ball : solids->vertices,
-                 ball ? solids->n_ball : cs_solid_count(obstacle), style, kind, projection);
+    cs_solid_fill(obstacle, solids->cell, projection->eye, solids->vertices);
+    add_vertices(solids->vertices, cs_solid_count(obstacle), style, kind, projection);
 }
 
 void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
-                   const float eye[3], struct cs_coat *coats, struct cs_triangles *triangles,
+                   const float eye[4], struct cs_coat *coats, struct cs_triangles *triangles,
                    size_t *n_squares) {
-    const struct projection projection = {lens, eye, triangles};
+    const struct projection projection = {lens, eye, true, triangles};
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < solids->n; i++) {
             const struct cs_obstacle *obstacle = solids->obstacles + i;
@@ -117,9 +108,9 @@ void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
 }
 
 void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *lens,
-                          struct cs_triangles *triangles) {
+                          const float light[4], struct cs_triangles *triangles) {
     const struct cs_triangle_kind kind = {.attributes = 0};
-    const struct projection projection = {lens, NULL, triangles};
+    const struct projection projection = {lens, light, false, triangles};
     for (uint32_t i = 0; i < solids->n; i++) {
         const struct cs_obstacle *obstacle = solids->obstacles + i;
         struct cs_surface_style style;
@@ -135,9 +126,9 @@ void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,
     static const signed char signs[6][2] = {{-1, -1}, {1, -1}, {-1, 1},
                                             {1, -1},  {1, 1},  {-1, 1}};
     const struct cs_triangle_kind kind = {.attributes = 0};
-    const struct projection projection = {lens, NULL, triangles};
+    const struct projection projection = {lens, NULL, false, triangles};
     const float *span = ground->span;
-    const struct cs_surface_style style = {.scale = 1};
+    const struct cs_surface_style style = {.sink = 0};
     struct cs_vertex square[6] = {{.value = 0}};
     for (int i = 0; i < 6; i++) {
         square[i].place[0] = span[0] + span[3] * signs[i][0];

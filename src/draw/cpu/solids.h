@@ -10,9 +10,7 @@ struct cs_solids {
     uint32_t n;                    /* colliders of the scene */
     double cell;                   /* m: how coarse the cloth is that lies on them */
     struct cs_obstacle *obstacles; /* (n) as they are drawn */
-    const struct cs_vertex *ball;  /* (n_ball) corners of a unit sphere */
-    uint32_t n_ball;
-    struct cs_vertex *vertices; /* work */
+    struct cs_vertex *vertices;    /* work */
 };
 
 /* obstacles: at the start. */
@@ -26,12 +24,12 @@ bool cs_solids_move(struct cs_solids *solids, const struct cs_obstacle *obstacle
 /* Fills the coats of all colliders, and adds the squares and then all others as the camera sees
  * them, whose number is that of the coat. *n_squares: triangles of squares. */
 void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
-                   const float eye[3], struct cs_coat *coats, struct cs_triangles *triangles,
+                   const float eye[4], struct cs_coat *coats, struct cs_triangles *triangles,
                    size_t *n_squares);
 
-/* Adds those that cast shadow as the light sees them. */
+/* Adds those that cast shadow as the light sees them, from its place or direction. */
 void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *lens,
-                          struct cs_triangles *triangles);
+                          const float light[4], struct cs_triangles *triangles);
 
 /* Adds the ground's square. */
 void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,

@@ -92,8 +92,8 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
         cs_backdrop_init(&canvas->backdrop, canvas->scene, &extent, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
         cs_shadow_init(&canvas->shadow, error) != CS_OK ||
-        cs_gl_colliders_init(&canvas->colliders, canvas->system, settings->obstacles,
-                             &canvas->arena, error) != CS_OK ||
+        cs_gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view.block,
+                             settings->obstacles, &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
         cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
         cs_overlay_init(&canvas->overlay, canvas->system, canvas->view.pixels_per_m,
@@ -133,8 +133,7 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame) 
     if (!has_shadow)
         return;
     cs_shadow_begin(&canvas->shadow);
-    cs_gl_colliders_draw_shadow(&canvas->colliders, canvas->shadow.model);
-    gl.Uniform4f(canvas->shadow.model, 0, 0, 0, 1);
+    cs_gl_colliders_draw_shadow(&canvas->colliders);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++)
         cs_surface_draw(&canvas->cloths[b].surface);
 }

@@ -13,7 +13,7 @@
     X(BINDBUFFERBASE, BindBufferBase) X(BINDFRAMEBUFFER, BindFramebuffer)                          \
     X(BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture)                              \
     X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc)                                    \
-    X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData)                                  \
+    X(BUFFERDATA, BufferData)                                                                     \
     X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear)                              \
     X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)  \
     X(DELETESHADER, DeleteShader) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask)                  \
@@ -30,7 +30,8 @@
     X(GETUNIFORMBLOCKINDEX, GetUniformBlockIndex) X(GETUNIFORMLOCATION, GetUniformLocation)        \
     X(LINKPROGRAM, LinkProgram) X(PIXELSTOREI, PixelStorei) X(READBUFFER, ReadBuffer)              \
     X(READPIXELS, ReadPixels) X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample)    \
-    X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D) X(TEXPARAMETERI, TexParameteri)        \
+    X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D)                                        \
+    X(TEXIMAGE2DMULTISAMPLE, TexImage2DMultisample) X(TEXPARAMETERI, TexParameteri)                \
     X(UNIFORM1F, Uniform1f) X(UNIFORM1I, Uniform1i) X(UNIFORM3F, Uniform3f)                        \
     X(UNIFORM4F, Uniform4f) X(UNIFORMBLOCKBINDING, UniformBlockBinding)                            \
     X(USEPROGRAM, UseProgram) X(VERTEXATTRIBDIVISOR, VertexAttribDivisor)                          \

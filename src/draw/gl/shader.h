@@ -16,6 +16,7 @@ extern const struct cs_shader_text cs_shader_shadow;  /* depth seen from the lig
 extern const struct cs_shader_text cs_shader_ground;  /* grid of lines on the ground */
 extern const struct cs_shader_text cs_shader_line;    /* lines and dots of any width */
 extern const struct cs_shader_text cs_shader_bar;     /* rectangle in colours of the map */
+extern const struct cs_shader_text cs_shader_sample;  /* one sample of every pixel */
 
 /* Compiles and links. The view block is bound to CS_VIEW_BINDING, the samplers `picture` and
  * `depth` to texture units 0 and 1. On failure CS_ERR_MODULE with the compiler's log in one

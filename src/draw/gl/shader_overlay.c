@@ -1,4 +1,4 @@
-/* GLSL of everything but surfaces: sky, ground grid, lines, colour bar. */
+/* GLSL of everything but surfaces: sky, samples, ground grid, lines, colour bar. */
 #include "draw/gl/shader.h"
 
 #define GLSL(...) #__VA_ARGS__ "\n"
@@ -19,6 +19,16 @@ static const char sky_fragment[] = GLSL(
     void main() {
         vec3 c = sky.rgb * (0.94 + 0.12 * height) + 0.02 * (1.0 + height);
         colour = vec4(encode(clamp(c, 0.0, 1.0)), 1.0);
+    }
+);
+
+// with the vertices of the sky
+static const char sample_fragment[] = GLSL(
+    uniform sampler2DMS picture;
+    uniform int number;
+    out vec4 colour;
+    void main() {
+        colour = texelFetch(picture, ivec2(gl_FragCoord.xy), number);
     }
 );
 
@@ -148,6 +158,7 @@ static const char bar_fragment[] = GLSL(
 );
 /* clang-format on */
 
+const struct cs_shader_text cs_shader_sample = {"samples", sky_vertex, sample_fragment};
 const struct cs_shader_text cs_shader_sky = {"sky", sky_vertex, sky_fragment};
 const struct cs_shader_text cs_shader_ground = {"ground", ground_vertex, ground_fragment};
 const struct cs_shader_text cs_shader_line = {"line", line_vertex, line_fragment};

@@ -13,14 +13,13 @@ static const char surface_vertex[] = GLSL(
     layout(location = 1) in vec3 in_normal;
     layout(location = 2) in vec2 in_uv;
     layout(location = 3) in float in_value;
-    uniform vec4 model;
     uniform float sink;
     out vec3 place;
     out vec3 normal;
     out vec2 uv;
     out float value;
     void main() {
-        place = model.xyz + model.w * in_place;
+        place = in_place;
         normal = in_normal;
         uv = in_uv;
         value = in_value;
@@ -83,9 +82,8 @@ static const char surface_fragment[] = GLSL(
 
 static const char shadow_vertex[] = GLSL(
     layout(location = 0) in vec3 in_place;
-    uniform vec4 model;
     void main() {
-        gl_Position = world_to_light * vec4(model.xyz + model.w * in_place, 1.0);
+        gl_Position = world_to_light * vec4(in_place, 1.0);
     }
 );
 

@@ -21,7 +21,6 @@ static void make_texture(struct cs_shadow *shadow) {
 enum cs_status cs_shadow_init(struct cs_shadow *shadow, struct cs_error *error) {
     if (cs_shader_make(&cs_shader_shadow, &shadow->program, error) != CS_OK)
         return error->status;
-    shadow->model = gl.GetUniformLocation(shadow->program, "model");
     make_texture(shadow);
     gl.GenFramebuffers(1, &shadow->frame);
     gl.BindFramebuffer(GL_FRAMEBUFFER, shadow->frame);

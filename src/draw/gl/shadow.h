@@ -6,12 +6,11 @@
 
 struct cs_shadow {
     unsigned program, frame, texture;
-    int model;
 };
 
 enum cs_status cs_shadow_init(struct cs_shadow *shadow, struct cs_error *error);
 
-/* Between begin and the next target, what is drawn with `model` in use casts shadow. */
+/* Between begin and the next target, what is drawn casts shadow. */
 void cs_shadow_begin(const struct cs_shadow *shadow);
 /* Gives the depth to the surface program. */
 void cs_shadow_bind(const struct cs_shadow *shadow);

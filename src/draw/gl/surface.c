@@ -65,7 +65,6 @@ enum cs_status cs_surface_program_init(struct cs_surface_program *program,
     program->front = gl.GetUniformLocation(program->name, "front");
     program->back = gl.GetUniformLocation(program->name, "back");
     program->coefficients = gl.GetUniformLocation(program->name, "coefficients");
-    program->model = gl.GetUniformLocation(program->name, "model");
     program->fade = gl.GetUniformLocation(program->name, "fade");
     program->sink = gl.GetUniformLocation(program->name, "sink");
     return CS_OK;
@@ -81,8 +80,6 @@ void cs_surface_program_use(const struct cs_surface_program *program,
                  (float)style->back[2]);
     gl.Uniform4f(program->coefficients, (float)style->ambient, (float)style->diffuse,
                  (float)style->specular, (float)style->shininess);
-    gl.Uniform4f(program->model, (float)style->centre[0], (float)style->centre[1],
-                 (float)style->centre[2], (float)style->scale);
     gl.Uniform1f(program->fade, (float)style->fade);
     gl.Uniform1f(program->sink, (float)style->sink);
     if (style->mode == CS_SURFACE_TEXTURED) {

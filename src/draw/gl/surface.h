@@ -29,7 +29,7 @@ void cs_surface_draw(const struct cs_surface *surface);
 
 struct cs_surface_program {
     unsigned name;
-    int mode, front, back, coefficients, model, sink, fade;
+    int mode, front, back, coefficients, sink, fade;
 };
 
 enum cs_status cs_surface_program_init(struct cs_surface_program *program,

@@ -2,33 +2,66 @@
 #include "draw/gl/target.h"
 
 #include "draw/gl/gl.h"
+#include "draw/gl/shader.h"
 
 #include <stdbool.h>
 
-static GLuint make_buffer(GLenum attachment, GLenum format, int samples,
-                          const struct cs_target *target) {
+static void attach_buffer(GLenum attachment, GLenum format, const struct cs_target *target,
+                          int samples) {
     GLuint buffer;
     gl.GenRenderbuffers(1, &buffer);
     gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
     gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, target->width,
                                       target->height);
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
-    return buffer;
 }
 
-// colour (and depth) with so many samples; 0: a plain one
-static enum cs_status make_frame(unsigned *frame, int samples, bool depth,
-                                 const struct cs_target *target, struct cs_error *error) {
-    gl.GenFramebuffers(1, frame);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, *frame);
-    make_buffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, samples, target);
-    if (depth)
-        make_buffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, samples, target);
+static void attach_samples(struct cs_target *target) {
+    gl.GenTextures(1, &target->samples);
+    gl.ActiveTexture(GL_TEXTURE0);
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, target->samples);
+    gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, (GLsizei)target->n_samples, GL_RGBA8,
+                             target->width, target->height, GL_TRUE);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE,
+                            target->samples, 0);
+}
+
+static enum cs_status check_frame(const struct cs_target *target, struct cs_error *error) {
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         return cs_fail(error, CS_ERR_MODULE,
-                       "the driver cannot draw into %d x %d pixels with %d samples",
-                       target->width, target->height, samples > 1 ? samples : 1);
+                       "the driver cannot draw into %d x %d pixels with %u samples",
+                       target->width, target->height, target->n_samples);
     return CS_OK;
+}
+
+// what is drawn into: colour and depth
+static enum cs_status make_drawn(struct cs_target *target, struct cs_error *error) {
+    const bool many = target->n_samples > 1;
+    gl.GenFramebuffers(1, &target->drawn);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, target->drawn);
+    if (many)
+        attach_samples(target);
+    else
+        attach_buffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, target, 0);
+    attach_buffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, target,
+                  many ? (int)target->n_samples : 0);
+    return check_frame(target, error);
+}
+
+// OpenGL reads no multisampled pixels: one sample at a time is copied into a plain buffer
+static enum cs_status make_read(struct cs_target *target, struct cs_arena *arena,
+                                struct cs_error *error) {
+    struct cs_tone *tone = cs_arena_take(arena, sizeof *tone, error);
+    if (!tone || cs_shader_make(&cs_shader_sample, &target->program, error))
+        return error->status;
+    cs_tone_make(tone);
+    target->tone = tone;
+    target->number = gl.GetUniformLocation(target->program, "number");
+    gl.GenVertexArrays(1, &target->object);
+    gl.GenFramebuffers(1, &target->read);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, target->read);
+    attach_buffer(GL_COLOR_ATTACHMENT0, GL_RGBA8, target, 0);
+    return check_frame(target, error);
 }
 
 enum cs_status cs_target_init(struct cs_target *target, int width, int height, int samples,
@@ -41,45 +74,62 @@ enum cs_status cs_target_init(struct cs_target *target, int width, int height, i
                        width, height);
     target->width = width;
     target->height = height;
-    target->rgba = cs_arena_take_n(arena, (size_t)width * (size_t)height, 4, error);
-    if (!target->rgba)
+    target->n_samples = samples > 1 ? 4 : 1;
+    for (uint32_t s = 0; s < target->n_samples && !error->status; s++)
+        target->rgba[s] = cs_arena_take_n(arena, (size_t)width * (size_t)height,
+                                          sizeof *target->rgba[s], error);
+    if (error->status || make_drawn(target, error))
         return error->status;
-    if (make_frame(&target->many, samples > 1 ? samples : 0, true, target, error) != CS_OK)
-        return error->status;
-    target->single = target->many;
-    if (samples > 1)
-        return make_frame(&target->single, 0, false, target, error);
-    return CS_OK;
+    target->read = target->drawn;
+    return samples > 1 ? make_read(target, arena, error) : CS_OK;
 }
 
 void cs_target_begin(const struct cs_target *target) {
-    gl.BindFramebuffer(GL_FRAMEBUFFER, target->many);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, target->drawn);
     gl.Viewport(0, 0, target->width, target->height);
     gl.DepthMask(GL_TRUE);
     gl.Clear(GL_DEPTH_BUFFER_BIT); // the sky covers every pixel
 }
 
+static void copy_sample(const struct cs_target *target, uint32_t sample) {
+    gl.Disable(GL_DEPTH_TEST);
+    gl.UseProgram(target->program);
+    gl.Uniform1i(target->number, (GLint)sample);
+    gl.BindVertexArray(target->object);
+    gl.ActiveTexture(GL_TEXTURE0);
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, target->samples);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.Enable(GL_DEPTH_TEST);
+}
+
+// of pixel i of the rows from the bottom
+static uint32_t colour_of(const struct cs_target *target, size_t i) {
+    uint32_t samples[4] = {target->rgba[0][i]}, differ = 0;
+    for (uint32_t s = 1; s < target->n_samples; s++) {
+        samples[s] = target->rgba[s][i];
+        differ |= samples[s] ^ samples[0];
+    }
+    return differ ? cs_tone_mean(target->tone, samples) : samples[0];
+}
+
 void cs_target_read(const struct cs_target *target, struct cs_image *image) {
     const int w = target->width, h = target->height;
-    /* OpenGL reads no multisampled pixels: they are averaged into the plain buffer first */
-    if (target->single != target->many) {
-        gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target->many);
-        gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target->single);
-        gl.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    }
-    gl.BindFramebuffer(GL_FRAMEBUFFER, target->single);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, target->read);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
-    gl.ReadPixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, target->rgba);
+    for (uint32_t s = 0; s < target->n_samples; s++) {
+        if (target->read != target->drawn)
+            copy_sample(target, s);
+        gl.ReadPixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, target->rgba[s]);
+    }
     image->width = (uint32_t)w;
     image->height = (uint32_t)h;
     uint8_t *out = image->rgb;
-    /* OpenGL counts rows from the bottom, a picture from the top */
-    for (int row = h - 1; row >= 0; row--) {
-        const uint8_t *in = target->rgba + (size_t)row * (size_t)w * 4;
-        for (int i = 0; i < w; i++, in += 4, out += 3) {
-            out[0] = in[0];
-            out[1] = in[1];
-            out[2] = in[2];
+    // OpenGL counts rows from the bottom, a picture from the top
+    for (int row = h - 1; row >= 0; row--)
+        for (int x = 0; x < w; x++, out += 3) {
+            const uint32_t c = colour_of(target, (size_t)row * (size_t)w + (size_t)x);
+            out[0] = (uint8_t)c;
+            out[1] = (uint8_t)(c >> 8);
+            out[2] = (uint8_t)(c >> 16);
         }
-    }
 }

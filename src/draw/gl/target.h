@@ -4,19 +4,26 @@
 
 #include "base/arena.h"
 #include "base/image.h"
+#include "draw/tone.h"
 
 struct cs_target {
-    unsigned many,
-        single; /* frame buffers: multisampled, and the one to read; may be the same */
+    unsigned drawn, read; /* frame buffers; the same where a pixel has one sample */
     int width, height;
-    uint8_t *rgba; /* owned by the arena */
+    uint32_t n_samples; /* a pixel */
+    unsigned samples, program,
+        object;                 /* texture of the samples, and what copies one of each pixel */
+    int number;                 /* which one: a uniform of the program */
+    uint32_t *rgba[4];          /* (height, width) by sample, owned by the arena */
+    const struct cs_tone *tone; /* owned by the arena */
 };
 
+/* samples: 1 or 4. */
 enum cs_status cs_target_init(struct cs_target *target, int width, int height, int samples,
                               struct cs_arena *arena, struct cs_error *error);
 void cs_target_begin(const struct cs_target *target);
 
-/* Averages the samples and copies the picture, top row first. */
+/* Copies the picture, top row first, each pixel the mean of its samples (cs_tone_mean): drivers
+ * take the mean of bytes. */
 void cs_target_read(const struct cs_target *target, struct cs_image *image);
 
 #endif

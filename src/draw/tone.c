@@ -1,5 +1,5 @@
 /* tone.c - the curve of sRGB by roots that Newton's method finds, and its thresholds. */
-#include "draw/cpu/tone.h"
+#include "draw/tone.h"
 
 // y^2.4 for y in 0..1: y^2 times the fifth root of y^2, by Newton's method
 static double power_2_4(double y) {

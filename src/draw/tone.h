@@ -44,4 +44,14 @@ CS_INLINE uint32_t cs_tone_blend(uint32_t under, uint32_t over, uint32_t share) 
     return out;
 }
 
+/* The mean of four samples' light, not of their bytes: what covers half of a pixel gives half
+ * of its light. Colours are packed; four equal ones stay what they are. */
+CS_INLINE uint32_t cs_tone_mean(const struct cs_tone *tone, const uint32_t samples[4]) {
+    float light[3] = {0, 0, 0};
+    for (int s = 0; s < 4; s++)
+        for (int k = 0; k < 3; k++)
+            light[k] += tone->linear[samples[s] >> 8 * k & 255];
+    return cs_tone_pack(tone, light[0] * 0.25f, light[1] * 0.25f, light[2] * 0.25f);
+}
+
 #endif
