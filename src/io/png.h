@@ -1,4 +1,4 @@
-/* png.h - RGB PNG files through libpng. */
+/* png.h - RGB PNG files: read through libpng, written through libdeflate where it is there. */
 #ifndef CS_PNG_H
 #define CS_PNG_H
 
@@ -12,7 +12,7 @@ struct cs_png_text {
     const char *key, *value; /* Latin-1, key at most 79 characters */
 };
 
-/* Writes beside and renames. RGB, zlib level `level` (1: fast, 6: archive), filter SUB, no time
+/* Writes beside and renames. RGB, packed at `level` of 0..9 (1: fast, 6: archive), filter SUB, no time
  * stamp. On failure CS_ERR_FILE and no file is left. */
 enum cs_status cs_png_write(const char *path, const struct cs_image *image, int level,
                             const struct cs_png_text *texts, uint32_t n_texts,
