@@ -101,14 +101,13 @@ static void free_table(struct table *table) {
 
 /* A row of a method whose bits are those of a library may hold for one version of it. */
 static bool is_for_this_build(struct cs_golden_row *row, const struct cs_integrator *method) {
-    const char *library =
-        CS_HAS(method, library) && method->library ? method->library : "another";
-    if (!strcmp(row->note, "any") || !strcmp(row->note, library))
-        return true;
-    row->skipped = true;
-    snprintf(row->library, sizeof row->library, "%s", library);
-    cs_text_add(&row->message, "golden for %s, and this build has %s", row->note, library);
-    return false;
+    if (CS_HAS(method, library) && method->library)
+        snprintf(row->library, sizeof row->library, "%s", method->library);
+    row->skipped = strcmp(row->note, "any") != 0 && strcmp(row->note, row->library) != 0;
+    if (row->skipped)
+        cs_text_add(&row->message, "golden for %s, and this build has %s", row->note,
+                    *row->library ? row->library : "no such library");
+    return !row->skipped;
 }
 
 /* one state hash against its golden value */
@@ -151,6 +150,12 @@ static bool is_in_table(const struct table *table, const struct cs_golden_row *r
     return found;
 }
 
+static void accept_row(struct cs_golden_row *row) {
+    row->hash = row->found;
+    if (*row->library)
+        row->note = row->library;
+}
+
 static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
     if (row->skipped && !row->added)
         golden->skipped++;
@@ -175,12 +180,13 @@ check_table(struct cs_golden *golden, const char *name, const char *head, int n_
         struct cs_golden_row *row = table.rows + k;
         if (!is_wanted(golden, row) || check(golden, row, error))
             continue;
-        row->added = golden->accept && *row->library && !is_in_table(&table, row);
+        row->added =
+            golden->accept && row->skipped && *row->library && !is_in_table(&table, row);
         count(golden, row);
         if (golden->report)
             golden->report(golden->ctx, row);
         if (golden->accept && row->message.length > 0 && !row->skipped)
-            row->hash = row->found;
+            accept_row(row);
     }
     if (!error->status && golden->accepted > before)
         write_table(&table, error);

@@ -17,14 +17,15 @@ struct cs_golden_row {
     struct cs_golden_run run;
     char *line; /* the fields above point into it */
     char *hash; /* of the state (hash.tsv) or of the pixels (image.tsv) */
-    char *note; /* "any", or the library and version that the bits are of ("SUNDIALS 6.4.1"), or
-                   the image's renderer */
+    /* "any", or the library and version that the bits are of ("SUNDIALS 6.4.1"), or the image's
+     * renderer */
+    char *note;
     char *image; /* name of the picture; NULL in hash.tsv */
     char found[CS_HASH_DIGITS], renderer[256];
+    char library[64];       /* as in note, of this build; "": the bits are the program's own */
     struct cs_text message; /* what differs, or why the row was skipped; empty: nothing */
-    bool skipped;     /* the integrator's library is not in this build, or of another version */
-    char library[64]; /* that version; "": not skipped for it */
-    bool added;       /* accepted for that version, in a row of its own */
+    bool skipped;           /* the library is not in this build, or of another version */
+    bool added;             /* accepted for that version, in a row of its own */
 };
 
 struct cs_golden {
