@@ -120,7 +120,7 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     account_for(host, CS_WORK_LOSS, t, x, v);
     if (rows[CS_FEATURE_EVENTS].built)
         cs_events_place(host->run->system, t, x, v);
-    if (host->run->system->pairs && host->run->system->pairs->failed)
+    if (cs_passage_has_failed(host->run->system))
         return host->calls.fail(ctx, "out of memory for the pairs of contact");
     enum cs_step step = judge(host, t, x, v);
     if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)

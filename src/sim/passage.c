@@ -22,6 +22,11 @@ double cs_passage_share(const struct cs_system *system, double t0, const double 
                : 1;
 }
 
+bool cs_passage_has_failed(const struct cs_system *system) {
+    const struct cs_pairs *pairs = system->pairs;
+    return pairs && (pairs->now.failed || pairs->matrix.failed);
+}
+
 bool cs_passage_stops(const struct cs_system *system, double t, const double *x,
                       struct cs_text *why) {
     if (cs_scene_crossings(system->scene) != CS_CROSSINGS_STOP)

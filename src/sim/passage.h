@@ -14,6 +14,10 @@ bool cs_passage_is_judged(const struct cs_system *system);
 double cs_passage_share(const struct cs_system *system, double t0, const double *x0, double t1,
                         const double *x1);
 
+/* Whether contact has lacked the memory for what it found: forces lack parts, and the run must
+ * end. */
+bool cs_passage_has_failed(const struct cs_system *system);
+
 /* Whether the scene wants the run to end at the first crossing, and x (3,n) at t has one: then
  * one line about it is added. */
 bool cs_passage_stops(const struct cs_system *system, double t, const double *x,

@@ -2,17 +2,8 @@
 #ifndef CS_CONTACT_ROWS_H
 #define CS_CONTACT_ROWS_H
 
-#include "model/contact/obstacle.h"
-#include "model/contact/pairing.h"
-#include "model/contact/touch.h"
+#include "model/contact/near.h"
 #include "model/force/term.h"
-
-/* An obstacle as it is at one time, and how it rubs. */
-struct cs_near {
-    struct cs_obstacle pose;
-    struct cs_pairing pairing;
-    double mu, ev, tau; /* as in touch.h */
-};
 
 /* Spheres and planes whose matter moves at one velocity: nothing else is as cheap. */
 bool cs_contact_has_rows(const struct cs_near *near);

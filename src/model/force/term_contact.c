@@ -1,9 +1,6 @@
 /* Contact with obstacles as a force: each particle feels the law of touch.h from each obstacle
  * whose range it is in. Particles touch one by one, so that the matrix has a block at each and
  * nothing between them. Obstacles come in the scene's order; that is the order of the sums. */
-#include "model/contact/obstacle.h"
-#include "model/contact/pairing.h"
-#include "model/contact/touch.h"
 #include "model/force/contact_rows.h"
 #include "model/force/terms.h"
 
@@ -22,39 +19,23 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
 static const char *const ramps[] = {"colliders.friction", NULL};
 
 static struct cs_near near_of(const struct cs_system *system, uint32_t collider, double t) {
-    const struct cs_scene *scene = system->scene;
-    struct cs_near near = {.pairing = system->pairings[collider],
-                           .mu = cs_scene_colliders(scene)[collider].friction,
-                           .ev = scene->contact.friction_speed,
-                           .tau = scene->contact.damping};
-    cs_obstacle_at(system, collider, t, &near.pose);
+    struct cs_near near;
+    cs_near_at(system, collider, t, &near);
     return near;
 }
 
-static struct cs_touch_parts parts_of(uint32_t parts) {
-    return (struct cs_touch_parts){.elastic = parts & CS_PART_POTENTIAL ? 1 : 0,
-                                   .rubbing = parts & CS_PART_DISSIPATIVE ? 1 : 0};
+static void read(const double *from, size_t n, size_t i, double to[3]) {
+    for (size_t c = 0; c < 3; c++)
+        to[c] = from ? from[c * n + i] : 0;
 }
 
 /* How particle i touches; false: it is out of range. v may be NULL: at rest. */
 static bool touch_of(const struct cs_near *near, size_t n, const double *x, const double *v,
                      size_t i, struct cs_touch *touch) {
-    const double p[3] = {x[i], x[n + i], x[2 * n + i]};
-    double surface[3] = {0};
-    if (!cs_obstacle_is_near(&near->pose, near->pairing.range, p))
-        return false;
-    touch->d = cs_obstacle_smooth(&near->pose, p, touch->g, touch->h);
-    if (!(touch->d < near->pairing.range))
-        return false;
-    cs_obstacle_velocity(&near->pose, p, surface);
-    for (size_t c = 0; c < 3; c++)
-        touch->v[c] = (v ? v[c * n + i] : 0) - surface[c];
-    touch->range = near->pairing.range;
-    touch->k = near->pairing.k;
-    touch->mu = near->mu;
-    touch->ev = near->ev;
-    touch->tau = near->tau;
-    return true;
+    double p[3], w[3];
+    read(x, n, i, p);
+    read(v, n, i, w);
+    return cs_near_touches(near, p, w, touch);
 }
 
 static void add_at(double *f, size_t n, size_t i, const double a[3]) {
@@ -64,7 +45,7 @@ static void add_at(double *f, size_t n, size_t i, const double a[3]) {
 
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
-    const struct cs_touch_parts parts = parts_of(at->parts);
+    const struct cs_touch_parts parts = cs_near_parts(at->parts);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;
@@ -81,25 +62,18 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     }
 }
 
-/* what a direction does to a touching particle: it moves, and so does the surface below it */
+/* what a direction does to a touching particle */
 static struct cs_touch_move move_of(const struct cs_near *near, size_t n,
                                     const struct cs_eval *at, size_t i) {
-    struct cs_touch_move move;
-    const double *spin = near->pose.spin;
-    for (size_t c = 0; c < 3; c++) {
-        move.dp[c] = at->dx ? at->dx[c * n + i] : 0;
-        move.dv[c] = at->dv ? at->dv[c * n + i] : 0;
-    }
-    for (size_t c = 0; c < 3; c++) {
-        const size_t d = (c + 1) % 3, e = (c + 2) % 3;
-        move.dv[c] -= spin[d] * move.dp[e] - spin[e] * move.dp[d];
-    }
-    return move;
+    double dp[3], dv[3];
+    read(at->dx, n, i, dp);
+    read(at->dv, n, i, dv);
+    return cs_near_move(near, dp, dv);
 }
 
 static void add_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
     const size_t n = system->view.n;
-    const struct cs_touch_parts parts = parts_of(at->parts);
+    const struct cs_touch_parts parts = cs_near_parts(at->parts);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
         const struct cs_near near = near_of(system, c, at->t);
         struct cs_touch touch;

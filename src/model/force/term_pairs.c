@@ -22,12 +22,7 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
 }
 
 static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
-    const struct cs_pair_set *set = &system->pairs->now;
-    const size_t n = system->view.n;
-    for (size_t i = at->block->begin; i < at->block->end && set->n; i++)
-        for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++)
-            for (size_t c = 0; c < 3; c++)
-                f[c * n + i] += set->ends[e].pair->to[set->ends[e].corner][c];
+    cs_pair_set_add(&system->pairs->now, at->block->begin, at->block->end, f);
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
@@ -42,11 +37,11 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks) {
     (void)matrix;
-    cs_pairs_add_blocks(system->pairs, begin, end, blocks);
+    cs_pair_set_add_blocks(system->pairs->blocks, begin, end, blocks);
 }
 
 static void add_product(const struct cs_system *system, const double *p, double *y) {
-    cs_pairs_multiply(system->pairs, p, y);
+    cs_pair_set_multiply(&system->pairs->matrix, p, y);
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,

@@ -4,22 +4,8 @@
 
 #include "model/contact/touch.h"
 #include "model/pair/meeting.h"
+#include "model/pair/pair_set.h"
 #include "model/pair/stencil.h"
-
-/* What one pair in range does. */
-struct cs_pair {
-    uint32_t at[4];  /* particles */
-    double to[4][3]; /* force, its change, or the gradient g of a matrix */
-    double share[4]; /* of a matrix: the weights w */
-    double along;    /* of a matrix: along g g^T + (w w^T) x of, and cs_pair_lot.full */
-    double of[6];    /* xx, xy, xz, yy, yz, zz */
-    double by[4][3]; /* of a matrix: what cs_pairs_multiply makes of a vector */
-};
-
-/* how the gradient of a pair turns: 12 x 12, symmetric */
-struct cs_pair_turn {
-    double of[12][12];
-};
 
 /* One pair at one state, found in range. */
 struct cs_reaction {
