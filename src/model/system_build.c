@@ -135,9 +135,13 @@ static void choose_terms(struct cs_system *system, struct cs_error *error) {
     for (uint32_t k = 0; k < cs_n_terms && !error->status; k++) {
         if (!system->plan.forces[k].built)
             continue;
-        system->terms[system->n_terms++] = cs_terms[k];
         if (cs_terms[k]->build)
             cs_terms[k]->build(system, error);
+        const char *idle = cs_terms[k]->idle_why ? cs_terms[k]->idle_why(system) : NULL;
+        if (idle)
+            system->plan.forces[k] = (struct cs_plan_row){.why = idle};
+        else
+            system->terms[system->n_terms++] = cs_terms[k];
     }
 }
 

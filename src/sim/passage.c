@@ -3,6 +3,7 @@
 
 #include "model/contact/share.h"
 #include "model/cross/crossings.h"
+#include "model/pair/cover.h"
 #include "model/pair/seen.h"
 #include "scene/crossings.h"
 
@@ -15,6 +16,8 @@ double cs_passage_share(const struct cs_system *system, double t0, const double 
                         const double *x1) {
     if (system->pairings && t1 > t0 && !cs_contact_is_seen(system, t0, x0, t1, x1))
         return 0.5;
+    if (system->covers && t1 > t0 && !cs_covers_are_seen(system->covers, t0, x0, t1, x1))
+        return 0.5;
     if (system->pairs && t1 > t0 && !cs_pairs_are_seen(system->pairs, t0, x0, t1, x1))
         return 0.5;
     return cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT
@@ -24,7 +27,9 @@ double cs_passage_share(const struct cs_system *system, double t0, const double 
 
 bool cs_passage_has_failed(const struct cs_system *system) {
     const struct cs_pairs *pairs = system->pairs;
-    return pairs && (pairs->now.failed || pairs->matrix.failed);
+    const struct cs_covers *covers = system->covers;
+    return (pairs && (pairs->now.failed || pairs->matrix.failed)) ||
+           (covers && (covers->now.failed || covers->matrix.failed));
 }
 
 bool cs_passage_stops(const struct cs_system *system, double t, const double *x,

@@ -30,7 +30,9 @@
     " \"colliders\": [{\"sphere\": {\"centre\": [0.1, -0.05, -0.5], \"radius\": 0.35},"        \
     " \"thickness\": 0.3, \"friction\": 0.4}, {\"capsule\": {\"from\": [-0.5, 0, 0.4], "       \
     "\"to\": "                                                                                 \
-    "[0.2, 0.1, 0.4], \"radius\": 0.2}, \"thickness\": 0.3, \"friction\": 0.7}],"              \
+    "[0.2, 0.1, 0.4], \"radius\": 0.2}, \"thickness\": 0.3, \"friction\": 0.7}, {\"sphere\": " \
+    "{\"centre\": [0.1, 0.05, -0.06], \"radius\": 0.02}, \"thickness\": 0.12, \"friction\": "  \
+    "0.5}],"                                                                                   \
     " \"contact\": {\"law\": \"force\", \"stiffness\": 50, \"damping\": 0.01,"                 \
     " \"friction_speed\": 0.3},"                                                               \
     " \"forces\": {" FORCES "%s}}"

@@ -2,6 +2,7 @@
 #include "model/commit/inside.h"
 
 #include "model/contact/obstacle.h"
+#include "model/pair/cover.h"
 
 #include <math.h>
 
@@ -67,6 +68,44 @@ static enum cs_status clear(struct cs_system *system, uint32_t i, struct cs_insi
     return CS_OK;
 }
 
+/* a point of an edge or triangle that is inside the collider of its lot */
+static enum cs_status look_between(const struct cs_system *system,
+                                   const struct cs_cover_lot *lot, uint32_t item,
+                                   struct cs_error *error) {
+    struct cs_obstacle obstacle;
+    struct cs_cover_point point;
+    cs_obstacle_at(system, lot->collider, 0, &obstacle);
+    for (cs_cover_start(lot, item, &point); cs_cover_next(&point);) {
+        double p[3], n[3];
+        cs_cover_mix(&point, system->view.n, system->state, p);
+        const double depth = -cs_obstacle_distance(&obstacle, p, n);
+        if (!(depth > TOLERANCE) || cs_cover_mass(system, &point) == HUGE_VAL)
+            continue;
+        struct cs_text first = {0}, second = {0};
+        cs_system_print_particle(system, point.at[0], &first);
+        cs_system_print_particle(system, point.at[1], &second);
+        cs_fail(error, CS_ERR_SCENE,
+                "%s: between %s and %s the surface starts %.3g m inside colliders[%u]: place "
+                "it in front",
+                system->scene->path, cs_text_get(&first), cs_text_get(&second), depth,
+                lot->collider);
+        cs_text_finish(&first);
+        cs_text_finish(&second);
+        return error->status;
+    }
+    return CS_OK;
+}
+
+static enum cs_status check_between(const struct cs_system *system, struct cs_error *error) {
+    for (uint32_t l = 0; l < system->covers->n_lots; l++) {
+        const struct cs_cover_lot *lot = system->covers->lots + l;
+        for (uint32_t i = lot->begin; i < lot->end; i++)
+            if (look_between(system, lot, i, error))
+                return error->status;
+    }
+    return CS_OK;
+}
+
 enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *inside,
                                struct cs_error *error) {
     *inside = (struct cs_inside){0};
@@ -75,5 +114,5 @@ enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *insid
     for (uint32_t i = 0; i < system->view.n && !error->status; i++)
         if (system->inv_mass[i] > 0)
             clear(system, i, inside, error);
-    return error->status;
+    return error->status || !system->covers ? error->status : check_between(system, error);
 }

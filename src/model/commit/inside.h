@@ -13,7 +13,8 @@ struct cs_inside {
  * obstacle - by the law project: behind its surface moved out by the thickness - would get the
  * energy of its way out from nowhere. By contact.start it is moved out along the normals,
  * and *inside says so; or CS_ERR_SCENE with the first particle, the obstacle and the depth, as
- * also where a particle lies between obstacles that leave no room. */
+ * also where a particle lies between obstacles that leave no room, or a point between particles
+ * that feels an obstacle (model/pair/cover.h) is then still inside. */
 enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *inside,
                                struct cs_error *error);
 

@@ -139,6 +139,28 @@ static bool has_inside(const struct cs_obstacle *obstacle) {
     return core[0] > 0 && core[1] > 0 && core[2] > 0;
 }
 
+/* the face of a box that x lies in front of, further from its rim than what is blended; -1: it
+ * lies in front of none */
+static int face_below(const struct cs_obstacle *obstacle, const double x[3]) {
+    int face = -1, within = 0;
+    for (int k = 0; k < 3; k++) {
+        const double band = fmin(BAND * obstacle->radius, obstacle->core[k]);
+        const double out = fabs(x[k]) - obstacle->core[k];
+        if (out >= band)
+            face = k;
+        within += out <= -band;
+    }
+    return within == 2 && has_inside(obstacle) ? face : -1;
+}
+
+static double smooth_face(const struct cs_obstacle *obstacle, int face, double x,
+                          double gradient[3], double hessian[6]) {
+    memset(hessian, 0, 6 * sizeof *hessian);
+    for (int c = 0; c < 3; c++)
+        gradient[c] = copysign(1, x) * obstacle->axes[face][c];
+    return fabs(x) - obstacle->core[face] - obstacle->radius;
+}
+
 /* what is to be added for the inside of the core */
 static double smooth_core(const struct cs_obstacle *obstacle, const double x[3], double g[3],
                           double h[3][3]) {
@@ -157,6 +179,9 @@ double cs_obstacle_smooth(const struct cs_obstacle *obstacle, const double p[3],
         return smooth_point(obstacle, p, gradient, hessian);
     double x[3], g[3], h[3][3], rows[3][3], out[3][3];
     to_own(obstacle, p, x);
+    const int face = face_below(obstacle, x);
+    if (face >= 0)
+        return smooth_face(obstacle, face, x[face], gradient, hessian);
     double distance = smooth_own(obstacle, x, g, h);
     if (has_inside(obstacle))
         distance += smooth_core(obstacle, x, g, h);

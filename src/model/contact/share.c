@@ -12,17 +12,8 @@
 /* points of one move, at most; particles of a row */
 enum { POINTS_MOST = 64, ROW = 64 };
 
-/* One obstacle during a step. */
-struct passing {
-    const struct cs_system *system;
-    const double *x0, *x1;
-    double h;
-    struct cs_obstacle before, after;
-    struct cs_pairing pairing;
-};
-
 /* distance at a share of the way; the obstacle's own turn within a step is left out */
-static double distance_at(const struct passing *passing, const double from[3],
+static double distance_at(const struct cs_passing *passing, const double from[3],
                           const double to[3], double share) {
     double p[3], g[3], h[6];
     for (int c = 0; c < 3; c++)
@@ -30,14 +21,13 @@ static double distance_at(const struct passing *passing, const double from[3],
     return cs_obstacle_smooth(&passing->after, p, g, h);
 }
 
-static bool is_unseen(const struct passing *passing, size_t i) {
-    const size_t n = passing->system->view.n;
+bool cs_passing_is_unseen(const struct cs_passing *passing, double mass, const double start[3],
+                          const double to[3]) {
     const double range = passing->pairing.range, k = passing->pairing.k;
     // seen from the obstacle, which stands where it is after the step
-    double from[3], to[3], squared = 0;
-    for (size_t c = 0; c < 3; c++) {
-        from[c] = passing->x0[c * n + i] + passing->after.centre[c] - passing->before.centre[c];
-        to[c] = passing->x1[c * n + i];
+    double from[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        from[c] = start[c] + passing->after.centre[c] - passing->before.centre[c];
         squared += (to[c] - from[c]) * (to[c] - from[c]);
     }
     const double move = sqrt(squared);
@@ -48,8 +38,7 @@ static bool is_unseen(const struct passing *passing, size_t i) {
         return false;
     const struct cs_law law = cs_law_at(d, range, k);
     const double held = cs_law_energy(d, range, k);
-    const double has =
-        0.5 * passing->system->mass[i] * squared / (passing->h * passing->h) + held;
+    const double has = 0.5 * mass * squared / (passing->h * passing->h) + held;
     const int points =
         move < 0.5 * range * POINTS_MOST ? 1 + (int)(move / (0.5 * range)) : POINTS_MOST;
     double unseen = 0;
@@ -65,7 +54,7 @@ static bool is_unseen(const struct passing *passing, size_t i) {
  * Along a way of length s no y is below (d1 - s)/D, d1 the distance at its end; what is not
  * seen is at most s^3/6 of the largest third derivative there, k/(2 D y^4), and is held against
  * the kinetic energy of the way alone. So nothing that is_unseen would refuse is left out. */
-CS_CLONES static uint32_t count_risky(const struct passing *passing, size_t begin,
+CS_CLONES static uint32_t count_risky(const struct cs_passing *passing, size_t begin,
                                       size_t count) {
     const struct cs_obstacle *after = &passing->after, *before = &passing->before;
     const size_t n = passing->system->view.n;
@@ -93,8 +82,7 @@ CS_CLONES static uint32_t count_risky(const struct passing *passing, size_t begi
     return risky;
 }
 
-/* whether a row of particles stays out of range of an obstacle of any kind */
-static bool is_far(const struct passing *passing, size_t begin, size_t count) {
+bool cs_passing_is_far(const struct cs_passing *passing, size_t begin, size_t count) {
     const size_t n = passing->system->view.n;
     double middle[3], reach = passing->pairing.range, squared = 0;
     for (size_t c = 0; c < 3; c++) {
@@ -113,15 +101,25 @@ static bool is_far(const struct passing *passing, size_t begin, size_t count) {
 }
 
 /* a row is looked at particle by particle only where something may happen in it */
-static bool is_calm(const struct passing *passing, size_t begin, size_t count) {
+static bool is_calm(const struct cs_passing *passing, size_t begin, size_t count) {
     const enum cs_obstacle_kind kind = passing->after.kind;
     return kind == CS_OBSTACLE_PLANE || kind == CS_OBSTACLE_SPHERE
                ? count_risky(passing, begin, count) == 0
-               : is_far(passing, begin, count);
+               : cs_passing_is_far(passing, begin, count);
+}
+
+static bool is_unseen(const struct cs_passing *passing, size_t i) {
+    const size_t n = passing->system->view.n;
+    double from[3], to[3];
+    for (size_t c = 0; c < 3; c++) {
+        from[c] = passing->x0[c * n + i];
+        to[c] = passing->x1[c * n + i];
+    }
+    return cs_passing_is_unseen(passing, passing->system->mass[i], from, to);
 }
 
 static double count_unseen(const void *arg, size_t begin, size_t end) {
-    const struct passing *passing = arg;
+    const struct cs_passing *passing = arg;
     double unseen = 0;
     for (size_t start = begin; start < end; start += ROW) {
         const size_t left = end - start, count = left < ROW ? left : ROW;
@@ -133,13 +131,20 @@ static double count_unseen(const void *arg, size_t begin, size_t end) {
     return unseen;
 }
 
+void cs_passing_set(struct cs_passing *passing, const struct cs_system *system,
+                    uint32_t collider, double t0, double t1) {
+    passing->system = system;
+    passing->h = t1 - t0;
+    passing->pairing = system->pairings[collider];
+    cs_obstacle_at(system, collider, t0, &passing->before);
+    cs_obstacle_at(system, collider, t1, &passing->after);
+}
+
 bool cs_contact_is_seen(const struct cs_system *system, double t0, const double *x0, double t1,
                         const double *x1) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        struct passing passing = {
-            .system = system, .x0 = x0, .x1 = x1, .h = t1 - t0, .pairing = system->pairings[c]};
-        cs_obstacle_at(system, c, t0, &passing.before);
-        cs_obstacle_at(system, c, t1, &passing.after);
+        struct cs_passing passing = {.x0 = x0, .x1 = x1};
+        cs_passing_set(&passing, system, c, t0, t1);
         if (cs_vector_sum(system->view.n, count_unseen, &passing) > 0)
             return false;
     }

@@ -2,7 +2,8 @@
 #ifndef CS_CONTACT_SHARE_H
 #define CS_CONTACT_SHARE_H
 
-#include "model/system/system.h"
+#include "model/contact/obstacle.h"
+#include "model/contact/pairing.h"
 
 /* A step sees of contact at most its force and its stiffness where it begins. For a particle
  * that goes straight from x0 at t0 to x1 at t1, with the approach s of its distance d to an
@@ -17,5 +18,24 @@
 #define CS_SHARE_UNSEEN 0.02
 bool cs_contact_is_seen(const struct cs_system *system, double t0, const double *x0, double t1,
                         const double *x1);
+
+/* One obstacle during a step of h seconds: for points that are no particles. */
+struct cs_passing {
+    const struct cs_system *system;
+    const double *x0, *x1; /* (3,n) m */
+    double h;
+    struct cs_obstacle before, after;
+    struct cs_pairing pairing;
+};
+/* Sets all but x0 and x1. */
+void cs_passing_set(struct cs_passing *passing, const struct cs_system *system,
+                    uint32_t collider, double t0, double t1);
+
+/* true if `count` particles from `begin` on, and what lies between them, stay out of range. */
+bool cs_passing_is_far(const struct cs_passing *passing, size_t begin, size_t count);
+
+/* true if a point of that mass in kg, going from `from` to `to`, has e above that share. */
+bool cs_passing_is_unseen(const struct cs_passing *passing, double mass, const double from[3],
+                          const double to[3]);
 
 #endif

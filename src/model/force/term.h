@@ -37,6 +37,9 @@ struct cs_term {
     /* Takes and fills arrays of its own, the springs and the state there. NULL: it has none.
      * CS_ERR_SCENE, CS_ERR_MEMORY. */
     enum cs_status (*build)(struct cs_system *system, struct cs_error *error);
+    /* After build: why there is nothing to do for it after all, which is then its line of the
+     * plan, and it is not called again; NULL where there is. May be NULL. */
+    const char *(*idle_why)(const struct cs_system *system);
     const char *const *ramps; /* keys that events may change while it acts, closed by NULL */
 
     /* --- the force --- */

@@ -10,7 +10,8 @@
 #define CS_TERM_LIST_MORE(X)
 #endif
 #define CS_TERM_LIST(X)                                                                        \
-    X(springs) X(gravity) X(drag) X(wind) X(push) X(contact) X(pairs) CS_TERM_LIST_MORE(X)
+    X(springs)                                                                                 \
+    X(gravity) X(drag) X(wind) X(push) X(contact) X(pairs) X(cover) CS_TERM_LIST_MORE(X)
 
 #define X(name) extern const struct cs_term cs_term_##name;
 CS_TERM_LIST(X)

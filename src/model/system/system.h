@@ -23,6 +23,7 @@ struct cs_body_range {
 struct cs_events;
 struct cs_pairing;
 struct cs_pairs;
+struct cs_covers;
 struct cs_obstacle_motion;
 struct cs_surfaces;
 struct cs_crossings;
@@ -46,6 +47,7 @@ struct cs_system {
         *motions;                      /* (scene->colliders.n); NULL where no event moves one */
     const struct cs_pairing *pairings; /* (scene->colliders.n); NULL without contact by force */
     struct cs_pairs *pairs;            /* bodies that keep off each other; NULL: none do */
+    struct cs_covers *covers; /* points between particles that colliders touch; NULL: none */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_crossings *crossings;     /* NULL unless asked for (crossings.h) */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
