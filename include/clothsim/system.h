@@ -96,6 +96,14 @@ struct cs_view {
     const double *cluster_beta;
     /* (n_clusters) s: the step that alpha is meant for; 0: alpha is for any step. */
     const double *cluster_step;
+
+    /* The scene's colliders, where an event moves one; else n_colliders is 0: all stand still.
+     * Each is on a straight line between restarts: at time t its centre (of a plane: the point
+     * that the scene gives) is at origin + t velocity, and its matter at p moves with velocity
+     * + spin x (p - centre). Later than the first release: ask CS_HAS(view, collider_spin). */
+    uint32_t n_colliders;
+    /* (n_colliders, 3) in m, m/s and rad/s. */
+    const double *collider_origin, *collider_velocity, *collider_spin;
 };
 
 #ifdef __cplusplus

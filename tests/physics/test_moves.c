@@ -31,6 +31,16 @@ static void check_centre(const struct fixture *fixture, uint32_t k, double t, do
     for (int c = 0; c < 3; c++)
         ck_assert_msg(fabs(of.centre[c] - expected[c]) < 1e-14,
                       "t = %g, axis %d: %.17g, not %.17g", t, c, of.centre[c], expected[c]);
+
+    // and so has a method it in its view
+    const struct cs_view *view = &fixture->system->view;
+    const size_t at = 3 * (size_t)k;
+    for (size_t c = 0; c < 3; c++) {
+        const double v = view->collider_velocity[at + c];
+        ck_assert_double_eq_tol(view->collider_origin[at + c] + t * v, expected[c], 1e-14);
+        ck_assert_double_eq(v, of.velocity[c]);
+        ck_assert_double_eq(view->collider_spin[at + c], of.spin[c]);
+    }
 }
 
 /* Two legs, then rest; a second move goes on from there, along the cubic s^2 (3 - 2 s). */
@@ -72,7 +82,10 @@ START_TEST(turn_is_exact) {
     fixture_start(&far);
     cs_obstacle_at(far.system, 1, 0, &before);
     ck_assert(before.axes[0][0] > 0.27 && before.axes[0][1] > 0.95);
-    fixture_frames(&far, 45); /* 0.75 s: at rest again */
+    fixture_frames(&far, 21); /* 0.35 s: under way */
+    check_centre(&far, 1, 0.35, 0, -6.5, 0);
+    ck_assert_double_gt(far.system->view.collider_spin[4], 3.14);
+    fixture_frames(&far, 24); /* 0.75 s: at rest again */
     cs_obstacle_at(far.system, 1, 0.75, &after);
     for (int k = 0; k < 3; k++) {
         ck_assert_double_eq_tol(after.axes[k][0], before.axes[k][2], 1e-14);
@@ -173,6 +186,8 @@ START_TEST(bytes_are_planned) {
     ck_assert_uint_eq(more, with.session.plan.rows[CS_FEATURE_EVENTS].bytes);
     ck_assert_ptr_nonnull(with.system->motions);
     ck_assert_ptr_null(without.system->motions);
+    ck_assert_uint_eq(with.system->view.n_colliders, 2);
+    ck_assert_uint_eq(without.system->view.n_colliders, 0);
     fixture_close(&with);
     fixture_close(&without);
 }

@@ -20,9 +20,33 @@ bool cs_event_moves_any(const struct cs_scene *scene) {
 enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *error) {
     const uint32_t n = system->scene->colliders.n;
     system->motions = cs_arena_take_n(&system->arena, n, sizeof *system->motions, error);
-    for (uint32_t k = 0; system->motions && k < n; k++)
+    system->collider_motion =
+        cs_arena_take_n(&system->arena, 9 * (size_t)n, sizeof *system->collider_motion, error);
+    if (error->status)
+        return error->status;
+    for (uint32_t k = 0; k < n; k++)
         system->motions[k] = at_rest;
-    return error->status;
+    system->view.n_colliders = n;
+    system->view.collider_origin = system->collider_motion;
+    system->view.collider_velocity = system->collider_motion + 3 * (size_t)n;
+    system->view.collider_spin = system->collider_motion + 6 * (size_t)n;
+    cs_event_show_moves(system);
+    return CS_OK;
+}
+
+void cs_event_show_moves(struct cs_system *system) {
+    const size_t n = system->view.n_colliders;
+    for (uint32_t k = 0; k < n; k++) {
+        const double since = system->motions[k].since;
+        double *shown = system->collider_motion + 3 * (size_t)k;
+        struct cs_obstacle at;
+        cs_obstacle_at(system, k, since, &at);
+        for (int c = 0; c < 3; c++) {
+            shown[c] = at.centre[c] - since * at.velocity[c];
+            shown[3 * n + c] = at.velocity[c];
+            shown[6 * n + c] = at.spin[c];
+        }
+    }
 }
 
 static const struct cs_move *move_of(const struct cs_system *system, uint32_t event) {

@@ -18,6 +18,9 @@ void cs_event_end_move(struct cs_system *system, uint32_t event, double t);
 /* After cs_event_turn: the collider follows the chord that the event is in. */
 void cs_event_follow_move(struct cs_system *system, uint32_t event, double t);
 
+/* Shows in the view how the colliders move from now on. */
+void cs_event_show_moves(struct cs_system *system);
+
 /* Largest speed in m/s that matter of a turning collider has within the scene. */
 double cs_event_turn_speed(const struct cs_system *system);
 

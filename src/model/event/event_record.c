@@ -3,6 +3,7 @@
 
 #include "model/contact/obstacle.h"
 #include "model/event/event_act.h"
+#include "model/event/event_move.h"
 #include "model/event/viewpoint_forces.h"
 
 /* the state of one event, but for where its value lies, which is a matter of this process */
@@ -64,6 +65,8 @@ void cs_events_record(struct cs_system *system, struct cs_record *record) {
     else
         cs_record_bytes(record, system->pinned, system->n_pinned * sizeof *system->pinned);
     // springs hang on the values that were read
-    if (record->loading)
+    if (record->loading) {
         cs_event_refresh_springs(system);
+        cs_event_show_moves(system);
+    }
 }

@@ -38,7 +38,7 @@ size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n) {
            scene->bodies.n * sizeof(struct cs_body) +
            scene->colliders.n * sizeof(struct cs_collider) +
            (cs_event_moves_any(scene) ? scene->colliders.n : 0) *
-               sizeof(struct cs_obstacle_motion) +
+               (sizeof(struct cs_obstacle_motion) + 9 * sizeof(double)) +
            n * (2 * sizeof(uint32_t) + sizeof(bool) + vectors * sizeof(double));
 }
 
@@ -183,6 +183,7 @@ static void turn(struct cs_system *system, double t) {
         if (event->move.present)
             cs_event_follow_move(system, e, t);
     }
+    cs_event_show_moves(system);
     for (uint32_t i = 0; i < system->view.n; i++) {
         const uint32_t holder = events->holders[i];
         events->grabs |= holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
