@@ -2,6 +2,8 @@
  */
 #include "model/commit/limit.h"
 
+#include "model/commit/limit_grid.h"
+
 #include <math.h>
 
 /* passes over a body */
@@ -13,7 +15,11 @@ struct pass {
     double *x, *v;
 };
 
-/* one spring; true if it was too long */
+static bool is_limited(const struct pass *pass, const struct cs_spring_run *run) {
+    return run->body == pass->body && run->kind == CS_SPRING_STRETCH;
+}
+
+/* one spring of a mesh; true if it was too long */
 static bool shorten(const struct pass *pass, const struct cs_spring_run *run, uint32_t i) {
     const struct cs_system *system = pass->system;
     const uint32_t a = cs_spring_a(run, i), b = cs_spring_b(run, i);
@@ -41,21 +47,37 @@ static bool shorten(const struct pass *pass, const struct cs_spring_run *run, ui
     return true;
 }
 
-/* one pass, forwards or backwards */
-static uint64_t sweep(const struct pass *pass, bool backwards) {
-    const struct cs_system *system = pass->system;
+/* one pass over a mesh, in the order of the springs */
+static uint64_t pass_over(const struct pass *pass, bool backwards) {
+    const struct cs_springs *springs = &pass->system->springs;
     uint64_t moves = 0;
-    for (uint32_t k = 0; k < system->springs.n_runs; k++) {
-        const struct cs_spring_run *run =
-            system->springs.runs + (backwards ? system->springs.n_runs - 1 - k : k);
-        if (run->body != pass->body || run->kind != CS_SPRING_STRETCH)
-            continue;
-        for (uint32_t j = 0; j < run->count; j++) {
-            const uint32_t i = backwards ? run->count - 1 - j : j;
-            moves += shorten(pass, run, i);
-        }
+    for (uint32_t r = 0; r < springs->n_runs; r++) {
+        const struct cs_spring_run *run = springs->runs + r;
+        for (uint32_t j = 0; is_limited(pass, run) && j < run->count; j++)
+            moves += shorten(pass, run, backwards ? run->count - 1 - j : j);
     }
     return moves;
+}
+
+/* The grid that a pass goes over; no rows: its body has none, or no stretch springs. The runs
+ * of its first row tell all of it. */
+static struct cs_limit_grid grid_of(const struct pass *pass) {
+    const struct cs_springs *springs = &pass->system->springs;
+    struct cs_limit_grid grid = {.n = pass->system->view.n, .per_time = pass->per_time};
+    for (uint32_t r = 0; r < springs->n_runs && !(grid.along > 0 && grid.down > 0); r++) {
+        const struct cs_spring_run *run = springs->runs + r;
+        if (!is_limited(pass, run) || !run->columns)
+            continue;
+        if (grid.rows == 0) {
+            grid.x = pass->x + run->row;
+            grid.v = pass->v + run->row;
+            grid.inv_mass = pass->system->inv_mass + run->row;
+            grid.columns = run->columns;
+            grid.rows = run->below + 1;
+        }
+        *(run->way == CS_WAY_RIGHT ? &grid.along : &grid.down) = pass->limit * run->length;
+    }
+    return grid;
 }
 
 uint64_t cs_limit_apply(const struct cs_system *system, double dt, double *x, double *v) {
@@ -63,11 +85,13 @@ uint64_t cs_limit_apply(const struct cs_system *system, double dt, double *x, do
     const double frame = 1 / system->scene->time.fps, per_time = 1 / fmax(dt, frame);
     uint64_t moves = 0;
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
-        const int64_t sweeps =
-            isnan(bodies[b].strain_limit) ? 0 : bodies[b].strain_limit_sweeps;
+        if (isnan(bodies[b].strain_limit))
+            continue;
         const struct pass pass = {system, b, bodies[b].strain_limit, per_time, x, v};
-        for (int64_t k = 0; k < sweeps; k++) {
-            const uint64_t moved = sweep(&pass, k % 2);
+        const struct cs_limit_grid grid = grid_of(&pass);
+        for (int64_t k = 0; k < bodies[b].strain_limit_sweeps; k++) {
+            const uint64_t moved =
+                grid.rows ? cs_limit_grid_pass(&grid, k % 2) : pass_over(&pass, k % 2);
             moves += moved;
             if (moved == 0)
                 break;

@@ -8,9 +8,9 @@
  * times its rest length: both ends move along it by their inverse masses (Provot 1995; cloth
  * thesis, sec. 5.3), and their velocities change by the move over dt or the time of a frame,
  * whichever is longer, so that a sheet too weak for its weight is held, and a short step of an
- * adaptive method does not turn a small move into a blow. At most strain_limit_sweeps passes in
- * the order of forces, every other one backwards; fewer where a pass finds nothing. Returns the
- * number of moves.
+ * adaptive method does not turn a small move into a blow. At most strain_limit_sweeps passes,
+ * every other one backwards; fewer where a pass finds nothing. A pass goes over a grid as
+ * limit_grid.h says, over a mesh in the order of forces. Returns the number of moves.
  *
  * Stretch springs only: with shear and bend springs limited too, the passes work against each
  * other and pump energy into a hanging sheet at dt = 1/60. */
