@@ -61,7 +61,7 @@ struct linearised {
 struct block {
     struct fixed_step loop;
     double *f;         /* (3,n) in N */
-    double *kxx, *dvv; /* (6,n) in N/m and N s/m */
+    double *kxx, *dvv; /* (6,n) in N/m and N s/m, one after the other */
 };
 
 static void *take(const struct cs_host *host, size_t doubles_a_particle) {
@@ -216,8 +216,12 @@ static enum cs_step step_block(struct fixed_step *loop, double t, double h, doub
                                double *v) {
     struct block *self = (struct block *)loop;
     const struct cs_host *host = loop->host;
-    host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
-    host->diagonal(host->ctx, t, x, v, self->kxx, self->dvv);
+    if (CS_HAS(host, force_diagonal)) {
+        host->force_diagonal(host->ctx, t, x, v, self->f, self->kxx);
+    } else {
+        host->force(host->ctx, t, x, v, CS_PART_ALL, self->f);
+        host->diagonal(host->ctx, t, x, v, self->kxx, self->dvv);
+    }
     if (!solve_blocks(self, h, v)) {
         const size_t i = find_singular(self, h);
         if (i < host->view->n)
@@ -252,9 +256,9 @@ static enum cs_step create_block(const struct cs_host *host, const void *options
         return CS_STEP_FAIL;
     *out = self;
     self->loop = fixed_step_of(host, asked->dt, step_block);
-    if (!(self->f = take(host, 3)) || !(self->kxx = take(host, 6)) ||
-        !(self->dvv = take(host, 6)))
+    if (!(self->f = take(host, 3)) || !(self->kxx = take(host, 12)))
         return CS_STEP_FAIL;
+    self->dvv = self->kxx + 6 * (size_t)host->view->n;
     return fixed_step_guard(&self->loop, NULL);
 }
 

@@ -101,6 +101,19 @@ static void host_diagonal(void *ctx, double t, const double *x, const double *v,
     cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
+static void host_force_diagonal(void *ctx, double t, const double *x, const double *v,
+                                double *f, double *blocks) {
+    struct cs_run_host *host = ctx;
+    cs_move_values(host, t);
+    update_normals(host, x, CS_PART_ALL);
+    const double begin = cs_stage_begin(host);
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
+    cs_terms_force_diagonal(host->run->system, &at, f, blocks);
+    host->run->counts.forces++;
+    host->run->counts.diagonals++;
+    cs_stage_end(host, CS_STAGE_FORCE, begin);
+}
+
 /* an exact matrix that is not positive definite is made so, and that is counted */
 static void clamp(struct cs_run_host *host) {
     struct cs_matrix matrix = host->linear.matrix;
@@ -266,6 +279,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .energy = host_energy,
         .jvp = host_jvp,
         .diagonal = host_diagonal,
+        .force_diagonal = host_force_diagonal,
         .solve_setup = host_solve_setup,
         .solve = host_solve,
         .apply = host_apply,

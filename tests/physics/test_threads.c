@@ -88,8 +88,9 @@ START_TEST(states_are_the_same_to_the_bit) {
 }
 END_TEST
 
-/* what the kernels give one by one, end to end */
-enum { KERNELS = 12 };
+/* what the kernels give one by one, end to end, each in so many rows (3,n): the first is the
+ * whole force, the last ones diagonal blocks, force with blocks */
+enum { BLOCKS = 4, BOTH = 1 + BLOCKS, KERNELS = 12 + BLOCKS + BOTH };
 static double *kernels(uint32_t n, size_t *length) {
     static const uint32_t parts[] = {CS_PART_ALL,     CS_PART_STRETCH, CS_PART_BEND,
                                      CS_PART_DAMPING, CS_PART_WIND,    CS_PART_DRAG};
@@ -126,7 +127,12 @@ static double *kernels(uint32_t n, size_t *length) {
             &(struct cs_matrix){.x = all.x, .cm = 1, .cd = -0.01, .ck = -0.0001, .psd = psd});
         cs_linear_mul(&linear, all.v, to += 3 * all.n);
     }
-    ck_assert_ptr_eq(to + 3 * all.n, found + *length);
+    const struct cs_eval whole = {.x = all.x, .v = all.v, .parts = CS_PART_ALL};
+    to += 3 * all.n;
+    cs_terms_diagonal(all.system, &whole, to, to + 6 * all.n);
+    to += 3 * BLOCKS * all.n;
+    cs_terms_force_diagonal(all.system, &whole, to, to + 3 * all.n);
+    ck_assert_ptr_eq(to + 3 * BOTH * all.n, found + *length);
     cs_arena_finish(&arena);
     fixture_close(&all);
     cs_pool_stop();
@@ -151,6 +157,10 @@ START_TEST(kernels_are_the_same_to_the_bit) {
             sum += one[k * (length / KERNELS) + i] * one[k * (length / KERNELS) + i];
         ck_assert_double_gt(sum, 0); /* each has something to say */
     }
+    const size_t n3 = length / KERNELS;
+    const double *both = one + (KERNELS - BOTH) * n3;
+    ck_assert(!memcmp(both, one, n3 * sizeof *one));
+    ck_assert(!memcmp(both + n3, both - BLOCKS * n3, BLOCKS * n3 * sizeof *one));
     free(one);
 }
 END_TEST

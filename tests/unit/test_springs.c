@@ -219,8 +219,15 @@ START_TEST(own_blocks_are_the_sum_of_single_springs) {
             double *found = calloc(sheet.n, 24 * sizeof *found);
             ck_assert_ptr_nonnull(found);
             double *expected = found + 12 * sheet.n;
-            cs_springs_add_diagonal(springs, (uint32_t)sheet.n, sheet.x, found,
-                                    found + 6 * sheet.n);
+            const struct cs_block all = cs_springs_block(springs, (uint32_t)sheet.n, 0);
+            const struct cs_eval at = {.x = sheet.x,
+                                       .v = sheet.v,
+                                       .parts = CS_PART_DAMPED_SPRINGS,
+                                       .kxx = found,
+                                       .dvv = found + 6 * sheet.n,
+                                       .block = &all};
+            cs_springs_add_force(springs, (uint32_t)sheet.n, &at, NULL);
+            cs_springs_finish_diagonal(springs, (uint32_t)sheet.n, &at);
             for (uint32_t r = 0; r < springs->n_runs; r++)
                 for (uint32_t i = 0; i < springs->runs[r].count; i++)
                     add_own_blocks(&sheet, springs->runs + r, i, expected,

@@ -75,10 +75,10 @@ struct cs_term {
                            bool kept);
     /* y += those entries times p. */
     void (*add_product)(const struct cs_system *system, const double *p, double *y);
-    /* Between particles: the springs alone, whose factors the solver knows; here it adds the
-     * particles' diagonal blocks of df/dx and df/dv, (6,n). */
-    void (*add_diagonal)(const struct cs_system *system, const double *x, double *kxx,
-                         double *dvv);
+    /* Between particles: the springs alone, whose factors the solver knows. Where at->kxx and
+     * at->dvv are given, its add_force adds diagonal blocks of df/dx and df/dv too, and f may
+     * be NULL; here, after all blocks, it adds those that are left. */
+    void (*add_diagonal)(const struct cs_system *system, const struct cs_eval *at);
 
     /* --- how strong it is --- */
     /* Adds its Gershgorin bounds that hold for the whole run, with the values that the scene

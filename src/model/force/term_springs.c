@@ -28,9 +28,8 @@ static double energy(const struct cs_system *system, const struct cs_eval *at) {
     return cs_springs_energy(&system->springs, system->view.n, at->x, CS_PART_SPRINGS);
 }
 
-static void add_diagonal(const struct cs_system *system, const double *x, double *kxx,
-                         double *dvv) {
-    cs_springs_add_diagonal(&system->springs, system->view.n, x, kxx, dvv);
+static void add_diagonal(const struct cs_system *system, const struct cs_eval *at) {
+    cs_springs_finish_diagonal(&system->springs, system->view.n, at);
 }
 
 /* A row has k u u^T of each spring at the particle, and the same again at its other ends; while

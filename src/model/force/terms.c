@@ -127,18 +127,52 @@ static void add_shares(const struct cs_system *system, const struct cs_matrix *m
         add_share(system, matrix, system->terms[k], blocks);
 }
 
-void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
-                       double *dvv) {
-    const size_t bytes = 6 * sizeof *kxx * system->view.n;
+static void diagonal_block(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const struct cs_system *system = job->system;
+    const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
+    struct cs_eval at = job->at;
+    at.block = &block;
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->add_diagonal)
+            system->terms[k]->add_force(system, &at, NULL);
+}
+
+static void clear_diagonal(const struct cs_system *system, const struct cs_eval *at) {
+    const size_t bytes = 6 * sizeof *at->kxx * system->view.n;
+    memset(at->kxx, 0, bytes);
+    memset(at->dvv, 0, bytes);
+}
+
+/* what is left where forces have added their blocks */
+static void finish_diagonal(const struct cs_system *system, const struct cs_eval *at) {
     const struct cs_matrix k = {.t = at->t, .x = at->x, .v = at->v, .ck = 1};
     const struct cs_matrix d = {.t = at->t, .x = at->x, .v = at->v, .cd = 1};
-    memset(kxx, 0, bytes);
-    memset(dvv, 0, bytes);
     for (uint32_t term = 0; term < system->n_terms; term++)
         if (system->terms[term]->add_diagonal)
-            system->terms[term]->add_diagonal(system, at->x, kxx, dvv);
-    add_shares(system, &k, kxx);
-    add_shares(system, &d, dvv);
+            system->terms[term]->add_diagonal(system, at);
+    add_shares(system, &k, at->kxx);
+    add_shares(system, &d, at->dvv);
+}
+
+void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
+                       double *dvv) {
+    struct job job = {.system = system, .at = *at};
+    job.at.kxx = kxx;
+    job.at.dvv = dvv;
+    clear_diagonal(system, &job.at);
+    cs_pool_run(system->springs.n_blocks, diagonal_block, &job);
+    finish_diagonal(system, &job.at);
+}
+
+void cs_terms_force_diagonal(const struct cs_system *system, const struct cs_eval *at,
+                             double *f, double *blocks) {
+    struct cs_eval both = *at;
+    both.kxx = blocks;
+    both.dvv = blocks + 6 * (size_t)system->view.n;
+    clear_diagonal(system, &both);
+    cs_terms_force(system, &both, f);
+    finish_diagonal(system, &both);
 }
 
 void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,

@@ -29,6 +29,10 @@ void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, doub
 /* The diagonal blocks kxx, dvv (6,n) of CS_PART_LINEARISED: xx, xy, xz, yy, yz, zz. */
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv);
+/* Both, to the same bits, in less time: blocks (12,n) is kxx and then dvv. The parts of at, for
+ * f, must have the springs. */
+void cs_terms_force_diagonal(const struct cs_system *system, const struct cs_eval *at,
+                             double *f, double *blocks);
 
 /* blocks (6,n) = the shares in a matrix of the terms with one of these parts. */
 void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,

@@ -17,8 +17,12 @@ struct tile {
     _Alignas(64) double rows[CS_WAYS * PARTS_MOST * WIDE];
 };
 
+CS_INLINE size_t parts_of(const struct tile *tile) {
+    return tile->kernel->forces + tile->kernel->stiff + tile->kernel->damped;
+}
+
 CS_INLINE double *rows_of(struct tile *tile, unsigned way) {
-    return tile->rows + way * tile->kernel->parts * WIDE + MARGIN;
+    return tile->rows + way * parts_of(tile) * WIDE + MARGIN;
 }
 
 /* particles of the row that have a spring of a way: [begin, end) */
@@ -66,7 +70,7 @@ CS_INLINE struct fan_in in_of(const struct tile *tile) {
 /* what is read beside a row, before its first particle and behind its last */
 CS_INLINE void clear_margins(struct tile *tile) {
     static const unsigned before[] = {CS_WAY_RIGHT, CS_WAY_RIGHT_TWO, CS_WAY_FORTH};
-    for (size_t k = 0; k < tile->kernel->parts; k++) {
+    for (size_t k = 0; k < parts_of(tile); k++) {
         for (size_t b = 0; b < 3 && tile->start == 0; b++) {
             double *rows = rows_of(tile, before[b]) + k * WIDE;
             rows[-1] = rows[-2] = 0;
@@ -80,7 +84,7 @@ CS_INLINE void drop_none(struct tile *tile, unsigned way) {
     const size_t columns = tile->fan->first->columns, stop = tile->start + tile->count;
     const size_t begin = begin_of(way), end = end_of(way, columns);
     double *rows = rows_of(tile, way);
-    for (size_t k = 0; k < tile->kernel->parts; k++, rows += WIDE) {
+    for (size_t k = 0; k < parts_of(tile); k++, rows += WIDE) {
         for (size_t i = tile->start; i < begin; i++)
             rows[i - tile->start] = 0;
         for (size_t i = end > tile->start ? end : tile->start; i < stop; i++)
@@ -133,7 +137,7 @@ CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
 CS_INLINE void carry(struct tile *tile) {
     for (unsigned way = 0; way < CS_WAY_DOWN_TWO; way++) {
         double *rows = rows_of(tile, way);
-        for (size_t k = 0; k < tile->kernel->parts && tile->fan->ways[way]; k++, rows += WIDE) {
+        for (size_t k = 0; k < parts_of(tile) && tile->fan->ways[way]; k++, rows += WIDE) {
             rows[-2] = rows[TILE - 2];
             rows[-1] = rows[TILE - 1];
         }
@@ -184,19 +188,29 @@ CS_INLINE void add_after(struct tile *tile, size_t k, const double sign, double 
         to[i] += sign * after[i];
 }
 
-/* Adds what was made of a tile to its row, the next and the one after. */
-CS_INLINE void add_tile(struct tile *tile, const bool at[3], const double sign) {
+/* Adds part k of what was made of a tile to its row, the next and the one after. */
+CS_INLINE void add_part(struct tile *tile, const bool at[3], size_t k, const double sign,
+                        double *array) {
     const struct cs_spring_run *first = tile->fan->first;
+    double *to = array + first->row + tile->start;
+    if (at[0])
+        add_own(tile, k, sign, to);
+    if (at[1] && first->below > 0)
+        add_next(tile, k, sign, to + first->columns);
+    if (at[2] && tile->fan->ways[CS_WAY_DOWN_TWO])
+        add_after(tile, k, sign, to + 2 * (size_t)first->columns);
+}
+
+CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
+    const struct fan_kernel *kernel = tile->kernel;
     const struct job *job = tile->job;
-    for (size_t k = 0; k < tile->kernel->parts; k++) {
-        double *to = job->to + k * job->n + first->row + tile->start;
-        if (at[0])
-            add_own(tile, k, sign, to);
-        if (at[1] && first->below > 0)
-            add_next(tile, k, sign, to + first->columns);
-        if (at[2] && tile->fan->ways[CS_WAY_DOWN_TWO])
-            add_after(tile, k, sign, to + 2 * (size_t)first->columns);
-    }
+    const size_t blocks = kernel->stiff + kernel->damped;
+    for (size_t k = 0; k < kernel->forces; k++)
+        add_part(tile, at, k, -1, job->to + k * job->n);
+    for (size_t k = 0; k < blocks; k++)
+        add_part(tile, at, kernel->forces + k, 1,
+                 k < kernel->stiff ? job->at.kxx + k * job->n
+                                   : job->at.dvv + (k - kernel->stiff) * job->n);
 }
 
 static struct fan find_fan(const struct job *job, const struct cs_spring_run *first,
@@ -227,10 +241,7 @@ CS_CLONES uint32_t cs_fan_add(const struct job *job, const struct cs_block *bloc
         tile.start = first->columns - left;
         tile.count = left < TILE ? left : TILE;
         make_tile(&tile, at);
-        if (kernel->sign > 0)
-            add_tile(&tile, at, 1);
-        else
-            add_tile(&tile, at, -1);
+        add_tile(&tile, at);
         if (left > TILE)
             carry(&tile);
     }

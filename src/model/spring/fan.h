@@ -22,8 +22,8 @@ enum {
     TILE = 64,  /* particles whose springs are done together */
     MARGIN = 8, /* more than any way reaches along the row, and a whole vector */
     WIDE = MARGIN + TILE + MARGIN,
-    PARTS_MOST = 6, /* numbers that a kernel makes of a spring */
-    TOGETHER = 3    /* ways that are done side by side */
+    PARTS_MOST = 15, /* numbers that a kernel makes of a spring */
+    TOGETHER = 3     /* ways that are done side by side */
 };
 
 /* One way of a fan, of numbers by particle of the tile. */
@@ -48,17 +48,17 @@ struct fan_in {
 typedef void fan_pass(const struct fan_in *in, const struct fan_way *ways, size_t begin,
                       size_t end);
 
-/* A kernel of some numbers a spring. A particle gets those of the springs that it begins; the
- * other ends get them times sign, 1 or -1. */
+/* A kernel of some numbers a spring, one after the other: those of its force, for job->to, of
+ * df/dx for at.kxx and of df/dv for at.dvv. A particle gets those of the springs that it
+ * begins; the other ends get the same of blocks, and the opposite of forces. */
 struct fan_kernel {
     fan_pass *passes[TOGETHER];
-    size_t parts;
-    double sign;
+    size_t forces, stiff, damped;
 };
 
-/* Adds what a kernel makes of a row's springs to job->to at the particles of a block; the runs
- * of the row begin with `first`, and those that are not asked for are left out. Returns how
- * many there are. */
+/* Adds what a kernel makes of a row's springs at the particles of a block; the runs of the row
+ * begin with `first`, and those that are not asked for are left out. Returns how many there
+ * are. */
 uint32_t cs_fan_add(const struct job *job, const struct cs_block *block,
                     const struct cs_spring_run *first, run_test *asks,
                     const struct fan_kernel *kernel);
@@ -68,7 +68,7 @@ typedef const struct fan_kernel *fan_choice(const struct job *job,
                                             const struct cs_spring_run *first);
 
 /* Adds what kernels make of all runs to the particles of a block, in the order of the runs: of
- * fans, and of pieces of meshes. */
+ * fans, and, unless there is no job->to, of pieces of meshes. */
 CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
                         fan_choice *choose, piece_kernel *kernel) {
     const struct cs_springs *springs = job->springs;
@@ -78,6 +78,8 @@ CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run
         n_runs = 1;
         if (run->columns)
             n_runs = cs_fan_add(job, block, run, asks, choose(job, run));
+        else if (!job->to)
+            continue;
         else if (asks(job, run) && springs->waits)
             gather(springs->waits + r, run, block, job->n, job->to);
         else if (asks(job, run))
@@ -129,11 +131,13 @@ CS_INLINE void fan_springs(const struct fan_in in, const struct fan_way p,
         fan_springs(*in, ways[0], ways[second], ways[third], n, spring, parts, begin, end);    \
     }
 
-/* The kernel `name` of what is made of single springs by spring(), an inline function. */
-#define CS_FAN_KERNEL(name, spring, parts_, sign_)                                             \
-    CS_FAN_PASS(name##_1, spring, parts_, 1, 0, 0)                                             \
-    CS_FAN_PASS(name##_2, spring, parts_, 2, 1, 1)                                             \
-    CS_FAN_PASS(name##_3, spring, parts_, 3, 1, 2)                                             \
-    static const struct fan_kernel name = {{name##_1, name##_2, name##_3}, parts_, sign_}
+/* The kernel `name` of what is made of single springs by spring(), an inline function: so many
+ * numbers of the force, of df/dx and of df/dv. */
+#define CS_FAN_KERNEL(name, spring, forces_, stiff_, damped_)                                  \
+    CS_FAN_PASS(name##_1, spring, forces_ + stiff_ + damped_, 1, 0, 0)                         \
+    CS_FAN_PASS(name##_2, spring, forces_ + stiff_ + damped_, 2, 1, 1)                         \
+    CS_FAN_PASS(name##_3, spring, forces_ + stiff_ + damped_, 3, 1, 2)                         \
+    static const struct fan_kernel name = {                                                    \
+        {name##_1, name##_2, name##_3}, forces_, stiff_, damped_}
 
 #endif

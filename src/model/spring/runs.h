@@ -73,9 +73,11 @@ struct cs_block {
 /* One evaluation of the forces, or with dx or dv of their derivative along it. */
 struct cs_eval {
     double t;
-    const double *x, *v;          /* (3,n) in m and m/s */
-    uint32_t parts;               /* set of enum cs_part */
-    const double *dx, *dv;        /* (3,n) directions; NULL: 0 */
+    const double *x, *v;   /* (3,n) in m and m/s */
+    uint32_t parts;        /* set of enum cs_part */
+    const double *dx, *dv; /* (3,n) directions; NULL: 0 */
+    double *kxx,
+        *dvv; /* (6,n) diagonal blocks that a force of grids adds too; NULL: not asked */
     const struct cs_block *block; /* where to add; NULL: not said yet */
 };
 

@@ -4,59 +4,59 @@
 
 #include "base/pool.h"
 #include "model/spring/fan.h"
+#include "model/spring/law.h"
 
-#include <float.h>
-#include <math.h>
+/* What kernels of grids make: the force, and the diagonal blocks that methods ask for beside
+ * it, of one square root and quotient. DAMPED of axial dampers, which turn with the spring;
+ * those of relative ones are one number, STEADY. */
+enum what { FORCE = 4, STIFF = 8, DAMPED = 16, STEADY = 32 };
 
-/* Copies of the loops, so that a scene without damping never reads v. */
-enum how { AXIAL = 1, RELATIVE = 2 };
-
-/* Of one spring, on its first end: d and w are the differences of places and speeds. */
-CS_INLINE struct difference force_of(const struct difference d, const struct difference w,
-                                     double length, double k, double c, const unsigned how) {
-    /* DBL_MIN keeps two particles in one place from dividing by zero */
-    const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
-    double pull = k * (1 - length * inverse);
-    if (how & AXIAL)
-        pull += c * ((w.x * d.x + w.y * d.y + w.z * d.z) * inverse * inverse);
-    if (how & RELATIVE)
-        return (struct difference){pull * d.x + c * w.x, pull * d.y + c * w.y,
-                                   pull * d.z + c * w.z};
-    return (struct difference){pull * d.x, pull * d.y, pull * d.z};
-}
-
-CS_INLINE void force_from(const struct fan_in *in, const struct fan_way *way, size_t i,
-                          const unsigned how, double *out) {
+CS_INLINE void make_spring(const struct fan_in *in, const struct fan_way *way, size_t i,
+                           const unsigned what, double *out) {
     const struct difference d = fan_across(in->x, in->n, i, way->step);
-    const struct difference w =
-        how ? fan_across(in->v, in->n, i, way->step) : (struct difference){0};
-    fan_put(force_of(d, w, way->length, way->k, in->c, how), out);
+    if (what & FORCE) {
+        const struct difference w = what & (AXIAL | RELATIVE)
+                                        ? fan_across(in->v, in->n, i, way->step)
+                                        : (struct difference){0};
+        fan_put(force_of(d, w, way->length, way->k, in->c, what), out);
+        out += 3;
+    }
+    if (what & STIFF) {
+        stiff_block(turned_of(d, way->length), way->k, out);
+        out += SYM;
+    }
+    if (what & DAMPED)
+        set_block(0, -in->c, turned_of(d, 0).u, out);
+    if (what & STEADY)
+        out[0] = -in->c;
 }
 
-CS_INLINE void undamped(const struct fan_in *in, const struct fan_way *way, size_t i,
-                        double *out) {
-    force_from(in, way, i, 0, out);
-}
+#define KERNEL(name, what, forces, stiff, damped)                                              \
+    CS_INLINE void name##_spring(const struct fan_in *in, const struct fan_way *way, size_t i, \
+                                 double *out) {                                                \
+        make_spring(in, way, i, what, out);                                                    \
+    }                                                                                          \
+    CS_FAN_KERNEL(name, name##_spring, forces, stiff, damped)
 
-CS_INLINE void axial(const struct fan_in *in, const struct fan_way *way, size_t i,
-                     double *out) {
-    force_from(in, way, i, AXIAL, out);
-}
+KERNEL(undamped_force, FORCE, 3, 0, 0);
+KERNEL(axial_force, FORCE | AXIAL, 3, 0, 0);
+KERNEL(relative_force, FORCE | RELATIVE, 3, 0, 0);
+KERNEL(undamped_blocks, STIFF, 0, SYM, 0);
+KERNEL(axial_blocks, STIFF | DAMPED, 0, SYM, SYM);
+KERNEL(relative_blocks, STIFF | STEADY, 0, SYM, 1);
+KERNEL(undamped_both, FORCE | STIFF, 3, SYM, 0);
+KERNEL(axial_both, FORCE | AXIAL | STIFF | DAMPED, 3, SYM, SYM);
+KERNEL(relative_both, FORCE | RELATIVE | STIFF | STEADY, 3, SYM, 1);
 
-CS_INLINE void relative(const struct fan_in *in, const struct fan_way *way, size_t i,
-                        double *out) {
-    force_from(in, way, i, RELATIVE, out);
-}
-
-CS_FAN_KERNEL(undamped_force, undamped, 3, -1);
-CS_FAN_KERNEL(axial_force, axial, 3, -1);
-CS_FAN_KERNEL(relative_force, relative, 3, -1);
-
-static const struct fan_kernel *choose_force(const struct job *job,
-                                             const struct cs_spring_run *first) {
-    if (asked_of(first, job->at.parts).c == 0)
-        return &undamped_force;
-    return first->axial ? &axial_force : &relative_force;
+static const struct fan_kernel *choose(const struct job *job,
+                                       const struct cs_spring_run *first) {
+    static const struct fan_kernel *const kernels[3][3] = {
+        {&undamped_force, &axial_force, &relative_force},
+        {&undamped_blocks, &axial_blocks, &relative_blocks},
+        {&undamped_both, &axial_both, &relative_both}};
+    const bool damped = asked_of(first, job->at.parts).c != 0;
+    const unsigned what = !job->at.kxx ? 0 : job->to ? 2 : 1;
+    return kernels[what][damped ? 1 + !first->axial : 0];
 }
 
 /* forces of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
@@ -90,7 +90,7 @@ CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const struct cs_eval *at, double *f) {
     const struct job job = {.springs = springs, .n = n, .at = *at, .to = f};
-    add_runs(&job, at->block, asks_force, choose_force, force_piece);
+    add_runs(&job, at->block, asks_force, choose, force_piece);
 }
 
 CS_CLONES static void wait_force_lot(void *job, uint32_t lot) {

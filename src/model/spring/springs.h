@@ -23,7 +23,10 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
  * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial
  * damping; flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis,
  * eq. 5.10). The smallest normal double is added to the squared length before the root, so that
- * two particles in one place feel no spring force instead of dividing by zero. */
+ * two particles in one place feel no spring force instead of dividing by zero.
+ *
+ * Where at->kxx and at->dvv are given, the diagonal blocks of df/dx and df/dv (6,n) of grids
+ * are added too, and f may be NULL; cs_springs_finish_diagonal adds the rest. */
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                           const struct cs_eval *at, double *f);
 /* By all threads, before any block; does nothing where they do not share meshes. */
@@ -47,10 +50,11 @@ void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const stru
 void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
                          const struct cs_eval *at);
 
-/* Adds the diagonal blocks of df/dx and df/dv, each (6,n): xx, xy, xz, yy, yz, zz.
- * The position derivative of axial damping is left out, as in the solver's matrix. */
-void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n, const double *x,
-                             double *kxx, double *dvv);
+/* After all blocks of cs_springs_add_force with at->kxx and at->dvv, which were 0 before, adds
+ * what is left of the diagonal blocks of df/dx and df/dv: xx, xy, xz, yy, yz, zz. The position
+ * derivative of axial damping is left out, as in the solver's matrix. */
+void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
+                                const struct cs_eval *at);
 
 /* The springs' part of the matrix in factored form: A p = sum over springs of (s I + w w^T)(p_a
  * - p_b), added at a and taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz,

@@ -3,22 +3,9 @@
 #include "model/spring/springs.h"
 
 #include "model/spring/fan.h"
+#include "model/spring/law.h"
 
-#include <float.h>
-#include <math.h>
-
-/* symmetric blocks: xx, xy, xz, yy, yz, zz */
-enum { SYM = 6 };
-
-/* a I + b u u^T */
-CS_INLINE void set_block(double a, double b, const struct difference u, double *out) {
-    out[0] = a + b * u.x * u.x;
-    out[1] = b * u.x * u.y;
-    out[2] = b * u.x * u.z;
-    out[3] = a + b * u.y * u.y;
-    out[4] = b * u.y * u.z;
-    out[5] = a + b * u.z * u.z;
-}
+#include <string.h>
 
 /* symmetric blocks of a piece of a mesh */
 struct blocks {
@@ -40,58 +27,6 @@ CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks
             a[c * n + ends[2 * i]] += blocks->rows[c][i];
             b[c * n + ends[2 * i + 1]] += blocks->rows[c][i];
         }
-}
-
-/* a spring's unit direction and ratio of its rest length to its length */
-struct turned {
-    struct difference u;
-    double ratio;
-};
-
-CS_INLINE struct turned turned_of(const struct difference d, double length) {
-    const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
-    return (struct turned){{d.x * inverse, d.y * inverse, d.z * inverse}, length * inverse};
-}
-
-/* of df/dx */
-CS_INLINE void stiff_block(const struct turned spring, double k, double *out) {
-    set_block(-(k * (1 - spring.ratio)), -(k * spring.ratio), spring.u, out);
-}
-
-CS_INLINE void stiff(const struct fan_in *in, const struct fan_way *way, size_t i,
-                     double *out) {
-    stiff_block(turned_of(fan_across(in->x, in->n, i, way->step), way->length), way->k, out);
-}
-
-/* of df/dv with axial dampers, which turn with the spring */
-CS_INLINE void damped(const struct fan_in *in, const struct fan_way *way, size_t i,
-                      double *out) {
-    set_block(0, -in->c, turned_of(fan_across(in->x, in->n, i, way->step), 0).u, out);
-}
-
-/* of df/dv with relative dampers, which are the same in every direction */
-CS_INLINE void steady(const struct fan_in *in, const struct fan_way *way, size_t i,
-                      double *out) {
-    (void)way, (void)i;
-    out[0] = -in->c;
-}
-
-CS_FAN_KERNEL(stiff_blocks, stiff, SYM, 1);
-CS_FAN_KERNEL(damped_blocks, damped, SYM, 1);
-CS_FAN_KERNEL(steady_block, steady, 1, 1);
-
-static uint32_t fan_diagonal(struct job *job, const struct cs_block *all,
-                             const struct cs_spring_run *first, double *kxx, double *dvv) {
-    job->to = kxx;
-    const uint32_t n_runs = cs_fan_add(job, all, first, asks_always, &stiff_blocks);
-    job->to = dvv;
-    if (first->damping != 0 && first->axial)
-        cs_fan_add(job, all, first, asks_always, &damped_blocks);
-    for (size_t c = 0; first->damping != 0 && !first->axial && c < SYM; c += c ? 2 : 3) {
-        job->to = dvv + c * job->n;
-        cs_fan_add(job, all, first, asks_always, &steady_block);
-    }
-    return n_runs;
 }
 
 /* of a piece of a mesh */
@@ -134,19 +69,26 @@ CS_INLINE void run_diagonal(const struct cs_spring_run *run, size_t n, const dou
     }
 }
 
-CS_CLONES void cs_springs_add_diagonal(const struct cs_springs *springs, uint32_t n,
-                                       const double *x, double *kxx, double *dvv) {
-    struct job job = {
-        .springs = springs, .n = n, .at = {.x = x, .parts = CS_PART_DAMPED_SPRINGS}};
-    const struct cs_block all = {0, n, 0, springs->n_runs};
-    uint32_t n_runs = 1;
-    for (uint32_t r = 0; r < springs->n_runs; r += n_runs) {
+/* The rest of a number times the identity, which grids have in the first row of dvv. */
+static void spread(const struct cs_spring_run *first, size_t n, double *dvv) {
+    const size_t particles = first->columns * ((size_t)first->below + 1);
+    for (size_t c = 3; c < SYM; c += 2)
+        memcpy(dvv + c * n + first->row, dvv + first->row, particles * sizeof *dvv);
+}
+
+static bool begins_grid(const struct cs_springs *springs, uint32_t r) {
+    const struct cs_spring_run *run = springs->runs + r;
+    return run->columns && (r == 0 || run[-1].body != run->body);
+}
+
+CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
+                                          const struct cs_eval *at) {
+    for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        n_runs = 1;
-        if (run->columns)
-            n_runs = fan_diagonal(&job, &all, run, kxx, dvv);
-        else
-            run_diagonal(run, n, x, kxx, dvv);
+        if (!run->columns)
+            run_diagonal(run, n, at->x, at->kxx, at->dvv);
+        else if (begins_grid(springs, r) && run->damping != 0 && !run->axial)
+            spread(run, n, at->dvv);
     }
 }
 
@@ -159,11 +101,12 @@ CS_INLINE void own_block(const struct fan_in *in, const struct fan_way *way, siz
               out);
 }
 
-CS_FAN_KERNEL(own_blocks, own_block, SYM, 1);
+CS_FAN_KERNEL(own_blocks, own_block, 0, SYM, 0);
 
 CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
                                           const double *factors, double *sums) {
-    const struct job job = {.springs = springs, .n = n, .factors = factors, .to = sums};
+    const struct job job = {
+        .springs = springs, .n = n, .at = {.kxx = sums}, .factors = factors};
     const struct cs_block all = {0, n, 0, springs->n_runs};
     struct blocks blocks;
     uint32_t n_runs = 1;

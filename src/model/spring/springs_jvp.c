@@ -82,9 +82,9 @@ CS_INLINE void both(const struct fan_in *in, const struct fan_way *way, size_t i
     jvp_from(in, way, i, MOVED | TURNED, out);
 }
 
-CS_FAN_KERNEL(moved_jvp, moved, 3, -1);
-CS_FAN_KERNEL(turned_jvp, turned, 3, -1);
-CS_FAN_KERNEL(both_jvp, both, 3, -1);
+CS_FAN_KERNEL(moved_jvp, moved, 3, 0, 0);
+CS_FAN_KERNEL(turned_jvp, turned, 3, 0, 0);
+CS_FAN_KERNEL(both_jvp, both, 3, 0, 0);
 
 static const struct fan_kernel *choose_jvp(const struct job *job,
                                            const struct cs_spring_run *first) {

@@ -97,7 +97,7 @@ CS_INLINE void mul(const struct fan_in *in, const struct fan_way *way, size_t i,
     fan_put(mul_of(s[i], w, d), out);
 }
 
-CS_FAN_KERNEL(product, mul, 3, -1);
+CS_FAN_KERNEL(product, mul, 3, 0, 0);
 
 static const struct fan_kernel *choose_mul(const struct job *job,
                                            const struct cs_spring_run *first) {
