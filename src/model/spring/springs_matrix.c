@@ -22,6 +22,7 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
     double *restrict wz = wy + run->count;
     const double L = run->length, k = run->stiffness;
     const size_t count = piece->count;
+    CS_INDEPENDENT
     for (size_t i = 0; i < count; i++) {
         const double length = listed ? piece->lengths[i] : L;
         const double stiffness = -ck * (listed ? piece->stiffnesses[i] : k);
