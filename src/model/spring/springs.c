@@ -1,5 +1,6 @@
-/* Kernels over spring runs: force and energy. What is made of springs waits in a small buffer
- * on the stack; within it no spring depends on another, so the loops vectorise. */
+/* Kernels over spring runs: force, alone and with diagonal blocks. What is made of springs
+ * waits in a small buffer on the stack; within it no spring depends on another, so the loops
+ * vectorise. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
@@ -109,56 +110,4 @@ double cs_springs_shortest(const struct cs_springs *springs) {
         for (uint32_t i = 0; i < springs->runs[r].count; i++)
             shortest = fmin(shortest, cs_spring_length(springs->runs + r, i));
     return shortest;
-}
-
-static double run_energy(const struct cs_spring_run *run, size_t n, const double *x) {
-    struct gathered places;
-    const bool listed = run->ends != NULL;
-    double sum = 0;
-    for (uint32_t start = 0; start < run->count; start += PIECE) {
-        const struct piece piece = piece_of(run, start);
-        const struct ends e = ends_of(&piece, x, n, false, &places);
-        for (uint32_t i = 0; i < piece.count; i++) {
-            const struct difference d = across(e, i, listed);
-            const double stretch =
-                sqrt(d.x * d.x + d.y * d.y + d.z * d.z) - cs_spring_length(run, start + i);
-            sum += (listed ? piece.stiffnesses[i] : 1) * (stretch * stretch);
-        }
-    }
-    return 0.5 * (listed ? 1 : run->stiffness) * sum;
-}
-
-static bool has_energy(const struct cs_spring_run *run, uint32_t parts) {
-    return parts & (CS_PART_STRETCH << run->kind);
-}
-
-static void energy_of_runs(void *arg, uint32_t block) {
-    const struct job *job = arg;
-    const struct cs_springs *springs = job->springs;
-    for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
-        if (has_energy(springs->runs + r, job->at.parts))
-            springs->energies[r] = run_energy(springs->runs + r, job->n, job->at.x);
-}
-
-double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
-                         uint32_t parts) {
-    struct job job = {.springs = springs, .n = n, .at = {.x = x, .parts = parts}};
-    double energy = 0;
-    if (springs->energies)
-        cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, energy_of_runs, &job);
-    for (uint32_t r = 0; r < springs->n_runs; r++)
-        if (has_energy(springs->runs + r, parts))
-            energy +=
-                springs->energies ? springs->energies[r] : run_energy(springs->runs + r, n, x);
-    return energy;
-}
-
-double cs_springs_energy_at_twice(const struct cs_springs *springs) {
-    double energy = 0;
-    for (uint32_t r = 0; r < springs->n_runs; r++)
-        for (uint32_t i = 0; i < springs->runs[r].count; i++) {
-            const double length = cs_spring_length(springs->runs + r, i);
-            energy += 0.5 * cs_spring_stiffness(springs->runs + r, i) * length * length;
-        }
-    return energy;
 }
