@@ -18,7 +18,7 @@
 enum cs_step newton_init(struct newton *newton, const struct cs_host *host, double rtol,
                          int64_t iterations) {
     const size_t n = host->view->n;
-    *newton = (struct newton){.host = host, .rtol = rtol, .iterations = iterations};
+    *newton = (struct newton){.host = host, .rtol = rtol, .iterations = iterations, .floor = 1};
     double **arrays[] = {&newton->x, &newton->v,  &newton->r,  &newton->f,
                          &newton->b, &newton->du, &newton->u0, &newton->zero};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
@@ -57,8 +57,7 @@ static void evaluate(struct newton *newton, const struct newton_stage *stage, co
     newton->impulse = sqrt(impulse);
 }
 
-/* |r| that rounding causes: of x, times a stiffness of m omega^2, and of u */
-static double noise(const struct newton *newton, const struct newton_stage *stage,
+double newton_noise(const struct newton *newton, const struct newton_stage *stage,
                     const double *u) {
     const struct cs_view *view = newton->host->view;
     const size_t n3 = 3 * (size_t)view->n;
@@ -181,19 +180,27 @@ enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stag
     if (is_limited(newton))
         shorten_start(newton, stage, u);
     evaluate(newton, stage, u);
+    double before = HUGE_VAL;
     for (int64_t k = 0; isfinite(newton->norm); k++) {
-        const double goal = newton->rtol * newton->impulse + noise(newton, stage, u);
-        *converged = newton->norm <= goal;
+        const double noise = newton_noise(newton, stage, u), rtol = newton->rtol;
+        const double goal = rtol * newton->impulse + newton->floor * noise;
+        // below the noise an iteration that gains little is the last
+        const bool ends =
+            newton->norm <= rtol * newton->impulse + noise && newton->norm > before / 2;
+        *converged = newton->norm <= goal || ends;
         if (*converged || k == newton->iterations)
             break;
+        before = newton->norm;
         // the goal moves with the impulse: half of it is safe to aim at
         const double enough = 0.5 * goal / newton->norm;
         const enum cs_step status =
             find_direction(newton, stage, enough > LINEAR_RTOL ? enough : LINEAR_RTOL);
         if (status != CS_STEP_OK)
             return status;
-        if (!search(newton, stage, u))
+        if (!search(newton, stage, u)) {
+            *converged = newton->norm <= rtol * newton->impulse + noise;
             break;
+        }
     }
     return CS_STEP_OK;
 }

@@ -46,6 +46,9 @@ struct newton {
     const struct cs_host *host;
     double rtol;
     int64_t iterations;
+    /* Share of newton_noise that a residual is brought below, 1 after newton_init: for methods
+     * of many digits. Where rounding ends the search before, newton_noise itself is enough. */
+    double floor;
     double *x, *v;        /* (3,n): X and V of the last u */
     double *r, *f;        /* (3,n) */
     double *b, *du, *u0;  /* (3,n) */
@@ -70,5 +73,10 @@ newton_solver newton_solve;
 /* One Newton step of full length and no test but for numbers that are finite; newton->rtol is
  * the relative residual of its linear solve. */
 newton_solver newton_step;
+
+/* |r| in sqrt(J) that rounding causes: of x, times a stiffness of m omega^2, and of u. X and V
+ * are those of the last stage that was solved. */
+double newton_noise(const struct newton *newton, const struct newton_stage *stage,
+                    const double *u);
 
 #endif

@@ -6,7 +6,7 @@
 #include "halving.h"
 
 extern const struct cs_integrator backward_euler, implicit_midpoint, bdf2, tr_bdf2, sdirk2,
-    ros2, newmark;
+    ros2, newmark, gauss;
 
 /* Arrays (3,n) of an SDIRK2 step. */
 struct sdirk2_arrays {

@@ -51,6 +51,68 @@ START_TEST(planted_bug_is_found) {
 }
 END_TEST
 
+/* Of a small scene: largest distance of the reference's states from those of a far tighter run.
+ */
+static double true_error(const struct cs_compare_reference *reference, const char *integrator) {
+    char path[64];
+    struct cs_error error = {0};
+    struct cs_course course;
+    struct cs_course_end end = {0};
+    struct cs_track track;
+    double found = 0;
+    scene_write(path, SMALL_SCENE, "0.02");
+    const struct cs_course_settings asked = {.session = {.scene = path}, .frames = FRAMES};
+    ck_assert(!cs_course_open(&course, &asked, integrator, &error));
+    ck_assert(!cs_track_init(&track, &course, &error));
+    ck_assert(!cs_course_run(&course, 0, &track, &end, &error));
+    ck_assert(end.outcome == CS_RUNNING && !end.failed);
+    for (uint32_t k = 1; k <= FRAMES; k++)
+        found = fmax(found, cs_distance_rms(&course.session.system,
+                                            cs_track_state(&reference->track, k),
+                                            cs_track_state(&track, k)));
+    cs_track_finish(&track);
+    cs_course_close(&course);
+    unlink(path);
+    return found;
+}
+
+/* The bar is neither below the true error nor 30 times above it, also where the second family
+ * is the far better or the far worse one. */
+START_TEST(bar_is_near_the_true_error) {
+    static const struct {
+        const char *first, *second;
+    } pairs[] = {
+        {"dopri5:rtol=1e-8,atol=1e-8", "gauss:order=8,rtol=1e-12,dt=0.01"},
+        {"dopri5:rtol=1e-10,atol=1e-10", "gauss:order=8,rtol=1e-12,dt=0.005"},
+        {"rk4:dt=2e-3", "gauss:order=8,rtol=1e-12,dt=0.005"},
+        {"gauss:order=4,rtol=1e-12,dt=0.005", "dopri5:rtol=1e-11,atol=1e-11"},
+        {"rk4:dt=1e-3", "dopri5:rtol=1e-9,atol=1e-9"},
+    };
+    struct cs_compare_reference reference;
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        get(&reference, pairs[k].first, pairs[k].second, NULL);
+        const double error = true_error(&reference, "rk4:dt=5e-5");
+        ck_assert_msg(reference.agree, "%s: %s", pairs[k].first, reference.reason);
+        ck_assert_msg(reference.bar >= error && reference.bar <= 30 * error,
+                      "%s and %s: bar %.3g m, true error %.3g m", pairs[k].first,
+                      pairs[k].second, reference.bar, error);
+        cs_compare_reference_finish(&reference);
+    }
+}
+END_TEST
+
+/* By default the second family is collocation, with a step of the scene's own. */
+START_TEST(defaults_are_two_families_of_high_order) {
+    struct cs_compare_reference reference;
+    get(&reference, NULL, NULL, NULL);
+    ck_assert_msg(strncmp(reference.methods[2], "gauss:order=8,", 14) == 0, "%s",
+                  reference.methods[2]);
+    ck_assert_msg(reference.agree, "%s", reference.reason);
+    ck_assert_double_lt(reference.bar, 1e-12 * reference.scale);
+    cs_compare_reference_finish(&reference);
+}
+END_TEST
+
 START_TEST(twin_is_tighter) {
     char twin[256];
     struct cs_error error = {0};
@@ -171,6 +233,8 @@ int main(void) {
     const TTest *const tests[] = {events_are_hit_again_in_every_run,
                                   two_families_agree,
                                   planted_bug_is_found,
+                                  bar_is_near_the_true_error,
+                                  defaults_are_two_families_of_high_order,
                                   twin_is_tighter,
                                   cache_gives_the_same_states,
                                   horizon_of_an_undamped_drape,

@@ -65,6 +65,38 @@ static struct pair bdf2(struct pair y, struct pair last) {
     return solve(2 * H / 3, (struct pair){(4 * y.s - last.s) / 3, (4 * y.w - last.w) / 3});
 }
 
+/* the diagonal element of Pade's approximant of exp(h A), N(h A) / N(-h A), of degree s */
+static struct pair pade(int s, const double *n, struct pair y) {
+    struct pair power = y, top = {0, 0}, column[2] = {{1, 0}, {0, 1}}, bottom[2] = {{0, 0}};
+    double scale = 1;
+    for (int p = 0; p <= s; p++, scale *= H) {
+        top = add(top, n[p] * scale, power);
+        power = slope(power);
+        for (int k = 0; k < 2; k++) {
+            bottom[k] = add(bottom[k], (p % 2 ? -n[p] : n[p]) * scale, column[k]);
+            column[k] = slope(column[k]);
+        }
+    }
+    const double det = bottom[0].s * bottom[1].w - bottom[1].s * bottom[0].w;
+    return (struct pair){(top.s * bottom[1].w - bottom[1].s * top.w) / det,
+                         (bottom[0].s * top.w - top.s * bottom[0].w) / det};
+}
+
+static struct pair gauss4(struct pair y, struct pair last) {
+    (void)last;
+    return pade(2, (const double[]){1, 1.0 / 2, 1.0 / 12}, y);
+}
+
+static struct pair gauss6(struct pair y, struct pair last) {
+    (void)last;
+    return pade(3, (const double[]){1, 1.0 / 2, 1.0 / 10, 1.0 / 120}, y);
+}
+
+static struct pair gauss8(struct pair y, struct pair last) {
+    (void)last;
+    return pade(4, (const double[]){1, 1.0 / 2, 3.0 / 28, 1.0 / 84, 1.0 / 1680}, y);
+}
+
 static const struct {
     const char *integrator;
     struct pair (*step)(struct pair y, struct pair last);
@@ -75,7 +107,10 @@ static const struct {
               {"tr-bdf2:rtol=1e-14", l_stable},
               {"sdirk2:rtol=1e-14", l_stable},
               {"ros2:rtol=1e-14", l_stable},
-              {"newmark:rtol=1e-14", midpoint}};
+              {"newmark:rtol=1e-14", midpoint},
+              {"gauss:rtol=1e-14", gauss4},
+              {"gauss:rtol=1e-14,order=6", gauss6},
+              {"gauss:rtol=1e-14,order=8", gauss8}};
 
 /* The distance beyond rest after one second, from 0.1 m. */
 static double swing(const char *integrator, const char *model) {

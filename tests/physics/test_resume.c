@@ -87,6 +87,7 @@ START_TEST(scenes_go_on) {
         {"scenes/swing.json", "dopri5", 20, {1, 9, 15}},
         {"scenes/two_winds.json", "implicit-linearised", 16, {2, 7, 12}},
         {"scenes/contact_compare.json", "newmark", 16, {3, 8, 13}},
+        {"scenes/contact_compare.json", "gauss", 8, {2, 4, 7}},
         {"scenes/explosion_cured.json", "implicit-linearised", 12, {1, 4, 9}},
         {"scenes/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
         {"scenes/layers.json", NULL, 6, {2, 4, 5}},

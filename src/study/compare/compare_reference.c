@@ -70,10 +70,9 @@ static void measure_bar(struct cs_compare_reference *reference, const struct cs_
     compare(system, tracks, tracks + 1, reference->differences, largest);
     compare(system, tracks + 2, tracks + 3, reference->differences + 1, largest + 1);
     compare(system, tracks + 1, tracks + 3, reference->differences + 2, largest + 2);
-    for (int k = 0; k < 3; k++) {
-        reference->bar = fmax(reference->bar, reference->differences[k]);
-        reference->bar_max = fmax(reference->bar_max, largest[k]);
-    }
+    // what the looser twin of the other family is off by is no error of the reference
+    reference->bar = fmax(reference->differences[0], reference->differences[2]);
+    reference->bar_max = fmax(largest[0], largest[2]);
 }
 
 static void judge(struct cs_compare_reference *reference) {

@@ -13,10 +13,13 @@ static const char *const one_step[] = {"ark-erk:order=8,rtol=1e-12,atol=1e-12",
                                        "rk4:dt=@0.04",
                                        "velocity-verlet:dt=@0.01",
                                        NULL};
-static const char *const other[] = {
-    "cvode-adams:rtol=1e-12,atol=1e-12", "cvode-bdf:rtol=1e-11,atol=1e-11,max_order=5",
-    "implicit-midpoint:dt=@0.02",        "tr-bdf2:dt=@0.02",
-    "velocity-verlet:dt=@0.005",         NULL};
+static const char *const other[] = {"gauss:order=8,rtol=1e-12,dt=@0.4",
+                                    "cvode-adams:rtol=1e-12,atol=1e-12",
+                                    "cvode-bdf:rtol=1e-11,atol=1e-11,max_order=5",
+                                    "implicit-midpoint:dt=@0.02",
+                                    "tr-bdf2:dt=@0.02",
+                                    "velocity-verlet:dt=@0.005",
+                                    NULL};
 static const char *const *const families[2] = {one_step, other};
 
 /* "dt=@0.04": that share of 2/omega */
