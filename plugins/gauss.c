@@ -204,7 +204,7 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
 const struct cs_integrator gauss = {
     HALVING_METHOD(struct gauss_options, rows, archive),
     .name = "gauss",
-    .summary = "Gauss's collocation of order 4, 6 or 8 by Newton: symplectic, many digits",
+    .summary = "Gauss's collocation with 2, 3 or 4 stages by Newton: symplectic, many digits",
     .source = "Hairer, Lubich, Wanner 2006, sec. II.1.3; Houwen, Swart 1997",
     .order = 4,
     .order_damped = 4,
