@@ -1,8 +1,8 @@
 /* The reference: its own error, a planted bug, the horizon, the cache. */
 #include "scene.h"
 
-#include "study/compare/compare_reference.h"
-#include "study/compare/compare_reference_choice.h"
+#include "study/reference/compare_reference.h"
+#include "study/reference/compare_reference_choice.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,9 +6,9 @@
 #include "scene/pairs.h"
 #include "study/compare/compare_ledger.h"
 #include "study/compare/compare_measure.h"
-#include "study/compare/compare_reference.h"
 #include "study/compare/compare_time.h"
 #include "study/compare/sweep_list.h"
+#include "study/reference/compare_reference.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
  * step. */
 #include "study/compare/compare_measure.h"
 
-#include "study/compare/compare_reference.h"
+#include "study/reference/compare_reference.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #define CS_COMPARE_NORM_H
 
 #include "study/compare/compare_cell.h"
-#include "study/compare/compare_reference_state.h"
+#include "study/reference/compare_reference_state.h"
 
 enum cs_norm {
     CS_NORM_END,

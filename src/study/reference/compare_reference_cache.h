@@ -3,7 +3,7 @@
 #ifndef CS_COMPARE_REFERENCE_CACHE_H
 #define CS_COMPARE_REFERENCE_CACHE_H
 
-#include "study/compare/compare_reference_state.h"
+#include "study/reference/compare_reference_state.h"
 
 /* Hash of all that it depends on: CS_HASH_DIGITS characters. CS_ERR_MEMORY. */
 enum cs_status cs_compare_reference_key(const struct cs_compare_reference *reference,

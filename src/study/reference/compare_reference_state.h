@@ -2,8 +2,8 @@
 #ifndef CS_COMPARE_REFERENCE_STATE_H
 #define CS_COMPARE_REFERENCE_STATE_H
 
-#include "study/compare/horizon.h"
 #include "study/deviation.h"
+#include "study/reference/horizon.h"
 
 enum { CS_COMPARE_REFERENCE_RUNS = 4 };
 

@@ -1,10 +1,10 @@
 /* Computes the verified reference: four runs, their differences, and whether they agree. */
-#include "study/compare/compare_reference.h"
+#include "study/reference/compare_reference.h"
 
 #include "base/hash.h"
 #include "model/force/measure.h"
-#include "study/compare/compare_reference_cache.h"
-#include "study/compare/compare_reference_choice.h"
+#include "study/reference/compare_reference_cache.h"
+#include "study/reference/compare_reference_choice.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@
 #ifndef CS_COMPARE_REFERENCE_H
 #define CS_COMPARE_REFERENCE_H
 
-#include "study/compare/compare_reference_state.h"
+#include "study/reference/compare_reference_state.h"
 
 /* Computes, or reads from the cache. That the families disagree is a result. CS_ERR_MODULE
  * where a method that was asked for is not there; CS_ERR_INTERRUPT; CS_ERR_MEMORY; CS_ERR_FILE

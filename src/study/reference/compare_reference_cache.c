@@ -1,5 +1,5 @@
 /* Keeps a reference in a file: its key, its header and its states. */
-#include "study/compare/compare_reference_cache.h"
+#include "study/reference/compare_reference_cache.h"
 
 #include "base/file.h"
 #include "base/hash.h"

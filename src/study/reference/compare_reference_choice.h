@@ -2,7 +2,7 @@
 #ifndef CS_COMPARE_REFERENCE_CHOICE_H
 #define CS_COMPARE_REFERENCE_CHOICE_H
 
-#include "study/compare/compare_reference_state.h"
+#include "study/reference/compare_reference_state.h"
 
 /* Writes the next tighter settings of "NAME:key=value,...": rtol and atol divided by 10, dt by
  * 2. CS_ERR_USAGE where they cannot be read or do not fit. */

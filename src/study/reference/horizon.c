@@ -1,5 +1,5 @@
 /* Measures the predictability horizon: how fast runs from nearly equal starts move apart. */
-#include "study/compare/horizon.h"
+#include "study/reference/horizon.h"
 
 #include "study/deviation.h"
 
