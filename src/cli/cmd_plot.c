@@ -8,15 +8,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PLOT_X, PLOT_Y, PLOT_OUT, PLOT_TITLE, PLOT_QUIET, PLOT_ROWS };
+enum { PLOT_X, PLOT_Y, PLOT_FAMILY, PLOT_OUT, PLOT_TITLE, PLOT_QUIET, PLOT_ROWS };
 
 static const struct cs_arg rows[PLOT_ROWS] = {
     [PLOT_X] = {"x", 'x', "COLUMN", "column of the x axis (default: cpu)", false},
     [PLOT_Y] = {"y", 'y', "COLUMN", "column of the y axis (default: error)", false},
-    [PLOT_OUT] = {"out", 'o', "NAME",
-                  "writes NAME.gp, and NAME.png and NAME.svg where gnuplot is found (default: "
-                  "Y_X beside FILE)",
-                  false},
+    [PLOT_FAMILY] = {"family", 'f', "FAMILY",
+                     "all series of one family, such as \"adaptive implicit\" (default: the "
+                     "twelve with most on the front)",
+                     false},
+    [PLOT_OUT] =
+        {"out", 'o', "NAME",
+         "writes NAME.gp, and NAME.png, .svg and .pdf where gnuplot is found (default: "
+         "Y_X beside FILE)",
+         false},
     [PLOT_TITLE] = {"title", 0, "TEXT", "title above the diagram (default: FILE)", false},
     [PLOT_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
 };
@@ -33,6 +38,23 @@ static enum cs_status read_axis(const struct cs_args *args, uint32_t row, const 
         cs_text_add(&list, "%s%s", k ? ", " : "", names[k]);
     cs_fail(error, CS_ERR_USAGE, "--%s: expected one of %s, found \"%.60s\"", rows[row].name,
             cs_text_get(&list), given);
+    cs_text_finish(&list);
+    return error->status;
+}
+
+static enum cs_status read_family(const struct cs_args *args, const char **family,
+                                  struct cs_error *error) {
+    const char *given = cs_args_get(args, PLOT_FAMILY);
+    struct cs_text list = {0};
+    *family = given;
+    for (uint32_t k = 0; given && cs_family_names[k]; k++) {
+        if (!strcmp(given, cs_family_names[k]))
+            given = NULL;
+        cs_text_add(&list, "%s%s", k ? ", " : "", cs_family_names[k]);
+    }
+    if (given)
+        cs_fail(error, CS_ERR_USAGE, "--family: expected one of %s, found \"%.60s\"",
+                cs_text_get(&list), given);
     cs_text_finish(&list);
     return error->status;
 }
@@ -60,7 +82,7 @@ static enum cs_status tell(const struct cs_args *args, const char *path, bool dr
     if (cs_args_get(args, PLOT_QUIET))
         return CS_OK;
     if (drawn)
-        cs_text_add(&text, "%s.gp, %s.png, %s.svg\n", path, path, path);
+        cs_text_add(&text, "%s.gp, %s.png, %s.svg, %s.pdf\n", path, path, path, path);
     else
         cs_text_add(&text, "%s.gp (gnuplot, which draws it, was not found)\n", path);
     return cs_print_out(stdout, &text, error);
@@ -77,8 +99,11 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
         snprintf(path, sizeof path, "%s", out);
     else
         /* beside the file, named after the axes */
-        snprintf(path, sizeof path, "%.*s%s_%s", slash ? (int)(slash - file) + 1 : 0, file,
-                 settings->y->name, settings->x->name);
+        snprintf(path, sizeof path, "%.*s%s_%s%s%s", slash ? (int)(slash - file) + 1 : 0, file,
+                 settings->y->name, settings->x->name, settings->family ? "_" : "",
+                 settings->family ? settings->family : "");
+    for (char *c = path + strlen(path); settings->family && !out && c > path && *--c != '_';)
+        *c = *c == ' ' ? '-' : *c;
     settings->title = title ? title : file;
     split(path, folder, &settings->name);
     /* both end up between quotes in the gnuplot script */
@@ -91,15 +116,29 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
     return tell(args, path, drawn, error);
 }
 
+/* a diagram of nothing is a mistake in the name of the family */
+static enum cs_status check_cells(const struct cs_plot_settings *settings, const char *file,
+                                  struct cs_error *error) {
+    for (uint32_t k = 0; k < settings->n; k++)
+        if (!settings->family || !strcmp(settings->cells[k].family, settings->family))
+            return CS_OK;
+    return settings->family
+               ? cs_fail(error, CS_ERR_USAGE, "--family: found no \"%s\" series in %s",
+                         settings->family, file)
+               : CS_OK;
+}
+
 static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
     struct cs_plot_settings settings = {0};
     struct cs_cell *cells;
     if (read_axis(args, PLOT_X, "cpu", &settings.x, error) ||
         read_axis(args, PLOT_Y, "error", &settings.y, error) ||
+        read_family(args, &settings.family, error) ||
         cs_csv_read(args->operands[0], &cells, &settings.n, error))
         return error->status;
     settings.cells = cells;
-    draw(args, &settings, error);
+    if (!check_cells(&settings, args->operands[0], error))
+        draw(args, &settings, error);
     free(cells);
     return error->status;
 }

@@ -31,14 +31,14 @@ static void add_pre(const char *title, struct cs_text *text, struct cs_text *out
 }
 
 static void add_diagram(const struct cs_compare *compare, const struct cs_ranking *ranking,
-                        const char *x, const bool *front, struct cs_text *out) {
+                        const char *x, struct cs_text *out) {
     const bool known = cs_norm_is_known(ranking->norm, &compare->reference);
     const struct cs_plot_settings settings = {
         .cells = compare->sweep.cells,
         .n = compare->sweep.n,
         .x = cs_column_find(x),
         .y = cs_norm_column(known ? ranking->norm : CS_NORM_ENERGY)};
-    cs_svg_print(&settings, front, out);
+    cs_svg_print(&settings, out);
 }
 
 static void add_number(double value, struct cs_text *out) {
@@ -108,11 +108,12 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
     add_pre("Verdict", &verdict, out);
     add_pre("To mind", &warnings, out);
     cs_text_add(out, "<h2>Diagrams</h2>\n<p>Yellow: the front, where nothing is both cheaper "
-                     "and more accurate. Bars: quartiles of the rounds. Grey: below the "
+                     "and more accurate. Bars: quartiles of the rounds. Crosses: "
+                     "what did not get through. Grey: below the "
                      "reference's own error.</p>\n");
     if (compare->reference.agree) {
-        add_diagram(compare, ranking, "cpu", ranking->front, out);
-        add_diagram(compare, ranking, "work", NULL, out);
+        add_diagram(compare, ranking, "cpu", out);
+        add_diagram(compare, ranking, "work", out);
     }
     add_pre("Series", &series, out);
     add_table(compare, ranking, out);
