@@ -1,6 +1,7 @@
 /* Opens an integrator module and checks it against the contract before it is called. */
 #include "sim/module.h"
 
+#include "base/file.h"
 #include "sim/crash.h"
 #include "sim/guard.h"
 
@@ -8,8 +9,11 @@
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+enum { MODULE_BYTES_MAX = 256 << 20 };
 
 static bool is_name(const char *name, const char *letters) {
     return name && *name && strlen(name) < 64 && !name[strspn(name, letters)];
@@ -172,4 +176,14 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
         return error->status;
     *module = found;
     return CS_OK;
+}
+
+void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]) {
+    char *bytes = NULL;
+    size_t length;
+    struct cs_error unread = {0};
+    digits[0] = 0;
+    if (!cs_file_read(file, MODULE_BYTES_MAX, &bytes, &length, &unread))
+        cs_hash_bytes(bytes, length, digits);
+    free(bytes);
 }

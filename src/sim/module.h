@@ -2,6 +2,7 @@
 #ifndef CS_MODULE_H
 #define CS_MODULE_H
 
+#include "base/hash.h"
 #include "base/status.h"
 
 #include <clothsim/integrator.h>
@@ -11,5 +12,8 @@
  * CS_ERR_MODULE with the reason in *error. */
 enum cs_status cs_module_open(const char *file, const struct cs_module **module,
                               struct cs_error *error);
+
+/* The hash of its bytes: another build may give other results. "" where it cannot be read. */
+void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]);
 
 #endif

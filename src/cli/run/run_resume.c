@@ -2,13 +2,13 @@
 #include "cli/run/run_resume.h"
 
 #include "base/clock.h"
-#include "base/file.h"
+#include "sim/module.h"
 #include "sim/run_record.h"
 
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
-enum { MOST_FRAMES = 10000000, MODULE_BYTES_MAX = 256 << 20, FACTS = 7 };
+enum { MOST_FRAMES = 10000000, FACTS = 7 };
 #define MOST_SECONDS 1e9
 
 /* numbers are stored as this machine has them */
@@ -43,14 +43,10 @@ enum cs_status cs_resume_read_pace(const char *value, struct cs_resume_pace *pac
 static void hash_module(struct cs_resume *resume) {
     const struct cs_registered *found;
     struct cs_error unread = {0};
-    char *bytes = NULL;
-    size_t length;
     struct cs_session *session = resume->session;
     if (!cs_registry_find(&session->registry, session->method.integrator->name, &found,
-                          &unread) &&
-        !cs_file_read(found->file, MODULE_BYTES_MAX, &bytes, &length, &unread))
-        cs_hash_bytes(bytes, length, resume->module);
-    free(bytes);
+                          &unread))
+        cs_module_hash(found->file, resume->module);
 }
 
 static void list_facts(const struct cs_resume *resume, struct cs_fact facts[FACTS]) {

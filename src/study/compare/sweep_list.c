@@ -1,14 +1,12 @@
 /* Reads a list of methods with options and ranges, and makes the cells of each. */
 #include "study/compare/sweep_list.h"
 
-#include "base/file.h"
 #include "base/options.h"
+#include "sim/module.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MODULE_BYTES_MAX = 1 << 28 };
 
 /* "low..high" or one number: both ends are checked as one number is */
 static enum cs_status set_range(struct cs_sweep_entry *entry, const char *key,
@@ -36,15 +34,6 @@ static enum cs_status set_option(struct cs_sweep_entry *entry, const char *key,
                : set_range(entry, key, value, error);
 }
 
-static void hash_module(const char *file, char digits[CS_HASH_DIGITS]) {
-    char *bytes;
-    size_t length;
-    struct cs_error unread = {0};
-    if (!cs_file_read(file, MODULE_BYTES_MAX, &bytes, &length, &unread))
-        cs_hash_bytes(bytes, length, digits);
-    free(bytes);
-}
-
 /* Takes the method over. */
 static enum cs_status begin_entry(struct cs_sweep_entry *entry, struct cs_registry *registry,
                                   const struct cs_method *method, struct cs_error *error) {
@@ -54,7 +43,7 @@ static enum cs_status begin_entry(struct cs_sweep_entry *entry, struct cs_regist
         .method = *method, .low = (double)NAN, .high = (double)NAN, .control = ""};
     if (cs_registry_find(registry, integrator->name, &registered, error))
         return error->status;
-    hash_module(registered->file, entry->module);
+    cs_module_hash(registered->file, entry->module);
     const char *control = integrator->traits & CS_ADAPTIVE ? "rtol" : "dt";
     if (cs_option_find(&method->table, control))
         entry->control = control;
