@@ -8,7 +8,15 @@
 
 /* --- text --- */
 
-enum { NAME_WIDTH = 16, CELL_WIDTH = 10 };
+enum { NAME_WIDTH = 16, CELL_WIDTH = 10, TABLE_MOST = 64 };
+
+/* Half the width of a single column or row, as a factor. */
+#define ALONE 1.3
+
+/* Every so many columns or rows of a large map are in the table. */
+static uint32_t stride(uint32_t n) {
+    return (n + TABLE_MOST - 1) / TABLE_MOST;
+}
 
 /* a step in seconds, or what stands for none */
 static void add_dt(struct cs_text *out, double dt) {
@@ -24,7 +32,7 @@ static void add_dt(struct cs_text *out, double dt) {
 
 static void add_row(const struct cs_stability *map, uint32_t row, struct cs_text *out) {
     cs_text_add(out, "%-*.4g", NAME_WIDTH, map->dt[row]);
-    for (uint32_t c = 0; c < map->n_columns; c++)
+    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
         cs_text_add(out, "%*c", CELL_WIDTH,
                     cs_stability_letter(map->columns[c].cells[row].verdict));
     cs_text_add(out, "\n");
@@ -51,12 +59,12 @@ static void add_lines(const struct cs_stability *map, struct cs_text *out) {
                                              "Gershgorin"};
     for (enum line line = 0; line < LINES; line++) {
         cs_text_add(out, "%-*s", NAME_WIDTH, names[line]);
-        for (uint32_t c = 0; c < map->n_columns; c++)
+        for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
             add_dt(out, value_of(map->columns + c, line));
         cs_text_add(out, "\n");
     }
     cs_text_add(out, "%-*s", NAME_WIDTH, "border / worst");
-    for (uint32_t c = 0; c < map->n_columns; c++) {
+    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns)) {
         const double ratio = map->columns[c].border / map->columns[c].reference.worst.dt;
         if (isfinite(ratio) && ratio > 0)
             cs_text_add(out, "%*.3f", CELL_WIDTH, ratio);
@@ -81,7 +89,7 @@ static double last_stable(const struct cs_stability *map, uint32_t c, bool cross
 
 static void add_drift(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "energy drift");
-    for (uint32_t c = 0; c < map->n_columns; c++)
+    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
         if (isnan(last_stable(map, c, false)))
             cs_text_add(out, "%*s", CELL_WIDTH, "-");
         else
@@ -93,7 +101,7 @@ static void add_crossings(const struct cs_stability *map, struct cs_text *out) {
     if (!map->session.plan.rows[CS_FEATURE_CROSSINGS].built)
         return;
     cs_text_add(out, "%-*s", NAME_WIDTH, "crossings");
-    for (uint32_t c = 0; c < map->n_columns; c++)
+    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
         if (isnan(last_stable(map, c, true)))
             cs_text_add(out, "%*s", CELL_WIDTH, "-");
         else
@@ -118,7 +126,7 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
 /* For how long the border was watched: a column has as long as its slowest limit needs. */
 static void add_watch(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "watched for [s]");
-    for (uint32_t c = 0; c < map->n_columns; c++)
+    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
         cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].reference.seconds);
     cs_text_add(out, "\n");
 }
@@ -131,11 +139,15 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
     cs_contact_line_add(&map->session.scene, "; ", out);
     cs_text_add(out, "\n\n");
     cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
-    for (uint32_t c = 0; c < map->n_columns; c++)
+    for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
         cs_text_add(out, "%*.4g", CELL_WIDTH, map->columns[c].value);
     cs_text_add(out, "\n");
     for (uint32_t r = map->n_rows; r-- > 0;)
-        add_row(map, r, out);
+        if (r % stride(map->n_rows) == 0)
+            add_row(map, r, out);
+    if (stride(map->n_columns) > 1 || stride(map->n_rows) > 1)
+        cs_text_add(out, "(columns in steps of %u, rows of %u; all %u x %u are in the files)\n",
+                    stride(map->n_columns), stride(map->n_rows), map->n_columns, map->n_rows);
     cs_text_add(out, "\n");
     add_watch(map, out);
     add_lines(map, out);
@@ -154,11 +166,12 @@ static void add_field(struct cs_text *out, double value) {
         cs_text_add_real(out, value);
 }
 
-/* the middle between two neighbours on a logarithmic scale, and as far beyond the ends */
-static double edge(double before, double here, double after) {
+/* the middle between two neighbours on a logarithmic scale, and as far beyond the ends; without
+ * neighbours so many times the value */
+static double edge(double before, double here, double after, double alone) {
     if (before > 0)
         return sqrt(before * here);
-    return after > 0 ? here * sqrt(here / after) : here / 1.3;
+    return after > 0 ? here * sqrt(here / after) : here * alone;
 }
 
 static double value_at(const struct cs_stability *map, uint32_t c) {
@@ -181,10 +194,10 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     add_field(out, cell->drift);
     add_field(out, cell->time);
     cs_text_add(out, ",%u", cell->particles);
-    add_field(out, edge(left, value, right));
-    add_field(out, edge(right, value, left));
-    add_field(out, edge(below, cell->dt, above));
-    add_field(out, edge(above, cell->dt, below));
+    add_field(out, edge(left, value, right, 1 / ALONE));
+    add_field(out, edge(right, value, left, ALONE));
+    add_field(out, edge(below, cell->dt, above, 1 / ALONE));
+    add_field(out, edge(above, cell->dt, below, ALONE));
     add_field(out, cell->crossings);
     cs_text_add(out, "\n");
 }
@@ -294,15 +307,19 @@ static void add_head(const struct cs_stability *map, const char *name, struct cs
                 "set tics out nomirror\nset mxtics 10\nset mytics 10\n"
                 "set border 3 lc rgb '#555555'\n"
                 "set key outside right top Left reverse spacing 1.35 samplen 2.2 width -2\n"
-                "set style fill solid 1.0 border lc rgb '#ffffff'\n");
+                "set style fill solid 1.0 %s\n",
+                // between many cells white lines would be most of the picture
+                stride(map->n_columns) > 1 || stride(map->n_rows) > 1
+                    ? "noborder"
+                    : "border lc rgb '#ffffff'");
 }
 
 static void add_ranges(const struct cs_stability *map, struct cs_text *out) {
     const uint32_t nc = map->n_columns, nr = map->n_rows;
     const double x0 = map->columns[0].value, x1 = map->columns[nc - 1].value;
     const double y0 = map->dt[0], y1 = map->dt[nr - 1];
-    const double dx = nc > 1 ? pow(x1 / x0, 0.5 / (nc - 1)) : 1.3;
-    const double dy = nr > 1 ? pow(y1 / y0, 0.5 / (nr - 1)) : 1.3;
+    const double dx = nc > 1 ? pow(x1 / x0, 0.5 / (nc - 1)) : ALONE;
+    const double dy = nr > 1 ? pow(y1 / y0, 0.5 / (nr - 1)) : ALONE;
     cs_text_add(out, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", x0 / dx, x1 * dx,
                 y0 / dy, y1 * dy);
 }

@@ -23,7 +23,7 @@ struct cs_stability_settings {
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
 };
-enum { CS_MAP_MOST = 64 };
+enum { CS_MAP_MOST = 1024 };
 
 struct cs_stability_column {
     double value;                   /* of the axis */
