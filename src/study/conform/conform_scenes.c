@@ -53,6 +53,15 @@
     "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"               \
     " \"friction_speed\": 0.2}, \"events\": [" events "], " FIVE_FRAMES "}"
 
+/* A sheet whose edges and diagonal slide over a thin pole, out of reach of its particles. */
+#define POLE                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0, -0.3]},"              \
+    " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
+    "}, \"colliders\": [{\"capsule\": {\"from\": [-2, 0, -0.25], \"to\": [2, 0, -0.25],"       \
+    " \"radius\": 0.02}, \"thickness\": 0.4, \"friction\": 0.5}], \"contact\": {\"law\":"      \
+    " \"force\", \"stiffness\": 1, \"damping\": 0.02, \"friction_speed\": 0.2}, "              \
+    FIVE_FRAMES "}"
+
 /* Two sheets that come near each other, and slide; they stay in the range. */
 #define PAIRS(friction)                                                                        \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.15, 0.1, 0.1]},"            \
@@ -107,6 +116,7 @@ const struct cs_force_scene cs_force_scenes[] = {
 
     {"force-contact", "contact by force, without friction", CONTACT("0", ""), 9, true, false},
     {"force-contact", "contact by force, with friction", CONTACT("0.5", ""), 9, true, false},
+    {"force-contact", "edges on a pole", POLE, 9, true, true},
     {"force-contact", "two sheets that meet by force", PAIRS("0.3"), 12, true, true},
 
     {"unequal-masses", "two sheets in gravity, wind and drag",
