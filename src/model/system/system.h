@@ -44,7 +44,7 @@ struct cs_system {
     const struct cs_term *terms[CS_TERMS_MOST]; /* the forces that this scene has */
     uint32_t n_terms;
     struct cs_obstacle_motion
-        *motions;                      /* (scene->colliders.n); NULL where no event moves one */
+        *motions;            /* (scene->colliders.n); NULL where no event moves one */
     double *collider_motion; /* (3, colliders, 3) what the view shows of them; NULL likewise */
     const struct cs_pairing *pairings; /* (scene->colliders.n); NULL without contact by force */
     struct cs_pairs *pairs;            /* bodies that keep off each other; NULL: none do */
