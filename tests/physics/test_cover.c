@@ -50,7 +50,7 @@ static const struct {
 /* m, from the obstacle at t to the nearest of many points of the cloth */
 static double nearest(const struct fixture *cloth, const struct cs_surfaces *surfaces,
                       double t) {
-    enum { FINE = 12 };
+    enum { FINE = 8 };
     struct cs_obstacle pose;
     double least = HUGE_VAL;
     cs_obstacle_at(cloth->system, 0, t, &pose);
@@ -272,7 +272,7 @@ START_TEST(bits_are_those_of_one_thread) {
             ck_assert_int_eq(cs_pool_start(threads, &error), CS_OK);
             fixture_open(&cloth, methods[m], "%s", coarse[0].scene);
             fixture_start(&cloth);
-            fixture_frames(&cloth, 20);
+            fixture_frames(&cloth, 12);
             if (threads == 1)
                 memcpy(one, cloth.x, sizeof one);
             ck_assert_msg(!memcmp(one, cloth.x, sizeof one), "%s: %u threads", methods[m],
