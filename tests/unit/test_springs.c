@@ -340,6 +340,44 @@ START_TEST(energy_is_the_sum_of_single_springs) {
 }
 END_TEST
 
+/* in magnitude, of springs whose ends are numbers */
+static double largest_strain(const struct sheet *sheet) {
+    const struct cs_springs *springs = &sheet->system.springs;
+    double largest = 0;
+    for (uint32_t r = 0; r < springs->n_runs; r++)
+        for (uint32_t i = 0; i < springs->runs[r].count; i++) {
+            const struct cs_spring_run *run = springs->runs + r;
+            double squared = 0;
+            for (size_t c = 0; c < 3; c++) {
+                const double *x = sheet->x + c * sheet->n;
+                const double d = x[cs_spring_b(run, i)] - x[cs_spring_a(run, i)];
+                squared += d * d;
+            }
+            largest = fmax(largest, fabs(sqrt(squared) / cs_spring_length(run, i) - 1));
+        }
+    return largest;
+}
+
+START_TEST(largest_strain_is_that_of_single_springs) {
+    double most = 0;
+    for (size_t g = 0; g < N_GRIDS; g++) {
+        struct sheet sheet;
+        sheet_open(&sheet, 0, SCENE, grids[g][0], grids[g][1], "0");
+        for (int k = 0; k < 3; k++) {
+            const double found =
+                cs_springs_largest_strain(&sheet.system.springs, (uint32_t)sheet.n, sheet.x);
+            ck_assert_double_eq(found, largest_strain(&sheet));
+            most = fmax(most, found);
+            sheet_stir(&sheet, 0.1, 0);
+            if (k == 1)
+                sheet.x[sheet.n / 2] = NAN;
+        }
+        sheet_close(&sheet);
+    }
+    ck_assert_double_gt(most, 0.1);
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {runs_are_the_twelve_neighbours,
                                   second_body_has_its_own_particles,
@@ -350,6 +388,7 @@ int main(void) {
                                   particles_in_one_place_feel_no_spring,
                                   energy_is_the_sum_of_single_springs,
                                   own_blocks_are_the_sum_of_single_springs,
-                                  own_blocks_of_the_factors_are_those_of_the_product};
+                                  own_blocks_of_the_factors_are_those_of_the_product,
+                                  largest_strain_is_that_of_single_springs};
     return unit_run("springs", tests, sizeof tests / sizeof *tests);
 }

@@ -34,12 +34,7 @@ static double strain_of(const struct cs_spring_run *run, size_t n, const double 
 }
 
 double cs_measure_strain(const struct cs_system *system, const double *x) {
-    double largest = 0;
-    for (uint32_t r = 0; r < system->springs.n_runs; r++)
-        for (uint32_t i = 0; i < system->springs.runs[r].count; i++)
-            largest =
-                fmax(largest, fabs(strain_of(system->springs.runs + r, system->view.n, x, i)));
-    return largest;
+    return cs_springs_largest_strain(&system->springs, system->view.n, x);
 }
 
 void cs_measure_particle_strain(const struct cs_system *system, const double *x, double *out) {

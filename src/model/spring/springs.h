@@ -40,6 +40,10 @@ double cs_springs_shortest(const struct cs_springs *springs);
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts);
 
+/* Largest magnitude of a length over the rest length, less 1; numbers that are none are passed
+ * over. 0 without springs. */
+double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n, const double *x);
+
 /* Elastic energy in J that all springs would hold at twice their rest lengths. */
 double cs_springs_energy_at_twice(const struct cs_springs *springs);
 

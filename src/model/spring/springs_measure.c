@@ -1,5 +1,6 @@
-/* The elastic energy of spring runs: what each spring holds is made in vectors, and summed in
- * eight lanes a piece of a run, so that the sum does not depend on the width of vectors. */
+/* Elastic energy and largest strain of spring runs. What each spring has is made in vectors,
+ * and goes to eight lanes a piece of a run, so that a sum does not depend on the width of
+ * vectors. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
@@ -47,6 +48,51 @@ CS_CLONES static double run_energy(const struct cs_spring_run *run, size_t n, co
         sum += sum_lanes(squares, piece.count);
     }
     return 0.5 * (run->ends ? 1 : run->stiffness) * sum;
+}
+
+/* of each spring, in magnitude */
+CS_INLINE void find_strains(const struct piece *piece, const struct ends e, const bool listed,
+                            double *restrict strains) {
+    const double length = piece->run->length;
+    const size_t count = piece->count;
+    for (size_t i = 0; i < count; i++) {
+        const struct difference d = across(e, i, listed);
+        const double now = sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+        strains[i] = fabs(now / (listed ? piece->lengths[i] : length) - 1);
+    }
+}
+
+/* What is no number is passed over. */
+CS_INLINE double find_largest(const double *values, size_t count) {
+    double most[LANES] = {0};
+    for (size_t i = 0; i + LANES <= count; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            most[l] = values[i + l] > most[l] ? values[i + l] : most[l];
+    for (size_t i = count - count % LANES; i < count; i++)
+        most[0] = values[i] > most[0] ? values[i] : most[0];
+    for (size_t l = 1; l < LANES; l++)
+        most[0] = most[l] > most[0] ? most[l] : most[0];
+    return most[0];
+}
+
+CS_CLONES double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n,
+                                           const double *x) {
+    struct gathered places;
+    double strains[PIECE], largest = 0;
+    for (uint32_t r = 0; r < springs->n_runs; r++) {
+        const struct cs_spring_run *run = springs->runs + r;
+        for (uint32_t start = 0; start < run->count; start += PIECE) {
+            const struct piece piece = piece_of(run, start);
+            const struct ends e = ends_of(&piece, x, n, false, &places);
+            if (run->ends)
+                find_strains(&piece, e, true, strains);
+            else
+                find_strains(&piece, e, false, strains);
+            const double found = find_largest(strains, piece.count);
+            largest = found > largest ? found : largest;
+        }
+    }
+    return largest;
 }
 
 static bool has_energy(const struct cs_spring_run *run, uint32_t parts) {
