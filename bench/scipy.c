@@ -14,7 +14,8 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
                                NULL};
     struct bench_usage usage;
     struct cs_text output = {0};
-    bench_tell("the drum, %s", settings->quick ? "0.05 s" : "0.5 s");
+    bench_tell("%s",
+               settings->quick ? "the drum, 0.05 s" : "hanging sheets and the drum, 0.5 s");
     if (!bench_child_run(arguments, &output, &usage, error))
         for (char *line = output.bytes, *end; line && *line; line = end) {
             end = line + strcspn(line, "\n");
@@ -25,13 +26,13 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
     return error->status;
 }
 
-static const char *const columns[] = {"solver",  "rtol",   "median_s",    "min_s", "max_s",
-                                      "error_m", "forces", "times_scipy", NULL};
+static const char *const columns[] = {"scene", "solver",  "rtol",   "median_s",    "min_s",
+                                      "max_s", "error_m", "forces", "times_scipy", NULL};
 const struct bench_section bench_scipy = {
     .name = "scipy",
-    .summary = "s of the processor for BDF on scenes/drum.json, SciPy's and clothsim's",
+    .summary = "s of the processor for BDF, SciPy's and clothsim's at the same error",
     .columns = columns,
-    .n_keys = 2,
+    .n_keys = 3,
     .measured = "median_s",
     .run = run,
 };

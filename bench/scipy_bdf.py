@@ -1,9 +1,13 @@
 #!/usr/bin/python3
-"""BDF of SciPy against cvode-bdf of clothsim: the same drum, tolerance and time.
+"""BDF of SciPy against cvode-bdf of clothsim at the same error.
 
-Prints a CSV line a solver and tolerance: solver, rtol, seconds of the processor (median, least,
-most), error in m (root of the mean square over free particles, against a reference at 1e-12 that
-clothsim computed by another method), steps, and how many times faster than SciPy's it is.
+Prints a CSV line a scene, solver and tolerance: scene, solver, rtol (atol is rtol/1000), seconds of
+the processor (median, least, most), error in m (root of the mean square over free particles,
+against a reference at 1e-12 that clothsim computed by another method), force evaluations, and how
+many times faster than SciPy's it is: SciPy's time at the same error, by interpolation between the
+logarithms of error and time of its own runs, and beyond the last of them by the slope of the last
+two. Scenes are the drum, and sheets that hang by two corners (W8, W16: particles a side).
+
 SciPy is served as well as it can be: one thread, forces in whole arrays, a sparse incidence
 matrix to gather them, an analytic sparse Jacobian of a pattern that is laid out once, and the
 pinned particles left out. Clothsim's seconds are those of the whole program.
@@ -50,16 +54,15 @@ def grid_springs(body):
 class Sheet:
     """The equation of motion of the free particles; y holds x (n,3), then v (n,3)."""
 
-    def __init__(self, scene, x):
+    def __init__(self, scene, x, free):
         body = scene["bodies"][0]
         columns, rows = body["cloth"]["grid"]
         self.ends, self.length, self.stiffness = grid_springs(body)
         self.damping = body["springs"]["damping"]
+        self.axial = body["springs"]["damping_model"] == "axial"
         self.mass = body["mass"]["total"] / (columns * rows)
         self.gravity = np.array(scene["forces"]["gravity"])
-        inner = np.zeros((rows, columns), bool)
-        inner[1:-1, 1:-1] = True
-        self.free = np.flatnonzero(inner)
+        self.free = free
         self.x = x.copy()
         self.lay_out()
 
@@ -108,8 +111,12 @@ class Sheet:
     def rate(self, _, y):
         u, length, w = self.ends_of(y)
         pull = self.stiffness * (length - self.length)
-        pull += self.damping * np.einsum("si,si->s", w, u)
-        acceleration = self.gather @ (pull[:, None] * u) / self.mass + self.gravity
+        if self.axial:
+            pull += self.damping * np.einsum("si,si->s", w, u)
+        force = pull[:, None] * u
+        if not self.axial:
+            force += self.damping * w
+        acceleration = self.gather @ force / self.mass + self.gravity
         return np.concatenate([y[len(y) // 2:], acceleration.ravel()])
 
     def jacobian(self, _, y):
@@ -118,14 +125,15 @@ class Sheet:
         uu = u[:, :, None] * u[:, None, :]
         across = np.eye(3) - uu
         slack = self.stiffness * (1 - self.length / length)
-        along = np.einsum("si,si->s", w, u)
-        turn = np.einsum("si,sij->sj", w, across)
         k = slack[:, None, None] * np.eye(3)
         k += (self.stiffness - slack)[:, None, None] * uu
-        c = self.damping / length
-        k += c[:, None, None] * (u[:, :, None] * turn[:, None, :])
-        k += (c * along)[:, None, None] * across
-        d = self.damping * uu
+        d = self.damping * (uu if self.axial else np.broadcast_to(np.eye(3), uu.shape))
+        if self.axial:
+            along = np.einsum("si,si->s", w, u)
+            turn = np.einsum("si,sij->sj", w, across)
+            c = self.damping / length
+            k += c[:, None, None] * (u[:, :, None] * turn[:, None, :])
+            k += (c * along)[:, None, None] * across
         parts = [self.ones]
         for block in (k, d):
             parts.append((block[self.block] * (self.sign / self.mass)[:, None, None]).ravel())
@@ -160,14 +168,12 @@ def error_of(x, reference, free):
     return np.sqrt(np.mean((x[free] - reference[free]) ** 2) * 3)
 
 
-def of_scipy(sheet, start, reference, rtol, seconds, repeats):
+def of_scipy(sheet, start, reference, rtol, seconds):
     y0 = np.concatenate([start[sheet.free].ravel(), np.zeros(3 * len(sheet.free))])
-    times = []
-    for _ in range(repeats):
-        begin = time.process_time()
-        result = solve_ivp(sheet.rate, (0, seconds), y0, "BDF", rtol=rtol, atol=rtol,
-                           jac=sheet.jacobian, t_eval=[seconds])
-        times.append(time.process_time() - begin)
+    begin = time.process_time()
+    result = solve_ivp(sheet.rate, (0, seconds), y0, "BDF", rtol=rtol, atol=rtol / 1000,
+                       jac=sheet.jacobian, t_eval=[seconds])
+    times = [time.process_time() - begin]
     if not result.success:
         sys.exit(f"scipy_bdf.py: SciPy: {result.message}")
     x = start.copy()
@@ -175,39 +181,78 @@ def of_scipy(sheet, start, reference, rtol, seconds, repeats):
     return times, error_of(x, reference, sheet.free), result.nfev
 
 
-def of_clothsim(clothsim, method, reference, free, repeats, folder):
+def of_clothsim(clothsim, rtol, reference, free, repeats, folder):
+    method = f"cvode-bdf:rtol={rtol:g},atol={rtol / 1000:g}"
     runs = [clothsim.run(method, folder) for _ in range(repeats)]
     _, report, (_, x) = runs[0]
     return [run[0] for run in runs], error_of(x, reference, free), report["counts"]["forces"]
 
 
-def tell(solver, rtol, result, slowest):
+def time_at(error, ladder):
+    """Seconds of SciPy at an error; the ladder has (error, seconds) of falling errors."""
+    log_error, log_time = np.log([error for error, _ in ladder]), np.log([t for _, t in ladder])
+    if error < ladder[-1][0] and len(ladder) > 1:
+        slope = (log_time[-1] - log_time[-2]) / (log_error[-1] - log_error[-2])
+        return np.exp(log_time[-1] + slope * (np.log(error) - log_error[-1]))
+    return np.exp(np.interp(-np.log(error), -log_error, log_time))
+
+
+def tell(scene, solver, rtol, result, seconds):
     times, error, forces = result
     median = float(np.median(times))
-    print(f"{solver},{rtol:g},{median:.4f},{min(times):.4f},{max(times):.4f},{error:.2e},"
-          f"{forces},{slowest / median:.1f}", flush=True)
-    return median
+    print(f"{scene},{solver},{rtol:g},{median:.4f},{min(times):.4f},{max(times):.4f},"
+          f"{error:.2e},{forces},{seconds / median:.1f}", flush=True)
+
+
+def hanging(particles):
+    return {"bodies": [{"cloth": {"grid": [particles, particles], "size": [1, 1]},
+                        "mass": {"total": 0.2},
+                        "springs": {"stretch": 1000, "shear": 300, "bend": 100,
+                                    "damping": 0.002, "damping_model": "relative"},
+                        "pins": ["top-left", "top-right"]}]}
+
+
+def compare(asked, name, scene, ours, theirs):
+    """Runs a scene with both, each with its tolerances."""
+    seconds, repeats = (0.05, 1) if asked.quick else (0.5, 7)
+    with tempfile.TemporaryDirectory() as folder:
+        path = f"{folder}/scene.json"
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        resolved = json.loads(subprocess.run([asked.program, "scene", path, "--resolved"],
+                                             check=True, capture_output=True).stdout)
+        clothsim = Clothsim(asked.program, path, seconds)
+        _, _, (start, reference) = clothsim.run("cvode-adams:rtol=1e-12", folder + "/states")
+        grid = np.arange(len(start)).reshape(resolved["bodies"][0]["cloth"]["grid"][::-1])
+        pinned = grid[0, [0, -1]]
+        if "edges" in scene["bodies"][0]["pins"]:
+            pinned = np.setdiff1d(grid, grid[1:-1, 1:-1])
+        sheet = Sheet(resolved, start, np.setdiff1d(grid, pinned))
+        ladder = []
+        for rtol in theirs:
+            result = of_scipy(sheet, start, reference, rtol, seconds)
+            ladder.append((result[1], result[0][0]))
+            tell(name, "SciPy BDF", rtol, result, result[0][0])
+        for rtol in ours:
+            result = of_clothsim(clothsim, rtol, reference, sheet.free, repeats,
+                                 folder + "/states")
+            tell(name, "cvode-bdf", rtol, result, time_at(result[1], ladder))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("program", help="the clothsim to measure")
-    parser.add_argument("scene", help="the drum")
-    parser.add_argument("--quick", action="store_true", help="a tenth of the time, once")
+    parser.add_argument("drum", help="the scene of the drum")
+    parser.add_argument("--quick", action="store_true", help="the drum alone, a tenth of the time")
     asked = parser.parse_args()
-    seconds, repeats = (0.05, 1) if asked.quick else (0.5, 3)
-    resolved = subprocess.run([asked.program, "scene", asked.scene, "--resolved"], check=True,
-                              capture_output=True).stdout
-    clothsim = Clothsim(asked.program, asked.scene, seconds)
-    with tempfile.TemporaryDirectory() as folder:
-        _, _, (start, reference) = clothsim.run("cvode-adams:rtol=1e-12", folder)
-        sheet = Sheet(json.loads(resolved), start)
-        for rtol in (1e-4,) if asked.quick else (1e-4, 1e-6):
-            of = of_scipy(sheet, start, reference, rtol, seconds, repeats)
-            median = tell("SciPy BDF", rtol, of, float(np.median(of[0])))
-            of = of_clothsim(clothsim, f"cvode-bdf:rtol={rtol:g}", reference, sheet.free,
-                             1 if asked.quick else 7, folder)
-            tell("cvode-bdf", rtol, of, median)
+    with open(asked.drum, encoding="utf-8") as file:
+        drum = json.load(file)
+    if asked.quick:
+        compare(asked, "drum", drum, (1e-4,), (1e-3, 1e-4, 1e-5))
+        return
+    compare(asked, "W8", hanging(8), (1e-7, 1e-8), (1e-4, 1e-5, 1e-6, 1e-7, 1e-8))
+    compare(asked, "W16", hanging(16), (1e-6, 1e-8), (1e-4, 1e-5, 1e-6, 1e-7))
+    compare(asked, "drum", drum, (1e-6, 1e-7), (1e-4, 1e-5, 1e-6, 1e-7))
 
 
 if __name__ == "__main__":
