@@ -53,8 +53,9 @@ static uint64_t pass_over(const struct pass *pass, bool backwards) {
     uint64_t moves = 0;
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        for (uint32_t j = 0; is_limited(pass, run) && j < run->count; j++)
-            moves += shorten(pass, run, backwards ? run->count - 1 - j : j);
+        const uint32_t count = is_limited(pass, run) ? run->count : 0;
+        for (uint32_t j = 0; j < count; j++)
+            moves += shorten(pass, run, backwards ? count - 1 - j : j);
     }
     return moves;
 }
