@@ -3,11 +3,6 @@
 
 #include <string.h>
 
-struct fan {
-    const struct cs_spring_run *ways[CS_WAYS]; /* NULL: none, or nothing is asked of them */
-    const struct cs_spring_run *first;         /* gives row, columns and what lies below */
-};
-
 /* one tile of a fan: particles [start, start + count) of the row */
 struct tile {
     const struct job *job;
@@ -213,31 +208,15 @@ CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
                                    : job->at.dvv + (k - kernel->stiff) * job->n);
 }
 
-static struct fan find_fan(const struct job *job, const struct cs_spring_run *first,
-                           run_test *asks, uint32_t *n_runs, bool *acts) {
-    const struct cs_spring_run *run = first, *end = job->springs->runs + job->springs->n_runs;
-    struct fan fan = {.first = first};
-    *acts = false;
-    for (; run < end && run->columns && run->row == first->row; run++)
-        if (asks(job, run)) {
-            fan.ways[run->way] = run;
-            *acts = true;
-        }
-    *n_runs = (uint32_t)(run - first);
-    return fan;
-}
-
-CS_CLONES uint32_t cs_fan_add(const struct job *job, const struct cs_block *block,
-                              const struct cs_spring_run *first, run_test *asks,
-                              const struct fan_kernel *kernel) {
-    uint32_t n_runs;
-    bool acts, at[3];
-    const struct fan fan = find_fan(job, first, asks, &n_runs, &acts);
+CS_CLONES void cs_fan_add(const struct job *job, const struct cs_block *block,
+                          const struct fan *fan, const struct fan_kernel *kernel) {
+    const struct cs_spring_run *first = fan->first;
+    bool at[3];
     struct tile tile;
-    tile.job = job, tile.fan = &fan, tile.kernel = kernel;
+    tile.job = job, tile.fan = fan, tile.kernel = kernel;
     for (uint32_t down = 0; down < 3; down++)
         at[down] = is_in(block, first->row + down * first->columns);
-    for (size_t left = acts ? first->columns : 0; left > 0; left -= tile.count) {
+    for (size_t left = first->columns; left > 0; left -= tile.count) {
         tile.start = first->columns - left;
         tile.count = left < TILE ? left : TILE;
         make_tile(&tile, at);
@@ -245,5 +224,4 @@ CS_CLONES uint32_t cs_fan_add(const struct job *job, const struct cs_block *bloc
         if (left > TILE)
             carry(&tile);
     }
-    return n_runs;
 }

@@ -56,12 +56,33 @@ struct fan_kernel {
     size_t forces, stiff, damped;
 };
 
-/* Adds what a kernel makes of a row's springs at the particles of a block; the runs of the row
- * begin with `first`, and those that are not asked for are left out. Returns how many there
- * are. */
-uint32_t cs_fan_add(const struct job *job, const struct cs_block *block,
-                    const struct cs_spring_run *first, run_test *asks,
-                    const struct fan_kernel *kernel);
+/* the runs of a row */
+struct fan {
+    const struct cs_spring_run *ways[CS_WAYS]; /* NULL: none, or nothing is asked of them */
+    const struct cs_spring_run *first;         /* gives row, columns and what lies below */
+};
+
+/* Adds what a kernel makes of a fan's springs at the particles of a block. */
+void cs_fan_add(const struct job *job, const struct cs_block *block, const struct fan *fan,
+                const struct fan_kernel *kernel);
+
+/* Finds the runs of a row, from its first on, and adds what a kernel makes of those that are
+ * asked for. Returns how many there are. */
+CS_INLINE uint32_t add_fan(const struct job *job, const struct cs_block *block,
+                           const struct cs_spring_run *first, run_test *asks,
+                           const struct fan_kernel *kernel) {
+    const struct cs_spring_run *run = first, *end = job->springs->runs + job->springs->n_runs;
+    struct fan fan = {.first = first};
+    bool acts = false;
+    for (; run < end && run->columns && run->row == first->row; run++)
+        if (asks(job, run)) {
+            fan.ways[run->way] = run;
+            acts = true;
+        }
+    if (acts)
+        cs_fan_add(job, block, &fan, kernel);
+    return (uint32_t)(run - first);
+}
 
 /* the kernel for a row's law, and what is asked of it */
 typedef const struct fan_kernel *fan_choice(const struct job *job,
@@ -77,7 +98,7 @@ CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run
         const struct cs_spring_run *run = springs->runs + r;
         n_runs = 1;
         if (run->columns)
-            n_runs = cs_fan_add(job, block, run, asks, choose(job, run));
+            n_runs = add_fan(job, block, run, asks, choose(job, run));
         else if (!job->to)
             continue;
         else if (asks(job, run) && springs->waits)

@@ -114,7 +114,7 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
         const struct cs_spring_run *run = springs->runs + r;
         n_runs = 1;
         if (run->columns) {
-            n_runs = cs_fan_add(&job, &all, run, asks_always, &own_blocks);
+            n_runs = add_fan(&job, &all, run, asks_always, &own_blocks);
             continue;
         }
         const double *s = factors + 4 * (size_t)run->first, *w = s + run->count;
