@@ -22,9 +22,9 @@ struct slot {
 
 /* Slots are used in turn: given - written of them wait for the encoder or are in it. */
 struct cs_frames {
-    char *folder; /* owned */
-    int level;
-    uint32_t depth; /* slots in use */
+    char *folder;            /* owned */
+    struct cs_png_work work; /* of the encoder */
+    uint32_t depth;          /* slots in use */
     struct slot slots[DEPTH];
     bool threaded;
     pthread_t worker;
@@ -45,7 +45,7 @@ static void encode(struct cs_frames *frames, struct slot *slot, struct cs_error 
     if (length < 0 || (size_t)length >= sizeof path)
         cs_fail(error, CS_ERR_FILE, "the path of frame %u is too long", slot->number);
     else
-        cs_png_write(path, &slot->image, frames->level, slot->texts, slot->n_texts, error);
+        cs_png_write_next(&frames->work, path, &slot->image, slot->texts, slot->n_texts, error);
     cs_arena_finish(&slot->arena);
 }
 
@@ -109,7 +109,7 @@ enum cs_status cs_frames_create(const char *folder, uint32_t width, uint32_t hei
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for frames");
     pthread_mutex_init(&made->lock, NULL);
     pthread_cond_init(&made->changed, NULL);
-    made->level = level;
+    made->work.level = level;
     bool enough = (made->folder = strdup(folder)) != NULL;
     made->depth = threaded ? DEPTH : 1;
     for (uint32_t i = 0; enough && i < made->depth; i++)
@@ -197,6 +197,7 @@ void cs_frames_destroy(struct cs_frames *frames) {
     pthread_mutex_destroy(&frames->lock);
     for (uint32_t i = 0; i < DEPTH; i++)
         free(frames->slots[i].image.rgb);
+    cs_png_work_finish(&frames->work);
     free(frames->folder);
     free(frames);
 }

@@ -12,8 +12,24 @@ struct cs_png_text {
     const char *key, *value; /* Latin-1, key at most 79 characters */
 };
 
-/* Writes beside and renames. RGB, packed at `level` of 0..9 (1: fast, 6: archive), filter SUB, no time
- * stamp. On failure CS_ERR_FILE and no file is left. */
+/* Memory that pictures of a run use one after another: new memory for each would cost as much
+ * as a third of the packing. */
+struct cs_png_work {
+    int level;     /* 0..9 (1: fast, 6: archive); the rest zeroed before the first picture */
+    size_t length; /* of rows */
+    uint8_t *rows, *packed; /* owned */
+    void *packer;           /* owned */
+};
+
+/* As cs_png_write, at the level of the work. */
+enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
+                                 const struct cs_image *image, const struct cs_png_text *texts,
+                                 uint32_t n_texts, struct cs_error *error);
+
+void cs_png_work_finish(struct cs_png_work *work);
+
+/* Writes beside and renames. RGB, packed at `level` of 0..9 (1: fast, 6: archive), filter SUB,
+ * no time stamp. On failure CS_ERR_FILE and no file is left. */
 enum cs_status cs_png_write(const char *path, const struct cs_image *image, int level,
                             const struct cs_png_text *texts, uint32_t n_texts,
                             struct cs_error *error);

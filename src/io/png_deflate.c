@@ -1,5 +1,5 @@
 /* Writes RGB images as PNG files through libdeflate, which packs a whole picture at once: a
- * sixth smaller than zlib in less time, or at level 6 in half of it. png_write.c does the same
+ * sixth smaller than zlib in less time, or at level 6 in half of it. png_libpng.c does the same
  * through libpng where libdeflate is not.
  *
  * PNG Specification (W3C, third edition), chapters 5 and 9: chunks, and the filter Sub. */
@@ -9,6 +9,11 @@
 #include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
+
+struct packed {
+    const uint8_t *bytes;
+    size_t length;
+};
 
 static void put_number(uint32_t number, uint8_t out[4]) {
     for (int k = 0; k < 4; k++)
@@ -43,27 +48,33 @@ static void filter(const struct cs_image *image, uint8_t *out) {
     }
 }
 
-/* The filtered rows as a stream of zlib's: malloc'd, *length bytes; NULL: out of memory. */
-static uint8_t *pack(const struct cs_image *image, int level, size_t *length) {
-    const size_t n = (3 * (size_t)image->width + 1) * image->height;
-    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(level);
-    const size_t most = compressor ? libdeflate_zlib_compress_bound(compressor, n) : 0;
-    uint8_t *rows = malloc(n), *packed = most ? malloc(most) : NULL;
-    if (rows && packed) {
-        filter(image, rows);
-        *length = libdeflate_zlib_compress(compressor, rows, n, packed, most);
+/* Memory for so many bytes of rows. */
+static enum cs_status take(struct cs_png_work *work, size_t length, const char *path,
+                           struct cs_error *error) {
+    if (!work->packer)
+        work->packer = libdeflate_alloc_compressor(work->level);
+    if (work->packer && work->length < length) {
+        free(work->rows);
+        free(work->packed);
+        work->rows = malloc(length);
+        work->packed = malloc(libdeflate_zlib_compress_bound(work->packer, length));
+        work->length = length;
     }
-    const bool done = rows && packed && *length > 0;
-    free(rows);
-    libdeflate_free_compressor(compressor);
-    if (done)
-        return packed;
-    free(packed);
-    return NULL;
+    if (work->packer && work->rows && work->packed)
+        return CS_OK;
+    cs_png_work_finish(work);
+    return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
+}
+
+void cs_png_work_finish(struct cs_png_work *work) {
+    free(work->rows);
+    free(work->packed);
+    libdeflate_free_compressor(work->packer);
+    *work = (struct cs_png_work){.level = work->level};
 }
 
 static void add_all(FILE *file, const struct cs_image *image, const struct cs_png_text *texts,
-                    uint32_t n_texts, const uint8_t *packed, size_t length) {
+                    uint32_t n_texts, const struct packed *packed) {
     // 8 bits, RGB, the only packing and set of filters that there is, not interlaced
     uint8_t head[13] = {[8] = 8, [9] = 2};
     put_number(image->width, head);
@@ -73,24 +84,23 @@ static void add_all(FILE *file, const struct cs_image *image, const struct cs_pn
     for (uint32_t i = 0; i < n_texts; i++)
         add_chunk(file, "tEXt", texts[i].key, strlen(texts[i].key) + 1, texts[i].value,
                   strlen(texts[i].value));
-    add_chunk(file, "IDAT", packed, length, "", 0);
+    add_chunk(file, "IDAT", packed->bytes, packed->length, "", 0);
     add_chunk(file, "IEND", "", 0, "", 0);
 }
 
-enum cs_status cs_png_write(const char *path, const struct cs_image *image, int level,
-                            const struct cs_png_text *texts, uint32_t n_texts,
-                            struct cs_error *error) {
+enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
+                                 const struct cs_image *image, const struct cs_png_text *texts,
+                                 uint32_t n_texts, struct cs_error *error) {
     CS_ASSERT(image->width && image->height && image->rgb);
+    const size_t n = (3 * (size_t)image->width + 1) * image->height;
     struct cs_file_out out;
-    size_t length = 0;
-    if (cs_file_create(&out, path, error))
+    if (take(work, n, path, error) || cs_file_create(&out, path, error))
         return error->status;
-    uint8_t *packed = pack(image, level, &length);
-    if (packed) {
-        add_all(out.file, image, texts, n_texts, packed, length);
-        free(packed);
-        return cs_file_finish(&out, error);
-    }
-    cs_file_abandon(&out);
-    return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
+    filter(image, work->rows);
+    // never 0: there is room for what packs worst
+    const size_t length =
+        libdeflate_zlib_compress(work->packer, work->rows, n, work->packed,
+                                 libdeflate_zlib_compress_bound(work->packer, n));
+    add_all(out.file, image, texts, n_texts, &(struct packed){work->packed, length});
+    return cs_file_finish(&out, error);
 }

@@ -77,6 +77,25 @@ START_TEST(texts_are_in_the_file_and_no_time) {
 }
 END_TEST
 
+/* larger, smaller and larger again than the memory that is there */
+START_TEST(pictures_share_work_memory) {
+    static const uint32_t sizes[][2] = {{7, 3}, {64, 48}, {1, 1}, {300, 200}};
+    struct cs_error error = {0};
+    struct cs_png_work work = {.level = 1};
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        struct cs_image image = make_picture(sizes[k][0], sizes[k][1]), back;
+        cs_png_write_next(&work, "w.png", &image, NULL, 0, &error);
+        cs_png_read("w.png", &back, &error);
+        UNIT_ASSERT_OK(&error);
+        ck_assert_uint_eq(back.width, image.width);
+        ck_assert_mem_eq(back.rgb, image.rgb, 3 * (size_t)image.width * image.height);
+        free(image.rgb);
+        free(back.rgb);
+    }
+    cs_png_work_finish(&work);
+}
+END_TEST
+
 START_TEST(same_picture_same_bytes) {
     struct cs_error error = {0};
     struct cs_image image = make_picture(50, 40);
@@ -265,9 +284,14 @@ START_TEST(failure_leaves_no_file) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {pixels_come_back,         texts_are_in_the_file_and_no_time,
-                                  same_picture_same_bytes,  every_kind_becomes_rgb,
-                                  huge_claims_are_refused,  truncated_anywhere_is_refused,
-                                  flipped_bits_do_not_pass, failure_leaves_no_file};
+    const TTest *const tests[] = {pixels_come_back,
+                                  texts_are_in_the_file_and_no_time,
+                                  same_picture_same_bytes,
+                                  pictures_share_work_memory,
+                                  every_kind_becomes_rgb,
+                                  huge_claims_are_refused,
+                                  truncated_anywhere_is_refused,
+                                  flipped_bits_do_not_pass,
+                                  failure_leaves_no_file};
     return unit_run("png", tests, sizeof tests / sizeof *tests);
 }
