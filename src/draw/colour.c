@@ -3,10 +3,10 @@
 
 #include "scene/scene.h"
 
-static const uint32_t force_stops[6] = {0x1a9850, 0x8cc63f, 0xf7e33b,
-                                        0xfdae3c, 0xf26a2e, 0xc4161c};
-static const uint32_t strain_stops[6] = {0x3b1f6b, 0x31578f, 0x1f8a8c,
-                                         0x3db86f, 0xa4d742, 0xfbe84a};
+static const uint32_t force_stops[6] = {0x3b1f6b, 0x31578f, 0x1f8a8c,
+                                        0x3db86f, 0xa4d742, 0xfbe84a};
+static const uint32_t strain_stops[6] = {0x1d3f8f, 0x4f8fc9, 0xc3dcea,
+                                         0xf3d3bd, 0xde7a55, 0x8f1626};
 
 // marked triangles are red, all others pale
 static const uint32_t mark_stops[6] = {0xd9dde2, 0xd9dde2, 0xd9dde2,

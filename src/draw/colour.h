@@ -4,9 +4,10 @@
 
 #include <stdint.h>
 
-/* Six evenly spaced stops in linear RGB for the look's values, lowest first: green over yellow
- * and orange to red for force (cloth thesis, fig. 6.2), violet over green to yellow for strain,
- * and red at the end for marks. */
+/* Six evenly spaced stops in linear RGB for the look's values, lowest first. Force grows from
+ * dark violet over green to bright yellow; strain, which has a sign, is blue where springs are
+ * short, pale at 0 and red where they are long; marks are red at the end. Stops beside each
+ * other are told apart by readers who see no green, and in grey by their lightness. */
 void cs_colour_stops(int32_t look, float stops[6][4]);
 
 /* From 0xRRGGBB in sRGB to linear RGB. */

@@ -1,4 +1,4 @@
-/* Draws figures as strokes, which are the only lettering of a picture. */
+/* Draws figures and some letters as strokes, the only lettering of a picture. */
 #include "draw/glyph.h"
 
 #include <string.h>
@@ -26,6 +26,15 @@ static const struct glyph glyphs[] = {
     {'+', 4, "0343|2125"},
     {'e', 4, "02424334140301103041"},
     {'N', 4, "00064046"},
+    {'a', 4, "103041433414030110|4440"},
+    {'c', 4, "4334140301103041"},
+    {'f', 3, "36261510|0434"},
+    {'i', 0, "0400|0606"},
+    {'n', 4, "0400|0314344340"},
+    {'o', 4, "103041433414030110"},
+    {'r', 3, "0400|031434"},
+    {'s', 4, "43341403123241301001"},
+    {'t', 3, "16112030|0434"},
     {'%', 4, "0046|0506161505|3031414030"},
     {' ', 1, ""},
 };

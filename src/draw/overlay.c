@@ -42,6 +42,6 @@ void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *fr
         cs_net_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
         cs_viewpoint_forces_draw(net, lines, frame);
-    if (cs_look_has_bar(render->look))
-        cs_bar_draw(&overlay->bar, lines, frame->range);
+    if (frame->title)
+        cs_bar_draw(&overlay->bar, lines, frame);
 }

@@ -40,13 +40,15 @@ struct cs_frame {
     const double
         *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */
     double range[2]; /* values at the ends of the colours; lowest first */
+    const char *title;      /* of the bar of colours: quantity and unit; NULL: no bar */
+    double factor;          /* of its figures, such as 100 for % */
     const double *goals;    /* (3,n) m, of look goals; else NULL */
     const uint8_t *marks;   /* (n_triangles of the surfaces), of look crossings; else NULL */
     const double *inv_mass; /* (n) in 1/kg; 0: held, which some looks mark */
     const struct cs_obstacle *obstacles; /* (scene->colliders.n) where they are at t */
 };
 
-#define CS_RENDERER_ABI 5u
+#define CS_RENDERER_ABI 6u
 struct cs_renderer {
     unsigned abi;
     const char *name; /* as in the names of enum cs_renderer_kind */

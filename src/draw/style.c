@@ -7,10 +7,6 @@ bool cs_look_has_values(int32_t look) {
     return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN || look == CS_LOOK_CROSSINGS;
 }
 
-bool cs_look_has_bar(int32_t look) {
-    return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN;
-}
-
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look) {
     const bool has_back = !isnan(material->back_colour[0]);

@@ -343,7 +343,9 @@ static const struct cs_option render_rows[] = {
     INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
     CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "what the picture shows"),
     VECTOR(struct cs_render, range, 2, "N or 1", absent9, -BIG, BIG,
-           "force or strain at the ends of the colours; absent: from each frame"),
+           "force or strain at the ends of the colours; absent: of each frame, from 0 or about "
+           "it, "
+           "but for the hundredth of the particles that is farthest from 0"),
     VECTOR(struct cs_render, background, 3, "", paper, 0, 1, "linear RGB"),
     BOOL(struct cs_render, viewpoint_forces, 0,
          "draw what the viewpoint forces under way see, and their rectangles from their eyes"),

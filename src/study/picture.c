@@ -112,7 +112,8 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
     return error->status;
 }
 
-/* The value of each particle, and the range of its colours. */
+/* The value of each particle, and the range of its colours: about 0 where it has a sign, else
+ * from 0. One pinched corner does not leave the others without colours. */
 static void measure(struct cs_picture *picture, const struct cs_run *run) {
     const struct cs_render *render = &picture->scene->render;
     if (render->look == CS_LOOK_FORCE)
@@ -120,19 +121,30 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
                                   picture->work);
     else
         cs_measure_particle_strain(picture->system, run->x, picture->scalar);
-    if (isnan(render->range[0]))
-        cs_measure_range(picture->scalar, picture->system->view.n, picture->range);
-    else
+    if (isnan(render->range[0])) {
+        const double most = cs_measure_magnitude(picture->scalar, picture->system->view.n);
+        picture->range[0] = render->look == CS_LOOK_STRAIN ? -most : 0;
+        picture->range[1] = most;
+    } else
         memcpy(picture->range, render->range, sizeof picture->range);
+}
+
+static const char *title_of(const struct cs_scene *scene) {
+    return scene->render.look == CS_LOOK_FORCE    ? "force N"
+           : scene->render.look == CS_LOOK_STRAIN ? "strain %"
+                                                  : NULL;
 }
 
 static void paint(void *object) {
     struct cs_picture *picture = object;
+    const bool strain = picture->scene->render.look == CS_LOOK_STRAIN;
     const double start = cs_clock_wall();
     const struct cs_frame frame = {.t = picture->t,
                                    .x = picture->x,
                                    .scalar = picture->scalar,
                                    .range = {picture->range[0], picture->range[1]},
+                                   .title = title_of(picture->scene),
+                                   .factor = strain ? 100 : 1,
                                    .inv_mass = picture->inv_mass,
                                    .goals = picture->goals,
                                    .marks = picture->marks,

@@ -5,6 +5,7 @@
 #include "model/force/terms.h"
 
 #include <math.h>
+#include <string.h>
 
 struct cs_energy cs_measure_energy(const struct cs_system *system, double t, const double *x,
                                    const double *v) {
@@ -70,4 +71,37 @@ void cs_measure_range(const double *values, uint32_t n, double range[2]) {
         range[0] = fmin(range[0], values[i]);
         range[1] = fmax(range[1], values[i]);
     }
+}
+
+/* Magnitudes as floats, whose bits are ordered as they are. */
+static uint32_t key_of(double value) {
+    const float magnitude = (float)fabs(value);
+    uint32_t key;
+    memcpy(&key, &magnitude, sizeof key);
+    return key;
+}
+
+/* The bits from the highest on, by counting (radix selection): the same for any order. */
+double cs_measure_magnitude(const double *values, uint32_t n) {
+    static const uint32_t infinite = 0x7f800000;
+    uint32_t prefix = 0, known = 0, rank = 0;
+    float found;
+    for (uint32_t i = 0; i < n; i++)
+        rank += key_of(values[i]) < infinite;
+    if (rank == 0)
+        return 0;
+    rank -= 1 + (rank - 1) / 100;
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        uint32_t counts[256] = {0}, digit = 0;
+        for (uint32_t i = 0; i < n; i++) {
+            const uint32_t key = key_of(values[i]);
+            counts[key >> shift & 255] += key < infinite && (key & known) == prefix;
+        }
+        while (rank >= counts[digit])
+            rank -= counts[digit++];
+        prefix |= digit << shift;
+        known |= 255u << shift;
+    }
+    memcpy(&found, &prefix, sizeof found);
+    return (double)found;
 }

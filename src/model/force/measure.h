@@ -29,6 +29,10 @@ void cs_measure_particle_strain(const struct cs_system *system, const double *x,
 void cs_measure_particle_force(const struct cs_system *system, double t, const double *x,
                                const double *v, double *out, double *work);
 
+/* Largest magnitude of n values but for the hundredth (rounded down) that is farthest from 0;
+ * values that are not finite are passed over. To the precision of a float. */
+double cs_measure_magnitude(const double *values, uint32_t n);
+
 /* Smallest and largest of n values. */
 void cs_measure_range(const double *values, uint32_t n, double range[2]);
 

@@ -104,7 +104,7 @@ static enum cs_status paint(struct cs_course *course, const struct cs_frame *fra
                                                 .obstacles = obstacles};
     scene->render.size[0] = DRAWN_WIDTH;
     scene->render.size[1] = TILE_HEIGHT;
-    scene->render.look = CS_LOOK_STRAIN; // any that colours by a value
+    scene->render.look = CS_LOOK_FORCE; // colours of what has no sign
     if (!image.rgb || !textures || !obstacles)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
     else if (!cs_renderer_open(cs_renderer_folder(), kind, &renderer, error) &&
