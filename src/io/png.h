@@ -30,9 +30,14 @@ void cs_png_work_finish(struct cs_png_work *work);
 
 /* Writes beside and renames. RGB, packed at `level` of 0..9 (1: fast, 6: archive), filter SUB,
  * no time stamp. On failure CS_ERR_FILE and no file is left. */
-enum cs_status cs_png_write(const char *path, const struct cs_image *image, int level,
-                            const struct cs_png_text *texts, uint32_t n_texts,
-                            struct cs_error *error);
+static inline enum cs_status cs_png_write(const char *path, const struct cs_image *image,
+                                          int level, const struct cs_png_text *texts,
+                                          uint32_t n_texts, struct cs_error *error) {
+    struct cs_png_work work = {.level = level};
+    const enum cs_status status = cs_png_write_next(&work, path, image, texts, n_texts, error);
+    cs_png_work_finish(&work);
+    return status;
+}
 
 /* Reads any PNG of at most 16384 x 16384 pixels as 8-bit RGB (alpha dropped, grey and palette
  * widened). The caller frees image->rgb. On failure CS_ERR_FILE and *image is empty. */
