@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,25 +90,34 @@ bool cs_parse_real(const char *s, double *value) {
     return true;
 }
 
-/* edits (insert, delete, replace) that turn a into b, by one row of the usual table */
+static size_t least_of(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+static bool is_same(char a, char b) {
+    return tolower((unsigned char)a) == tolower((unsigned char)b);
+}
+
+/* edits that turn a into b: insert, delete, replace, swap two neighbours; by three rows of the
+ * usual table */
 static size_t distance(const char *a, const char *b) {
     enum { LONGEST = 64 };
-    size_t row[LONGEST + 1];
+    size_t rows[3][LONGEST + 1];
     const size_t n = strlen(b);
     if (n > LONGEST || strlen(a) > LONGEST)
         return LONGEST;
     for (size_t j = 0; j <= n; j++)
-        row[j] = j;
+        rows[0][j] = j;
+    size_t *row = rows[0], *above = rows[1], *second = rows[2];
     for (size_t i = 0; a[i]; i++) {
-        /* one row will do: `diagonal` keeps the entry above left, already overwritten */
-        size_t diagonal = row[0];
+        size_t *const oldest = second;
+        second = above, above = row, row = oldest;
         row[0] = i + 1;
         for (size_t j = 0; j < n; j++) {
-            const size_t replaced =
-                diagonal + (tolower((unsigned char)a[i]) != tolower((unsigned char)b[j]));
-            diagonal = row[j + 1];
-            size_t best = replaced < row[j] + 1 ? replaced : row[j] + 1;
-            row[j + 1] = best < row[j + 1] + 1 ? best : row[j + 1] + 1;
+            row[j + 1] =
+                least_of(above[j] + !is_same(a[i], b[j]), least_of(above[j + 1], row[j]) + 1);
+            if (i && j && is_same(a[i], b[j - 1]) && is_same(a[i - 1], b[j]))
+                row[j + 1] = least_of(row[j + 1], second[j - 1] + 1);
         }
     }
     return row[n];
@@ -115,12 +125,15 @@ static size_t distance(const char *a, const char *b) {
 
 const char *cs_nearest(const char *word, const char *const *candidates) {
     const char *nearest = NULL;
-    size_t least = strlen(word) / 2 + 2;
+    size_t least = SIZE_MAX;
     for (; *candidates; candidates++) {
+        // beyond a third of the letters two words have nothing to do with each other
+        const size_t letters = strlen(strlen(word) > strlen(*candidates) ? word : *candidates);
+        const size_t most = letters < 3 ? 1 : letters / 3;
         /* what was begun and not finished is near too */
         const bool begun = strlen(word) > 2 && !strncmp(word, *candidates, strlen(word));
         const size_t d = begun ? 1 : distance(word, *candidates);
-        if (d < least) {
+        if (d <= most && d < least) {
             least = d;
             nearest = *candidates;
         }

@@ -29,7 +29,8 @@ void cs_text_finish(struct cs_text *text);
 /* Reads a whole string as a finite double, with a point whatever the locale. */
 bool cs_parse_real(const char *s, double *value);
 
-/* The candidate (list closed by NULL) nearest to word, or NULL if none is near. */
+/* The candidate (list closed by NULL) nearest to word, or NULL if none is: edits, of which a
+ * swap of neighbours is one, of at most a third of the letters, or a beginning. */
 const char *cs_nearest(const char *word, const char *const *candidates);
 
 #endif

@@ -5,6 +5,7 @@
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "study/compare/compare.h"
+#include "study/compare/sweep_list.h"
 #include "study/compare/verdict.h"
 #include "study/stability/advise_print.h"
 #include "study/workers.h"
@@ -58,6 +59,16 @@ static void join(const struct cs_advise *study, struct cs_text *list) {
         cs_text_add(list, "%s%s", k ? "," : "", study->methods[k]);
 }
 
+/* files that stand in the place of methods */
+static enum cs_status add_modules(struct cs_args *args, struct cs_compare_settings *settings,
+                                  struct cs_error *error) {
+    struct cs_session_settings *session = &settings->course.session;
+    return settings->methods
+               ? cs_sweep_add_modules(settings->methods, &args->arena, &session->plugins,
+                                      &session->n_plugins, error)
+               : CS_OK;
+}
+
 /* The answer by a comparison: the steps that are tried are those of its sweep. */
 static enum cs_status advise_for_error(struct cs_args *args, const struct cs_advise *study,
                                        double bound, struct cs_error *error) {
@@ -76,7 +87,8 @@ static enum cs_status advise_for_error(struct cs_args *args, const struct cs_adv
     const double seconds = cs_args_get(args, ADVISE_TIME) ? study->seconds : 0.5;
     if (list.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
-    else if (!cs_course_count_frames(&settings.course, seconds, error) &&
+    else if (!add_modules(args, &settings, error) &&
+             !cs_course_count_frames(&settings.course, seconds, error) &&
              !cs_compare_run(&compare, &settings, error)) {
         cs_verdict_print_at(&compare, bound, &out);
         cs_compare_warn(&compare, "warning: ", &out);

@@ -7,6 +7,7 @@
 #include "study/compare/compare_report.h"
 #include "study/compare/compare_sheet.h"
 #include "study/compare/compare_table.h"
+#include "study/compare/sweep_list.h"
 #include "study/compare/verdict.h"
 
 #include <math.h>
@@ -176,7 +177,10 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
         read_reference(args, settings, error) ||
         cs_args_overrides(args, COMPARE_SET, &session->overrides, &session->n_overrides,
                           error) ||
-        cs_args_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error))
+        cs_args_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error) ||
+        (settings->methods &&
+         cs_sweep_add_modules(settings->methods, &args->arena, &session->plugins,
+                              &session->n_plugins, error)))
         return error->status;
     settings->rank = (enum cs_norm)rank;
     /* last: the length of a frame may come from --set */

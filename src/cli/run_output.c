@@ -2,6 +2,7 @@
 #include "cli/run_output.h"
 
 #include "base/file.h"
+#include "cli/line/print.h"
 #include "io/npy.h"
 
 #include <dirent.h>
@@ -144,11 +145,11 @@ void cs_output_release(struct cs_output *output) {
     *output = (struct cs_output){0};
 }
 
-void cs_output_rows(const char *path, const struct cs_text *rows, struct cs_error *error) {
+void cs_output_rows(const char *path, struct cs_text *rows, struct cs_error *error) {
     struct cs_error failure = {0};
     if (!path || rows->failed)
         return;
-    cs_file_write(path, rows->bytes, rows->length, &failure);
+    cs_print_file(path, rows, &failure);
     if (!error->status)
         *error = failure;
 }

@@ -5,6 +5,7 @@
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/run/run_report.h"
+#include "model/force/measure.h"
 
 #include <string.h>
 
@@ -66,10 +67,13 @@ static const struct cs_arg rows[RUN_ROWS] = {
     [RUN_JSON] = {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
                   false},
     [RUN_WATCH] = {"watch", 0, "FILE",
-                   "write energy, largest strain and largest velocity of each frame as CSV",
+                   "write energy, largest strain and largest velocity of each frame as CSV; -: "
+                   "to standard output",
                    false},
-    [RUN_LEDGER] = {"ledger", 0, "FILE",
-                    "write where the energy of each frame is and went to as CSV", false},
+    [RUN_LEDGER] =
+        {"ledger", 0, "FILE",
+         "write where the energy of each frame is and went to as CSV; -: to standard output",
+         false},
     [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a run, and tell its peak memory",
                     false},
     [RUN_THREADS] = {"threads", 0, "N",
@@ -114,6 +118,30 @@ static enum cs_status read_checkpoints(const struct cs_args *args,
     return pace ? cs_resume_read_pace(pace, &settings->checkpoint, error) : CS_OK;
 }
 
+static bool is_stdout(const char *path) {
+    return path && !strcmp(path, "-");
+}
+
+/* A program could not tell two apart in one stream. */
+static enum cs_status check_stream(const struct cs_job_settings *settings,
+                                   struct cs_error *error) {
+    const struct {
+        const char *name;
+        bool asks;
+    } outputs[] = {{"--hash", settings->hash},
+                   {"--json -", is_stdout(settings->json)},
+                   {"--watch -", is_stdout(settings->watch)},
+                   {"--ledger -", is_stdout(settings->ledger)}};
+    const char *first = NULL;
+    for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
+        if (outputs[k].asks && first)
+            return cs_fail(error, CS_ERR_USAGE, "%s and %s both ask for standard output", first,
+                           outputs[k].name);
+        first = outputs[k].asks ? outputs[k].name : first;
+    }
+    return CS_OK;
+}
+
 static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings *settings,
                                     struct cs_error *error) {
     const char *folder = cs_args_get(args, RUN_OUT);
@@ -137,9 +165,8 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
         cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
         cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))
         return error->status;
-    /* a program could not tell the two apart in one stream */
-    if (settings->hash && settings->json && !strcmp(settings->json, "-"))
-        return cs_fail(error, CS_ERR_USAGE, "--hash and --json - both ask for standard output");
+    if (check_stream(settings, error))
+        return error->status;
     return read_session(args, &settings->session, error);
 }
 
@@ -165,7 +192,8 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
 
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const bool taken = settings->hash || (settings->json && !strcmp(settings->json, "-"));
+    const bool taken = settings->hash || is_stdout(settings->json) ||
+                       is_stdout(settings->watch) || is_stdout(settings->ledger);
     struct cs_text table = {0};
     if (settings->quiet)
         return CS_OK;
@@ -173,13 +201,29 @@ static enum cs_status print_table(const struct cs_job *job, struct cs_error *err
     return cs_print_out(taken ? stderr : stdout, &table, error);
 }
 
-/* A run that stopped early says so whatever else is printed. */
+/* A run that ends in a state which it cannot have come to says so whatever else is printed. */
+static void tell_watch(const struct cs_job *job) {
+    const struct cs_run *run = &job->session.run;
+    struct cs_text found = {0};
+    cs_watch_print(&job->watch, run->system, &found);
+    if (found.length) {
+        const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
+        cs_text_add(&found, "; %.3g J at the end (clothsim advise tells which steps hold)",
+                    cs_energy_held(&energy));
+        cs_print_message(cs_text_get(&found));
+    }
+    cs_text_finish(&found);
+}
+
+/* So does one that stopped early. */
 static enum cs_status tell_outcome(const struct cs_job *job, bool strict,
                                    struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     struct cs_text outcome = {0};
-    if (run->outcome == CS_RUNNING)
+    if (run->outcome == CS_RUNNING) {
+        tell_watch(job);
         return CS_OK;
+    }
     cs_report_print_outcome(job, &outcome);
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
     if (run->outcome == CS_INTERRUPTED)

@@ -132,3 +132,28 @@ enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_setti
         cs_sweep_finish(sweep);
     return error->status;
 }
+
+enum cs_status cs_sweep_add_modules(const char *list, struct cs_arena *arena,
+                                    const char *const **plugins, uint32_t *n_plugins,
+                                    struct cs_error *error) {
+    const uint32_t most = *n_plugins + (uint32_t)strlen(list) / 2 + 1;
+    const char **all = cs_arena_take_n(arena, most, sizeof *all, error);
+    char *rest = cs_arena_take_text(arena, list, error);
+    if (error->status)
+        return error->status;
+    if (*n_plugins)
+        memcpy(all, *plugins, *n_plugins * sizeof *all);
+    while (rest) {
+        char *item = cs_method_split(&rest), name[CS_SERIES_BYTES];
+        const char *method = item;
+        struct cs_error unread = {0}; // told where the list is read
+        if (cs_series_take_name(&method, name, &unread))
+            continue;
+        item += method - item;
+        item[strcspn(item, ":")] = 0;
+        if (strchr(item, '/'))
+            all[(*n_plugins)++] = item;
+    }
+    *plugins = all;
+    return CS_OK;
+}

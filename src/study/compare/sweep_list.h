@@ -10,10 +10,18 @@
 #ifndef CS_SWEEP_LIST_H
 #define CS_SWEEP_LIST_H
 
+#include "base/arena.h"
 #include "study/compare/sweep_expand.h"
 
-/* CS_ERR_USAGE for a list that cannot be read or a method that is not there; CS_ERR_MODULE. */
+/* A file is found by the name of its first method, so that cs_sweep_add_modules comes before.
+ * CS_ERR_USAGE for a list that cannot be read or a method that is not there; CS_ERR_MODULE. */
 enum cs_status cs_sweep_make(struct cs_sweep *sweep, const struct cs_sweep_settings *settings,
                              struct cs_error *error);
+
+/* The module files that a list of methods names instead of methods, behind those of *plugins:
+ * the array is the arena's. CS_ERR_MEMORY. */
+enum cs_status cs_sweep_add_modules(const char *list, struct cs_arena *arena,
+                                    const char *const **plugins, uint32_t *n_plugins,
+                                    struct cs_error *error);
 
 #endif
