@@ -15,7 +15,7 @@ static const struct cs_arg rows[PLOT_ROWS] = {
     [PLOT_Y] = {"y", 'y', "COLUMN", "column of the y axis (default: error)", false},
     [PLOT_FAMILY] = {"family", 'f', "FAMILY",
                      "all series of one family, such as \"adaptive implicit\" (default: the "
-                     "twelve with most on the front)",
+                     "twelve that come nearest to the front)",
                      false},
     [PLOT_OUT] =
         {"out", 'o', "NAME",

@@ -111,6 +111,18 @@ static int family_of(const struct cs_cell *cell) {
     return 0;
 }
 
+/* How many times more than the cheapest cell that is as good a cell costs, as a logarithm. */
+static double excess_of(const struct cs_plot_settings *settings, const struct cs_cell *cell) {
+    double x, y, other, error, least;
+    if (!cs_curves_point(settings, cell, &x, &y))
+        return HUGE_VAL;
+    least = x;
+    for (uint32_t k = 0; k < settings->n; k++)
+        if (cs_curves_point(settings, settings->cells + k, &other, &error) && error <= y)
+            least = fmin(least, other);
+    return log10(x / least);
+}
+
 static void find_curves(struct cs_curves *curves) {
     const struct cs_plot_settings *settings = curves->settings;
     for (uint32_t k = 0; k < settings->n; k++) {
@@ -119,13 +131,14 @@ static void find_curves(struct cs_curves *curves) {
         if (k == 0 || !cs_cell_same_series(cell, cell - 1)) {
             if (curves->n == CS_CURVES_MOST)
                 return;
-            curves->list[curves->n++] =
-                (struct cs_curve){.first = k, .family = family_of(cell), .style = -1};
+            curves->list[curves->n++] = (struct cs_curve){
+                .first = k, .excess = HUGE_VAL, .family = family_of(cell), .style = -1};
         }
         struct cs_curve *curve = curves->list + curves->n - 1;
         const bool drawn = cs_curves_point(settings, cell, &x, &y);
         curve->n++;
         curve->drawn += drawn;
+        curve->excess = fmin(curve->excess, excess_of(settings, cell));
         curve->bars += drawn && cs_curves_quartiles(settings, cell);
         curve->crosses += cs_curves_cross(curves, cell, &x);
     }
@@ -135,11 +148,15 @@ static void find_curves(struct cs_curves *curves) {
                 k >= curves->list[c].first && k < curves->list[c].first + curves->list[c].n;
 }
 
-/* Marks the one with the most cells on the front of those that are left; false: none is. */
+static bool is_before(const struct cs_curve *a, const struct cs_curve *b) {
+    return a->on_front != b->on_front ? a->on_front > b->on_front : a->excess < b->excess;
+}
+
+/* Marks the one that comes first of those that are left; false: none is. */
 static bool choose(struct cs_curves *curves) {
     struct cs_curve *best = NULL;
     for (struct cs_curve *c = curves->list; c < curves->list + curves->n; c++)
-        if (c->style < 0 && c->drawn > 0 && (!best || c->on_front > best->on_front))
+        if (c->style < 0 && c->drawn > 0 && (!best || is_before(c, best)))
             best = c;
     if (best)
         best->style = 0;

@@ -27,6 +27,7 @@ struct cs_plot_settings {
 struct cs_curve {
     uint32_t first, n, drawn, on_front;
     uint32_t bars, crosses; /* cells with quartiles; that did not get through */
+    double excess;          /* least cost over that of the front at its error, as a logarithm */
     int family;             /* number in cs_family_names */
     int style; /* colour and marker, in the order of the legend; below 0: it is not drawn */
 };
@@ -46,8 +47,8 @@ extern const char *const cs_curve_colours[CS_CURVE_COLOURS];
 #define CS_FRONT_COLOUR "#f0e442"
 
 /* Crosses stand at the upper edge, for which there is room where there are any. Of more than
- * CS_CURVES_DRAWN series those with the most cells on the front are drawn, then the
- * first; in the order of their families. */
+ * CS_CURVES_DRAWN series those with the most cells on the front are drawn, then those that come
+ * nearest to it; in the order of their families. */
 void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *settings);
 
 /* Curves that have points and no room. */
