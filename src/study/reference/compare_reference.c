@@ -15,6 +15,11 @@
 #define EXPLAINED 100
 #define FLOOR     1e-9
 
+/* Farther from the reference than so many times what the first family differs from itself, and
+ * than rounding, the second family is the one that is off: another one is asked too. */
+#define ROUGH    10
+#define ROUNDING 1e-13
+
 static void tell(const struct cs_compare_reference_settings *settings, uint32_t done,
                  const char *what) {
     if (settings->progress)
@@ -75,6 +80,12 @@ static void measure_bar(struct cs_compare_reference *reference, const struct cs_
     reference->bar_max = fmax(largest[0], largest[2]);
 }
 
+static bool is_rough(const struct cs_compare_reference *reference) {
+    const double *differences = reference->differences;
+    return differences[2] > ROUGH * differences[0] &&
+           differences[2] > ROUNDING * reference->scale;
+}
+
 static void judge(struct cs_compare_reference *reference) {
     const double *differences = reference->differences;
     const double own = fmax(differences[0], differences[1]);
@@ -107,25 +118,83 @@ static void judge_horizon(struct cs_compare_reference *reference) {
         reference->pointwise = true;
 }
 
+/* Runs `from` to `to` of the four; false: one did not get to its end, or *error says why. */
+static bool run_some(struct cs_compare_reference *reference, int from, int to,
+                     const struct cs_compare_reference_settings *settings,
+                     struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS],
+                     struct cs_error *error) {
+    bool good = true;
+    for (int k = from; k < to && good; k++)
+        run_one(reference, k, settings, tracks + k, &good, error);
+    return good;
+}
+
+static enum cs_status name_twins(struct cs_compare_reference *reference, int family,
+                                 const char *chosen, struct cs_error *error) {
+    char *const pair = reference->methods[(size_t)2 * (size_t)family];
+    snprintf(pair, sizeof *reference->methods, "%s", chosen);
+    return cs_compare_reference_tighten(chosen, reference->methods[2 * family + 1],
+                                        sizeof *reference->methods, error);
+}
+
+/* The second family; another one where it does not get to the end. */
+static bool run_second(struct cs_compare_reference *reference,
+                       const struct cs_compare_reference_settings *settings,
+                       struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS],
+                       struct cs_error *error) {
+    if (run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error))
+        return true;
+    if (error->status || !*reference->instead ||
+        name_twins(reference, 1, reference->instead, error))
+        return false;
+    *reference->instead = *reference->reason = 0;
+    cs_track_finish(tracks + 2);
+    cs_track_finish(tracks + 3);
+    return run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error);
+}
+
+/* A method of fixed steps loses its order where forces bend, such as in slow friction, and
+ * says little of the reference: the next one takes its place if it comes nearer. */
+static enum cs_status ask_another(struct cs_compare_reference *reference,
+                                  const struct cs_system *system,
+                                  const struct cs_compare_reference_settings *settings,
+                                  struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS],
+                                  struct cs_error *error) {
+    struct cs_compare_reference other = *reference;
+    struct cs_track own[CS_COMPARE_REFERENCE_RUNS] = {tracks[0], tracks[1], {0}, {0}};
+    if (name_twins(&other, 1, reference->instead, error))
+        return error->status;
+    if (run_some(&other, 2, CS_COMPARE_REFERENCE_RUNS, settings, own, error)) {
+        measure_bar(&other, system, own);
+        if (other.bar < reference->bar)
+            *reference = other;
+    }
+    cs_track_finish(own + 2);
+    cs_track_finish(own + 3);
+    return error->status;
+}
+
 /* The four runs; the tighter twin of the first family becomes the reference. */
 static enum cs_status compute(struct cs_compare_reference *reference,
                               const struct cs_course *probe,
                               const struct cs_compare_reference_settings *settings,
                               struct cs_error *error) {
+    const struct cs_system *system = &probe->session.system;
     struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS] = {0};
-    bool good = true;
-    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS && good; k++)
-        run_one(reference, k, settings, tracks + k, &good, error);
-    if (good) {
+    if (run_some(reference, 0, 2, settings, tracks, error) &&
+        run_second(reference, settings, tracks, error)) {
         reference->track = tracks[1];
-        measure_motion(reference, &probe->session.system);
-        measure_bar(reference, &probe->session.system, tracks);
+        measure_motion(reference, system);
+        measure_bar(reference, system, tracks);
+        if (*reference->instead && is_rough(reference))
+            ask_another(reference, system, settings, tracks, error);
         judge(reference);
         /* its states now belong to the reference and must not be freed below */
         tracks[1] = (struct cs_track){0};
         tell(settings, CS_COMPARE_REFERENCE_RUNS, "horizon");
-        cs_horizon_measure(&reference->horizon, settings->course, settings->accuracy,
-                           reference->methods[0], error);
+        if (!error->status)
+            cs_horizon_measure(&reference->horizon, settings->course, settings->accuracy,
+                               reference->methods[0], error);
         judge_horizon(reference);
     }
     for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
@@ -139,14 +208,10 @@ enum cs_status cs_compare_reference_plan(struct cs_compare_reference *reference,
     char chosen[2][256];
     struct cs_course probe = {0};
     *reference = (struct cs_compare_reference){.accuracy = settings->accuracy};
-    if (cs_compare_reference_choose(settings, chosen, error))
+    if (cs_compare_reference_choose(settings, chosen, reference->instead, error) ||
+        name_twins(reference, 0, chosen[0], error) ||
+        name_twins(reference, 1, chosen[1], error))
         return error->status;
-    for (int k = 0; k < 2; k++) {
-        memcpy(reference->methods[2 * k], chosen[k], sizeof chosen[k]);
-        if (cs_compare_reference_tighten(chosen[k], reference->methods[2 * k + 1],
-                                         sizeof chosen[k], error))
-            return error->status;
-    }
     if (!cs_course_open(&probe, settings->course, chosen[0], error))
         cs_compare_reference_key(reference, &probe, settings, key, error);
     cs_course_close(&probe);

@@ -53,33 +53,53 @@ static enum cs_status measure_omega(const struct cs_compare_reference_settings *
     return error->status;
 }
 
-enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
-                                           char chosen[2][256], struct cs_error *error) {
-    double omega = 1;
-    if (settings->methods[0] && settings->methods[1]) {
-        for (int k = 0; k < 2; k++)
-            if (snprintf(chosen[k], sizeof chosen[k], "%s", settings->methods[k]) >=
-                (int)sizeof chosen[k])
-                return cs_fail(error, CS_ERR_USAGE,
-                               "--reference: \"%.60s...\" is longer than %zu characters",
-                               settings->methods[k], sizeof chosen[k] - 1);
-        return CS_OK;
+/* the first of a family that is there, from number *k on; *k is then the next, chosen "" where
+ * there is none. One method cannot stand for both families. */
+static void take_first(const struct cs_compare_reference_settings *settings, int family,
+                       double omega, int *k, char chosen[2][256]) {
+    for (bool found = false; !found && families[family][*k]; ++*k) {
+        fill_step(families[family][*k], omega, chosen[family], sizeof chosen[family]);
+        const size_t name = strcspn(chosen[family], ":");
+        found = is_there(settings, chosen[family]) &&
+                (family == 0 || strncmp(chosen[0], chosen[1], name + 1) != 0);
+        if (!found)
+            *chosen[family] = 0;
     }
+}
+
+static enum cs_status copy_given(const struct cs_compare_reference_settings *settings,
+                                 char chosen[2][256], struct cs_error *error) {
+    for (int k = 0; k < 2; k++)
+        if (snprintf(chosen[k], sizeof chosen[k], "%s", settings->methods[k]) >=
+            (int)sizeof chosen[k])
+            return cs_fail(error, CS_ERR_USAGE,
+                           "--reference: \"%.60s...\" is longer than %zu characters",
+                           settings->methods[k], sizeof chosen[k] - 1);
+    return CS_OK;
+}
+
+enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
+                                           char chosen[2][256], char instead[256],
+                                           struct cs_error *error) {
+    double omega = 1;
+    int next[2] = {0, 0};
+    *instead = 0;
+    if (settings->methods[0] && settings->methods[1])
+        return copy_given(settings, chosen, error);
     if (measure_omega(settings, &omega, error))
         return error->status;
     for (int family = 0; family < 2; family++) {
-        bool found = false;
-        for (int k = 0; families[family][k] && !found; k++) {
-            fill_step(families[family][k], omega, chosen[family], sizeof chosen[family]);
-            const size_t name = strcspn(chosen[family], ":");
-            // one method cannot stand for both families
-            found = is_there(settings, chosen[family]) &&
-                    (family == 0 || strncmp(chosen[0], chosen[1], name + 1) != 0);
-        }
-        if (!found)
+        *chosen[family] = 0;
+        take_first(settings, family, omega, next + family, chosen);
+        if (!*chosen[family])
             return cs_fail(error, CS_ERR_MODULE,
                            "no two families of methods are there for a reference");
     }
+    char others[2][256];
+    memcpy(others, chosen, sizeof others);
+    *others[1] = 0;
+    take_first(settings, 1, omega, next + 1, others);
+    memcpy(instead, others[1], sizeof others[1]);
     return CS_OK;
 }
 

@@ -9,8 +9,10 @@
 enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, size_t size,
                                             struct cs_error *error);
 
-/* Chooses two families of the methods that are there, best first, with their settings. */
+/* Chooses two families of the methods that are there, best first, with their settings; instead:
+ * the next for the second, "" where there is none or both are given. */
 enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_settings *settings,
-                                           char chosen[2][256], struct cs_error *error);
+                                           char chosen[2][256], char instead[256],
+                                           struct cs_error *error);
 
 #endif

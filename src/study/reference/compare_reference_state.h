@@ -21,6 +21,7 @@ struct cs_compare_reference_settings {
 struct cs_compare_reference {
     struct cs_track track;
     char methods[CS_COMPARE_REFERENCE_RUNS][256]; /* family 1, its twin, family 2, its twin */
+    char instead[256];     /* for family 2 where the scene is too rough for it; "": none */
     double differences[3]; /* m: 1 against its twin, 2 against its twin, 1 against 2 */
     double bar;            /* m, largest of them at any frame (RMS of particles) */
     double bar_max;        /* m, largest distance of a particle */
