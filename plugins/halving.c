@@ -134,6 +134,14 @@ bool halving_is_fresh(const struct halving *self, double h) {
     return self->loop.fresh || fabs(h - self->before) > 1e-9 * h;
 }
 
+/* m2, of two particles */
+static double square_between(const double *x, size_t n, size_t a, size_t b) {
+    double squared = 0;
+    for (size_t c = 0; c < 3 * n; c += n)
+        squared += (x[c + b] - x[c + a]) * (x[c + b] - x[c + a]);
+    return squared;
+}
+
 bool springs_turned(const struct cs_view *view, const double *x0, const double *x1) {
     const size_t n = view->n;
     for (size_t s = 0; s < view->n_springs; s++) {
@@ -144,7 +152,8 @@ bool springs_turned(const struct cs_view *view, const double *x0, const double *
             squared += d * d;
         }
         // not >, so that it is true of what is not a number
-        if (!(squared <= 0.25 * view->length[s] * view->length[s]))
+        if (!(squared <= 0.25 * view->length[s] * view->length[s]) &&
+            !(squared <= 0.25 * square_between(x0, n, a, b)))
             return true;
     }
     return false;

@@ -55,9 +55,9 @@ enum cs_step halving_archive(void *self, const struct cs_archive *archive);
 /* What the last step remembers cannot be used for one of length h. */
 bool halving_is_fresh(const struct halving *self, double h);
 
-/* A spring's ends have moved against each other by more than half its rest length from x0 to
- * x1, or to what is not a number: beyond that a linearised step knows nothing of the true
- * motion. Needs CS_NEED_SPRINGS. */
+/* A spring's ends have moved against each other by more than half its length from x0 to x1, the
+ * larger of those at rest and at x0, or to what is not a number: beyond that a linearised step
+ * knows nothing of the true motion. Needs CS_NEED_SPRINGS. */
 bool springs_turned(const struct cs_view *view, const double *x0, const double *x1);
 
 /* The common part of the descriptors. */
