@@ -112,21 +112,28 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
     return error->status;
 }
 
-/* The value of each particle, and the range of its colours: about 0 where it has a sign, else
- * from 0. One pinched corner does not leave the others without colours. */
-static void measure(struct cs_picture *picture, const struct cs_run *run) {
-    const struct cs_render *render = &picture->scene->render;
-    if (render->look == CS_LOOK_FORCE)
-        cs_measure_particle_force(picture->system, run->t, run->x, run->v, picture->scalar,
-                                  picture->work);
+void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
+                       double *work) {
+    if (system->scene->render.look == CS_LOOK_FORCE)
+        cs_measure_particle_force(system, run->t, run->x, run->v, scalar, work);
     else
-        cs_measure_particle_strain(picture->system, run->x, picture->scalar);
-    if (isnan(render->range[0])) {
-        const double most = cs_measure_magnitude(picture->scalar, picture->system->view.n);
-        picture->range[0] = render->look == CS_LOOK_STRAIN ? -most : 0;
-        picture->range[1] = most;
-    } else
-        memcpy(picture->range, render->range, sizeof picture->range);
+        cs_measure_particle_strain(system, run->x, scalar);
+}
+
+void cs_picture_range(const struct cs_scene *scene, double most, double range[2]) {
+    range[0] = scene->render.look == CS_LOOK_STRAIN ? -most : 0;
+    range[1] = most;
+}
+
+/* One pinched corner does not leave the others without colours. */
+static void measure(struct cs_picture *picture, const struct cs_run *run) {
+    const double *given = picture->scene->render.range;
+    const uint32_t n = picture->system->view.n;
+    cs_picture_values(picture->system, run, picture->scalar, picture->work);
+    memcpy(picture->range, given, sizeof picture->range);
+    if (isnan(given[0]))
+        cs_picture_range(picture->scene, cs_measure_magnitude(picture->scalar, n),
+                         picture->range);
 }
 
 static const char *title_of(const struct cs_scene *scene) {

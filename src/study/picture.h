@@ -47,6 +47,13 @@ void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
  * failure is told again. CS_OK where none is under way and none failed. */
 enum cs_status cs_picture_end(struct cs_picture *picture, struct cs_error *error);
 
+/* The value by which the scene's look colours each particle of a run: scalar (n), work (3,n).
+ */
+void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
+                       double *work);
+/* Its range, up to a magnitude: about 0 where the value has a sign, else from 0. */
+void cs_picture_range(const struct cs_scene *scene, double most, double range[2]);
+
 /* true if the colours show a value, so that picture->range has a meaning; its unit. */
 bool cs_picture_is_coloured(const struct cs_scene *scene);
 const char *cs_picture_unit(const struct cs_scene *scene);

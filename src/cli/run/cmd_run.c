@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
+#include "cli/run/run_range.h"
 #include "cli/run/run_report.h"
 #include "model/force/measure.h"
 
@@ -28,6 +29,7 @@ enum {
     RUN_TIMING,
     RUN_THREADS,
     RUN_RENDERER,
+    RUN_RANGE,
     RUN_FAST,
     RUN_LEVEL,
     RUN_STRICT,
@@ -81,6 +83,10 @@ static const struct cs_arg rows[RUN_ROWS] = {
                      "16; 1 below 16384 particles: too little work to share)",
                      false},
     [RUN_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)", false},
+    [RUN_RANGE] = {"range", 0, "RANGE",
+                   "of the colours of looks force and strain in all pictures: LEAST,MOST, or "
+                   "auto, which runs the scene once before (default: of each frame)",
+                   false},
     [RUN_FAST] = {"fast-render", 0, NULL,
                   "use all of the processor; pixels then depend on the machine", false},
     [RUN_LEVEL] = {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)", false},
@@ -239,12 +245,15 @@ static enum cs_status tell_outcome(const struct cs_job *job, bool strict,
 static enum cs_status run(struct cs_args *args, struct cs_error *error) {
     struct cs_job_settings settings;
     struct cs_job job = {0};
-    if (read_settings(args, &settings, error))
-        return error->status;
-    if (!cs_job_run(&job, &settings, error) && !write_json(&job, error) &&
+    struct cs_run_range range = {0};
+    const char *asked = cs_args_get(args, RUN_RANGE);
+    if (!read_settings(args, &settings, error) &&
+        (!asked || !cs_run_range_set(&range, asked, &settings, error)) &&
+        !cs_job_run(&job, &settings, error) && !write_json(&job, error) &&
         !print_table(&job, error))
         tell_outcome(&job, cs_args_get(args, RUN_STRICT), error);
     cs_job_finish(&job);
+    cs_run_range_finish(&range);
     return error->status;
 }
 

@@ -28,9 +28,9 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
                          job->scene_hash, error);
 }
 
-static uint32_t frames_of_one_second(const struct cs_scene *scene) {
-    const double frames = floor(scene->time.fps + 0.5);
-    return frames < 1 ? 1 : (uint32_t)frames;
+uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene) {
+    const double second = floor(scene->time.fps + 0.5);
+    return settings->frames ? settings->frames : second < 1 ? 1 : (uint32_t)second;
 }
 
 static bool makes_checkpoints(const struct cs_job_settings *settings) {
@@ -358,7 +358,7 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
         check_outputs(job, error) || open_outputs(job, error))
         return error->status;
     const struct cs_scene *scene = &job->session.scene;
-    job->frames = settings->frames ? settings->frames : frames_of_one_second(scene);
+    job->frames = cs_job_frames(settings, scene);
     if (cs_company_print(scene, job->frames / scene->time.fps, &job->warning, error))
         return error->status;
     if (!job->warning.length)

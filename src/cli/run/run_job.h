@@ -27,6 +27,9 @@ struct cs_job_settings {
     bool fast, hash, overwrite, quiet;
 };
 
+/* How many frames are simulated. */
+uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene);
+
 /* What is kept of a frame for the report. */
 struct cs_job_frame {
     char hash[CS_HASH_DIGITS];

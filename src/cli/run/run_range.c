@@ -1,0 +1,119 @@
+/* Finds the range of colours in one run before the one that is drawn. */
+#include "cli/run/run_range.h"
+
+#include "model/force/measure.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What the run before goes by, and what it finds. */
+struct search {
+    struct cs_session session;
+    double *scalar, *work; /* (n), (3,n) */
+    double *most;          /* of each frame that will be drawn */
+    uint32_t n;
+};
+
+static enum cs_status take(struct search *search, uint32_t frames, struct cs_error *error) {
+    const size_t n = search->session.system.view.n;
+    search->scalar = calloc(n + 1, sizeof *search->scalar);
+    search->work = calloc(n + 1, 3 * sizeof *search->work);
+    search->most = calloc((size_t)frames + 1, sizeof *search->most);
+    if (!search->scalar || !search->work || !search->most)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the range of colours");
+    return CS_OK;
+}
+
+static enum cs_status look(struct search *search, uint32_t frames, uint32_t every,
+                           struct cs_error *error) {
+    struct cs_run *run = &search->session.run;
+    while (run->frame < frames && run->outcome == CS_RUNNING) {
+        if (cs_run_frame(run, error))
+            return error->status;
+        if (run->outcome != CS_RUNNING || run->frame % every)
+            continue;
+        cs_picture_values(&search->session.system, run, search->scalar, search->work);
+        search->most[search->n++] =
+            cs_measure_magnitude(search->scalar, search->session.system.view.n);
+    }
+    if (run->outcome == CS_INTERRUPTED)
+        cs_fail(error, CS_ERR_INTERRUPT, "interrupted while the range of colours was found");
+    return error->status;
+}
+
+static enum cs_status check(const struct cs_session *session, struct cs_error *error) {
+    const struct cs_scene *scene = &session->scene;
+    if (!cs_picture_is_coloured(scene))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--range: the look \"%s\" shows no values; \"force\" and \"strain\" do",
+                       cs_look_names[scene->render.look]);
+    return CS_OK;
+}
+
+/* a value for render.range; empty where nothing moves */
+static enum cs_status search_range(const struct cs_job_settings *settings, char value[80],
+                                   struct cs_error *error) {
+    struct search search = {0};
+    double range[2];
+    struct cs_session *session = &search.session;
+    if (!strcmp(settings->session.scene, "-"))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--range auto runs the scene twice: it must be a file, not -");
+    if (cs_session_open(session, &settings->session, error))
+        return error->status;
+    const uint32_t frames = cs_job_frames(settings, &session->scene);
+    if (!check(session, error) && !take(&search, frames / settings->every, error) &&
+        !look(&search, frames, settings->every, error)) {
+        cs_picture_range(&session->scene, cs_measure_magnitude(search.most, search.n), range);
+        if (range[0] < range[1])
+            snprintf(value, 80, "[%.9g,%.9g]", range[0], range[1]);
+    }
+    free(search.scalar);
+    free(search.work);
+    free(search.most);
+    cs_session_close(session);
+    return error->status;
+}
+
+static enum cs_status read_range(const char *text, char value[80], struct cs_error *error) {
+    const char *comma = strchr(text, ',');
+    double least, most;
+    char first[40];
+    if (comma && comma - text < (long)sizeof first) {
+        snprintf(first, sizeof first, "%.*s", (int)(comma - text), text);
+        if (cs_parse_real(first, &least) && cs_parse_real(comma + 1, &most) && least < most) {
+            snprintf(value, 80, "[%.17g,%.17g]", least, most);
+            return CS_OK;
+        }
+    }
+    return cs_fail(error, CS_ERR_USAGE,
+                   "--range: found \"%s\", expected \"auto\", or the smaller and the larger "
+                   "value with a comma between",
+                   text);
+}
+
+enum cs_status cs_run_range_set(struct cs_run_range *range, const char *text,
+                                struct cs_job_settings *settings, struct cs_error *error) {
+    struct cs_session_settings *session = &settings->session;
+    if (strcmp(text, "auto") ? read_range(text, range->value, error)
+                             : search_range(settings, range->value, error))
+        return error->status;
+    if (!*range->value)
+        return CS_OK;
+    range->overrides = calloc(session->n_overrides + 1, sizeof *range->overrides);
+    if (!range->overrides)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the range of colours");
+    if (session->n_overrides)
+        memcpy(range->overrides, session->overrides,
+               session->n_overrides * sizeof *range->overrides);
+    range->overrides[session->n_overrides++] =
+        (struct cs_override){"render.range", range->value};
+    session->overrides = range->overrides;
+    return CS_OK;
+}
+
+void cs_run_range_finish(struct cs_run_range *range) {
+    free(range->overrides);
+    *range = (struct cs_run_range){0};
+}
