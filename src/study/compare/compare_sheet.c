@@ -11,10 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pictures are drawn wider than they are kept: the bar of colours, in units that are none of
- * ours, stands in what is cut off. */
-enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, MARGIN = 92, TILES_MAX = 64, COLUMNS = 5 };
-enum { DRAWN_WIDTH = TILE_WIDTH + 2 * MARGIN };
+enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, COLUMNS = 5 };
 
 /* The cells of one sheet, one a series at most. */
 struct sheet {
@@ -83,26 +80,19 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
     }
 }
 
-static void cut_margins(struct cs_image *image) {
-    for (uint32_t row = 0; row < image->height; row++)
-        memmove(image->rgb + 3 * (size_t)TILE_WIDTH * row,
-                image->rgb + 3 * ((size_t)DRAWN_WIDTH * row + MARGIN), 3 * (size_t)TILE_WIDTH);
-    image->width = TILE_WIDTH;
-}
-
 static enum cs_status paint(struct cs_course *course, const struct cs_frame *frame,
                             const struct cs_obstacle *obstacles, enum cs_renderer_kind kind,
                             const char *path, struct cs_error *error) {
     struct cs_scene *scene = &course->session.scene;
     const struct cs_renderer *renderer = NULL;
     struct cs_canvas *canvas = NULL;
-    struct cs_image image = {DRAWN_WIDTH, TILE_HEIGHT, malloc(3 * DRAWN_WIDTH * TILE_HEIGHT)};
+    struct cs_image image = {TILE_WIDTH, TILE_HEIGHT, malloc(3 * TILE_WIDTH * TILE_HEIGHT)};
     struct cs_image *textures = calloc(scene->bodies.n, sizeof *textures);
     const struct cs_canvas_settings settings = {.scene = scene,
                                                 .system = &course->session.system,
                                                 .textures = textures,
                                                 .obstacles = obstacles};
-    scene->render.size[0] = DRAWN_WIDTH;
+    scene->render.size[0] = TILE_WIDTH;
     scene->render.size[1] = TILE_HEIGHT;
     scene->render.look = CS_LOOK_FORCE; // colours of what has no sign
     if (!image.rgb || !textures || !obstacles)
@@ -110,7 +100,6 @@ static enum cs_status paint(struct cs_course *course, const struct cs_frame *fra
     else if (!cs_renderer_open(cs_renderer_folder(), kind, &renderer, error) &&
              !renderer->create(&settings, &canvas, error) &&
              !renderer->paint(canvas, frame, &image, error)) {
-        cut_margins(&image);
         cs_png_write(path, &image, 6, NULL, 0, error);
     }
     if (renderer)
