@@ -23,6 +23,19 @@ static void grow_by(double low[3], double high[3], const struct cs_obstacle *obs
     }
 }
 
+static void grow_by_mesh(double low[3], double high[3], const struct cs_obstacle *obstacle) {
+    const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
+    for (size_t v = 0; v < mesh->n; v++) {
+        double place[3];
+        for (int i = 0; i < 3; i++) {
+            place[i] = obstacle->centre[i];
+            for (size_t a = 0; a < 3; a++)
+                place[i] += obstacle->axes[a][i] * mesh->places[a * mesh->n + v];
+        }
+        grow(low, high, place);
+    }
+}
+
 struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
                                const struct cs_obstacle *obstacles) {
     const struct cs_scene *scene = system->scene;
@@ -36,7 +49,11 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
     }
     /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++) {
-        if (obstacles[i].collider->visible && obstacles[i].kind != CS_OBSTACLE_PLANE)
+        if (!obstacles[i].collider->visible || obstacles[i].kind == CS_OBSTACLE_PLANE)
+            continue;
+        if (obstacles[i].kind == CS_OBSTACLE_MESH)
+            grow_by_mesh(low, high, obstacles + i);
+        else
             grow_by(low, high, obstacles + i);
     }
     for (int i = 0; i < 3; i++)

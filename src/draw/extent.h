@@ -6,7 +6,7 @@
 #include "model/contact/obstacle.h"
 #include "model/system/system.h"
 
-/* A ball around the particles at x (3,n) and the visible spheres, boxes and capsules, which are
+/* A ball around the particles at x (3,n) and the visible colliders but planes, which are
  * at obstacles (scene->colliders.n). */
 struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
                                const struct cs_obstacle *obstacles);

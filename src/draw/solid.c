@@ -1,5 +1,5 @@
-/* Makes planes as squares, spheres as balls, boxes and capsules as cubes blown up to balls and
- * pulled apart.
+/* Makes meshes as they are, planes as squares, spheres as balls, boxes and capsules as cubes
+ * blown up to balls and pulled apart.
  *
  * Each face of a cube has a grid of directions, evenly spaced by angle. A direction d stands
  * for the point sign(d) core + radius d of the surface. Where a component is 0 the grid has the
@@ -10,6 +10,7 @@
 
 #include "draw/ball.h"
 #include "draw/matrix.h"
+#include "mesh/trimesh.h"
 
 /* lines of a face's grid between its middle and its rim, less one */
 enum { PARTS = 8, LINES = 2 * (PARTS + 1) };
@@ -41,6 +42,8 @@ uint32_t cs_solid_count(const struct cs_obstacle *obstacle) {
     struct line lines[LINES];
     if (!obstacle->collider->visible)
         return 0;
+    if (obstacle->kind == CS_OBSTACLE_MESH)
+        return 3 * obstacle->collider->mesh.geometry->n_triangles;
     if (!is_curved(obstacle))
         return obstacle->kind == CS_OBSTACLE_PLANE ? 6 : CS_BALL_VERTICES;
     for (int k = 0; k < 3; k++)
@@ -110,12 +113,41 @@ static struct cs_vertex *fill_face(const struct cs_obstacle *obstacle, int axis,
     return out;
 }
 
+/* each triangle with its own normal: a mesh that is met as it is shows its edges */
+static void fill_triangle(const struct cs_obstacle *obstacle, uint32_t t,
+                          struct cs_vertex out[3]) {
+    const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
+    double normal[3];
+    cs_trimesh_normal(mesh, t, mesh->places, mesh->n, 0, normal);
+    cs_normalise(normal);
+    for (int k = 0; k < 3; k++) {
+        const double *own = mesh->places + mesh->triangles[3 * (size_t)t + (size_t)k];
+        for (int i = 0; i < 3; i++) {
+            double place = obstacle->centre[i], turned = 0;
+            for (size_t a = 0; a < 3; a++) {
+                place += obstacle->axes[a][i] * own[a * mesh->n];
+                turned += obstacle->axes[a][i] * normal[a];
+            }
+            out[k].place[i] = (float)place;
+            out[k].normal[i] = (float)turned;
+        }
+        out[k].value = 0;
+    }
+}
+
+static void fill_mesh(const struct cs_obstacle *obstacle, struct cs_vertex *out) {
+    for (uint32_t t = 0; t < obstacle->collider->mesh.geometry->n_triangles; t++)
+        fill_triangle(obstacle, t, out + 3 * (size_t)t);
+}
+
 void cs_solid_fill(const struct cs_obstacle *obstacle, double cell, const float eye[4],
                    struct cs_vertex *out) {
     if (obstacle->kind == CS_OBSTACLE_PLANE)
         fill_square(obstacle, 0.03 * cell, out);
     if (obstacle->kind == CS_OBSTACLE_SPHERE)
         cs_ball_fill(obstacle->centre, obstacle->radius, eye, out);
+    if (obstacle->kind == CS_OBSTACLE_MESH)
+        fill_mesh(obstacle, out);
     for (int axis = 0; axis < 3 && is_curved(obstacle); axis++)
         for (int side = -1; side <= 1; side += 2)
             out = fill_face(obstacle, axis, side, out);

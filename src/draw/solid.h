@@ -6,7 +6,7 @@
 #include "model/contact/obstacle.h"
 
 /* Vertices of a collider's triangles, three each, none shared: two triangles of a plane or a
- * floor, thousands of the others; 0 of one that is not visible. */
+ * floor, those of a mesh, thousands of the others; 0 of one that is not visible. */
 uint32_t cs_solid_count(const struct cs_obstacle *obstacle);
 
 /* Fills them in the world's coordinates, counter-clockwise seen from outside. A plane's square

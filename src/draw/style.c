@@ -36,6 +36,8 @@ static double sink_of(const struct cs_obstacle *obstacle, double cell) {
     const double least = fmin(core[0], fmin(core[1], core[2])) + radius;
     switch (obstacle->kind) {
     case CS_OBSTACLE_PLANE:
+    case CS_OBSTACLE_MESH:
+        // cloth keeps off the triangles of a mesh
         return 0;
     case CS_OBSTACLE_BOX:
         // a chord of one diagonal over a sharp edge

@@ -59,12 +59,17 @@ void cs_scene_add_meaning(const struct cs_table *table, const void *object, cons
             add_row(table->rows + r, object, path, out);
 }
 
+static void add_file(const struct cs_mesh_source *mesh, const char *list, uint32_t number,
+                     struct cs_text *out) {
+    if (mesh->present && *mesh->file)
+        cs_text_add(out, "%s[%u].mesh.file is %s\n", list, number, mesh->geometry->file_hash);
+}
+
 static void add_files(const struct cs_scene *scene, struct cs_text *out) {
-    const struct cs_body *bodies = cs_scene_bodies(scene);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (bodies[b].mesh.present && *bodies[b].mesh.file)
-            cs_text_add(out, "bodies[%u].mesh.file is %s\n", b,
-                        bodies[b].mesh.geometry->file_hash);
+        add_file(&cs_scene_bodies(scene)[b].mesh, "bodies", b, out);
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        add_file(&cs_scene_colliders(scene)[c].mesh, "colliders", c, out);
 }
 
 static int by_bytes(const void *left, const void *right) {

@@ -1,5 +1,5 @@
-/* Gives each body of a scene its mesh, its network of springs and its shape-matching
- * clusters. */
+/* Gives each body and collider of a scene its mesh, and bodies their networks of springs and
+ * their shape-matching clusters. */
 #include "io/scene_mesh.h"
 
 #include "io/json_path.h"
@@ -15,13 +15,22 @@ enum {
     NETWORK_MAX = 1 << 26, /* springs of a body: about 5 GB with the solver */
 };
 
-/* what went wrong, behind the place of a key of body b */
-static enum cs_status refuse(struct cs_reader *reader, const struct cs_json *root, uint32_t b,
-                             const char *key, enum cs_status status, const char *message) {
+/* One element of `bodies` or `colliders`. */
+struct item {
+    struct cs_reader *reader;
+    const struct cs_json *root;
+    const char *list;
+    uint32_t number;
+};
+
+/* what went wrong, behind the place of a key of the item */
+static enum cs_status refuse(const struct item *item, const char *key, enum cs_status status,
+                             const char *message) {
+    struct cs_reader *reader = item->reader;
     const bool first = !reader->error->status;
-    reader->path_length =
-        (size_t)snprintf(reader->path, sizeof reader->path, "bodies[%u].%s", b, key);
-    cs_reader_fail(reader, cs_json_nearest(root, reader->path), false, "%s", message);
+    reader->path_length = (size_t)snprintf(reader->path, sizeof reader->path, "%s[%u].%s",
+                                           item->list, item->number, key);
+    cs_reader_fail(reader, cs_json_nearest(item->root, reader->path), false, "%s", message);
     if (first)
         reader->error->status = status;
     return status;
@@ -59,43 +68,44 @@ static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_
     return error->status;
 }
 
-static enum cs_status make_mesh(struct cs_reader *reader, const struct cs_json *root,
-                                struct cs_scene *scene, uint32_t b, struct cs_trimesh *mesh) {
-    const struct cs_body *body = cs_scene_bodies(scene) + b;
-    const struct cs_mesh_source *source = &body->mesh;
+static enum cs_status make_mesh(const struct item *item, const struct cs_scene *scene,
+                                const struct cs_mesh_source *source, struct cs_trimesh *mesh) {
+    struct cs_arena *arena = item->reader->arena;
     struct cs_error said = {0};
     if (source->shape == CS_MESH_LIMBS && source->detail < LIMBS_DETAIL_MIN)
-        return refuse(reader, root, b, "mesh.detail", CS_ERR_SCENE,
+        return refuse(item, "mesh.detail", CS_ERR_SCENE,
                       "limbs need at least 8, or some are lost");
     /* a bad file is blamed on its name; a degenerate shape can only come from its scale */
-    if (*source->file ? read_file(scene, source, mesh, reader->arena, &said)
-                      : make_shape(source, mesh, reader->arena, &said))
-        return refuse(reader, root, b,
+    if (*source->file ? read_file(scene, source, mesh, arena, &said)
+                      : make_shape(source, mesh, arena, &said))
+        return refuse(item,
                       *source->file                 ? "mesh.file"
                       : said.status == CS_ERR_SCENE ? "mesh.scale"
                                                     : "mesh.shape",
                       said.status, said.message);
-    if (!body->network.present)
-        return CS_OK;
-    /* network springs run through the inside, which an open mesh does not have */
+    return CS_OK;
+}
+
+/* springs through the inside, which an open mesh does not have */
+static enum cs_status make_network(const struct item *item, const struct cs_network *network,
+                                   struct cs_trimesh *mesh) {
     if (mesh->n_open) {
         char message[160];
         snprintf(
             message, sizeof message,
             "the mesh is open: %u of its %u edges have one triangle, expected a closed one",
             mesh->n_open, mesh->n_edges);
-        return refuse(reader, root, b, "network", CS_ERR_SCENE, message);
+        return refuse(item, "network", CS_ERR_SCENE, message);
     }
-    if (mesh->n * body->network.springs > NETWORK_MAX)
-        return refuse(reader, root, b, "network.springs", CS_ERR_SCENE,
+    if (mesh->n * network->springs > NETWORK_MAX)
+        return refuse(item, "network.springs", CS_ERR_SCENE,
                       "more than 67108864 springs in all");
-    return cs_network_make(&body->network, mesh, reader->arena, reader->error);
+    return cs_network_make(network, mesh, item->reader->arena, item->reader->error);
 }
 
 /* the parts of a body that shape matching keeps */
-static enum cs_status cut_body(struct cs_reader *reader, const struct cs_json *root,
-                               struct cs_scene *scene, uint32_t b) {
-    struct cs_body *body = cs_scene_bodies(scene) + b;
+static enum cs_status cut_body(const struct item *item, struct cs_body *body) {
+    struct cs_reader *reader = item->reader;
     struct cs_shape_matching *matching = &body->shape_matching;
     const int64_t most = cs_shape_count(body) / CS_CLUSTER_LEAST;
     /* a cloth beyond the memory is refused by the check */
@@ -107,7 +117,7 @@ static enum cs_status cut_body(struct cs_reader *reader, const struct cs_json *r
                  "found %lld, expected at most %lld: a part has %d particles or more",
                  (long long)matching->clusters, (long long)(most > 1 ? most : 1),
                  CS_CLUSTER_LEAST);
-        return refuse(reader, root, b, "shape_matching.clusters", CS_ERR_SCENE, message);
+        return refuse(item, "shape_matching.clusters", CS_ERR_SCENE, message);
     }
     struct cs_clusters *parts = cs_arena_take(reader->arena, sizeof *parts, reader->error);
     if (!parts)
@@ -116,33 +126,49 @@ static enum cs_status cut_body(struct cs_reader *reader, const struct cs_json *r
     return cs_clusters_make(body, parts, reader->arena, reader->error);
 }
 
-static enum cs_status read_mesh(struct cs_reader *reader, const struct cs_json *root,
-                                struct cs_scene *scene, uint32_t b) {
-    const size_t before = reader->arena->used;
-    struct cs_trimesh *mesh = cs_arena_take(reader->arena, sizeof *mesh, reader->error);
+/* network: NULL, or what the mesh gets inside */
+static enum cs_status read_mesh(const struct item *item, const struct cs_scene *scene,
+                                struct cs_mesh_source *source,
+                                const struct cs_network *network) {
+    struct cs_arena *arena = item->reader->arena;
+    const size_t before = arena->used;
+    struct cs_trimesh *mesh = cs_arena_take(arena, sizeof *mesh, item->reader->error);
     if (!mesh)
-        return reader->error->status;
-    cs_scene_bodies(scene)[b].mesh.geometry = mesh;
-    const enum cs_status status = make_mesh(reader, root, scene, b, mesh);
-    mesh->bytes = reader->arena->used - before;
+        return item->reader->error->status;
+    source->geometry = mesh;
+    enum cs_status status = make_mesh(item, scene, source, mesh);
+    if (!status && network && network->present)
+        status = make_network(item, network, mesh);
+    mesh->bytes = arena->used - before;
     return status;
+}
+
+static enum cs_status read_body(const struct item *item, const struct cs_scene *scene,
+                                struct cs_body *body, double *particles) {
+    /* a body of two shapes or none is refused by the check */
+    if (body->mesh.present == body->cloth.present)
+        return CS_OK;
+    if (body->mesh.present && read_mesh(item, scene, &body->mesh, &body->network))
+        return item->reader->error->status;
+    *particles += body->mesh.present ? body->mesh.geometry->n : 0;
+    if (*particles > CS_PARTICLES_MAX)
+        return refuse(item, "mesh", CS_ERR_SCENE,
+                      "more particles in the meshes so far than a scene may have");
+    return cut_body(item, body);
 }
 
 enum cs_status cs_scene_read_meshes(struct cs_reader *reader, const struct cs_json *root,
                                     struct cs_scene *scene) {
     double particles = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(scene) + b;
-        /* a body of two shapes or none is refused by the check */
-        if (body->mesh.present == body->cloth.present)
-            continue;
-        if (body->mesh.present && read_mesh(reader, root, scene, b))
+        const struct item item = {reader, root, "bodies", b};
+        if (read_body(&item, scene, cs_scene_bodies(scene) + b, &particles))
             return reader->error->status;
-        particles += body->mesh.present ? body->mesh.geometry->n : 0;
-        if (particles > CS_PARTICLES_MAX)
-            return refuse(reader, root, b, "mesh", CS_ERR_SCENE,
-                          "more particles in the meshes so far than a scene may have");
-        if (cut_body(reader, root, scene, b))
+    }
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct item item = {reader, root, "colliders", c};
+        struct cs_mesh_source *source = &cs_scene_colliders(scene)[c].mesh;
+        if (source->present && read_mesh(&item, scene, source, NULL))
             return reader->error->status;
     }
     return CS_OK;

@@ -6,9 +6,9 @@
 #include "io/reader.h"
 #include "scene/scene.h"
 
-/* Fills the geometry of every mesh, and the parts of every matched body, of a scene whose
- * tables were read; root is for positions in messages. CS_ERR_SCENE, CS_ERR_FILE (a mesh file)
- * or CS_ERR_MEMORY. */
+/* Fills the geometry of every mesh of bodies and colliders, and the parts of every matched
+ * body, of a scene whose tables were read; root is for positions in messages. CS_ERR_SCENE,
+ * CS_ERR_FILE (a mesh file) or CS_ERR_MEMORY. */
 enum cs_status cs_scene_read_meshes(struct cs_reader *reader, const struct cs_json *root,
                                     struct cs_scene *scene);
 

@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "mesh/trimesh.h"
 #include "model/commit/contact.h"
+#include "model/contact/points.h"
 #include "model/cross/crossings.h"
 #include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
@@ -54,6 +55,10 @@ static size_t mesh_bytes(const struct cs_scene *scene) {
     size_t bytes = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         bytes += bodies[b].mesh.present ? bodies[b].mesh.geometry->bytes : 0;
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct cs_mesh_source *mesh = &cs_scene_colliders(scene)[c].mesh;
+        bytes += mesh->present ? mesh->geometry->bytes : 0;
+    }
     return bytes;
 }
 
@@ -107,8 +112,10 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
 
     /* springs of meshes have a length and a stiffness of their own */
     const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
-    decide(plan, CS_FEATURE_MESHES, any_body(scene, is_mesh), mesh_bytes(scene),
-           "bodies are meshes", "every body is a grid");
+    const bool bodies_are = any_body(scene, is_mesh);
+    decide(plan, CS_FEATURE_MESHES, bodies_are || cs_scene_surfaces(scene) > scene->bodies.n,
+           mesh_bytes(scene), bodies_are ? "bodies are meshes" : "colliders are meshes",
+           "every body is a grid");
     decide(plan, CS_FEATURE_SPRINGS, s > 0,
            n_runs * sizeof(struct cs_spring_run) + 2 * n_listed * real,
            "the bodies have springs",
@@ -155,7 +162,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
-           cs_surfaces_bytes(scene) + cs_crossings_bytes(scene),
+           cs_points_bytes(scene) + cs_crossings_bytes(scene),
            cs_scene_crossings_by_pairs(scene) ? "bodies keep off each other or themselves"
            : wanted                           ? "crossings is not ignore"
                                               : "they are drawn",

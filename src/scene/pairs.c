@@ -1,13 +1,35 @@
-/* Which bodies keep off each other, by the table of pairs and by each body's own key. */
+/* Which surfaces keep off each other, by the table of pairs, by each body's own key, and by the
+ * colliders that are meshes. */
 #include "scene/pairs.h"
+
+uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (cs_scene_colliders(scene)[c].mesh.present)
+            return scene->bodies.n + scene->colliders.n;
+    return scene->bodies.n;
+}
+
+const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface) {
+    return surface < scene->bodies.n ? NULL
+                                     : cs_scene_colliders(scene) + (surface - scene->bodies.n);
+}
+
+/* a mesh that is a collider, and a body on the other side */
+static bool meets_obstacle(const struct cs_scene *scene, uint32_t a, uint32_t b,
+                           double *friction) {
+    const struct cs_collider *obstacle = cs_scene_obstacle(scene, a < b ? b : a);
+    *friction = obstacle->friction;
+    return obstacle->mesh.present && (a < scene->bodies.n || b < scene->bodies.n);
+}
 
 bool cs_scene_bodies_meet(const struct cs_scene *scene, uint32_t a, uint32_t b,
                           double *friction) {
     const struct cs_pair_keys *pairs = scene->pairs.list.items;
-    const struct cs_body *body = cs_scene_bodies(scene) + a;
+    if (a >= scene->bodies.n || b >= scene->bodies.n)
+        return meets_obstacle(scene, a, b, friction);
     if (a == b) {
-        *friction = body->friction;
-        return body->self_contact;
+        *friction = cs_scene_bodies(scene)[a].friction;
+        return cs_scene_bodies(scene)[a].self_contact;
     }
     for (uint32_t p = 0; p < scene->pairs.list.n; p++) {
         const int64_t *bodies = pairs[p].bodies;
@@ -21,8 +43,9 @@ bool cs_scene_bodies_meet(const struct cs_scene *scene, uint32_t a, uint32_t b,
 }
 
 bool cs_scene_any_meet(const struct cs_scene *scene) {
-    bool any =
-        scene->pairs.list.n > 0 || (scene->pairs.among == CS_PAIRS_ALL && scene->bodies.n > 1);
+    bool any = scene->pairs.list.n > 0 ||
+               (scene->pairs.among == CS_PAIRS_ALL && scene->bodies.n > 1) ||
+               cs_scene_surfaces(scene) > scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         any = any || cs_scene_bodies(scene)[b].self_contact;
     return any;

@@ -34,7 +34,7 @@ struct cs_cloth {
     double spin[3];     /* rad/s, about place.translate */
 };
 
-/* either a file or a shape */
+/* of a body or a collider: either a file or a shape */
 struct cs_mesh_source {
     bool present;
     char file[CS_TEXT_MAX]; /* OBJ, relative to the scene file; "" = none */
@@ -154,7 +154,7 @@ struct cs_cuboid {
     bool present;
     double centre[3], size[3]; /* m: whole sides, along its own axes */
     double rotate[4];          /* quaternion x, y, z, w; normalised by cs_scene_check */
-    double radius; /* m, of its edges and corners; cs_scene_check fills an absent one */
+    double radius;             /* m, of its edges; cs_scene_check fills an absent one */
 };
 struct cs_capsule {
     bool present;
@@ -167,7 +167,8 @@ struct cs_collider {
     struct cs_floor floor;
     struct cs_cuboid box;
     struct cs_capsule capsule;
-    double friction;   /* Coulomb coefficient */
+    struct cs_mesh_source mesh; /* without velocity and spin */
+    double friction;            /* Coulomb coefficient */
     double absorption; /* share of the inward normal velocity taken away; < 0: restitution */
     double thickness;  /* m, skin in front of the surface */
     double colour[3];
@@ -340,8 +341,7 @@ struct cs_scene {
     struct cs_light light;
     struct cs_render render;
 
-    /* not in the tables: the "integrator" object, read apart */
-    char integrator[64];
+    char integrator[64];                /* the "integrator" object is read apart */
     struct cs_list integrator_settings; /* struct cs_setting */
 
     /* where it came from */

@@ -200,6 +200,9 @@ static enum cs_status check_capsule(const struct place *at, uint32_t c,
 static enum cs_status check_collider(const struct place *at, uint32_t c,
                                      struct cs_collider *collider) {
     char path[64];
+    snprintf(path, sizeof path, "colliders[%u]", c);
+    if (collider->mesh.present)
+        return check_place(at, path, "mesh", &collider->mesh.place);
     snprintf(path, sizeof path, "colliders[%u].plane.normal", c);
     if (collider->plane.present)
         return make_unit(at, path, collider->plane.normal, 3);
@@ -241,9 +244,12 @@ static enum cs_status check_meetings(const struct place *at, const struct cs_sce
     for (uint32_t b = scene->bodies.n; b--;)
         if (cs_scene_bodies(scene)[b].self_contact)
             snprintf(path, sizeof path, "bodies[%u].self_contact", b);
+    for (uint32_t c = scene->colliders.n; c--;)
+        if (cs_scene_colliders(scene)[c].mesh.present)
+            snprintf(path, sizeof path, "colliders[%u].mesh", c);
     return refuse(at, path,
-                  "contact.law is project, which knows colliders alone; expected "
-                  "contact.law force");
+                  "contact.law is project, which knows colliders without triangles alone; "
+                  "expected contact.law force");
 }
 
 static enum cs_status check_camera(const struct place *at, const struct cs_camera *camera) {

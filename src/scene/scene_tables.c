@@ -64,6 +64,13 @@ static const struct cs_option mesh_rows[] = {
 };
 static const struct cs_table mesh_table = {
     ROWS(mesh_rows), .size = sizeof(struct cs_mesh_source), .optional = true, .one_of = true};
+/* a collider's has the same rows but for the last two: an event moves it */
+static const struct cs_table collider_mesh_table = {.rows = mesh_rows,
+                                                    .n = sizeof mesh_rows / sizeof *mesh_rows -
+                                                         2,
+                                                    .size = sizeof(struct cs_mesh_source),
+                                                    .optional = true,
+                                                    .one_of = true};
 
 static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
 static const struct cs_option network_rows[] = {
@@ -226,13 +233,15 @@ static const struct cs_option collider_rows[] = {
     TABLE(struct cs_collider, floor, floor_table, "an infinite horizontal plane"),
     TABLE(struct cs_collider, box, cuboid_table, "a box with rounded edges"),
     TABLE(struct cs_collider, capsule, capsule_table, "a rod with round ends"),
+    TABLE(struct cs_collider, mesh, collider_mesh_table,
+          "triangles, met by points, edges and triangles; for contact.law force"),
     REAL(struct cs_collider, friction, "", 0, 0, 1000, "Coulomb coefficient"),
     REAL(struct cs_collider, absorption, "", 1, -1, 1,
          "share of the inward normal velocity that is taken away; -e: it is turned round and "
          "multiplied by e (restitution)"),
     REAL(struct cs_collider, thickness, "m", 0, 0, BIG,
          "skin in front of the surface; of contact by force the range, 0: 0.4 of the shortest "
-         "spring"),
+         "spring, or before a mesh the thickness of the body"),
     VECTOR(struct cs_collider, colour, 3, "", grey, 0, 1, "linear RGB"),
     BOOL(struct cs_collider, visible, 1, "draw it"),
 };

@@ -30,8 +30,7 @@ void cs_quaternion_matrix(const double q[4], double r[9]) {
     memcpy(r, turned, sizeof turned);
 }
 
-/* rows of the rotation: the given matrix, or that of the unit quaternion */
-static void rotation_of(const struct cs_place *place, double r[9]) {
+void cs_place_rotation(const struct cs_place *place, double r[9]) {
     if (isnan(place->matrix[0]))
         cs_quaternion_matrix(place->rotate, r);
     else
@@ -52,7 +51,7 @@ static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, d
     const struct cs_trimesh *mesh = body->mesh.geometry;
     const double *p = mesh->places, *shift = body->mesh.place.translate;
     double r[9];
-    rotation_of(&body->mesh.place, r);
+    cs_place_rotation(&body->mesh.place, r);
     for (size_t i = 0; i < mesh->n; i++)
         for (size_t c = 0; c < 3; c++)
             x[c * n + first + i] = r[3 * c] * p[i] + r[3 * c + 1] * p[mesh->n + i] +
@@ -63,7 +62,7 @@ static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, d
     const struct cs_cloth *cloth = &body->cloth;
     const uint32_t columns = (uint32_t)cloth->grid[0], rows = (uint32_t)cloth->grid[1];
     double r[9];
-    rotation_of(&cloth->place, r);
+    cs_place_rotation(&cloth->place, r);
     for (uint32_t i = 0; i < rows; i++)
         for (uint32_t j = 0; j < columns; j++) {
             const double a = share_of(j, columns), b = share_of(i, rows);

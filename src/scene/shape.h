@@ -12,6 +12,9 @@ const double *cs_shape_velocity(const struct cs_body *body);
 /* Rows of the rotation by a unit quaternion x, y, z, w. */
 void cs_quaternion_matrix(const double q[4], double r[9]);
 
+/* Rows of the rotation of a place: its matrix, or that of its unit quaternion. */
+void cs_place_rotation(const struct cs_place *place, double r[9]);
+
 /* Positions of a body's particles, placed rigidly: written to x[first..] of x (3,n). */
 void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x);
 

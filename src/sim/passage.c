@@ -21,7 +21,7 @@ double cs_passage_share(const struct cs_system *system, double t0, const double 
     if (system->pairs && t1 > t0 && !cs_pairs_are_seen(system->pairs, t0, x0, t1, x1))
         return 0.5;
     return cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT
-               ? cs_crossings_share(system, x0, x1)
+               ? cs_crossings_share(system, t0, x0, t1, x1)
                : 1;
 }
 
@@ -36,7 +36,7 @@ bool cs_passage_stops(const struct cs_system *system, double t, const double *x,
                       struct cs_text *why) {
     if (cs_scene_crossings(system->scene) != CS_CROSSINGS_STOP)
         return false;
-    const struct cs_crossing_count found = cs_crossings_count(system, x);
+    const struct cs_crossing_count found = cs_crossings_count(system, t, x);
     if (!found.n)
         return false;
     cs_text_add(why, "after the step to t = %.9g s ", t);

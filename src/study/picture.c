@@ -170,7 +170,7 @@ void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
     if (picture->scalar)
         measure(picture, run);
     if (picture->marks)
-        cs_crossings_mark(picture->system, run->x, picture->marks);
+        cs_crossings_mark(picture->system, run->t, run->x, picture->marks);
     if (picture->goals)
         cs_run_goals(run, picture->goals);
     picture->t = run->t;

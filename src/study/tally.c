@@ -4,7 +4,7 @@
 void cs_tally_take(struct cs_tally *tally, const struct cs_run *run) {
     if (!run->system->plan.rows[CS_FEATURE_CROSSINGS].built)
         return;
-    const struct cs_crossing_count count = cs_crossings_count(run->system, run->x);
+    const struct cs_crossing_count count = cs_crossings_count(run->system, run->t, run->x);
     if (!tally->counted)
         tally->start = count.n;
     tally->counted = true;

@@ -44,7 +44,7 @@ static uint64_t run_frames(struct fixture *fixture, const char *method, const ch
     fixture_start(fixture);
     while (run->frame < 10 && !cs_run_frame(run, error)) {
         ck_assert_int_eq(run->outcome, CS_RUNNING);
-        const uint64_t found = cs_crossings_count(fixture->system, run->x).n;
+        const uint64_t found = cs_crossings_count(fixture->system, run->t, run->x).n;
         most = found > most ? found : most;
     }
     return most;
@@ -77,13 +77,13 @@ START_TEST(limited_sheets_stop_before_they_meet) {
                           strstr(error.message, "gave up at t"),
                       "%s", error.message);
         ck_assert_uint_eq(most, 0);
-        ck_assert_uint_eq(cs_crossings_count(fixture.system, run->x).n, 0);
+        ck_assert_uint_eq(cs_crossings_count(fixture.system, run->t, run->x).n, 0);
         ck_assert_uint_gt(run->counts.cut_steps, 5);
         // a move of a hundredth of a frame more would cross
         double *next = malloc(3 * fixture.n * sizeof *next);
         for (size_t i = 0; i < 3 * fixture.n; i++)
             next[i] = run->x[i] + 1e-4 * run->v[i];
-        ck_assert_double_lt(cs_crossings_share(fixture.system, run->x, next), 1);
+        ck_assert_double_lt(cs_crossings_share(fixture.system, 0, run->x, 1, next), 1);
         free(next);
         fixture_close(&fixture);
     }
@@ -108,7 +108,7 @@ START_TEST(stopped_sheets_say_when) {
         const double t = time_in(error.message);
         ck_assert_msg(t > MEET_FIRST && t < MEET_LAST, "%s: %g", asked[k], t);
         ck_assert_uint_eq(most, 0);
-        ck_assert_uint_gt(cs_crossings_count(fixture.system, fixture.x).n, 0);
+        ck_assert_uint_gt(cs_crossings_count(fixture.system, 0, fixture.x).n, 0);
         fixture_close(&fixture);
     }
 }
@@ -153,7 +153,7 @@ static uint64_t run_meeting(struct fixture *fixture, const char *method, const c
     fixture_start(fixture);
     ck_assert_ptr_nonnull(fixture->system->crossings);
     while (run->frame < 12 && !cs_run_frame(run, &error)) {
-        const uint64_t found = cs_crossings_count(fixture->system, run->x).n;
+        const uint64_t found = cs_crossings_count(fixture->system, run->t, run->x).n;
         most = found > most ? found : most;
     }
     ck_assert_msg(!error.status && run->frame == 12, "%s: %s", method, error.message);

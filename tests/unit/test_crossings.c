@@ -100,9 +100,9 @@ static void expect_crossed(double at, double lift, uint64_t first, uint64_t seco
     for (size_t i = 63; i < sheet.n; i++)
         sheet.x[i] = at;
     uint8_t *marks = calloc(sheet.system.surfaces->n_triangles, 1);
-    const struct cs_crossing_count count = cs_crossings_mark(&sheet.system, sheet.x, marks);
+    const struct cs_crossing_count count = cs_crossings_mark(&sheet.system, 0, sheet.x, marks);
     ck_assert_uint_eq(count.n, first + second);
-    ck_assert_uint_eq(cs_crossings_count(&sheet.system, sheet.x).n, count.n);
+    ck_assert_uint_eq(cs_crossings_count(&sheet.system, 0, sheet.x).n, count.n);
     const struct cs_crossing_count all = count_all(&sheet);
     ck_assert_uint_eq(count.n, all.n);
     ck_assert_uint_eq(count.edge, all.edge);
@@ -142,7 +142,7 @@ START_TEST(what_lies_in_a_plane_does_not_cross) {
     snprintf(bodies, sizeof bodies, SHEET ", " SHEET, 6, 5, 1.0, 1.0, 0.0, 0.0, 0.0, "", 4, 7,
              1.0, 1.0, 0.3, 0.2, 0.0, "");
     open(&sheet, bodies);
-    ck_assert_uint_eq(cs_crossings_count(&sheet.system, sheet.x).n, 0);
+    ck_assert_uint_eq(cs_crossings_count(&sheet.system, 0, sheet.x).n, 0);
     sheet_close(&sheet);
 }
 END_TEST
@@ -169,7 +169,8 @@ START_TEST(counts_are_those_of_all_pairs) {
         for (uint32_t threads = 1; threads < 4; threads++) {
             cs_pool_start(threads, &error);
             UNIT_ASSERT_OK(&error);
-            const struct cs_crossing_count found = cs_crossings_count(&sheet.system, sheet.x);
+            const struct cs_crossing_count found =
+                cs_crossings_count(&sheet.system, 0, sheet.x);
             ck_assert_uint_eq(found.n, all.n);
             ck_assert_uint_eq(found.edge, all.edge);
             ck_assert_uint_eq(found.triangle, all.triangle);
@@ -197,7 +198,7 @@ START_TEST(shares_are_those_of_all_pairs) {
         for (uint32_t threads = 1; threads < 4; threads++) {
             cs_pool_start(threads, &error);
             UNIT_ASSERT_OK(&error);
-            ck_assert_double_eq(cs_crossings_share(&sheet.system, sheet.x, to), all);
+            ck_assert_double_eq(cs_crossings_share(&sheet.system, 0, sheet.x, 1, to), all);
             cs_pool_stop();
         }
         cut += all < 1;
@@ -223,7 +224,7 @@ START_TEST(spikes_of_either_body_are_seen) {
         memcpy(to, sheet.x, 3 * sheet.n * sizeof *to);
         for (size_t i = 16; i < 32; i++)
             to[2 * sheet.n + i] -= 0.1;
-        const double share = cs_crossings_share(&sheet.system, sheet.x, to);
+        const double share = cs_crossings_share(&sheet.system, 0, sheet.x, 1, to);
         ck_assert_msg(share < 0.5 && share > 0.44, "%zu: %g", spiked, share);
         free(to);
         sheet_close(&sheet);
@@ -239,12 +240,12 @@ START_TEST(shared_moves_and_blow_ups) {
     sheet_stir(&sheet, 0.01, 0);
     for (size_t i = 0; i < 3 * sheet.n; i++)
         to[i] = sheet.x[i] + 0.5;
-    ck_assert_double_eq(cs_crossings_share(&sheet.system, sheet.x, to), 1);
-    ck_assert_double_eq(cs_crossings_share(&sheet.system, sheet.x, sheet.x), 1);
+    ck_assert_double_eq(cs_crossings_share(&sheet.system, 0, sheet.x, 1, to), 1);
+    ck_assert_double_eq(cs_crossings_share(&sheet.system, 0, sheet.x, 1, sheet.x), 1);
     for (size_t i = 0; i < 3 * sheet.n; i += 5)
         to[i] = i % 2 ? (double)NAN : HUGE_VAL;
-    cs_crossings_share(&sheet.system, sheet.x, to);
-    cs_crossings_count(&sheet.system, to);
+    cs_crossings_share(&sheet.system, 0, sheet.x, 1, to);
+    cs_crossings_count(&sheet.system, 0, to);
     free(to);
     sheet_close(&sheet);
 }

@@ -165,6 +165,7 @@ START_TEST(every_key_counts) {
     cs_options_default(&cs_scene_table, &walk.scene);
     fill(&cs_scene_table, &walk.scene);
     cs_scene_bodies(&walk.scene)->mesh.geometry = &mesh;
+    cs_scene_colliders(&walk.scene)->mesh.geometry = &mesh;
     expect_another(&walk, "none");
     change_all(&walk, &cs_scene_table, &walk.scene);
     strcpy(walk.scene.integrator, "rk4");
@@ -172,6 +173,8 @@ START_TEST(every_key_counts) {
     // the bytes of a mesh file, under the same name
     strcpy(cs_scene_bodies(&walk.scene)->mesh.file, "a.obj");
     expect_another(&walk, "mesh file");
+    strcpy(cs_scene_colliders(&walk.scene)->mesh.file, "a.obj");
+    expect_another(&walk, "mesh file of a collider");
     strcpy(mesh.file_hash, "4567");
     expect_another(&walk, "bytes of a mesh file");
     ck_assert_uint_gt(walk.n, 200);

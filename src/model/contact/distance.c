@@ -69,6 +69,10 @@ double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3
         return from_point(p, obstacle->centre, n) - obstacle->radius;
     if (obstacle->kind == CS_OBSTACLE_PLANE)
         return from_plane(obstacle, 0, p, n);
+    if (obstacle->kind == CS_OBSTACLE_MESH) {
+        memcpy(n, obstacle->axes[1], sizeof obstacle->axes[1]);
+        return HUGE_VAL;
+    }
     static const double middle[3] = {0, 0, 0};
     double x[3], out[3];
     to_own(obstacle, p, x);

@@ -2,11 +2,13 @@
  *
  * For box and capsule: the squared distance to the core, sum max(|x_i| - c_i, 0)^2, is convex
  * along a line and quadratic between the points where the line crosses |x_i| = c_i. Its slope
- * is linear there, so that the least distance is found exactly.
+ * is linear there, so that the least distance is found exactly. A mesh is asked triangle by
+ * triangle (Moeller, Trumbore 1997).
  */
 #include "model/contact/obstacle.h"
 
 #include "base/vec3.h"
+#include "mesh/trimesh.h"
 
 #include <math.h>
 
@@ -88,6 +90,32 @@ static double least_squared(const struct line *line, double share) {
     return least;
 }
 
+/* a line in the mesh's own frame goes through its triangle t, rims included */
+static bool meets_triangle(const struct cs_trimesh *mesh, uint32_t t, const struct line *line,
+                           double share) {
+    const uint32_t *corners = mesh->triangles + 3 * (size_t)t;
+    double u[3], v[3], to[3], across[3], turned[3];
+    for (size_t c = 0; c < 3; c++) {
+        const double *places = mesh->places + c * mesh->n;
+        u[c] = places[corners[1]] - places[corners[0]];
+        v[c] = places[corners[2]] - places[corners[0]];
+        to[c] = line->from[c] - places[corners[0]];
+    }
+    cs_vec3_cross(line->way, v, across);
+    cs_vec3_cross(to, u, turned);
+    const double whole = cs_vec3_dot(u, across), sign = whole < 0 ? -1 : 1;
+    const double a = sign * cs_vec3_dot(to, across), b = sign * cs_vec3_dot(line->way, turned);
+    const double at = sign * cs_vec3_dot(v, turned), size = sign * whole;
+    return a >= 0 && b >= 0 && a + b <= size && at >= 0 && at < share * size;
+}
+
+static bool meets_mesh(const struct cs_trimesh *mesh, const struct line *line, double share) {
+    bool meets = false;
+    for (uint32_t t = 0; t < mesh->n_triangles && !meets; t++)
+        meets = meets_triangle(mesh, t, line, share);
+    return meets;
+}
+
 bool cs_obstacle_meets_line(const struct cs_obstacle *obstacle, const double from[3],
                             const double way[3], double share) {
     if (obstacle->kind == CS_OBSTACLE_SPHERE)
@@ -101,5 +129,7 @@ bool cs_obstacle_meets_line(const struct cs_obstacle *obstacle, const double fro
         line.from[k] = cs_vec3_dot(obstacle->axes[k], shift);
         line.way[k] = cs_vec3_dot(obstacle->axes[k], way);
     }
+    if (obstacle->kind == CS_OBSTACLE_MESH)
+        return meets_mesh(obstacle->collider->mesh.geometry, &line, share);
     return least_squared(&line, share) < obstacle->radius * obstacle->radius;
 }

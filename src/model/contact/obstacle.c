@@ -49,6 +49,16 @@ static void pose_capsule(struct cs_obstacle *out, const struct cs_capsule *capsu
     complete_axes(out->axes);
 }
 
+static void pose_mesh(struct cs_obstacle *out, const struct cs_mesh_source *mesh) {
+    double r[9];
+    out->kind = CS_OBSTACLE_MESH;
+    memcpy(out->centre, mesh->place.translate, sizeof out->centre);
+    cs_place_rotation(&mesh->place, r);
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            out->axes[k][c] = r[3 * c + k];
+}
+
 /* as the scene has it */
 static void pose(struct cs_obstacle *out, const struct cs_collider *collider) {
     static const double up[3] = {0, 1, 0};
@@ -64,6 +74,8 @@ static void pose(struct cs_obstacle *out, const struct cs_collider *collider) {
         pose_box(out, &collider->box);
     else if (collider->capsule.present)
         pose_capsule(out, &collider->capsule);
+    else if (collider->mesh.present)
+        pose_mesh(out, &collider->mesh);
     else
         pose_plane(out, height, up);
 }

@@ -1,8 +1,10 @@
 /* obstacle.h - colliders as geometry: where one is at a time, how far a point is from it, and
  * how fast its surface moves there. Contact, visibility and pictures share this.
  *
- * Every obstacle but a plane is a core - a point, a segment or a box - and all points within
- * `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane.
+ * Every obstacle but planes and meshes is a core - a point, a segment or a box - and all points
+ * within `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane. A mesh
+ * has no distance here: bodies meet its parts in pairs (model/pair), and where its vertices are
+ * points.h says.
  */
 #ifndef CS_OBSTACLE_H
 #define CS_OBSTACLE_H
@@ -13,14 +15,15 @@ enum cs_obstacle_kind {
     CS_OBSTACLE_SPHERE,
     CS_OBSTACLE_PLANE,
     CS_OBSTACLE_BOX,
-    CS_OBSTACLE_CAPSULE
+    CS_OBSTACLE_CAPSULE,
+    CS_OBSTACLE_MESH
 };
 
 /* One collider as it is at one time. */
 struct cs_obstacle {
     enum cs_obstacle_kind kind;
     const struct cs_collider *collider; /* borrowed from the system's scene: friction, ... */
-    double centre[3];                   /* m; of a plane: a point on it */
+    double centre[3];   /* m; of a plane: a point on it; of a mesh: the origin of its places */
     double axes[3][3];  /* unit vectors of its own frame, right-handed; a plane's normal and a
                            capsule's axis are axes[1] */
     double core[3];     /* m, half sizes of the core along the axes: 0 of a sphere, core[1] of a
@@ -54,7 +57,8 @@ void cs_obstacle_turn(const struct cs_obstacle_motion *motion, double t, double 
 
 /* Distance in m of p from the surface, without thickness, and the outward unit normal n of the
  * surface point that is nearest. Negative inside, where it is exact too. In the centre of a
- * sphere, or on the axis of a capsule, n points up. Not finite where p is not. */
+ * sphere, or on the axis of a capsule, n points up. Not finite where p is not, and of a mesh.
+ */
 double cs_obstacle_distance(const struct cs_obstacle *obstacle, const double p[3], double n[3]);
 
 /* The same from the surface moved out by the collider's thickness, which is where projection
@@ -72,6 +76,8 @@ static inline bool cs_obstacle_is_near(const struct cs_obstacle *obstacle, doubl
     const double all = (obstacle->radius + reach) * (1 + 1e-9);
     if (obstacle->kind == CS_OBSTACLE_SPHERE)
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= all * all;
+    if (obstacle->kind == CS_OBSTACLE_MESH)
+        return false;
     double squared = 0;
     for (int k = 0; k < 3; k++) {
         const double *axis = obstacle->axes[k];

@@ -2,6 +2,7 @@
 #include "model/cross/crossings.h"
 
 #include "base/pool.h"
+#include "model/contact/points.h"
 #include "model/cross/gap.h"
 #include "model/cross/pierce.h"
 #include "scene/crossings.h"
@@ -23,7 +24,7 @@ struct cs_crossings {
 
 /* only where the limit comes of the pairs of contact: others go through each other as ever */
 static void list_apart(const struct cs_scene *scene, bool *apart) {
-    const uint32_t n = scene->bodies.n;
+    const uint32_t n = cs_scene_surfaces(scene);
     double friction;
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = 0; b < n; b++)
@@ -31,7 +32,7 @@ static void list_apart(const struct cs_scene *scene, bool *apart) {
 }
 
 static size_t pairs_of_bodies(const struct cs_scene *scene) {
-    const size_t n = scene->bodies.n;
+    const size_t n = cs_scene_surfaces(scene);
     return cs_scene_crossings_by_pairs(scene) ? n * n : 0;
 }
 
@@ -58,6 +59,7 @@ size_t cs_crossings_bytes(const struct cs_scene *scene) {
 /* One question to all pairs, and where the job at work puts its answer. */
 struct question {
     const struct cs_parts *parts;
+    uint32_t n_bodies; /* that move freely: obstacles follow them */
     const double *x0, *x1;
     const bool *apart; /* of struct cs_crossings */
     uint8_t *marks;    /* NULL: none are asked for */
@@ -81,7 +83,7 @@ static void read_points(const struct cs_parts *parts, const double *x, const uin
                         uint32_t n, double p[][3]) {
     for (uint32_t k = 0; k < n; k++)
         for (size_t c = 0; c < 3; c++)
-            p[k][c] = x[c * parts->n_particles + items[k]];
+            p[k][c] = x[c * parts->n_points + items[k]];
 }
 
 /* --- counting --- */
@@ -126,23 +128,33 @@ static void count_edges(const struct asking *asking, uint32_t part, uint32_t oth
         count_pair(asking, parts->edges[k], t);
 }
 
+/* obstacles may go through each other, and are made as they are */
+static bool are_obstacles(const struct question *question, uint32_t i, uint32_t j) {
+    const uint32_t *bodies = question->parts->bodies;
+    return bodies[i] >= question->n_bodies && bodies[j] >= question->n_bodies;
+}
+
 static void count_parts(void *arg, uint32_t i, uint32_t j) {
+    if (are_obstacles(((const struct asking *)arg)->question, i, j))
+        return;
     count_edges(arg, i, j);
     count_edges(arg, j, i);
 }
 
-struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, const double *x,
-                                           uint8_t *marks) {
+struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, double t,
+                                           const double *x, uint8_t *marks) {
     struct cs_crossings *crossings = system->crossings;
     struct cs_crossing_count all = {0};
     if (marks)
         memset(marks, 0, crossings->parts.surfaces->n_triangles);
+    const double *places = cs_points_places(system, CS_POINTS_BEGIN, t, x);
     struct question question = {.parts = &crossings->parts,
-                                .x0 = x,
+                                .n_bodies = system->scene->bodies.n,
+                                .x0 = places,
                                 .marks = marks,
                                 .found = crossings->found,
                                 .visit = count_parts};
-    cs_parts_place(&crossings->parts, x, NULL, 0);
+    cs_parts_place(&crossings->parts, places, NULL, 0);
     cs_pool_run(crossings->parts.tree.n_jobs, run_job, &question);
     for (uint32_t k = 0; k < crossings->parts.tree.n_jobs; k++) {
         const struct cs_crossing_count *one = &crossings->found[k].count;
@@ -157,8 +169,19 @@ struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, const
     return all;
 }
 
-struct cs_crossing_count cs_crossings_count(const struct cs_system *system, const double *x) {
-    return cs_crossings_mark(system, x, NULL);
+struct cs_crossing_count cs_crossings_count(const struct cs_system *system, double t,
+                                            const double *x) {
+    return cs_crossings_mark(system, t, x, NULL);
+}
+
+static void print_point(const struct cs_system *system, uint32_t point, struct cs_text *out) {
+    const struct cs_surfaces *surfaces = system->surfaces;
+    const uint32_t body = cs_surfaces_body(surfaces->first_point, surfaces->n_bodies, point);
+    if (point < system->view.n)
+        cs_system_print_particle(system, point, out);
+    else
+        cs_text_add(out, "vertex %u of colliders[%u]", point - surfaces->first_point[body],
+                    body - system->scene->bodies.n);
 }
 
 void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
@@ -167,9 +190,9 @@ void cs_crossings_print(const struct cs_system *system, const struct cs_crossing
     cs_text_add(out, "%llu edge%s through %s", (unsigned long long)count->n,
                 count->n == 1 ? " goes" : "s go", count->n == 1 ? "a triangle" : "triangles");
     cs_text_add(out, count->n == 1 ? ", from " : ", the first from ");
-    cs_system_print_particle(system, cs_parts_ends(parts, count->edge)[0], out);
+    print_point(system, cs_parts_ends(parts, count->edge)[0], out);
     cs_text_add(out, ", through the triangle at ");
-    cs_system_print_particle(system, cs_parts_corners(parts, count->triangle)[0], out);
+    print_point(system, cs_parts_corners(parts, count->triangle)[0], out);
 }
 
 /* --- the first of a move --- */
@@ -177,7 +200,7 @@ void cs_crossings_print(const struct cs_system *system, const struct cs_crossing
 static void try_pair(const struct asking *asking, enum cs_gap_kind kind,
                      const uint32_t particles[4]) {
     const struct question *question = asking->question;
-    const size_t n = question->parts->n_particles, side = kind == CS_GAP_POINT ? 1 : 2;
+    const size_t n = question->parts->n_points, side = kind == CS_GAP_POINT ? 1 : 2;
     double p[4][3], moves[4][3];
     struct cs_swath swaths[2] = {cs_swath_none(), cs_swath_none()};
     for (size_t k = 0; k < 4; k++)
@@ -222,6 +245,8 @@ static void try_edges(const struct asking *asking, uint32_t part, uint32_t other
 static void try_parts(void *arg, uint32_t i, uint32_t j) {
     const struct question *question = ((const struct asking *)arg)->question;
     const uint32_t *bodies = question->parts->bodies;
+    if (are_obstacles(question, i, j))
+        return;
     if (question->apart &&
         !question->apart[(size_t)bodies[i] * question->parts->surfaces->n_bodies + bodies[j]])
         return;
@@ -230,16 +255,18 @@ static void try_parts(void *arg, uint32_t i, uint32_t j) {
     try_edges(arg, i, j);
 }
 
-double cs_crossings_share(const struct cs_system *system, const double *x0, const double *x1) {
+double cs_crossings_share(const struct cs_system *system, double t0, const double *x0,
+                          double t1, const double *x1) {
     struct cs_crossings *crossings = system->crossings;
     struct question question = {.parts = &crossings->parts,
-                                .x0 = x0,
-                                .x1 = x1,
+                                .n_bodies = system->scene->bodies.n,
+                                .x0 = cs_points_places(system, CS_POINTS_BEGIN, t0, x0),
+                                .x1 = cs_points_places(system, CS_POINTS_END, t1, x1),
                                 .apart = crossings->apart,
                                 .found = crossings->found,
                                 .visit = try_parts};
     double share = 1;
-    cs_parts_place(&crossings->parts, x0, x1, CS_GAP_LEAST);
+    cs_parts_place(&crossings->parts, question.x0, question.x1, CS_GAP_LEAST);
     cs_pool_run(crossings->parts.tree.n_jobs, run_job, &question);
     for (uint32_t k = 0; k < crossings->parts.tree.n_jobs; k++)
         share = fmin(share, crossings->found[k].share);

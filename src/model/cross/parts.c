@@ -2,7 +2,8 @@
 #include "model/cross/parts.h"
 
 #include "base/vector.h"
-#include "scene/shape.h"
+#include "model/contact/points.h"
+#include "scene/pairs.h"
 
 #include <stdlib.h>
 
@@ -69,7 +70,7 @@ static uint32_t corners_of(const struct cs_parts *parts, uint32_t part, uint32_t
 
 /* the first part that has it owns a point; a single particle has none */
 static void own_points(struct cs_parts *parts, uint32_t *owners) {
-    for (uint32_t i = 0; i < parts->n_particles; i++)
+    for (uint32_t i = 0; i < parts->n_points; i++)
         owners[i] = CS_NO_TRIANGLE;
     for (uint32_t part = 0; part < parts->n; part++) {
         uint32_t corners[3];
@@ -77,11 +78,11 @@ static void own_points(struct cs_parts *parts, uint32_t *owners) {
             if (owners[corners[k]] == CS_NO_TRIANGLE)
                 owners[corners[k]] = part;
     }
-    list_owned(owners, parts->n_particles, parts->n, parts->first_point, parts->points);
+    list_owned(owners, parts->n_points, parts->n, parts->first_point, parts->points);
 }
 
 static void find_centres(const struct cs_parts *parts, const double *x, double *centres) {
-    const size_t n = parts->n_particles;
+    const size_t n = parts->n_points;
     for (uint32_t part = 0; part < parts->n; part++) {
         uint32_t corners[3];
         const uint32_t count = corners_of(parts, part, corners);
@@ -109,7 +110,7 @@ static void take_arrays(struct cs_parts *parts, struct cs_arena *arena,
     parts->first_edge = cs_arena_take_n(arena, n + 1, word, error);
     parts->edges = cs_arena_take_n(arena, parts->surfaces->n_edges, word, error);
     parts->first_point = cs_arena_take_n(arena, n + 1, word, error);
-    parts->points = cs_arena_take_n(arena, parts->n_particles, word, error);
+    parts->points = cs_arena_take_n(arena, parts->n_points, word, error);
 }
 
 /* work: as many words as bodies + 1, triangles, and the larger of edges and particles; then
@@ -128,19 +129,19 @@ static void fill(struct cs_parts *parts, const struct cs_system *system, double 
     list_owned(numbering.of_edges, surfaces->n_edges, parts->n, parts->first_edge,
                parts->edges);
     own_points(parts, numbering.of_edges);
-    find_centres(parts, system->start, centres);
+    find_centres(parts, cs_points_places(system, CS_POINTS_BEGIN, 0, system->start), centres);
     cs_box_tree_init(&parts->tree, centres, numbering.first, surfaces->n_bodies, arena, error);
 }
 
 enum cs_status cs_parts_build(struct cs_system *system, struct cs_parts *parts,
                               struct cs_error *error) {
-    if (cs_surfaces_build(system, error))
+    if (cs_points_build(system, error))
         return error->status;
     const struct cs_surfaces *surfaces = system->surfaces;
-    const uint32_t n = system->view.n;
+    const uint32_t n = surfaces->n_points;
     *parts = (struct cs_parts){.surfaces = surfaces,
                                .n = surfaces->n_triangles + count_loose(surfaces),
-                               .n_particles = n};
+                               .n_points = n};
     const size_t most = surfaces->n_edges > n ? surfaces->n_edges : n;
     uint32_t *work =
         calloc(surfaces->n_bodies + 1 + surfaces->n_triangles + most, sizeof *work);
@@ -156,18 +157,16 @@ enum cs_status cs_parts_build(struct cs_system *system, struct cs_parts *parts,
 }
 
 size_t cs_parts_bytes(const struct cs_scene *scene) {
-    const struct cs_body *bodies = cs_scene_bodies(scene);
-    size_t n = 0, edges = 0, particles = 0;
-    for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        size_t body_triangles, body_edges;
-        cs_surfaces_count(bodies + b, &body_triangles, &body_edges);
+    const uint32_t n_bodies = cs_scene_surfaces(scene);
+    size_t n = 0, edges = 0;
+    for (uint32_t b = 0; b < n_bodies; b++) {
+        const struct cs_surface_size size = cs_surface_size_of(scene, b);
         // a rope is all edges
-        n += body_triangles ? body_triangles : body_edges;
-        edges += body_edges;
-        particles += (size_t)cs_shape_count(bodies + b);
+        n += size.triangles ? size.triangles : size.edges;
+        edges += size.edges;
     }
-    return (4 * n + 2 + edges + particles) * sizeof(uint32_t) +
-           cs_box_tree_bytes(n, scene->bodies.n);
+    const size_t points = cs_surfaces_points(scene);
+    return (4 * n + 2 + edges + points) * sizeof(uint32_t) + cs_box_tree_bytes(n, n_bodies);
 }
 
 struct placing {
@@ -181,7 +180,7 @@ static void place_parts(void *arg, size_t begin, size_t end) {
         struct cs_swath swath = cs_swath_none();
         uint32_t corners[3];
         for (uint32_t k = corners_of(placing->parts, (uint32_t)part, corners); k-- > 0;)
-            cs_swath_add(&swath, placing->parts->n_particles, corners[k], placing->x0,
+            cs_swath_add(&swath, placing->parts->n_points, corners[k], placing->x0,
                          placing->x1);
         placing->parts->tree.swaths[part] = swath;
     }

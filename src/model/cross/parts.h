@@ -11,15 +11,15 @@
 
 struct cs_parts {
     const struct cs_surfaces *surfaces; /* borrowed from the system */
-    uint32_t n, n_particles;
+    uint32_t n, n_points;
     uint32_t *triangles;            /* (n); CS_NO_TRIANGLE: an edge of a rope */
     uint32_t *bodies;               /* (n) */
     uint32_t *first_edge, *edges;   /* (n + 1), (n_edges): its own, ascending */
-    uint32_t *first_point, *points; /* (n + 1), particles: its own, ascending */
+    uint32_t *first_point, *points; /* (n + 1), (n_points): its own, ascending */
     struct cs_box_tree tree;        /* over the parts */
 };
 
-/* Makes the parts of all bodies, at their places x (3,n), in the system's arena, and its
+/* Makes the parts of all bodies and obstacles, as they start, in the system's arena, and its
  * surfaces where they are not there. CS_ERR_MEMORY. */
 enum cs_status cs_parts_build(struct cs_system *system, struct cs_parts *parts,
                               struct cs_error *error);
@@ -27,8 +27,8 @@ enum cs_status cs_parts_build(struct cs_system *system, struct cs_parts *parts,
 /* Bytes for the bodies of a scene, without their surfaces. */
 size_t cs_parts_bytes(const struct cs_scene *scene);
 
-/* Sets where the parts are during the move from x0 to x1 (3,n); x1 NULL: they stay at x0.
- * Then cs_box_tree_visit over parts->tree has all pairs that may come as near as reach. */
+/* Sets where the parts are during the move from x0 to x1 (3,n_points); x1 NULL: they stay at
+ * x0. Then cs_box_tree_visit over parts->tree has all pairs that may come as near as reach. */
 void cs_parts_place(struct cs_parts *parts, const double *x0, const double *x1, double reach);
 
 /* Particles of edge e, and of triangle t. */

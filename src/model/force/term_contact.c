@@ -4,16 +4,25 @@
 #include "model/force/contact_rows.h"
 #include "model/force/terms.h"
 
+/* meshes are met in pairs */
+static bool any_without_mesh(const struct cs_scene *scene) {
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (!cs_scene_colliders(scene)[c].mesh.present)
+            return true;
+    return false;
+}
+
 /* a scene with the other law has no line of it */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,
-               built = asked && scene->colliders.n;
+               built = asked && any_without_mesh(scene);
     return (struct cs_plan_row){.built = built,
                                 .bytes =
                                     built ? scene->colliders.n * sizeof(struct cs_pairing) : 0,
-                                .why = !asked  ? NULL
-                                       : built ? "contact.law is force"
-                                               : "no colliders"};
+                                .why = !asked               ? NULL
+                                       : built              ? "contact.law is force"
+                                       : scene->colliders.n ? "every collider is a mesh"
+                                                            : "no colliders"};
 }
 
 static const char *const ramps[] = {"colliders.friction", NULL};

@@ -1,21 +1,26 @@
-/* Contact of bodies with themselves and with each other: the pairs of model/pair as a term. */
+/* Contact of bodies with themselves, each other and meshes: the pairs of model/pair as a term.
+ */
+#include "model/contact/points.h"
 #include "model/force/term.h"
 #include "model/pair/pairs.h"
 #include "scene/pairs.h"
 
 static size_t bytes_of(const struct cs_scene *scene) {
-    const size_t bodies = scene->bodies.n;
-    return cs_surfaces_bytes(scene) + sizeof(struct cs_pairs) +
+    const size_t bodies = cs_scene_surfaces(scene);
+    return cs_points_bytes(scene) + sizeof(struct cs_pairs) +
            bodies * bodies * sizeof(struct cs_meeting);
 }
 
 /* what depends on how much is in range comes on top */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool built = cs_scene_any_meet(scene);
-    return (struct cs_plan_row){.built = built,
-                                .bytes = built ? bytes_of(scene) : 0,
-                                .why = built ? "self_contact, or pairs of bodies" : NULL};
+    return (struct cs_plan_row){
+        .built = built,
+        .bytes = built ? bytes_of(scene) : 0,
+        .why = built ? "self_contact, pairs of bodies, or a mesh collider" : NULL};
 }
+
+static const char *const ramps[] = {"colliders.friction", NULL};
 
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
     cs_pairs_set(system->pairs, at);
@@ -53,6 +58,7 @@ const struct cs_term cs_term_pairs = {
     .name = "contact pairs",
     .parts = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
     .plan = plan,
+    .ramps = ramps,
     .build = cs_pairs_build,
     .prepare = prepare,
     .add_force = add,

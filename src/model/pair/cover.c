@@ -9,7 +9,7 @@
 enum { LOT = 128 };
 
 double cs_cover_spacing(const struct cs_obstacle *obstacle, double range) {
-    return obstacle->kind == CS_OBSTACLE_PLANE
+    return obstacle->kind == CS_OBSTACLE_PLANE || obstacle->kind == CS_OBSTACLE_MESH
                ? HUGE_VAL
                : sqrt(range * (2 * obstacle->radius + 0.75 * range));
 }
@@ -102,7 +102,9 @@ static void list_lots(struct cs_system *system, struct cs_covers *covers, uint32
     cs_obstacle_at(system, collider, 0, &pose);
     const double spacing = cs_cover_spacing(&pose, system->pairings[collider].range);
     for (uint32_t each = 2; each <= 3; each++) {
-        const uint32_t n = each == 2 ? surfaces->n_edges : surfaces->n_triangles;
+        // those of bodies come first
+        const uint32_t n = (each == 2 ? surfaces->first_edge
+                                      : surfaces->first_triangle)[system->scene->bodies.n];
         for (uint32_t begin = 0; begin < n && !error->status; begin += LOT) {
             struct cs_cover_lot lot = {.corners =
                                            each == 2 ? surfaces->edges : surfaces->triangles,

@@ -44,7 +44,7 @@ struct cs_covers {
 };
 
 /* The longest part in m of an edge that an obstacle of that radius does not come in by;
- * HUGE_VAL: any, of a plane. */
+ * HUGE_VAL: any, of a plane or a mesh. */
 double cs_cover_spacing(const struct cs_obstacle *obstacle, double range);
 
 /* The longest edge in m of a system where it starts; it needs no surfaces. */

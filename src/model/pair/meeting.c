@@ -1,4 +1,5 @@
-/* Range, stiffness and friction between bodies, from the scene's keys and the edges. */
+/* Range, stiffness and friction between bodies and with obstacles, from the scene's keys and
+ * the edges. */
 #include "model/pair/meeting.h"
 
 #include "model/contact/pairing.h"
@@ -35,6 +36,17 @@ static double thickness_of(const struct cs_system *system, uint32_t body,
     return thickness;
 }
 
+/* m, between two of which the first is a body; an obstacle's is all of it, as other colliders'
+ * is */
+static double range_between(const struct cs_system *system, uint32_t a, uint32_t b,
+                            struct cs_error *error) {
+    const struct cs_collider *obstacle = cs_scene_obstacle(system->scene, b);
+    if (obstacle && obstacle->thickness > 0)
+        return obstacle->thickness;
+    const double first = thickness_of(system, a, error);
+    return obstacle || a == b ? first : 0.5 * (first + thickness_of(system, b, error));
+}
+
 static void meet(struct cs_meetings *meetings, uint32_t a, uint32_t b,
                  const struct cs_meeting *meeting) {
     meetings->of[(size_t)a * meetings->n_bodies + b] = *meeting;
@@ -46,7 +58,7 @@ static void meet(struct cs_meetings *meetings, uint32_t a, uint32_t b,
 
 enum cs_status cs_meetings_build(struct cs_system *system, struct cs_meetings *meetings,
                                  struct cs_error *error) {
-    const uint32_t n = system->scene->bodies.n;
+    const uint32_t n = system->surfaces->n_bodies;
     struct cs_meeting meeting;
     *meetings = (struct cs_meetings){.n_bodies = n, .least = HUGE_VAL};
     meetings->of = cs_arena_take_n(&system->arena, (size_t)n * n, sizeof *meetings->of, error);
@@ -57,9 +69,18 @@ enum cs_status cs_meetings_build(struct cs_system *system, struct cs_meetings *m
         for (uint32_t b = a; b < n && !error->status; b++) {
             if (!cs_scene_bodies_meet(system->scene, a, b, &meeting.mu))
                 continue;
-            const double first = thickness_of(system, a, error);
-            meeting.range = 0.5 * (first + (a == b ? first : thickness_of(system, b, error)));
+            meeting.range = range_between(system, a, b, error);
             meet(meetings, a, b, &meeting);
         }
     return error->status;
+}
+
+void cs_meetings_rub(const struct cs_system *system, struct cs_meetings *meetings) {
+    const uint32_t n_bodies = system->scene->bodies.n;
+    for (uint32_t b = n_bodies; b < meetings->n_bodies; b++)
+        for (uint32_t a = 0; a < n_bodies; a++) {
+            const double mu = cs_scene_obstacle(system->scene, b)->friction;
+            meetings->of[(size_t)a * meetings->n_bodies + b].mu = mu;
+            meetings->of[(size_t)b * meetings->n_bodies + a].mu = mu;
+        }
 }

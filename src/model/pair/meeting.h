@@ -8,7 +8,7 @@
  * two triangles that do not touch are nearer than 0.7 of an edge. */
 #define CS_THICKNESS_SHARE 0.4
 
-/* Two bodies, or one with itself. */
+/* Two bodies, one with itself, or one and an obstacle. */
 struct cs_meeting {
     double range; /* m, of the law; 0: they do not meet */
     double k;     /* N/m a pair */
@@ -16,7 +16,7 @@ struct cs_meeting {
 };
 
 struct cs_meetings {
-    uint32_t n_bodies;
+    uint32_t n_bodies;     /* as in surfaces.h: with obstacles */
     struct cs_meeting *of; /* (n_bodies, n_bodies), symmetric */
     bool *any;             /* (n_bodies) the body meets one */
     double widest, least;  /* m, of all ranges */
@@ -26,6 +26,9 @@ struct cs_meetings {
  * stiffness to be had; CS_ERR_MEMORY. */
 enum cs_status cs_meetings_build(struct cs_system *system, struct cs_meetings *meetings,
                                  struct cs_error *error);
+
+/* Takes the friction of obstacles as the scene has it now: events may change it. */
+void cs_meetings_rub(const struct cs_system *system, struct cs_meetings *meetings);
 
 static inline const struct cs_meeting *cs_meeting_of(const struct cs_meetings *meetings,
                                                      uint32_t a, uint32_t b) {

@@ -9,6 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* points of obstacles feel nothing here, and do not move */
+static bool is_particle(const struct cs_pair_set *set, uint32_t point) {
+    return point < set->n_particles;
+}
+
 static void finish(void *object) {
     struct cs_pair_set *set = object;
     for (uint32_t l = 0; l < set->n_lots; l++)
@@ -58,6 +63,8 @@ static void visit_ends(struct cs_pair_set *set, bool put) {
         for (size_t p = 0; p < set->lots[l].n; p++) {
             const struct cs_pair *pair = set->lots[l].pairs + p;
             for (uint32_t k = 0; k < pair->n; k++) {
+                if (!is_particle(set, pair->at[k]))
+                    continue;
                 uint32_t *start = set->starts + pair->at[k] + 1;
                 if (put)
                     set->ends[*start] = (struct cs_pair_end){pair, k, l};
@@ -213,7 +220,7 @@ static void multiply_lot(void *arg, uint32_t number) {
         double p[4][3];
         for (uint32_t k = 0; k < pair->n; k++)
             for (size_t c = 0; c < 3; c++)
-                p[k][c] = product->p[c * n + pair->at[k]];
+                p[k][c] = is_particle(set, pair->at[k]) ? product->p[c * n + pair->at[k]] : 0;
         if (set->points)
             multiply_point(pair, p);
         else
@@ -244,6 +251,8 @@ void cs_pair_set_add_bound(const struct cs_pair_set *set, double *stiffness, dou
         for (size_t p = 0; p < set->lots[l].n; p++) {
             const struct cs_pair *pair = set->lots[l].pairs + p;
             for (uint32_t k = 0; k < pair->n; k++) {
+                if (!is_particle(set, pair->at[k]))
+                    continue;
                 stiffness[pair->at[k]] += pair->of[k];
                 damping[pair->at[k]] += pair->share[k];
             }

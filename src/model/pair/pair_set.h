@@ -12,7 +12,7 @@
 
 /* What one contact in range does. */
 struct cs_pair {
-    uint32_t n, at[4]; /* particles, 2 to 4 */
+    uint32_t n, at[4]; /* particles, 2 to 4; from n_particles on: points of obstacles */
     double to[4][3];   /* force, its change, or the gradient g of a matrix */
     double share[4];   /* of a matrix: the weights w; of bounds: N s/m */
     double along;      /* of a matrix: along g g^T + (w w^T) x of, and cs_pair_lot.full */

@@ -4,10 +4,9 @@
 #include "base/pool.h"
 #include "base/vector.h"
 #include "model/contact/near.h"
+#include "model/contact/points.h"
 #include "model/pair/nearness.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* --- one lot --- */
@@ -17,23 +16,25 @@ enum ask { ASK_FORCE, ASK_CHANGE, ASK_ENERGY, ASK_MATRIX, ASK_BOUND };
 
 struct job {
     struct cs_pairs *pairs;
+    const double *x, *v; /* (3, n_points) at the state; v NULL: at rest */
     struct cs_pair_set *set;
     enum ask ask;
     struct cs_eval at;
     const struct cs_matrix *matrix;
 };
 
+/* what an obstacle has no place in is 0 for it */
 static void read(const double *from, size_t n, const uint32_t at[4], double to[4][3]) {
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
-            to[k][c] = from ? from[c * n + at[k]] : 0;
+            to[k][c] = from && at[k] < n ? from[c * n + at[k]] : 0;
 }
 
 /* what cannot move feels nothing, and holds nothing */
 static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
     bool fixed = true;
     for (int k = 0; k < 4; k++)
-        fixed = fixed && system->inv_mass[at[k]] == 0;
+        fixed = fixed && cs_points_inverse_mass(system, at[k]) == 0;
     return fixed;
 }
 
@@ -69,14 +70,14 @@ static void meet(const struct job *job, enum cs_stencil_kind kind, const uint32_
                  struct cs_pair_lot *lot) {
     const struct cs_pairs *pairs = job->pairs;
     const uint32_t *body = pairs->search.body;
-    const size_t n = pairs->system->view.n;
+    const size_t n = pairs->system->surfaces->n_points;
     struct cs_reaction reaction;
     struct cs_reaction_move move;
     uint32_t at[4];
     cs_search_corners(pairs->system->surfaces, kind, pair, at);
     const struct cs_meeting *meeting =
         cs_meeting_of(&pairs->meetings, body[at[0]], body[at[2]]);
-    read(job->at.x, n, at, move.p);
+    read(job->x, n, at, move.p);
     if (cs_nearness_is_apart(kind, move.p, meeting->range))
         return;
     cs_stencil_set(&reaction.stencil, kind, move.p);
@@ -91,7 +92,7 @@ static void meet(const struct job *job, enum cs_stencil_kind kind, const uint32_
         return;
     place->n = 4;
     memcpy(place->at, at, sizeof at);
-    read(job->at.v, n, at, move.v);
+    read(job->v, n, at, move.v);
     cs_reaction_set(&reaction, meeting, &pairs->system->scene->contact, move.v);
     answer(job, &reaction, &move, place);
     if (job->ask == ASK_MATRIX && job->set->exact)
@@ -108,7 +109,11 @@ static void do_lot(void *arg, uint32_t number) {
 }
 
 static void do_lots(struct job *job) {
-    if (cs_search_update(&job->pairs->search, job->at.x))
+    struct cs_pairs *pairs = job->pairs;
+    job->x = cs_points_places(pairs->system, CS_POINTS_BEGIN, job->at.t, job->at.x);
+    job->v = cs_points_velocities(pairs->system, job->at.t, job->at.v);
+    cs_meetings_rub(pairs->system, &pairs->meetings);
+    if (cs_search_update(&pairs->search, job->x))
         cs_pool_run(job->set->n_lots, do_lot, job);
     else
         job->set->failed = true;
@@ -150,52 +155,4 @@ void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double
     struct job job = {.pairs = pairs, .set = &pairs->now, .ask = ASK_BOUND, .at = *at};
     do_lots(&job);
     cs_pair_set_add_bound(&pairs->now, stiffness, damping);
-}
-
-/* --- making --- */
-
-/* Two parts of one body within its thickness would push it apart from the first step on: the
- * scene has a thickness that its edges have no room for. */
-static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error *error) {
-    const struct cs_search *search = &pairs->search;
-    for (uint32_t l = 0; l < search->n_lots; l++)
-        for (size_t p = 0; p < search->lots[l].n; p++) {
-            uint32_t at[4];
-            double places[4][3];
-            struct cs_stencil s;
-            cs_search_corners(pairs->system->surfaces, search->lots[l].kind,
-                              search->lots[l].pairs + 2 * p, at);
-            const uint32_t body = search->body[at[0]];
-            read(pairs->system->start, pairs->system->view.n, at, places);
-            cs_stencil_set(&s, search->lots[l].kind, places);
-            const double range = cs_meeting_of(&pairs->meetings, body, body)->range;
-            const uint32_t first = pairs->system->bodies[body].first;
-            if (body == search->body[at[2]] && s.d < range)
-                return cs_fail(error, CS_ERR_SCENE,
-                               "bodies[%u].self_contact: parts of it start %.3g m from each "
-                               "other (its particles %u and %u), expected at least its "
-                               "thickness, %.3g m; give a smaller bodies[%u].thickness",
-                               body, s.d, at[0] - first, at[2] - first, range, body);
-        }
-    return CS_OK;
-}
-
-enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
-    if (cs_surfaces_build(system, error))
-        return error->status;
-    struct cs_pairs *pairs = cs_arena_take(&system->arena, sizeof *pairs, error);
-    if (!pairs || cs_meetings_build(system, &pairs->meetings, error) ||
-        cs_search_init(&pairs->search, system, &pairs->meetings, error))
-        return error->status;
-    pairs->system = system;
-    pairs->blocks = &pairs->now;
-    cs_pair_set_init(&pairs->now, system->view.n, pairs->search.n_lots, &system->arena, error);
-    cs_pair_set_init(&pairs->matrix, system->view.n, pairs->search.n_lots, &system->arena,
-                     error);
-    if (error->status)
-        return error->status;
-    if (!cs_search_update(&pairs->search, system->start))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pairs of contact");
-    system->pairs = pairs;
-    return check_start(pairs, error);
 }

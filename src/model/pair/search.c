@@ -28,7 +28,7 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
                               const struct cs_meetings *meetings, struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
     const struct cs_surfaces *surfaces = system->surfaces;
-    const uint32_t n = system->view.n, n_boxes = surfaces->n_triangles + surfaces->n_edges;
+    const uint32_t n = surfaces->n_points, n_boxes = surfaces->n_triangles + surfaces->n_edges;
     const uint32_t point_lots = (n + CS_SEARCH_LOT - 1) / CS_SEARCH_LOT;
     const uint32_t edge_lots = (surfaces->n_edges + CS_SEARCH_LOT - 1) / CS_SEARCH_LOT;
     *search = (struct cs_search){.system = system,
@@ -44,8 +44,8 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
     if (error->status)
         return error->status;
     for (uint32_t b = 0; b < meetings->n_bodies; b++)
-        for (uint32_t i = 0; i < system->bodies[b].count; i++)
-            search->body[system->bodies[b].first + i] = b;
+        for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
+            search->body[i] = b;
     cut(search->lots, CS_STENCIL_TRIANGLE, n);
     cut(search->lots + point_lots, CS_STENCIL_EDGES, surfaces->n_edges);
     cs_arena_own(arena, finish, search, error);
@@ -57,13 +57,14 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
 /* middle of the box about a body's moves since `then`, and half its diagonal */
 static void measure_drift(const struct cs_search *search, uint32_t body, const double *from,
                           const double *x) {
-    const struct cs_body_range *range = search->system->bodies + body;
-    const size_t n = search->system->view.n;
+    const struct cs_surfaces *surfaces = search->system->surfaces;
+    const uint32_t first = surfaces->first_point[body];
+    const size_t n = surfaces->n_points, count = surfaces->first_point[body + 1] - first;
     double *drift = search->drift + 4 * (size_t)body, squared = 0;
     for (size_t c = 0; c < 3; c++) {
-        const double *now = x + c * n + range->first, *then = from + c * n + range->first;
+        const double *now = x + c * n + first, *then = from + c * n + first;
         double low = now[0] - then[0], high = low;
-        for (uint32_t i = 1; i < range->count; i++) {
+        for (size_t i = 1; i < count; i++) {
             const double move = now[i] - then[i];
             low = move < low ? move : low;
             high = move > high ? move : high;
@@ -112,7 +113,7 @@ struct job {
 /* box about particles, grown to all sides */
 static struct cs_cell_box box_of(const struct job *job, const uint32_t *at, size_t count,
                                  double grow) {
-    const size_t n = job->search->system->view.n;
+    const size_t n = job->search->system->surfaces->n_points;
     struct cs_cell_box box;
     for (size_t c = 0; c < 3; c++) {
         const double *x = job->x + c * n;
@@ -156,7 +157,7 @@ static bool share_corner(const uint32_t at[4], enum cs_stencil_kind kind) {
 
 static bool is_near(const struct job *job, enum cs_stencil_kind kind, const uint32_t pair[2]) {
     const struct cs_search *search = job->search;
-    const size_t n = search->system->view.n;
+    const size_t n = search->system->surfaces->n_points;
     uint32_t at[4];
     double p[4][3];
     cs_search_corners(search->system->surfaces, kind, pair, at);
@@ -273,7 +274,7 @@ static bool build(struct cs_search *search, double margin) {
 bool cs_search_update(struct cs_search *search, const double *x) {
     if (is_good(search, x))
         return true;
-    memcpy(search->from, x, 3 * sizeof *x * search->system->view.n);
+    memcpy(search->from, x, 3 * sizeof *x * search->system->surfaces->n_points);
     return build(search, search->margin);
 }
 
@@ -282,13 +283,13 @@ bool cs_search_update(struct cs_search *search, const double *x) {
 /* box about a body at both ends of a move, grown */
 static struct cs_cell_box body_box(const struct cs_search *search, uint32_t body,
                                    const double *x0, const double *x1, double grow) {
-    const struct cs_body_range *range = search->system->bodies + body;
-    const size_t n = search->system->view.n;
+    const struct cs_surfaces *surfaces = search->system->surfaces;
+    const size_t n = surfaces->n_points;
     struct cs_cell_box box;
     for (size_t c = 0; c < 3; c++) {
         box.low[c] = HUGE_VAL;
         box.high[c] = -HUGE_VAL;
-        for (size_t i = range->first; i < (size_t)range->first + range->count; i++) {
+        for (size_t i = surfaces->first_point[body]; i < surfaces->first_point[body + 1]; i++) {
             box.low[c] = fmin(box.low[c], fmin(x0[c * n + i], x1[c * n + i]) - grow);
             box.high[c] = fmax(box.high[c], fmax(x0[c * n + i], x1[c * n + i]) + grow);
         }
@@ -318,7 +319,7 @@ static double largest_move(const struct cs_search *search, const double *x0, con
 }
 
 bool cs_search_cover(struct cs_search *search, const double *x0, const double *x1) {
-    const size_t n = search->system->view.n;
+    const size_t n = search->system->surfaces->n_points;
     if (is_good(search, x0) && is_good(search, x1))
         return true;
     // a quarter of the move lies to both sides of the middle, for each of two particles

@@ -37,8 +37,8 @@ struct cs_search {
     const struct cs_meetings *meetings; /* borrowed */
     double margin;                      /* m, of new lists */
     double held;               /* m, of the list as it is: more after cs_search_cover */
-    uint32_t *body;            /* (n) of each particle */
-    double *from;              /* (3,n) where the list was made */
+    uint32_t *body;            /* (n_points) of each point */
+    double *from;              /* (3,n_points) where the list was made */
     struct cs_cell_box *boxes; /* of triangles, then of edges */
     struct cs_cells triangles, edges;
     struct cs_search_lot *lots; /* points first */
@@ -53,16 +53,16 @@ struct cs_search {
 enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system,
                               const struct cs_meetings *meetings, struct cs_error *error);
 
-/* Makes the list good for x (3,n). false: there is no memory for it. */
+/* Makes the list good for x (3,n_points). false: there is no memory for it. */
 bool cs_search_update(struct cs_search *search, const double *x);
 
-/* Makes the list good for all states on the straight way from x0 to x1 (3,n). false: there is
- * no memory, or bodies that are near each other move so far against each other, or a body
- * within itself, that it would be too long: more than CS_SEARCH_FAR margins. */
+/* Makes the list good for all states on the straight way from x0 to x1 (3,n_points). false:
+ * there is no memory, or bodies that are near each other move so far against each other, or a
+ * body within itself, that it would be too long: more than CS_SEARCH_FAR margins. */
 enum { CS_SEARCH_FAR = 8 };
 bool cs_search_cover(struct cs_search *search, const double *x0, const double *x1);
 
-/* Particles of a pair. */
+/* Points of a pair. */
 static inline void cs_search_corners(const struct cs_surfaces *surfaces,
                                      enum cs_stencil_kind kind, const uint32_t pair[2],
                                      uint32_t at[4]) {

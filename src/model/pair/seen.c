@@ -2,6 +2,7 @@
 #include "model/pair/seen.h"
 
 #include "base/vector.h"
+#include "model/contact/points.h"
 #include "model/contact/share.h"
 #include "model/pair/nearness.h"
 
@@ -10,7 +11,7 @@ enum { POINTS_MOST = 64 };
 
 struct job {
     const struct cs_pairs *pairs;
-    const double *x0, *x1;
+    const double *x0, *x1; /* (3, n_points) */
     double h;
 };
 
@@ -23,10 +24,10 @@ struct way {
 
 static void read_way(const struct job *job, enum cs_stencil_kind kind, const uint32_t at[4],
                      struct way *way) {
-    const size_t n = job->pairs->system->view.n;
+    const size_t n = job->pairs->system->surfaces->n_points;
     way->kind = kind;
     for (size_t k = 0; k < 4; k++) {
-        way->inverse_mass[k] = job->pairs->system->inv_mass[at[k]];
+        way->inverse_mass[k] = cs_points_inverse_mass(job->pairs->system, at[k]);
         for (size_t c = 0; c < 3; c++) {
             way->from[k][c] = job->x0[c * n + at[k]];
             way->move[k][c] = job->x1[c * n + at[k]] - way->from[k][c];
@@ -119,7 +120,8 @@ static double count_unseen(const void *arg, size_t begin, size_t end) {
 
 bool cs_pairs_are_seen(struct cs_pairs *pairs, double t0, const double *x0, double t1,
                        const double *x1) {
-    const struct job job = {pairs, x0, x1, t1 - t0};
-    return cs_search_cover(&pairs->search, x0, x1) &&
+    const struct job job = {pairs, cs_points_places(pairs->system, CS_POINTS_BEGIN, t0, x0),
+                            cs_points_places(pairs->system, CS_POINTS_END, t1, x1), t1 - t0};
+    return cs_search_cover(&pairs->search, job.x0, job.x1) &&
            cs_vector_sum(pairs->search.n_lots, count_unseen, &job) == 0;
 }

@@ -1,7 +1,9 @@
-/* Triangles and unique edges of all bodies, and which triangles an edge belongs to. */
+/* Triangles and unique edges of all bodies and obstacles, and which triangles an edge belongs
+ * to. */
 #include "model/system/surfaces.h"
 
 #include "model/system/faces.h"
+#include "scene/pairs.h"
 
 /* edges of a grid: along rows, along columns, one across each cell */
 static size_t grid_edges(size_t columns, size_t rows) {
@@ -72,43 +74,61 @@ static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
         }
 }
 
+/* the range of a body, or one of the same kind for an obstacle: of no particle where it has no
+ * mesh */
+static struct cs_body_range range_of(const struct cs_system *system, uint32_t body,
+                                     const struct cs_surfaces *surfaces) {
+    const struct cs_collider *obstacle = cs_scene_obstacle(system->scene, body);
+    if (!obstacle)
+        return system->bodies[body];
+    const struct cs_trimesh *mesh = obstacle->mesh.geometry;
+    return (struct cs_body_range){.first = surfaces->first_point[body],
+                                  .count = mesh ? mesh->n : 0,
+                                  .columns = 1,
+                                  .rows = 1,
+                                  .mesh = mesh};
+}
+
 static void fill_body(const struct cs_system *system, uint32_t body,
                       struct cs_surfaces *surfaces) {
-    const struct cs_body_range *range = system->bodies + body;
+    const struct cs_body_range range = range_of(system, body, surfaces);
     const uint32_t first = surfaces->first_triangle[body];
-    for (uint32_t t = 0; t < cs_faces_count(range); t++) {
+    for (uint32_t t = 0; t < cs_faces_count(&range); t++) {
         uint32_t *corners = surfaces->triangles + 3 * (size_t)(first + t);
-        cs_face_corners(range, t, corners);
+        cs_face_corners(&range, t, corners);
         for (size_t k = 0; k < 3; k++)
-            corners[k] += range->first;
+            corners[k] += range.first;
     }
-    list_edges(range, surfaces->edges + 2 * (size_t)surfaces->first_edge[body]);
+    list_edges(&range, surfaces->edges + 2 * (size_t)surfaces->first_edge[body]);
     own_edges(surfaces, body);
 }
 
 static void count(const struct cs_system *system, struct cs_surfaces *surfaces) {
     for (uint32_t b = 0; b < surfaces->n_bodies; b++) {
-        const struct cs_body_range *range = system->bodies + b;
-        surfaces->first_triangle[b + 1] = surfaces->first_triangle[b] + cs_faces_count(range);
-        surfaces->first_edge[b + 1] = surfaces->first_edge[b] + count_edges(range);
+        const struct cs_body_range range = range_of(system, b, surfaces);
+        surfaces->first_point[b + 1] = surfaces->first_point[b] + range.count;
+        surfaces->first_triangle[b + 1] = surfaces->first_triangle[b] + cs_faces_count(&range);
+        surfaces->first_edge[b + 1] = surfaces->first_edge[b] + count_edges(&range);
     }
+    surfaces->n_points = surfaces->first_point[surfaces->n_bodies];
     surfaces->n_triangles = surfaces->first_triangle[surfaces->n_bodies];
     surfaces->n_edges = surfaces->first_edge[surfaces->n_bodies];
 }
 
 enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *error) {
     struct cs_arena *arena = &system->arena;
-    const uint32_t n_bodies = system->scene->bodies.n;
+    const uint32_t n_bodies = cs_scene_surfaces(system->scene);
     if (system->surfaces)
         return CS_OK;
     struct cs_surfaces *surfaces = cs_arena_take(arena, sizeof *surfaces, error);
     uint32_t *firsts =
-        cs_arena_take_n(arena, 2 * ((size_t)n_bodies + 1), sizeof *firsts, error);
+        cs_arena_take_n(arena, 3 * ((size_t)n_bodies + 1), sizeof *firsts, error);
     if (error->status)
         return error->status;
     surfaces->n_bodies = n_bodies;
     surfaces->first_triangle = firsts;
     surfaces->first_edge = firsts + n_bodies + 1;
+    surfaces->first_point = surfaces->first_edge + n_bodies + 1;
     count(system, surfaces);
     const size_t corners = 3 * (size_t)surfaces->n_triangles,
                  ends = 2 * (size_t)surfaces->n_edges;
@@ -125,19 +145,32 @@ enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *erro
     return CS_OK;
 }
 
-void cs_surfaces_count(const struct cs_body *body, size_t *n_triangles, size_t *n_edges) {
-    const struct cs_trimesh *mesh = body->mesh.geometry;
-    const size_t columns = (size_t)body->cloth.grid[0], rows = (size_t)body->cloth.grid[1];
-    *n_triangles = mesh ? mesh->n_triangles : 2 * (columns - 1) * (rows - 1);
-    *n_edges = mesh ? mesh->n_edges : grid_edges(columns, rows);
+struct cs_surface_size cs_surface_size_of(const struct cs_scene *scene, uint32_t body) {
+    const struct cs_collider *obstacle = cs_scene_obstacle(scene, body);
+    const struct cs_body *of = obstacle ? NULL : cs_scene_bodies(scene) + body;
+    const struct cs_trimesh *mesh = obstacle ? obstacle->mesh.geometry : of->mesh.geometry;
+    if (mesh)
+        return (struct cs_surface_size){mesh->n, mesh->n_triangles, mesh->n_edges};
+    if (obstacle)
+        return (struct cs_surface_size){0, 0, 0};
+    const size_t columns = (size_t)of->cloth.grid[0], rows = (size_t)of->cloth.grid[1];
+    return (struct cs_surface_size){columns * rows, 2 * (columns - 1) * (rows - 1),
+                                    grid_edges(columns, rows)};
+}
+
+size_t cs_surfaces_points(const struct cs_scene *scene) {
+    size_t points = 0;
+    for (uint32_t b = 0; b < cs_scene_surfaces(scene); b++)
+        points += cs_surface_size_of(scene, b).points;
+    return points;
 }
 
 size_t cs_surfaces_bytes(const struct cs_scene *scene) {
-    size_t words = 2 * ((size_t)scene->bodies.n + 1);
-    for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        size_t n_triangles, n_edges;
-        cs_surfaces_count(cs_scene_bodies(scene) + b, &n_triangles, &n_edges);
-        words += 3 * n_triangles + 4 * n_edges;
+    const uint32_t n_bodies = cs_scene_surfaces(scene);
+    size_t words = 3 * ((size_t)n_bodies + 1);
+    for (uint32_t b = 0; b < n_bodies; b++) {
+        const struct cs_surface_size size = cs_surface_size_of(scene, b);
+        words += 3 * size.triangles + 4 * size.edges;
     }
     return words * sizeof(uint32_t) + sizeof(struct cs_surfaces);
 }

@@ -26,6 +26,7 @@ struct cs_pairs;
 struct cs_covers;
 struct cs_obstacle_motion;
 struct cs_surfaces;
+struct cs_points;
 struct cs_crossings;
 
 struct cs_system {
@@ -50,6 +51,7 @@ struct cs_system {
     struct cs_pairs *pairs;            /* bodies that keep off each other; NULL: none do */
     struct cs_covers *covers; /* points between particles that colliders touch; NULL: none */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
+    struct cs_points *points;             /* NULL unless colliders are meshes (points.h) */
     struct cs_crossings *crossings;     /* NULL unless asked for (crossings.h) */
     struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
     struct cs_arena arena;    /* owns the arrays */

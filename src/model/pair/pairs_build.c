@@ -1,0 +1,55 @@
+/* Makes the pairs of a system, and refuses what starts too near to itself. */
+#include "model/contact/points.h"
+#include "model/pair/pairs.h"
+
+/* Two parts of one body within its thickness would push it apart from the first step on: the
+ * scene has a thickness that its edges have no room for. */
+static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error *error) {
+    const struct cs_search *search = &pairs->search;
+    const size_t n = pairs->system->view.n;
+    for (uint32_t l = 0; l < search->n_lots; l++)
+        for (size_t p = 0; p < search->lots[l].n; p++) {
+            uint32_t at[4];
+            double places[4][3];
+            struct cs_stencil s;
+            cs_search_corners(pairs->system->surfaces, search->lots[l].kind,
+                              search->lots[l].pairs + 2 * p, at);
+            const uint32_t body = search->body[at[0]];
+            if (body != search->body[at[2]])
+                continue;
+            for (size_t k = 0; k < 4; k++)
+                for (size_t c = 0; c < 3; c++)
+                    places[k][c] = pairs->system->start[c * n + at[k]];
+            cs_stencil_set(&s, search->lots[l].kind, places);
+            const double range = cs_meeting_of(&pairs->meetings, body, body)->range;
+            const uint32_t first = pairs->system->bodies[body].first;
+            if (s.d < range)
+                return cs_fail(error, CS_ERR_SCENE,
+                               "bodies[%u].self_contact: parts of it start %.3g m from each "
+                               "other (its particles %u and %u), expected at least its "
+                               "thickness, %.3g m; give a smaller bodies[%u].thickness",
+                               body, s.d, at[0] - first, at[2] - first, range, body);
+        }
+    return CS_OK;
+}
+
+enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
+    if (cs_points_build(system, error))
+        return error->status;
+    struct cs_pairs *pairs = cs_arena_take(&system->arena, sizeof *pairs, error);
+    if (!pairs || cs_meetings_build(system, &pairs->meetings, error) ||
+        cs_search_init(&pairs->search, system, &pairs->meetings, error))
+        return error->status;
+    pairs->system = system;
+    pairs->blocks = &pairs->now;
+    cs_pair_set_init(&pairs->now, system->view.n, pairs->search.n_lots, &system->arena, error);
+    cs_pair_set_init(&pairs->matrix, system->view.n, pairs->search.n_lots, &system->arena,
+                     error);
+    if (error->status)
+        return error->status;
+    if (!cs_search_update(&pairs->search,
+                          cs_points_places(system, CS_POINTS_BEGIN, 0, system->start)))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pairs of contact");
+    system->pairs = pairs;
+    return check_start(pairs, error);
+}
