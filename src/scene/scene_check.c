@@ -218,6 +218,16 @@ static enum cs_status check_colliders(const struct place *at, struct cs_scene *s
     return CS_OK;
 }
 
+/* the first pair of the list with the bodies of pair p */
+static uint32_t find_pair(const struct cs_pair_keys *pairs, uint32_t p) {
+    const int64_t *of = pairs[p].bodies;
+    uint32_t k = 0;
+    while (!(pairs[k].bodies[0] == of[0] && pairs[k].bodies[1] == of[1]) &&
+           !(pairs[k].bodies[0] == of[1] && pairs[k].bodies[1] == of[0]))
+        k++;
+    return k;
+}
+
 static enum cs_status check_pairs(const struct place *at, const struct cs_scene *scene) {
     const struct cs_pair_keys *pairs = scene->pairs.list.items;
     char path[64];
@@ -230,6 +240,10 @@ static enum cs_status check_pairs(const struct place *at, const struct cs_scene 
         if (pairs[p].bodies[0] == pairs[p].bodies[1])
             return refuse(at, path, "found body %lld twice, expected bodies[%lld].self_contact",
                           (long long)pairs[p].bodies[0], (long long)pairs[p].bodies[0]);
+        if (find_pair(pairs, p) < p)
+            return refuse(at, path, "bodies %lld and %lld are in pairs.list[%u] already",
+                          (long long)pairs[p].bodies[0], (long long)pairs[p].bodies[1],
+                          find_pair(pairs, p));
     }
     return CS_OK;
 }

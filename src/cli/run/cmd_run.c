@@ -247,10 +247,15 @@ static enum cs_status run(struct cs_args *args, struct cs_error *error) {
     struct cs_job job = {0};
     struct cs_run_range range = {0};
     const char *asked = cs_args_get(args, RUN_RANGE);
-    if (!read_settings(args, &settings, error) &&
-        (!asked || !cs_run_range_set(&range, asked, &settings, error)) &&
-        !cs_job_run(&job, &settings, error) && !write_json(&job, error) &&
-        !print_table(&job, error))
+    if (read_settings(args, &settings, error) ||
+        (asked && cs_run_range_set(&range, asked, &settings, error)))
+        return error->status;
+    cs_job_run(&job, &settings, error);
+    /* a failed step leaves the report of the frames before; its own message stands */
+    struct cs_error later = {0};
+    if (job.failure)
+        write_json(&job, &later);
+    if (!error->status && !write_json(&job, error) && !print_table(&job, error))
         tell_outcome(&job, cs_args_get(args, RUN_STRICT), error);
     cs_job_finish(&job);
     cs_run_range_finish(&range);

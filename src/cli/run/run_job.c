@@ -369,7 +369,7 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     /* a checkpoint that is refused leaves the rows of the run that it is of */
     if (settings->resume ? go_on(job, error) : begin(job, error))
         return error->status;
-    run_frames(job, error);
+    job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
     /* also after a failure: rows and frames that were finished are kept */
     cs_output_rows(settings->watch, &job->watch_rows, error);
     cs_output_rows(settings->ledger, &job->ledger_rows, error);

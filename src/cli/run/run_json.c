@@ -39,9 +39,12 @@ static void add_arithmetic(struct cs_text *out) {
 static void add_outcome(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     struct cs_text sentence = {0};
-    cs_report_print_outcome(job, &sentence);
+    if (job->failure)
+        cs_text_add(&sentence, "%s", job->failure);
+    else
+        cs_report_print_outcome(job, &sentence);
     cs_text_add(out, "  \"outcome\": ");
-    cs_text_add_json(out, cs_outcome_text(run->outcome));
+    cs_text_add_json(out, job->failure ? "failed" : cs_outcome_text(run->outcome));
     cs_text_add(out, ",\n  \"outcome_detail\": ");
     cs_text_add_json(out, cs_text_get(&sentence));
     cs_text_finish(&sentence);

@@ -1,7 +1,9 @@
-/* inside.c - what starts inside an obstacle is refused, or moved out once. */
+/* inside.c - what starts inside an obstacle is refused, or moved out once; what starts through
+ * what it keeps off is refused. */
 #include "model/commit/inside.h"
 
 #include "model/contact/obstacle.h"
+#include "model/cross/crossings.h"
 #include "model/pair/cover.h"
 
 #include <math.h>
@@ -106,13 +108,31 @@ static enum cs_status check_between(const struct cs_system *system, struct cs_er
     return CS_OK;
 }
 
+/* a force between surfaces holds apart what is apart, and cannot part what is through */
+static enum cs_status check_crossings(const struct cs_system *system, struct cs_error *error) {
+    if (!system->pairs || !system->crossings)
+        return CS_OK;
+    const struct cs_crossing_count found = cs_crossings_start(system);
+    struct cs_text text = {0};
+    if (found.n) {
+        cs_crossings_print(system, &found, &text);
+        cs_fail(error, CS_ERR_SCENE,
+                "%s: at the start %s: place apart what is to stay apart, or set crossings to "
+                "\"ignore\"",
+                system->scene->path, cs_text_get(&text));
+    }
+    cs_text_finish(&text);
+    return error->status;
+}
+
 enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *inside,
                                struct cs_error *error) {
     *inside = (struct cs_inside){0};
-    if (system->scene->colliders.n == 0)
-        return CS_OK;
-    for (uint32_t i = 0; i < system->view.n && !error->status; i++)
+    for (uint32_t i = 0; i < system->view.n && system->scene->colliders.n && !error->status;
+         i++)
         if (system->inv_mass[i] > 0)
             clear(system, i, inside, error);
-    return error->status || !system->covers ? error->status : check_between(system, error);
+    if (!error->status && system->covers)
+        check_between(system, error);
+    return error->status ? error->status : check_crossings(system, error);
 }

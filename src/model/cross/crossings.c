@@ -61,8 +61,9 @@ struct question {
     const struct cs_parts *parts;
     uint32_t n_bodies; /* that move freely: obstacles follow them */
     const double *x0, *x1;
-    const bool *apart; /* of struct cs_crossings */
-    uint8_t *marks;    /* NULL: none are asked for */
+    const bool *apart;               /* of struct cs_crossings */
+    const struct cs_scene *apart_by; /* whose bodies that keep off each other alone count */
+    uint8_t *marks;                  /* NULL: none are asked for */
     struct found *found;
     cs_box_visit *visit;
 };
@@ -134,23 +135,32 @@ static bool are_obstacles(const struct question *question, uint32_t i, uint32_t 
     return bodies[i] >= question->n_bodies && bodies[j] >= question->n_bodies;
 }
 
+/* and only these are asked for, where the scene is given */
+static bool are_free(const struct question *question, uint32_t i, uint32_t j) {
+    const uint32_t *bodies = question->parts->bodies;
+    double friction;
+    return question->apart_by &&
+           !cs_scene_bodies_meet(question->apart_by, bodies[i], bodies[j], &friction);
+}
+
 static void count_parts(void *arg, uint32_t i, uint32_t j) {
-    if (are_obstacles(((const struct asking *)arg)->question, i, j))
+    const struct question *question = ((const struct asking *)arg)->question;
+    if (are_obstacles(question, i, j) || are_free(question, i, j))
         return;
     count_edges(arg, i, j);
     count_edges(arg, j, i);
 }
 
-struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, double t,
-                                           const double *x, uint8_t *marks) {
+/* marks, and whose bodies: may be NULL */
+static struct cs_crossing_count count(const struct cs_system *system, double t, const double *x,
+                                      const struct cs_scene *apart_by, uint8_t *marks) {
     struct cs_crossings *crossings = system->crossings;
     struct cs_crossing_count all = {0};
-    if (marks)
-        memset(marks, 0, crossings->parts.surfaces->n_triangles);
     const double *places = cs_points_places(system, CS_POINTS_BEGIN, t, x);
     struct question question = {.parts = &crossings->parts,
                                 .n_bodies = system->scene->bodies.n,
                                 .x0 = places,
+                                .apart_by = apart_by,
                                 .marks = marks,
                                 .found = crossings->found,
                                 .visit = count_parts};
@@ -169,9 +179,19 @@ struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, doubl
     return all;
 }
 
+struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, double t,
+                                           const double *x, uint8_t *marks) {
+    memset(marks, 0, system->surfaces->n_triangles);
+    return count(system, t, x, NULL, marks);
+}
+
 struct cs_crossing_count cs_crossings_count(const struct cs_system *system, double t,
                                             const double *x) {
-    return cs_crossings_mark(system, t, x, NULL);
+    return count(system, t, x, NULL, NULL);
+}
+
+struct cs_crossing_count cs_crossings_start(const struct cs_system *system) {
+    return count(system, 0, system->state, system->scene, NULL);
 }
 
 static void print_point(const struct cs_system *system, uint32_t point, struct cs_text *out) {

@@ -25,8 +25,11 @@ size_t cs_crossings_bytes(const struct cs_scene *scene);
 struct cs_crossing_count cs_crossings_count(const struct cs_system *system, double t,
                                             const double *x);
 
-/* The same, and marks the triangles that are gone through and those beside the edges that go
- * through: marks (n_triangles of system->surfaces), 1 or 0. */
+/* The same at the start, of those alone that keep off each other (scene/pairs.h). */
+struct cs_crossing_count cs_crossings_start(const struct cs_system *system);
+
+/* The same as cs_crossings_count, and marks the triangles that are gone through and those
+ * beside the edges that go through: marks (n_triangles of system->surfaces), 1 or 0. */
 struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, double t,
                                            const double *x, uint8_t *marks);
 
