@@ -1,6 +1,8 @@
 /* Colliders as triangles: on the surface, outwards, closed, of the right volume. */
+#include "base/vec3.h"
 #include "draw/ball.h"
 #include "draw/solid.h"
+#include "mesh/trimesh.h"
 
 #include "unit.h"
 
@@ -204,6 +206,56 @@ START_TEST(a_ball_is_whole_from_within) {
 }
 END_TEST
 
+/* a box of side 1, turned and moved: each triangle where it is met, closed, of volume 1; and
+ * what a line meets of it */
+START_TEST(a_mesh_is_as_it_is) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    struct cs_trimesh mesh = {0};
+    cs_trimesh_make(&mesh, CS_MESH_BOX, 3, &arena, &error);
+    cs_trimesh_finish(&mesh, "box", NULL, &arena, &error);
+    UNIT_ASSERT_OK(&error);
+    struct cs_collider collider = {.mesh = {.present = true,
+                                            .place = {.translate = {3, -1, 2},
+                                                      .rotate = {0.6, 0, 0, 0.8},
+                                                      .matrix = {(double)NAN}},
+                                            .geometry = &mesh},
+                                   .visible = true};
+    struct cs_scene of_mesh = {.colliders = {&collider, 1}};
+    struct cs_obstacle of;
+    cs_obstacle_at(&(struct cs_system){.scene = &of_mesh}, 0, 0, &of);
+    const uint32_t n = cs_solid_count(&of);
+    ck_assert_uint_eq(n, 3 * mesh.n_triangles);
+    struct cs_vertex *vertices = calloc(n, sizeof *vertices);
+    ck_assert_ptr_nonnull(vertices);
+    cs_solid_fill(&of, 0.02, camera, vertices);
+    double volume = 0;
+    for (uint32_t t = 0; t < n; t += 3) {
+        double p[3][3], height = 0, cross[3];
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++)
+                p[k][c] = (double)vertices[t + (uint32_t)k].place[c] -
+                          collider.mesh.place.translate[c];
+        cs_vec3_cross(p[1], p[2], cross);
+        volume += cs_vec3_dot(p[0], cross) / 6;
+        // a face of the box is half a side away from its middle, along the normal
+        for (int c = 0; c < 3; c++)
+            height += (double)vertices[t].normal[c] * p[0][c];
+        ck_assert_double_eq_tol(height, 0.5, 1e-6);
+    }
+    ck_assert_double_eq_tol(volume, 1, 1e-6);
+    const double from[3] = {3, -1, 7}, way[3] = {0, 0, -6}, beside[3] = {3.8, -1, 7};
+    // the box is turned by 73.7 degrees about x: its side is 0.5/cos(16.3 degrees) high there
+    const double gap = (5 - 0.5 / 0.96) / 6;
+    ck_assert(cs_obstacle_meets_line(&of, from, way, 1));
+    ck_assert(cs_obstacle_meets_line(&of, from, way, gap + 1e-6));
+    ck_assert(!cs_obstacle_meets_line(&of, from, way, gap - 1e-6));
+    ck_assert(!cs_obstacle_meets_line(&of, beside, way, 1));
+    free(vertices);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
 START_TEST(hidden_ones_have_no_triangles) {
     struct cs_obstacle of;
     cs_obstacle_at(&rest, HIDDEN, 0, &of);
@@ -218,6 +270,7 @@ int main(void) {
                                   a_ball_covers_its_outline,
                                   a_ball_ends_where_sight_touches_it,
                                   a_ball_is_whole_from_within,
+                                  a_mesh_is_as_it_is,
                                   hidden_ones_have_no_triangles};
     return unit_run("solid", tests, sizeof tests / sizeof *tests);
 }
