@@ -2,6 +2,7 @@
 #include "place.h"
 #include "study/compare/compare_csv.h"
 #include "study/compare/compare_plot.h"
+#include "study/compare/compare_svg.h"
 #include "study/compare/ranking.h"
 #include "study/compare/sweep_list.h"
 
@@ -219,10 +220,47 @@ START_TEST(tolerances_have_no_unit) {
 }
 END_TEST
 
+/* a ring about the cell with crossings, and none where they are 0 or were not counted */
+START_TEST(crossings_are_ringed) {
+    struct cs_cell cells[3] = {{.outcome = "finished", .crossings = 0},
+                               {.outcome = "finished", .crossings = 3},
+                               {.outcome = "finished", .crossings = (double)NAN}};
+    for (int k = 0; k < 3; k++) {
+        cells[k].cpu = 0.5 * (k + 1);
+        cells[k].error = 0.25 * (k + 1);
+    }
+    for (uint32_t n = 1; n <= 3; n += 2) {
+        struct cs_text script = {0}, svg = {0};
+        const struct cs_plot_settings settings = {.cells = cells,
+                                                  .n = n,
+                                                  .x = cs_column_find("cpu"),
+                                                  .y = cs_column_find("error"),
+                                                  .title = "rings",
+                                                  .name = "rings"};
+        cs_plot_print(&settings, &script);
+        cs_svg_print(&settings, &svg);
+        const char *rings = n == 3 ? "$rings0 << END\n1 0.5\nEND\n" : "$rings0 << END\nEND\n";
+        ck_assert_ptr_nonnull(strstr(cs_text_get(&script), rings));
+        ck_assert((strstr(cs_text_get(&script), "edges through triangles") != NULL) ==
+                  (n == 3));
+        ck_assert((strstr(cs_text_get(&svg), "edges through triangles") != NULL) == (n == 3));
+        // one about the cell, one in the key
+        const char *first = strstr(cs_text_get(&svg), "class=\"r\"");
+        ck_assert((first && strstr(first + 1, "class=\"r\"")) == (n == 3));
+        cs_text_finish(&script);
+        cs_text_finish(&svg);
+    }
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {orders_are_seen,        file_reads_back,
-                                  quotes_read_back,       ranking_takes_the_cheapest,
-                                  list_is_read,           series_are_named_apart,
-                                  tolerances_have_no_unit};
+    const TTest *const tests[] = {orders_are_seen,
+                                  file_reads_back,
+                                  quotes_read_back,
+                                  ranking_takes_the_cheapest,
+                                  list_is_read,
+                                  series_are_named_apart,
+                                  tolerances_have_no_unit,
+                                  crossings_are_ringed};
     return scene_tests("compare", tests, sizeof tests / sizeof *tests);
 }

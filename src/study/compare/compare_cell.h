@@ -72,5 +72,9 @@ void cs_cell_name_machine(struct cs_cell *cell, const char *here);
 /* Whether two cells stand on one curve. */
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
 bool cs_cell_is_finished(const struct cs_cell *cell);
+/* Edges went through triangles in it; false where they were not counted. */
+static inline bool cs_cell_has_crossings(const struct cs_cell *cell) {
+    return cell->crossings > 0;
+}
 
 #endif

@@ -140,6 +140,7 @@ static void find_curves(struct cs_curves *curves) {
         curve->drawn += drawn;
         curve->excess = fmin(curve->excess, excess_of(settings, cell));
         curve->bars += drawn && cs_curves_quartiles(settings, cell);
+        curve->rings += drawn && cs_cell_has_crossings(cell);
         curve->crosses += cs_curves_cross(curves, cell, &x);
     }
     for (uint32_t k = UINT32_MAX; cs_curves_front(curves, &k);)

@@ -28,6 +28,7 @@ struct cs_curve {
     uint32_t first, n, drawn, on_front;
     uint32_t bars, crosses; /* cells with quartiles; that did not get through */
     double excess;          /* least cost over that of the front at its error, as a logarithm */
+    uint32_t rings;         /* cells that are drawn and in which edges went through triangles */
     int family;             /* number in cs_family_names */
     int style; /* colour and marker, in the order of the legend; below 0: it is not drawn */
 };
@@ -45,6 +46,8 @@ struct cs_curves {
  * is the eighth. */
 extern const char *const cs_curve_colours[CS_CURVE_COLOURS];
 #define CS_FRONT_COLOUR "#f0e442"
+/* of the ring about a cell in which edges went through triangles */
+#define CS_RING_COLOUR "#b00020"
 
 /* Crosses stand at the upper edge, for which there is room where there are any. Of more than
  * CS_CURVES_DRAWN series those with the most cells on the front are drawn, then those that come

@@ -58,7 +58,7 @@ static void print_pair(double x, double y, const char *behind, struct cs_text *o
     cs_text_add(out, "%s", behind);
 }
 
-/* the cells of curve c: points, quartiles, crosses */
+/* the cells of curve c: points, quartiles, rings, crosses */
 static void print_curve(const struct cs_curves *curves, uint32_t c, struct cs_text *out) {
     const struct cs_plot_settings *settings = curves->settings;
     const struct cs_curve *curve = curves->list + c;
@@ -74,6 +74,10 @@ static void print_curve(const struct cs_curves *curves, uint32_t c, struct cs_te
             print_pair(x, y, " ", out);
             print_pair(cell->cpu_low, cell->cpu_high, "\n", out);
         }
+    cs_text_add(out, "END\n$rings%u << END\n", c);
+    for (const struct cs_cell *cell = first; cell < end; cell++)
+        if (cs_cell_has_crossings(cell) && cs_curves_point(settings, cell, &x, &y))
+            print_pair(x, y, "\n", out);
     cs_text_add(out, "END\n$crosses%u << END\n", c);
     for (const struct cs_cell *cell = first; cell < end; cell++)
         if (cs_curves_cross(curves, cell, &x))
@@ -109,6 +113,11 @@ static void plot_curve(const struct cs_curves *curves, uint32_t c, struct cs_tex
                     " $bars%u using 1:2:3:4 with xerrorbars pointtype 0 linewidth 1.5 "
                     "linecolor rgb \"%s\" notitle, \\\n",
                     c, colour);
+    if (style >= 0 && curve->rings > 0)
+        cs_text_add(out,
+                    " $rings%u with points pointtype 6 pointsize 2.2 linewidth 1.6 linecolor "
+                    "rgb \"%s\" notitle, \\\n",
+                    c, CS_RING_COLOUR);
     if (curve->crosses > 0)
         cs_text_add(out,
                     " $crosses%u with points pointtype 2 pointsize 0.9 linewidth 1.5 "
@@ -139,10 +148,10 @@ static void plot_family(const struct cs_curves *curves, int family, struct cs_te
 
 static void print_plot(const struct cs_curves *curves, struct cs_text *out) {
     char words[64];
-    uint32_t first = UINT32_MAX, crosses = 0;
+    uint32_t first = UINT32_MAX, crosses = 0, rings = 0;
     cs_text_add(out, "plot");
     for (uint32_t c = 0; c < curves->n; c++)
-        crosses += curves->list[c].crosses;
+        crosses += curves->list[c].crosses, rings += curves->list[c].rings;
     if (cs_curves_front(curves, &first))
         cs_text_add(
             out,
@@ -162,6 +171,11 @@ static void print_plot(const struct cs_curves *curves, struct cs_text *out) {
     if (crosses > 0)
         cs_text_add(out, " NaN with points pointtype 2 linecolor rgb \"#404040\" title "
                          "\"did not get through\", \\\n");
+    if (rings > 0)
+        cs_text_add(out,
+                    " NaN with points pointtype 6 linecolor rgb \"%s\" title \"edges through "
+                    "triangles\", \\\n",
+                    CS_RING_COLOUR);
     cs_text_add(out, " NaN notitle\n");
 }
 

@@ -120,6 +120,11 @@ static void add_cross(const struct cs_curves *curves, const struct cs_cell *cell
                     colour);
 }
 
+/* about a cell in which edges went through triangles */
+static void add_ring(double x, double y, struct cs_text *out) {
+    cs_text_add(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"8\" class=\"r\"/>", x, y);
+}
+
 static void add_curve(const struct cs_curves *curves, const struct cs_curve *curve,
                       struct cs_text *out) {
     const char *colour = cs_curve_colours[curve->style % CS_CURVE_COLOURS];
@@ -138,6 +143,8 @@ static void add_curve(const struct cs_curves *curves, const struct cs_curve *cur
         if (place(curves, cell, &x, &y)) {
             add_quartiles(curves, cell, y, colour, out);
             add_marker(curve->style, x, y, out);
+            if (cs_cell_has_crossings(cell))
+                add_ring(x, y, out);
         } else
             add_cross(curves, cell, colour, out);
 }
@@ -152,6 +159,22 @@ static void add_key(const struct cs_curves *curves, const struct cs_curve *curve
     cs_text_add(out, "<text x=\"%d\" y=\"%.1f\">", RIGHT + 48, y + 4);
     cs_svg_add_text(out, curves->settings->cells[curve->first].series);
     cs_text_add(out, "</text>\n");
+}
+
+/* what a ring says, below the series */
+static void add_ring_key(const struct cs_curves *curves, struct cs_text *out) {
+    double y = TOP + 10;
+    uint32_t rings = 0;
+    for (uint32_t c = 0; c < curves->n; c++)
+        if (curves->list[c].style >= 0) {
+            y += 20;
+            rings += curves->list[c].rings;
+        }
+    if (rings == 0)
+        return;
+    add_ring(RIGHT + 28, y, out);
+    cs_text_add(out, "<text x=\"%d\" y=\"%.1f\">edges through triangles</text>\n", RIGHT + 48,
+                y + 4);
 }
 
 /* The series that there was no room for, by name. */
@@ -190,8 +213,8 @@ void cs_svg_print(const struct cs_plot_settings *settings, struct cs_text *out) 
                 "<svg viewBox=\"0 0 %d %d\" "
                 "font-family=\"sans-serif\" font-size=\"13\">\n"
                 "<style>.g{stroke:#ccc}.h{stroke:#eee}.f{stroke:%s;stroke-width:7;"
-                "fill:none}</style>\n",
-                WIDTH, HEIGHT, CS_FRONT_COLOUR);
+                "fill:none}.r{stroke:%s;stroke-width:1.6;fill:none}</style>\n",
+                WIDTH, HEIGHT, CS_FRONT_COLOUR, CS_RING_COLOUR);
     add_bar(&curves, out);
     add_axis(&curves, false, out);
     add_axis(&curves, true, out);
@@ -201,6 +224,7 @@ void cs_svg_print(const struct cs_plot_settings *settings, struct cs_text *out) 
             add_curve(&curves, curves.list + c, out);
             add_key(&curves, curves.list + c, out);
         }
+    add_ring_key(&curves, out);
     add_frame(&curves, out);
     cs_text_add(out, "</svg>\n");
     add_rest(&curves, out);
