@@ -1,0 +1,178 @@
+/* The scenes in which bodies meet: nothing goes through anything in any frame, with methods of
+ * all families, and what a scene is about converges with the step. Small ones by default; "all"
+ * for the rest. */
+#include "fixture.h"
+
+#include "model/cross/crossings.h"
+#include "model/force/terms.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LENGTH(a) (sizeof(a) / sizeof *(a))
+
+enum { OVERRIDES = 6 };
+
+/* A scene of the folder with some keys changed, and a method. */
+struct run_of {
+    const char *scene, *method;
+    struct cs_override overrides[OVERRIDES];
+    uint32_t frames;
+    bool slow;
+};
+
+static bool all;
+
+static void open_run(struct cs_session *session, const struct run_of *of) {
+    struct cs_error error = {0};
+    char path[64];
+    uint32_t n = 0;
+    while (n < OVERRIDES && of->overrides[n].path)
+        n++;
+    snprintf(path, sizeof path, "scenes/%s.json", of->scene);
+    const struct cs_session_settings settings = {
+        .scene = path, .overrides = of->overrides, .n_overrides = n, .integrator = of->method};
+    cs_session_open(session, &settings, &error);
+    ck_assert_msg(!error.status, "%s: %s", of->scene, error.message);
+}
+
+static void next_frame(struct cs_session *session, const struct run_of *of) {
+    struct cs_error error = {0};
+    cs_run_frame(&session->run, &error);
+    ck_assert_msg(!error.status && session->run.outcome == CS_RUNNING, "%s by %s: %s",
+                  of->scene, of->method, error.message);
+}
+
+/* --- nothing goes through anything --- */
+
+#define GRID(columns, rows)                                                                    \
+    { .path = "bodies[0].cloth.grid", .value = "[" #columns "," #rows "]" }
+#define LIMIT                                                                                  \
+    { .path = "crossings", .value = "limit" }
+
+static const struct run_of kept_apart[] = {
+    {"needles", "velocity-verlet", {GRID(7, 7)}, 11, false},
+    {"needles", "dopri5:rtol=1e-3", {GRID(7, 7)}, 11, false},
+    {"needles", "implicit-linearised:dt=0.008", {GRID(7, 7)}, 16, false},
+    {"needles", "newmark:dt=0.008", {GRID(7, 7)}, 11, false},
+    {"needles", "cvode-bdf:rtol=1e-3", {GRID(7, 7)}, 11, false},
+    {"needles", "xpbd:dt=0.004", {GRID(7, 7)}, 11, false},
+    {"bear_drape", NULL, {GRID(9, 9)}, 15, false},
+    {"reef_knot", "implicit-linearised:dt=0.008", {{NULL, NULL}}, 12, false},
+    {"needles", NULL, {{NULL, NULL}}, 90, true},
+    {"needles", "velocity-verlet", {GRID(13, 13)}, 60, true},
+    {"needles", "bdf2:dt=0.004", {GRID(13, 13)}, 60, true},
+    {"bear_drape", NULL, {GRID(25, 25)}, 60, true},
+    {"bear_drape", "cvode-bdf:rtol=1e-3", {GRID(13, 13)}, 40, true},
+    {"winding", NULL, {GRID(21, 21)}, 200, true},
+    {"bear_heap", NULL, {{NULL, NULL}}, 120, true},
+    {"reef_knot", NULL, {{NULL, NULL}}, 66, true},
+    {"ribbon", NULL, {LIMIT}, 240, true},
+    {"fold", NULL, {LIMIT}, 60, true},
+    {"trampoline", NULL, {LIMIT}, 60, true},
+    {"layers", NULL, {LIMIT}, 60, true},
+};
+
+static void check_apart(const struct run_of *of) {
+    struct cs_session session;
+    open_run(&session, of);
+    for (uint32_t frame = 0; frame < of->frames; frame++) {
+        next_frame(&session, of);
+        const struct cs_run *run = &session.run;
+        const uint64_t n = cs_crossings_count(&session.system, run->t, run->x).n;
+        ck_assert_msg(!n, "%s by %s, frame %u: %llu crossings", of->scene, of->method,
+                      frame + 1, (unsigned long long)n);
+    }
+    cs_session_close(&session);
+}
+
+START_TEST(nothing_goes_through) {
+    for (size_t k = 0; k < LENGTH(kept_apart); k++)
+        if (all == kept_apart[k].slow)
+            check_apart(kept_apart + k);
+}
+END_TEST
+
+/* --- what scenes are about --- */
+
+/* N, of the ends of the first ribbon against the pull */
+static double pull_of(const struct cs_session *session) {
+    static const uint32_t held[] = {0, 1, 2, 360, 361, 362};
+    const struct cs_run *run = &session->run;
+    const size_t n = session->system.view.n;
+    // held ones have no force otherwise
+    struct cs_system loose = session->system;
+    double *f = calloc(3 * n, sizeof *f), sum = 0;
+    loose.n_pinned = 0;
+    ck_assert_ptr_nonnull(f);
+    cs_terms_force(
+        &loose, &(struct cs_eval){.t = run->t, .x = run->x, .v = run->v, .parts = CS_PART_ALL},
+        f);
+    for (size_t k = 0; k < LENGTH(held); k++)
+        sum += f[held[k]];
+    free(f);
+    return sum;
+}
+
+/* a knot that is pulled tight pulls back, by a force that the step does not decide */
+START_TEST(knot_is_tight) {
+    double pull[2];
+    for (int k = 0; k < 2; k++) {
+        const struct run_of of = {"reef_knot",
+                                  k ? "implicit-linearised:dt=0.002"
+                                    : "implicit-linearised:dt=0.004",
+                                  {{NULL, NULL}},
+                                  all ? 60 : 6,
+                                  all};
+        struct cs_session session;
+        open_run(&session, &of);
+        for (uint32_t frame = 0; frame < of.frames; frame++)
+            next_frame(&session, &of);
+        pull[k] = pull_of(&session);
+        cs_session_close(&session);
+    }
+    ck_assert_msg(pull[1] > 1e-3 && fabs(pull[0] - pull[1]) < 0.05 * pull[1], "%.4g, %.4g N",
+                  pull[0], pull[1]);
+}
+END_TEST
+
+/* rad, by which the middle of the sheet has been turned about y */
+static double turn_of(const struct cs_session *session) {
+    const struct cs_body_range *sheet = session->system.bodies;
+    const size_t n = session->system.view.n, columns = sheet->columns;
+    const size_t middle = columns * (sheet->rows / 2) + columns / 2;
+    const double *x = session->run.x;
+    return atan2(x[2 * n + middle - 1] - x[2 * n + middle + 1], x[middle + 1] - x[middle - 1]);
+}
+
+/* the ball takes the sheet along, by an angle that the step does not decide */
+START_TEST(ball_winds_up_the_sheet) {
+    static const char *const methods[] = {"implicit-linearised:dt=0.008",
+                                          "implicit-linearised:dt=0.004",
+                                          "implicit-linearised:dt=0.002"};
+    const int n = all ? 3 : 2;
+    double turn[3];
+    for (int k = 0; k < n; k++) {
+        const struct run_of of = {
+            "winding", methods[k], {GRID(7, 7), {"events[0].from", "0.2"}}, all ? 48 : 18, all};
+        struct cs_session session;
+        open_run(&session, &of);
+        for (uint32_t frame = 0; frame < of.frames; frame++)
+            next_frame(&session, &of);
+        turn[k] = turn_of(&session);
+        cs_session_close(&session);
+    }
+    ck_assert_msg(turn[0] > (all ? 0.3 : 0.05), "turned by %.3g", turn[0]);
+    for (int k = 1; k < n; k++)
+        ck_assert_msg(fabs(turn[k] - turn[k - 1]) < 0.08 * turn[k], "%.5g, %.5g", turn[k - 1],
+                      turn[k]);
+}
+END_TEST
+
+int main(int argc, char **argv) {
+    all = argc > 1 && !strcmp(argv[1], "all");
+    const TTest *const tests[] = {nothing_goes_through, knot_is_tight, ball_winds_up_the_sheet};
+    return fixture_run("contact scenes", tests, LENGTH(tests));
+}
