@@ -116,16 +116,17 @@ static double pull_of(const struct cs_session *session) {
     return sum;
 }
 
-/* a knot that is pulled tight pulls back, by a force that the step does not decide */
+/* A knot that is pulled tight pulls back, by about the same at half the step. The pull is small
+ * where the scene ends, 0.01 N, and on the move: it is known to a fifth. */
 START_TEST(knot_is_tight) {
+    static const char *const quick[] = {"implicit-linearised:dt=0.004",
+                                        "implicit-linearised:dt=0.002"};
+    static const char *const fine[] = {"implicit-linearised:dt=0.002",
+                                       "implicit-linearised:dt=0.001"};
     double pull[2];
     for (int k = 0; k < 2; k++) {
-        const struct run_of of = {"reef_knot",
-                                  k ? "implicit-linearised:dt=0.002"
-                                    : "implicit-linearised:dt=0.004",
-                                  {{NULL, NULL}},
-                                  all ? 60 : 6,
-                                  all};
+        const struct run_of of = {
+            "reef_knot", all ? fine[k] : quick[k], {{NULL, NULL}}, all ? 60 : 8, all};
         struct cs_session session;
         open_run(&session, &of);
         for (uint32_t frame = 0; frame < of.frames; frame++)
@@ -133,7 +134,7 @@ START_TEST(knot_is_tight) {
         pull[k] = pull_of(&session);
         cs_session_close(&session);
     }
-    ck_assert_msg(pull[1] > 1e-3 && fabs(pull[0] - pull[1]) < 0.05 * pull[1], "%.4g, %.4g N",
+    ck_assert_msg(pull[1] > 1e-3 && fabs(pull[0] - pull[1]) < 0.2 * pull[1], "%.4g, %.4g N",
                   pull[0], pull[1]);
 }
 END_TEST

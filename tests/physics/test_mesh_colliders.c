@@ -189,6 +189,48 @@ START_TEST(orders_hold_on_a_turning_mesh) {
 }
 END_TEST
 
+/* --- a slope of triangles --- */
+
+/* a sheet turned by 17 degrees on the top of a box, with gravity along it */
+#define SLOPE                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [9, 9], \"size\": [0.4, 0.4], \"start\": \"flat\", " \
+    "\"place\": {\"translate\": [-0.6, 0.0155, 0.013], \"rotate\": [0, 0.15, 0, 1]}}, "        \
+    "\"mass\": {\"areal_density\": 0.3}, \"springs\": {\"stretch\": 60, \"shear\": 20, "       \
+    "\"bend\": 1, \"damping\": 0.02}}], \"colliders\": [{\"mesh\": {\"shape\": \"box\", "      \
+    "\"detail\": 6, \"scale\": [2, 0.1, 1], \"place\": {\"translate\": [0, -0.05, 0]}}, "      \
+    "\"friction\": %g, \"thickness\": 0.02}], \"contact\": {\"law\": \"force\", "              \
+    "\"damping\": 0.001, \"friction_speed\": 0.05}, \"forces\": {\"gravity\": [%.17g, %.17g, " \
+    "0]}}"
+
+/* m/s2 along the slope, from frame 10 to 30 */
+static double slide(double mu, double tangent) {
+    const double cosine = 1 / sqrt(1 + tangent * tangent), g = 9.81;
+    double speed[2] = {0};
+    struct fixture cloth;
+    fixture_open(&cloth, "rk4:dt=2e-3", SLOPE, mu, g * tangent * cosine, -g * cosine);
+    fixture_start(&cloth);
+    for (uint32_t part = 0; part < 2; part++) {
+        fixture_frames(&cloth, 10 + 10 * part);
+        for (size_t i = 0; i < cloth.n; i++)
+            speed[part] += cloth.v[i] / (double)cloth.n;
+    }
+    fixture_close(&cloth);
+    return (speed[1] - speed[0]) / (20 / 60.0);
+}
+
+/* g cos a (tan a - mu): edges and corners of the mesh take less than 0.005 g without friction,
+ * and give nothing; the load that friction has varies over them, by 0.01 g in what it does */
+START_TEST(slope_of_triangles_is_a_slope) {
+    const double g = 9.81;
+    double expected = g * (0.5 - 0.3) / sqrt(1 + 0.25), found = slide(0.3, 0.5);
+    ck_assert_msg(fabs(found - expected) < 0.01 * g, "%.5g, not %.5g", found, expected);
+    expected = g * 0.1 / sqrt(1 + 0.01);
+    found = slide(0, 0.1);
+    ck_assert_msg(expected - found < 0.005 * g && found - expected < 0.001 * g,
+                  "%.5g, not %.5g", found, expected);
+}
+END_TEST
+
 /* --- the derivative --- */
 
 START_TEST(derivative_knows_the_moving_mesh) {
@@ -318,6 +360,7 @@ int main(void) {
                                   only_relative_motion_counts,
                                   points_turn_with_it,
                                   orders_hold_on_a_turning_mesh,
+                                  slope_of_triangles_is_a_slope,
                                   derivative_knows_the_moving_mesh,
                                   crossings_are_counted_and_foreseen,
                                   what_comes_is_foreseen,

@@ -91,6 +91,7 @@ START_TEST(scenes_go_on) {
         {"scenes/explosion_cured.json", "implicit-linearised", 12, {1, 4, 9}},
         {"scenes/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
         {"scenes/layers.json", NULL, 6, {2, 4, 5}},
+        {"scenes/funnel.json", "implicit-linearised", 4, {1, 2, 3}},
         {"scenes/mixed_company.json", "shape-matching", 10, {1, 4, 7}},
         {"scenes/disc_drape.json", "bdf2", 36, {24, 29, 33}},
         {"scenes/disc_drape.json", "fast-mass-spring", 36, {24, 29, 33}},
