@@ -4,6 +4,8 @@
 
 #include "base/pool.h"
 #include "io/scene_read.h"
+#include "model/cross/crossings.h"
+#include "model/cross/listed.h"
 #include "model/force/terms.h"
 #include "model/pair/pairs.h"
 #include "model/plan.h"
@@ -151,19 +153,29 @@ static const char crumple[] =
 
 enum { FRAMES = 4 };
 
+/* How a crumple is run: lists are kept for `trust` times the moves that they are made for. */
+struct how {
+    uint32_t threads;
+    double margin, trust, fps;
+};
+
 /* a ball is thrown at a sheet, which wraps round it */
-static size_t end_of_crumple(const char *method, uint32_t threads, double margin,
-                             double state[6 * 600]) {
+static size_t end_of_crumple(const char *method, struct how how, double state[6 * 600]) {
     struct fixture cloth;
     struct cs_error error = {0};
-    cs_pool_start(threads, &error);
+    cs_pool_start(how.threads, &error);
     fixture_open(&cloth, method, "%s", crumple);
-    cloth.system->pairs->search.margin *= margin;
-    cloth.system->pairs->search.fresh = false;
+    cloth.session.scene.time.fps = how.fps;
+    struct cs_search *search = &cloth.system->pairs->search;
+    search->margin *= how.margin;
+    search->fresh = false;
     fixture_start(&cloth);
-    fixture_frames(&cloth, FRAMES);
+    for (uint32_t frame = 0; frame < (uint32_t)(how.fps * FRAMES / 60); frame++) {
+        fixture_frames(&cloth, 1);
+        search->held = how.trust > 1 ? how.trust * search->margin : search->held;
+    }
     ck_assert_uint_gt(cloth.system->pairs->now.n, 40);
-    ck_assert_uint_gt(cloth.system->pairs->search.builds, 3);
+    ck_assert_uint_gt(search->builds, 3);
     const size_t n = 6 * cloth.n;
     ck_assert_uint_le(n, 6 * 600);
     memcpy(state, cloth.x, n * sizeof *state);
@@ -173,21 +185,65 @@ static size_t end_of_crumple(const char *method, uint32_t threads, double margin
 }
 
 START_TEST(lists_are_not_seen_in_the_bits) {
-    static const struct {
-        uint32_t threads;
-        double margin;
-    } runs[] = {{1, 0.5}, {1, 2}, {2, 1}, {3, 0.7}};
+    static const struct how runs[] = {
+        {1, 0.5, 1, 60}, {1, 2, 1, 60}, {2, 1, 1, 60}, {3, 0.7, 1, 60}, {8, 1, 1, 60}};
     static const char *const methods[] = {"velocity-verlet:dt=5e-4",
                                           "implicit-linearised:dt=0.004"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
         static double one[6 * 600], other[6 * 600];
-        const size_t n = end_of_crumple(methods[m], 1, 1, one);
+        const size_t n = end_of_crumple(methods[m], (struct how){1, 1, 1, 60}, one);
         for (size_t r = 0; r < LENGTH(runs); r++) {
-            end_of_crumple(methods[m], runs[r].threads, runs[r].margin, other);
+            end_of_crumple(methods[m], runs[r], other);
             ck_assert_msg(!memcmp(one, other, n * sizeof *one), "%s: %u threads, margin %g",
                           methods[m], runs[r].threads, runs[r].margin);
         }
     }
+}
+END_TEST
+
+/* what the test before would find: lists that are kept too long */
+START_TEST(lists_kept_too_long_are_seen) {
+    static double right[6 * 600], wrong[6 * 600];
+    static const char method[] = "velocity-verlet:dt=5e-4";
+    const size_t n = end_of_crumple(method, (struct how){1, 1, 1, 960}, right);
+    end_of_crumple(method, (struct how){1, 1, 1.5, 960}, wrong);
+    ck_assert(memcmp(right, wrong, n * sizeof *right));
+}
+END_TEST
+
+/* moves of all particles at random, up to so many ranges a component, from where they are */
+static void shake(const struct fixture *cloth, double ranges, uint64_t *seed, double *x) {
+    const double range = cloth->system->pairs->meetings.least;
+    for (size_t i = 0; i < 3 * cloth->n; i++) {
+        *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+        x[i] = cloth->x[i] + ranges * range * ((double)(*seed >> 11) / 4503599627370496.0 - 1);
+    }
+}
+
+/* the list has the same share of a move as a tree over all parts, long moves too */
+START_TEST(list_limits_as_the_tree_does) {
+    struct fixture cloth;
+    static double x[3 * 600];
+    uint64_t seed = 1;
+    uint32_t listed = 0, cut = 0;
+    fixture_open(&cloth, "velocity-verlet:dt=5e-4", "%s", crumple);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, FRAMES);
+    for (uint32_t k = 0; k < 60; k++) {
+        struct cs_pairs *pairs = cloth.system->pairs;
+        shake(&cloth, 0.05 * (1 + k), &seed, x);
+        listed += cs_listed_covers(cloth.system, true, cloth.x, x);
+        const double share = cs_crossings_share(cloth.system, cloth.x, x);
+        cloth.system->pairs = NULL;
+        ck_assert_double_eq(cs_crossings_share(cloth.system, cloth.x, x), share);
+        cloth.system->pairs = pairs;
+        cut += share < 1;
+    }
+    ck_assert_uint_gt(listed, 20);
+    ck_assert_uint_lt(listed, 60);
+    ck_assert_uint_gt(cut, 20);
+    ck_assert_uint_lt(cut, 60);
+    fixture_close(&cloth);
 }
 END_TEST
 
@@ -276,8 +332,13 @@ START_TEST(too_thick_is_refused) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {orders_hold_in_contact, energy_is_kept,
-                                  momentum_is_kept,       lists_are_not_seen_in_the_bits,
-                                  lists_miss_no_pair,     too_thick_is_refused};
+    const TTest *const tests[] = {orders_hold_in_contact,
+                                  energy_is_kept,
+                                  momentum_is_kept,
+                                  lists_are_not_seen_in_the_bits,
+                                  lists_kept_too_long_are_seen,
+                                  list_limits_as_the_tree_does,
+                                  lists_miss_no_pair,
+                                  too_thick_is_refused};
     return fixture_run("pairs", tests, sizeof tests / sizeof *tests);
 }

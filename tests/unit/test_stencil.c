@@ -1,6 +1,6 @@
 /* Smooth distances of a point and a triangle, and of two edges: against the true distance,
  * against differences, and against the laws of momentum. */
-#include "model/pair/stencil.h"
+#include "model/pair/stencil_tangent.h"
 #include "unit.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "model/contact/points.h"
 #include "model/cross/gap.h"
+#include "model/cross/listed.h"
 #include "model/cross/pierce.h"
 #include "scene/crossings.h"
 
@@ -286,6 +287,8 @@ double cs_crossings_share(const struct cs_system *system, double t0, const doubl
                                 .found = crossings->found,
                                 .visit = try_parts};
     double share = 1;
+    if (cs_listed_covers(system, crossings->apart, question.x0, question.x1))
+        return cs_listed_share(system, question.x0, question.x1);
     cs_parts_place(&crossings->parts, question.x0, question.x1, CS_GAP_LEAST);
     cs_pool_run(crossings->parts.tree.n_jobs, run_job, &question);
     for (uint32_t k = 0; k < crossings->parts.tree.n_jobs; k++)

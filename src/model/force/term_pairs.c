@@ -46,7 +46,7 @@ static void add_blocks(const struct cs_system *system, const struct cs_matrix *m
 }
 
 static void add_product(const struct cs_system *system, const double *p, double *y) {
-    cs_pair_set_multiply(&system->pairs->matrix, p, y);
+    cs_pairs_multiply(system->pairs, p, y);
 }
 
 static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,

@@ -11,6 +11,23 @@ struct cs_cell_box {
     double low[3], high[3]; /* m */
 };
 
+/* Boxes that are not finite meet. */
+static inline bool cs_cell_boxes_meet(const struct cs_cell_box *a,
+                                      const struct cs_cell_box *b) {
+    bool apart = false;
+    for (int c = 0; c < 3; c++)
+        apart |= a->low[c] > b->high[c] || b->low[c] > a->high[c];
+    return !apart;
+}
+
+/* Makes a box that is empty, or about others, one about another too. */
+static inline void cs_cell_box_join(struct cs_cell_box *box, const struct cs_cell_box *other) {
+    for (int c = 0; c < 3; c++) {
+        box->low[c] = other->low[c] < box->low[c] ? other->low[c] : box->low[c];
+        box->high[c] = other->high[c] > box->high[c] ? other->high[c] : box->high[c];
+    }
+}
+
 struct cs_cells {
     double low[3], inverse; /* corner of the grid, 1/edge of a cell */
     uint32_t dim[3];

@@ -1,12 +1,14 @@
 /* True distances: that of the perpendicular where it meets the inside of both, else the least
  * of those from rims. */
+#include "base/vectorise.h"
+
 #include "model/pair/nearness.h"
 
-static double least_of(double a, double b) {
+CS_INLINE double least_of(double a, double b) {
     return a < b ? a : b;
 }
 
-static double most_of(double a, double b) {
+CS_INLINE double most_of(double a, double b) {
     return a > b ? a : b;
 }
 
@@ -26,18 +28,15 @@ bool cs_nearness_is_apart(enum cs_stencil_kind kind, double p[4][3], double rang
     return apart;
 }
 
-/* of p from the segment a b */
-static double from_segment(const double p[3], const double a[3], const double b[3]) {
-    double u[3], w[3], squared = 0;
-    for (int c = 0; c < 3; c++) {
-        u[c] = b[c] - a[c];
-        w[c] = p[c] - a[c];
-    }
+/* of p from the segment a b; chosen, not branched to, so that loops over lanes vectorise */
+CS_INLINE double from_segment(const double p[3], const double a[3], const double b[3]) {
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
     const double along = cs_vec3_dot(u, w), length = cs_vec3_dot(u, u);
-    const double t = !(along > 0) ? 0 : along < length ? along / length : 1;
-    for (int c = 0; c < 3; c++)
-        squared += (w[c] - t * u[c]) * (w[c] - t * u[c]);
-    return squared;
+    const double inner = along / length, end = along < length ? inner : 1;
+    const double t = along > 0 ? end : 0;
+    const double r[3] = {w[0] - t * u[0], w[1] - t * u[1], w[2] - t * u[2]};
+    return cs_vec3_dot(r, r);
 }
 
 /* The crossing of the perpendicular: shares of u and v over `whole`, and its length squared. */
@@ -45,33 +44,61 @@ struct crossing {
     double l, m, whole, squared;
 };
 
-static struct crossing cross_at(enum cs_stencil_kind kind, double p[4][3]) {
+CS_INLINE struct crossing cross_at(enum cs_stencil_kind kind, double p[4][3]) {
     double u[3], v[3], w[3];
     cs_stencil_differences(kind, p, u, v, w);
     const double a = cs_vec3_dot(u, u), b = cs_vec3_dot(u, v), c = cs_vec3_dot(v, v);
     const double d = cs_vec3_dot(u, w), e = cs_vec3_dot(v, w);
-    struct crossing at = {c * d - b * e, a * e - b * d, a * c - b * b, 0};
+    const double whole = a * c - b * b;
     // where they are almost parallel the rims know it better
-    if (!(at.whole > 1e-10 * a * c))
-        at.whole = -1;
+    struct crossing at = {c * d - b * e, a * e - b * d, whole > 1e-10 * a * c ? whole : -1, 0};
     const double l = at.l / at.whole, m = at.m / at.whole;
-    for (int k = 0; k < 3; k++)
-        at.squared += (w[k] - l * u[k] - m * v[k]) * (w[k] - l * u[k] - m * v[k]);
+    const double r[3] = {w[0] - l * u[0] - m * v[0], w[1] - l * u[1] - m * v[1],
+                         w[2] - l * u[2] - m * v[2]};
+    at.squared = cs_vec3_dot(r, r);
     return at;
 }
 
-double cs_nearness_triangle(double p[4][3]) {
-    const struct crossing at = cross_at(CS_STENCIL_TRIANGLE, p);
-    if (at.whole > 0 && at.l >= 0 && at.m >= 0 && at.l + at.m <= at.whole)
-        return at.squared;
+/* least of l, m and what is left of the whole, or of the wholes of two edges: below 0 where the
+ * crossing is outside */
+CS_INLINE double room_of(enum cs_stencil_kind kind, struct crossing at) {
+    const double left = kind == CS_STENCIL_EDGES ? least_of(at.whole - at.l, at.whole - at.m)
+                                                 : at.whole - (at.l + at.m);
+    return least_of(least_of(at.l, at.m), least_of(left, at.whole));
+}
+
+CS_INLINE double from_rims(enum cs_stencil_kind kind, double p[4][3]) {
+    if (kind == CS_STENCIL_EDGES)
+        return least_of(
+            least_of(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
+            least_of(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1])));
     return least_of(least_of(from_segment(p[0], p[1], p[2]), from_segment(p[0], p[2], p[3])),
                     from_segment(p[0], p[3], p[1]));
 }
 
-double cs_nearness_edges(double p[4][3]) {
-    const struct crossing at = cross_at(CS_STENCIL_EDGES, p);
-    if (at.whole > 0 && at.l >= 0 && at.m >= 0 && at.l <= at.whole && at.m <= at.whole)
-        return at.squared;
-    return least_of(least_of(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),
-                    least_of(from_segment(p[2], p[0], p[1]), from_segment(p[3], p[0], p[1])));
+CS_INLINE void measure(enum cs_stencil_kind kind, struct cs_nearness_lanes *restrict lanes) {
+    for (int l = 0; l < CS_NEARNESS_LANES; l++) {
+        double p[4][3];
+        CS_UNROLLED
+        for (int k = 0; k < 12; k++)
+            p[k / 3][k % 3] = lanes->p[k / 3][k % 3][l];
+        const struct crossing at = cross_at(kind, p);
+        const double rims = from_rims(kind, p);
+        lanes->squared[l] = room_of(kind, at) >= 0 ? at.squared : rims;
+    }
+}
+
+CS_CLONES static void measure_triangles(struct cs_nearness_lanes *restrict lanes) {
+    measure(CS_STENCIL_TRIANGLE, lanes);
+}
+
+CS_CLONES static void measure_edges(struct cs_nearness_lanes *restrict lanes) {
+    measure(CS_STENCIL_EDGES, lanes);
+}
+
+void cs_nearness_measure(enum cs_stencil_kind kind, struct cs_nearness_lanes *lanes) {
+    if (kind == CS_STENCIL_EDGES)
+        measure_edges(lanes);
+    else
+        measure_triangles(lanes);
 }

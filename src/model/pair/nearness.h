@@ -9,10 +9,16 @@
  * of a few nanoseconds. Of numbers that are not finite it may say either. */
 bool cs_nearness_is_apart(enum cs_stencil_kind kind, double p[4][3], double range);
 
-/* Of point p[0] from the triangle p[1] p[2] p[3], and of the edges p[0] p[1] and p[2] p[3].
- * Exact but for rounding; triangles without area and edges without length are what is left of
- * them. Not finite, or 0, where p is not finite. */
-double cs_nearness_triangle(double p[4][3]);
-double cs_nearness_edges(double p[4][3]);
+/* Pairs of one kind; lanes that hold none have numbers that mean nothing. */
+enum { CS_NEARNESS_LANES = 8 };
+struct cs_nearness_lanes {
+    double p[4][3][CS_NEARNESS_LANES];
+    double squared[CS_NEARNESS_LANES];
+};
+
+/* squared = of point p[0] from the triangle p[1] p[2] p[3], or of the edges p[0] p[1] and
+ * p[2] p[3]. Exact but for rounding; triangles without area and edges without length are what
+ * is left of them. Not finite, or 0, where p is not finite. */
+void cs_nearness_measure(enum cs_stencil_kind kind, struct cs_nearness_lanes *lanes);
 
 #endif

@@ -13,8 +13,7 @@
 #ifndef CS_PAIR_PAIRS_H
 #define CS_PAIR_PAIRS_H
 
-#include "model/pair/pair_set.h"
-#include "model/pair/reaction.h"
+#include "model/pair/product.h"
 #include "model/pair/search.h"
 
 struct cs_pairs {
@@ -23,6 +22,7 @@ struct cs_pairs {
     struct cs_search search;
     struct cs_pair_set now;           /* of the last force, product or bound */
     struct cs_pair_set matrix;        /* of the solver's matrix, until the next */
+    struct cs_product product;        /* of `matrix` where it is not exact */
     const struct cs_pair_set *blocks; /* whose diagonal blocks are asked for */
 };
 
@@ -41,6 +41,9 @@ double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
 /* Sets pairs->blocks to the shares of a matrix. kept: in pairs->matrix, for products; else in
  * pairs->now, and with matrix->bound for their blocks alone. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept);
+
+/* y (3,n) += the kept matrix without its diagonal blocks, times p. With all threads. */
+void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y);
 
 /* Adds the sums of norms in the rows of df/dx and df/dv at a state. */
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,

@@ -45,7 +45,8 @@ enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) 
     cs_pair_set_init(&pairs->now, system->view.n, pairs->search.n_lots, &system->arena, error);
     cs_pair_set_init(&pairs->matrix, system->view.n, pairs->search.n_lots, &system->arena,
                      error);
-    if (error->status)
+    if (error->status ||
+        cs_product_init(&pairs->product, &pairs->matrix, &system->arena, error))
         return error->status;
     if (!cs_search_update(&pairs->search,
                           cs_points_places(system, CS_POINTS_BEGIN, 0, system->start)))

@@ -13,40 +13,10 @@
 #ifndef CS_PAIR_SEARCH_H
 #define CS_PAIR_SEARCH_H
 
-#include "model/pair/cells.h"
-#include "model/pair/meeting.h"
-#include "model/pair/stencil.h"
-
-/* Points, or edges, whose pairs are listed together: they are one thread's. */
-enum { CS_SEARCH_LOT = 128 };
+#include "model/pair/search_list.h"
 
 /* the margin as a share of the least range */
 #define CS_SEARCH_MARGIN 0.35
-
-/* Pairs of the points or edges [begin, end). */
-struct cs_search_lot {
-    enum cs_stencil_kind kind;
-    uint32_t begin, end;
-    uint32_t *pairs; /* (n, 2): point and triangle, or edge and a later edge; ascending */
-    size_t n, room;  /* room in pairs */
-    bool failed;     /* there was no memory */
-};
-
-struct cs_search {
-    const struct cs_system *system;     /* borrowed */
-    const struct cs_meetings *meetings; /* borrowed */
-    double margin;                      /* m, of new lists */
-    double held;               /* m, of the list as it is: more after cs_search_cover */
-    uint32_t *body;            /* (n_points) of each point */
-    double *from;              /* (3,n_points) where the list was made */
-    struct cs_cell_box *boxes; /* of triangles, then of edges */
-    struct cs_cells triangles, edges;
-    struct cs_search_lot *lots; /* points first */
-    uint32_t n_lots;
-    double *drift;   /* (4, n_bodies) middle of the moves of a body, and how far they reach */
-    bool fresh;      /* the list was made */
-    uint64_t builds; /* lists that were made */
-};
 
 /* Takes the fixed arrays from the system's arena, which then owns the lists too. CS_ERR_MEMORY.
  */
@@ -58,22 +28,18 @@ bool cs_search_update(struct cs_search *search, const double *x);
 
 /* Makes the list good for all states on the straight way from x0 to x1 (3,n_points). false:
  * there is no memory, or bodies that are near each other move so far against each other, or a
- * body within itself, that it would be too long: more than CS_SEARCH_FAR margins. */
+ * body within itself, that it would be too long: more than CS_SEARCH_FAR margins, whatever the
+ * one in use. */
 enum { CS_SEARCH_FAR = 8 };
 bool cs_search_cover(struct cs_search *search, const double *x0, const double *x1);
 
-/* Points of a pair. */
-static inline void cs_search_corners(const struct cs_surfaces *surfaces,
-                                     enum cs_stencil_kind kind, const uint32_t pair[2],
-                                     uint32_t at[4]) {
-    if (kind == CS_STENCIL_EDGES) {
-        for (size_t k = 0; k < 4; k++)
-            at[k] = surfaces->edges[2 * (size_t)pair[k / 2] + k % 2];
-        return;
-    }
-    at[0] = pair[0];
-    for (size_t k = 0; k < 3; k++)
-        at[1 + k] = surfaces->triangles[3 * (size_t)pair[1] + k];
-}
+/* The most by which two bodies that meet, or one within itself, move against each other from x0
+ * to x1, as a multiple of their range; not a number where a place is none. */
+double cs_search_moves(const struct cs_search *search, const double *x0, const double *x1);
+
+/* Up to that many, a list that covers the way has all pairs that may come as near to each other
+ * on it as a tenth of where they start: for with the start s, the least gap g <= s/10 and the
+ * move m, s <= g + m, and so g <= m/9. */
+#define CS_SEARCH_GAPS 8.9
 
 #endif

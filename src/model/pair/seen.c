@@ -1,10 +1,12 @@
 /* The energy of pairs that a step does not see, pair by pair. */
 #include "model/pair/seen.h"
 
-#include "base/vector.h"
+#include "base/pool.h"
 #include "model/contact/points.h"
-#include "model/contact/share.h"
 #include "model/pair/nearness.h"
+#include "model/pair/way.h"
+
+#include <string.h>
 
 /* points of one move, at most */
 enum { POINTS_MOST = 64 };
@@ -13,115 +15,129 @@ struct job {
     const struct cs_pairs *pairs;
     const double *x0, *x1; /* (3, n_points) */
     double h;
+    double moves; /* cs_search_moves */
 };
 
-/* One pair on its way. */
-struct way {
+/* One lot at work: ways wait until they are asked about together. */
+struct work {
+    const struct job *job;
     enum cs_stencil_kind kind;
-    double from[4][3], move[4][3];
-    double inverse_mass[4];
+    struct cs_way_lanes lanes;
+    uint32_t waiting;
+    uint64_t unseen;
 };
 
-static void read_way(const struct job *job, enum cs_stencil_kind kind, const uint32_t at[4],
-                     struct way *way) {
-    const size_t n = job->pairs->system->surfaces->n_points;
-    way->kind = kind;
-    for (size_t k = 0; k < 4; k++) {
-        way->inverse_mass[k] = cs_points_inverse_mass(job->pairs->system, at[k]);
-        for (size_t c = 0; c < 3; c++) {
-            way->from[k][c] = job->x0[c * n + at[k]];
-            way->move[k][c] = job->x1[c * n + at[k]] - way->from[k][c];
-        }
-    }
-}
-
-/* the most that a point of one side moves by against one of the other */
-static double largest_move(const struct way *way) {
-    const int first = way->kind == CS_STENCIL_EDGES ? 2 : 1;
-    double most = 0;
-    for (int i = 0; i < first; i++)
-        for (int j = first; j < 4; j++) {
-            double squared = 0;
-            for (int c = 0; c < 3; c++)
-                squared +=
-                    (way->move[i][c] - way->move[j][c]) * (way->move[i][c] - way->move[j][c]);
-            most = squared > most ? squared : most;
-        }
-    return sqrt(most);
-}
-
-static void set_at(const struct way *way, double share, struct cs_stencil *s) {
-    double p[4][3];
-    for (int k = 0; k < 4; k++)
-        for (int c = 0; c < 3; c++)
-            p[k][c] = way->from[k][c] + share * way->move[k][c];
-    cs_stencil_set(s, way->kind, p);
-}
-
-/* kinetic energy in J of the contact points against each other, and by how much the gradient
- * says that they come nearer over the whole move */
-static double kinetic(const struct way *way, const struct cs_stencil *s, double h,
-                      double *approach) {
-    double weight[4], g[4][3], v[3] = {0}, inverse = 0;
-    cs_stencil_weights(s, weight);
-    cs_stencil_gradient(s, g);
-    *approach = 0;
-    for (int k = 0; k < 4; k++) {
-        inverse += weight[k] * weight[k] * way->inverse_mass[k];
-        *approach -= cs_vec3_dot(g[k], way->move[k]);
-        for (int c = 0; c < 3; c++)
-            v[c] += weight[k] * way->move[k][c] / h;
-    }
-    return inverse > 0 ? 0.5 * cs_vec3_dot(v, v) / inverse : HUGE_VAL;
-}
-
-static bool is_unseen(const struct job *job, struct way *way,
-                      const struct cs_meeting *meeting) {
-    const double range = meeting->range, k = meeting->k, move = largest_move(way);
-    const int points =
-        move < 0.5 * range * POINTS_MOST ? 1 + (int)(move / (0.5 * range)) : POINTS_MOST;
-    struct cs_stencil start, s;
-    if (cs_nearness_is_apart(way->kind, way->from, range + move))
-        return false;
-    double approach, unseen = 0;
+/* d (points + 1, and up to a lane less than CS_PAIR_LANES behind) = the smooth distances at the
+ * start and at `points` places of the way, the last of them its end; returns whether one is
+ * within range */
+static bool measure(struct cs_way *way, int points, double range, double *d) {
+    struct cs_pair_lanes lanes;
     bool near = false;
-    set_at(way, 0, &start);
-    const struct cs_law law = cs_law_at(start.d, range, k);
-    const double held = cs_law_energy(start.d, range, k);
-    const double has =
-        kinetic(way, &start, job->h, &approach) + held + cs_law_energy(0.5 * range, range, k);
-    for (int j = 1; j <= points; j++) {
-        const double share = j / (double)points, come = share * approach;
-        set_at(way, share, &s);
-        near = near || s.d < range;
-        const double seen = held + law.force * come + 0.5 * law.stiffness * come * come;
-        unseen = fmax(unseen, fabs(cs_law_energy(s.d, range, k) - seen));
+    for (int first = 0; first <= points; first += CS_PAIR_LANES) {
+        double share[CS_PAIR_LANES];
+        for (int l = 0; l < CS_PAIR_LANES; l++)
+            share[l] = (first + l) / (double)points;
+        for (int k = 0; k < 12; k++)
+            for (int l = 0; l < CS_PAIR_LANES; l++)
+                lanes.p[k / 3][k % 3][l] =
+                    way->from[k / 3][k % 3] + share[l] * way->move[k / 3][k % 3];
+        cs_pair_lanes_measure(way->kind, &lanes);
+        memcpy(d + first, lanes.d, sizeof lanes.d);
     }
-    return (near || start.d < range) && unseen > CS_SHARE_UNSEEN * has;
+    for (int j = 0; j <= points; j++)
+        near = near || d[j] < range;
+    return near;
 }
 
-static double count_unseen(const void *arg, size_t begin, size_t end) {
-    const struct job *job = arg;
-    const struct cs_search *search = &job->pairs->search;
-    double unseen = 0;
-    for (size_t l = begin; l < end; l++)
-        for (size_t p = 0; p < search->lots[l].n; p++) {
-            uint32_t at[4];
-            struct way way;
-            cs_search_corners(job->pairs->system->surfaces, search->lots[l].kind,
-                              search->lots[l].pairs + 2 * p, at);
-            read_way(job, search->lots[l].kind, at, &way);
-            unseen += is_unseen(
-                job, &way,
-                cs_meeting_of(&job->pairs->meetings, search->body[at[0]], search->body[at[2]]));
+/* a way of any length */
+static bool is_unseen(const struct job *job, struct cs_way *way, double range, double k) {
+    const double along = cs_way_points(cs_way_longest(way), range);
+    const int points = along < POINTS_MOST ? 1 + (int)along : POINTS_MOST;
+    double d[POINTS_MOST + CS_PAIR_LANES], unseen = 0;
+    struct cs_stencil at;
+    struct cs_way_start start;
+    if (!measure(way, points, range, d))
+        return false;
+    cs_stencil_set(&at, way->kind, way->from);
+    cs_way_begin(way, &at, job->h, range, k, &start);
+    for (int j = 1; j <= points; j++)
+        unseen = fmax(unseen, cs_way_unseen(&start, j / (double)points, d[j], range, k));
+    return unseen > CS_SHARE_UNSEEN * start.has;
+}
+
+static bool is_lane_unseen(const struct work *work, uint32_t l) {
+    const struct cs_way_lanes *lanes = &work->lanes;
+    struct cs_way way = {.kind = work->kind};
+    if (lanes->answer[l] < 2)
+        return lanes->answer[l] > 0;
+    for (int k = 0; k < 4; k++) {
+        way.inverse_mass[k] = lanes->inverse_mass[k][l];
+        for (int c = 0; c < 3; c++) {
+            way.from[k][c] = lanes->from[k][c][l];
+            way.move[k][c] = lanes->move[k][c][l];
         }
-    return unseen;
+    }
+    return is_unseen(work->job, &way, lanes->range[l], lanes->k[l]);
+}
+
+static void ask(struct work *work) {
+    if (work->waiting)
+        cs_way_lanes_ask(work->kind, &work->lanes, work->job->h);
+    for (uint32_t l = 0; l < work->waiting; l++)
+        work->unseen += is_lane_unseen(work, l);
+    work->waiting = 0;
+}
+
+/* leaves out pairs so far apart that nothing comes into range on a way as long as any */
+static void take(struct work *work, const uint32_t pair[2]) {
+    const struct job *job = work->job;
+    const struct cs_search *search = &job->pairs->search;
+    const size_t n = job->pairs->system->surfaces->n_points;
+    struct cs_way_lanes *lanes = &work->lanes;
+    const uint32_t l = work->waiting;
+    uint32_t at[4];
+    double from[4][3];
+    cs_search_corners(job->pairs->system->surfaces, work->kind, pair, at);
+    const struct cs_meeting *meeting =
+        cs_meeting_of(&job->pairs->meetings, search->body[at[0]], search->body[at[2]]);
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            from[k][c] = job->x0[c * n + at[k]];
+    if (cs_nearness_is_apart(work->kind, from, meeting->range * (1 + job->moves)))
+        return;
+    lanes->range[l] = meeting->range;
+    lanes->k[l] = meeting->k;
+    for (size_t k = 0; k < 4; k++) {
+        lanes->inverse_mass[k][l] = cs_points_inverse_mass(job->pairs->system, at[k]);
+        for (size_t c = 0; c < 3; c++) {
+            lanes->from[k][c][l] = from[k][c];
+            lanes->move[k][c][l] = job->x1[c * n + at[k]] - from[k][c];
+        }
+    }
+    if (++work->waiting == CS_WAY_LANES)
+        ask(work);
+}
+
+static void count_unseen(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    struct cs_search_lot *lot = job->pairs->search.lots + number;
+    struct work work = {.job = job, .kind = lot->kind};
+    for (size_t p = 0; p < lot->n; p++)
+        take(&work, lot->pairs + 2 * p);
+    ask(&work);
+    lot->answer = (double)work.unseen;
 }
 
 bool cs_pairs_are_seen(struct cs_pairs *pairs, double t0, const double *x0, double t1,
                        const double *x1) {
-    const struct job job = {pairs, cs_points_places(pairs->system, CS_POINTS_BEGIN, t0, x0),
-                            cs_points_places(pairs->system, CS_POINTS_END, t1, x1), t1 - t0};
-    return cs_search_cover(&pairs->search, job.x0, job.x1) &&
-           cs_vector_sum(pairs->search.n_lots, count_unseen, &job) == 0;
+    struct job job = {pairs, cs_points_places(pairs->system, CS_POINTS_BEGIN, t0, x0),
+                      cs_points_places(pairs->system, CS_POINTS_END, t1, x1), t1 - t0, 0};
+    job.moves = cs_search_moves(&pairs->search, job.x0, job.x1);
+    if (!cs_search_cover(&pairs->search, job.x0, job.x1))
+        return false;
+    cs_pool_run(pairs->search.n_lots, count_unseen, &job);
+    bool seen = true;
+    for (uint32_t l = 0; l < pairs->search.n_lots; l++)
+        seen = seen && pairs->search.lots[l].answer == 0;
+    return seen;
 }

@@ -72,6 +72,8 @@ CS_INLINE void cs_stencil_clamp_edges(struct cs_stencil *s) {
             s->soft[i][k] = low[k] - high[k];
         s->weight[i] = s->soft[i][0];
     }
+    for (int k = 0; k < 3; k++)
+        s->soft[2][k] = 0;
 }
 
 /* the three differences of four points, or of their moves */
@@ -125,11 +127,51 @@ CS_INLINE void cs_stencil_weights(const struct cs_stencil *s, double out[4]) {
     cs_stencil_spread(s->kind, -s->weight[0], -s->weight[1], 1, out);
 }
 
-/* g = the gradient of d by the four points; its sum is 0, and so is that of p x g. */
-void cs_stencil_gradient(const struct cs_stencil *s, double g[4][3]);
+/* What the gradient is made of; the slopes of d by l1, l2 before the clamp, and the adjoint. */
+struct cs_stencil_slopes {
+    double by_weight[2]; /* of d by L1, L2 */
+    double mean;         /* of a triangle */
+    double h[3];         /* of a triangle: by l0, l1, l2, each on its own */
+    double k[2], z[2], y[3];
+};
 
-/* dg, dweights = change of the gradient and of the weights when the points move by dp. */
-void cs_stencil_tangent(const struct cs_stencil *s, double dp[4][3], double dg[4][3],
-                        double dweights[4]);
+CS_INLINE void cs_stencil_set_slopes(const struct cs_stencil *s,
+                                     struct cs_stencil_slopes *slopes) {
+    const double *g = slopes->by_weight;
+    slopes->by_weight[0] = -cs_vec3_dot(s->n, s->u);
+    slopes->by_weight[1] = -cs_vec3_dot(s->n, s->v);
+    slopes->mean = s->weight[0] * g[0] + s->weight[1] * g[1];
+    if (s->kind == CS_STENCIL_EDGES) {
+        slopes->k[0] = g[0] * s->soft[0][1];
+        slopes->k[1] = g[1] * s->soft[1][1];
+    } else {
+        const double sum = s->soft[0][0] + s->soft[1][0] + s->soft[2][0];
+        slopes->h[0] = -slopes->mean * s->soft[0][1] / sum;
+        slopes->h[1] = (g[0] - slopes->mean) * s->soft[1][1] / sum;
+        slopes->h[2] = (g[1] - slopes->mean) * s->soft[2][1] / sum;
+        slopes->k[0] = slopes->h[1] - slopes->h[0];
+        slopes->k[1] = slopes->h[2] - slopes->h[0];
+    }
+    cs_stencil_solve(s, slopes->k, slopes->z);
+    for (int c = 0; c < 3; c++)
+        slopes->y[c] = slopes->z[0] * s->u[c] + slopes->z[1] * s->v[c];
+}
+
+/* g = the gradient of d by the four points; its sum is 0, and so is that of p x g. */
+CS_INLINE void cs_stencil_gradient(const struct cs_stencil *s, double g[4][3]) {
+    struct cs_stencil_slopes at;
+    cs_stencil_set_slopes(s, &at);
+    const double pull[2] = {s->q * (1 - 2 * s->l[0]), s->q * (1 - 2 * s->l[1])};
+    for (int c = 0; c < 3; c++) {
+        const double r = s->w[c] - s->l[0] * s->u[c] - s->l[1] * s->v[c];
+        const double u = at.z[0] * (r + pull[0] * s->u[c]) - s->l[0] * at.y[c];
+        const double v = at.z[1] * (r + pull[1] * s->v[c]) - s->l[1] * at.y[c];
+        double out[4];
+        cs_stencil_spread(s->kind, u - s->weight[0] * s->n[c], v - s->weight[1] * s->n[c],
+                          at.y[c] + s->n[c], out);
+        for (int k = 0; k < 4; k++)
+            g[k][c] = out[k];
+    }
+}
 
 #endif

@@ -1,54 +1,12 @@
-/* Gradient of the distance of a pair by the adjoint of its two equations, and the derivative of
- * that gradient forwards, value and change side by side. */
+/* stencil_tangent.h - how the gradient of a pair's distance changes: its derivative forwards,
+ * value and change side by side. */
+#ifndef CS_PAIR_STENCIL_TANGENT_H
+#define CS_PAIR_STENCIL_TANGENT_H
+
 #include "model/pair/stencil.h"
 
-/* What the gradient is made of; the slopes of d by l1, l2 before the clamp, and the adjoint. */
-struct slopes {
-    double by_weight[2]; /* of d by L1, L2 */
-    double mean;         /* of a triangle */
-    double h[3];         /* of a triangle: by l0, l1, l2, each on its own */
-    double k[2], z[2], y[3];
-};
-
-static void set_slopes(const struct cs_stencil *s, struct slopes *slopes) {
-    const double *g = slopes->by_weight;
-    slopes->by_weight[0] = -cs_vec3_dot(s->n, s->u);
-    slopes->by_weight[1] = -cs_vec3_dot(s->n, s->v);
-    slopes->mean = s->weight[0] * g[0] + s->weight[1] * g[1];
-    if (s->kind == CS_STENCIL_EDGES) {
-        slopes->k[0] = g[0] * s->soft[0][1];
-        slopes->k[1] = g[1] * s->soft[1][1];
-    } else {
-        const double sum = s->soft[0][0] + s->soft[1][0] + s->soft[2][0];
-        slopes->h[0] = -slopes->mean * s->soft[0][1] / sum;
-        slopes->h[1] = (g[0] - slopes->mean) * s->soft[1][1] / sum;
-        slopes->h[2] = (g[1] - slopes->mean) * s->soft[2][1] / sum;
-        slopes->k[0] = slopes->h[1] - slopes->h[0];
-        slopes->k[1] = slopes->h[2] - slopes->h[0];
-    }
-    cs_stencil_solve(s, slopes->k, slopes->z);
-    for (int c = 0; c < 3; c++)
-        slopes->y[c] = slopes->z[0] * s->u[c] + slopes->z[1] * s->v[c];
-}
-
-void cs_stencil_gradient(const struct cs_stencil *s, double g[4][3]) {
-    struct slopes at;
-    set_slopes(s, &at);
-    const double pull[2] = {s->q * (1 - 2 * s->l[0]), s->q * (1 - 2 * s->l[1])};
-    for (int c = 0; c < 3; c++) {
-        const double r = s->w[c] - s->l[0] * s->u[c] - s->l[1] * s->v[c];
-        const double u = at.z[0] * (r + pull[0] * s->u[c]) - s->l[0] * at.y[c];
-        const double v = at.z[1] * (r + pull[1] * s->v[c]) - s->l[1] * at.y[c];
-        double out[4];
-        cs_stencil_spread(s->kind, u - s->weight[0] * s->n[c], v - s->weight[1] * s->n[c],
-                          at.y[c] + s->n[c], out);
-        for (int k = 0; k < 4; k++)
-            g[k][c] = out[k];
-    }
-}
-
 /* The changes along a direction, in the order in which they follow from each other. */
-struct changes {
+struct cs_stencil_changes {
     double u[3], v[3], w[3];
     double a, b, c;
     double l[2], weight[2], n[3];
@@ -56,26 +14,30 @@ struct changes {
 };
 
 /* change of the solution of the two equations, when their right side changes by `right` */
-static void change_solution(const struct cs_stencil *s, const struct changes *d,
-                            const double solution[2], const double right[2], double out[2]) {
+CS_INLINE void cs_stencil_change_solution(const struct cs_stencil *s,
+                                          const struct cs_stencil_changes *d,
+                                          const double solution[2], const double right[2],
+                                          double out[2]) {
     const double grown = 1 + s->q;
     const double rest[2] = {right[0] - grown * d->a * solution[0] - d->b * solution[1],
                             right[1] - d->b * solution[0] - grown * d->c * solution[1]};
     cs_stencil_solve(s, rest, out);
 }
 
-static void change_places(const struct cs_stencil *s, struct changes *d) {
+CS_INLINE void cs_stencil_change_places(const struct cs_stencil *s,
+                                        struct cs_stencil_changes *d) {
     d->a = 2 * cs_vec3_dot(s->u, d->u);
     d->b = cs_vec3_dot(s->u, d->v) + cs_vec3_dot(d->u, s->v);
     d->c = 2 * cs_vec3_dot(s->v, d->v);
     const double right[2] = {
         cs_vec3_dot(d->u, s->w) + cs_vec3_dot(s->u, d->w) + 0.5 * s->q * d->a,
         cs_vec3_dot(d->v, s->w) + cs_vec3_dot(s->v, d->w) + 0.5 * s->q * d->c};
-    change_solution(s, d, s->l, right, d->l);
+    cs_stencil_change_solution(s, d, s->l, right, d->l);
 }
 
 /* of a triangle: change of S(l0) + S(l1) + S(l2), and of the weights */
-static double change_triangle(const struct cs_stencil *s, struct changes *d) {
+CS_INLINE double cs_stencil_change_triangle(const struct cs_stencil *s,
+                                            struct cs_stencil_changes *d) {
     const double sum = s->soft[0][0] + s->soft[1][0] + s->soft[2][0];
     const double first = s->soft[1][1] * d->l[0], second = s->soft[2][1] * d->l[1];
     const double dsum = first + second - s->soft[0][1] * (d->l[0] + d->l[1]);
@@ -84,7 +46,8 @@ static double change_triangle(const struct cs_stencil *s, struct changes *d) {
     return dsum;
 }
 
-static void change_direction(const struct cs_stencil *s, struct changes *d) {
+CS_INLINE void cs_stencil_change_direction(const struct cs_stencil *s,
+                                           struct cs_stencil_changes *d) {
     double dr[3];
     for (int c = 0; c < 3; c++)
         dr[c] = d->w[c] - s->weight[0] * d->u[c] - s->weight[1] * d->v[c] -
@@ -96,8 +59,9 @@ static void change_direction(const struct cs_stencil *s, struct changes *d) {
     d->by_weight[1] = -cs_vec3_dot(d->n, s->v) - cs_vec3_dot(s->n, d->v);
 }
 
-static void change_slopes(const struct cs_stencil *s, const struct slopes *at, double dsum,
-                          struct changes *d) {
+CS_INLINE void cs_stencil_change_slopes(const struct cs_stencil *s,
+                                        const struct cs_stencil_slopes *at, double dsum,
+                                        struct cs_stencil_changes *d) {
     if (s->kind == CS_STENCIL_EDGES) {
         for (int i = 0; i < 2; i++)
             d->k[i] =
@@ -120,8 +84,10 @@ static void change_slopes(const struct cs_stencil *s, const struct slopes *at, d
 }
 
 /* change of the gradient by the differences, component c, to the four points */
-static void change_gradient(const struct cs_stencil *s, const struct slopes *at,
-                            const struct changes *d, int c, double out[4]) {
+CS_INLINE void cs_stencil_change_gradient(const struct cs_stencil *s,
+                                          const struct cs_stencil_slopes *at,
+                                          const struct cs_stencil_changes *d, int c,
+                                          double out[4]) {
     const double *u = s->u, *v = s->v, *l = s->l, *z = at->z;
     const double pull[2] = {s->q * (1 - 2 * l[0]), s->q * (1 - 2 * l[1])};
     const double r = s->w[c] - l[0] * u[c] - l[1] * v[c];
@@ -138,28 +104,31 @@ static void change_gradient(const struct cs_stencil *s, const struct slopes *at,
                       out);
 }
 
-void cs_stencil_tangent(const struct cs_stencil *s, double dp[4][3], double dg[4][3],
-                        double dweights[4]) {
-    struct slopes at;
-    struct changes d;
+/* dg, dweights = change of the gradient and of the weights when the points move by dp. */
+CS_INLINE void cs_stencil_tangent(const struct cs_stencil *s, double dp[4][3], double dg[4][3],
+                                  double dweights[4]) {
+    struct cs_stencil_slopes at;
+    struct cs_stencil_changes d;
     double dsum = 0, out[4];
-    set_slopes(s, &at);
+    cs_stencil_set_slopes(s, &at);
     cs_stencil_differences(s->kind, dp, d.u, d.v, d.w);
-    change_places(s, &d);
+    cs_stencil_change_places(s, &d);
     if (s->kind == CS_STENCIL_EDGES)
         for (int i = 0; i < 2; i++)
             d.weight[i] = s->soft[i][1] * d.l[i];
     else
-        dsum = change_triangle(s, &d);
-    change_direction(s, &d);
-    change_slopes(s, &at, dsum, &d);
-    change_solution(s, &d, at.z, d.k, d.z);
+        dsum = cs_stencil_change_triangle(s, &d);
+    cs_stencil_change_direction(s, &d);
+    cs_stencil_change_slopes(s, &at, dsum, &d);
+    cs_stencil_change_solution(s, &d, at.z, d.k, d.z);
     for (int c = 0; c < 3; c++)
         d.y[c] = d.z[0] * s->u[c] + at.z[0] * d.u[c] + d.z[1] * s->v[c] + at.z[1] * d.v[c];
     for (int c = 0; c < 3; c++) {
-        change_gradient(s, &at, &d, c, out);
+        cs_stencil_change_gradient(s, &at, &d, c, out);
         for (int k = 0; k < 4; k++)
             dg[k][c] = out[k];
     }
     cs_stencil_spread(s->kind, -d.weight[0], -d.weight[1], 0, dweights);
 }
+
+#endif

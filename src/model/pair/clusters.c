@@ -1,0 +1,125 @@
+/* Clusters near a box from the cells, then their items in lanes. */
+#include "model/pair/clusters.h"
+
+#include "base/arena.h"
+
+#include <clothsim/clones.h>
+#include <math.h>
+#include <stdlib.h>
+
+void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box) {
+    for (int c = 0; c < 3; c++) {
+        // of an empty one no number is true of anything, even of a box without end
+        const bool some = box->high[c] >= box->low[c];
+        cluster->low[c][lane] = some ? (float)box->low[c] : NAN;
+        cluster->high[c][lane] = some ? (float)box->high[c] : NAN;
+    }
+}
+
+/* Two boxes meet in several cells. The one that counts is that of the lower corner of what they
+ * share: the higher of both first cells along each axis. The other box is in the cell `at`, so
+ * that its first cell is not above it. */
+static bool is_first_cell(const struct cs_cells *cells, const struct cs_cell_box *other,
+                          const uint32_t first[3], const uint32_t at[3]) {
+    bool counts = true;
+    for (int c = 0; c < 3; c++)
+        counts =
+            counts && (at[c] == first[c] || cs_cells_along(cells, other->low[c], c) == at[c]);
+    return counts;
+}
+
+static bool add(struct cs_cluster_near *near, uint32_t cluster, const struct cs_cell_box *box) {
+    uint32_t *clusters =
+        cs_arena_grow(near->clusters, &near->clusters_room, near->n + 1, sizeof *clusters);
+    near->clusters = clusters ? clusters : near->clusters;
+    struct cs_cluster *boxes =
+        cs_arena_grow(near->boxes, &near->boxes_room, near->n / CS_CLUSTER + 1, sizeof *boxes);
+    near->boxes = boxes ? boxes : near->boxes;
+    if (!clusters || !boxes)
+        return false;
+    static const struct cs_cell_box none = {{1, 1, 1}, {0, 0, 0}};
+    for (uint32_t l = 0; l < CS_CLUSTER && near->n % CS_CLUSTER == 0; l++)
+        cs_cluster_set(boxes + near->n / CS_CLUSTER, l, &none);
+    cs_cluster_set(boxes + near->n / CS_CLUSTER, near->n % CS_CLUSTER, box);
+    clusters[near->n++] = cluster;
+    return true;
+}
+
+static bool add_cell(struct cs_cluster_near *near, const struct cs_clusters *clusters,
+                     const struct cs_cell_box *box, const uint32_t first[3],
+                     const uint32_t at[3]) {
+    const struct cs_cells *cells = &clusters->cells;
+    const size_t cell = cs_cells_at(cells, at[0], at[1], at[2]);
+    bool there = true;
+    for (uint32_t s = cells->starts[cell]; s < cells->starts[cell + 1]; s++) {
+        const uint32_t cluster = cells->items[s];
+        const struct cs_cell_box *other = clusters->boxes + cluster;
+        if (cs_cell_boxes_meet(box, other) && is_first_cell(cells, other, first, at))
+            there = there && add(near, cluster, other);
+    }
+    return there;
+}
+
+bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
+                          const struct cs_cell_box *box) {
+    uint32_t first[3], last[3], at[3];
+    bool there = true;
+    near->n = 0;
+    if (!clusters->cells.dim[0] || !(box->high[0] >= box->low[0]))
+        return true;
+    cs_cells_span(&clusters->cells, box, first, last);
+    for (at[2] = first[2]; at[2] <= last[2]; at[2]++)
+        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+            for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+                there = there && add_cell(near, clusters, box, first, at);
+    uint32_t *items =
+        cs_arena_grow(near->items, &near->items_room, CS_CLUSTER * near->n, sizeof *items);
+    near->items = items ? items : near->items;
+    return there && (items || !near->n);
+}
+
+/* the lanes whose boxes meet a box, as bits */
+CS_INLINE uint32_t lanes_of(const struct cs_cluster *restrict cluster, const float low[3],
+                            const float high[3]) {
+    uint32_t bits = 0;
+    for (int l = 0; l < CS_CLUSTER; l++) {
+        uint32_t hit = cluster->low[0][l] <= high[0];
+        hit &= cluster->low[1][l] <= high[1];
+        hit &= cluster->low[2][l] <= high[2];
+        hit &= cluster->high[0][l] >= low[0];
+        hit &= cluster->high[1][l] >= low[1];
+        hit &= cluster->high[2][l] >= low[2];
+        bits |= hit << l;
+    }
+    return bits;
+}
+
+CS_CLONES static uint32_t find_items(const struct cs_cluster_near *near,
+                                     const struct cs_cluster *of, const float low[3],
+                                     const float high[3], uint32_t *items) {
+    uint32_t n = 0;
+    for (size_t k = 0; k < near->n; k += CS_CLUSTER)
+        for (uint32_t some = lanes_of(near->boxes + k / CS_CLUSTER, low, high); some;
+             some &= some - 1) {
+            const uint32_t cluster = near->clusters[k + (uint32_t)__builtin_ctz(some)];
+            for (uint32_t bits = lanes_of(of + cluster, low, high); bits; bits &= bits - 1)
+                items[n++] = CS_CLUSTER * cluster + (uint32_t)__builtin_ctz(bits);
+        }
+    return n;
+}
+
+uint32_t cs_cluster_near_items(struct cs_cluster_near *near, const struct cs_clusters *clusters,
+                               const struct cs_cell_box *box) {
+    float low[3], high[3];
+    for (int c = 0; c < 3; c++) {
+        low[c] = (float)box->low[c];
+        high[c] = (float)box->high[c];
+    }
+    return find_items(near, clusters->of, low, high, near->items);
+}
+
+void cs_cluster_near_finish(struct cs_cluster_near *near) {
+    free(near->clusters);
+    free(near->boxes);
+    free(near->items);
+}

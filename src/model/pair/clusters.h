@@ -1,0 +1,50 @@
+/* clusters.h - boxes by sixteens: those that meet a box are found with one comparison for all
+ * of a sixteen, and only in sixteens that the box meets as a whole.
+ *
+ * Single precision is enough: rounding keeps the order of numbers, so that boxes that meet do
+ * so when all are rounded. */
+#ifndef CS_PAIR_CLUSTERS_H
+#define CS_PAIR_CLUSTERS_H
+
+#include "model/pair/cells.h"
+
+enum { CS_CLUSTER = 16 };
+
+struct cs_cluster {
+    float low[3][CS_CLUSTER], high[3][CS_CLUSTER]; /* m */
+};
+
+struct cs_clusters {
+    uint32_t n;                /* items; the last cluster may have empty boxes */
+    struct cs_cluster *of;     /* item i is lane i % CS_CLUSTER of i / CS_CLUSTER */
+    struct cs_cell_box *boxes; /* of clusters; may be empty */
+    struct cs_cells cells;     /* of them */
+};
+
+/* Clusters that may meet any of some boxes. */
+struct cs_cluster_near {
+    uint32_t *clusters;       /* (n) */
+    struct cs_cluster *boxes; /* those of clusters, by sixteens */
+    uint32_t *items;          /* what cs_cluster_near_items found */
+    size_t n, clusters_room, boxes_room, items_room;
+};
+
+static inline uint32_t cs_clusters_count(uint32_t n_items) {
+    return (n_items + CS_CLUSTER - 1) / CS_CLUSTER;
+}
+
+/* Sets a lane; a box with high below low is empty, and met by none. */
+void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box);
+
+/* Sets near to the clusters that a box meets. false: no memory. */
+bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
+                          const struct cs_cell_box *box);
+
+/* Items of these clusters whose boxes meet a box, into near->items; returns how many. */
+uint32_t cs_cluster_near_items(struct cs_cluster_near *near, const struct cs_clusters *clusters,
+                               const struct cs_cell_box *box);
+
+/* Give memory back. */
+void cs_cluster_near_finish(struct cs_cluster_near *near);
+
+#endif

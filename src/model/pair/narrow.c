@@ -1,0 +1,191 @@
+/* Candidates of a lot are measured in lanes; those in range fill lanes again where a force is
+ * asked for, and are answered one by one else. */
+#include "model/pair/narrow.h"
+
+#include "base/pool.h"
+#include "model/contact/near.h"
+#include "model/contact/points.h"
+
+#include <string.h>
+
+/* One lot at work. */
+struct work {
+    const struct cs_narrow *narrow;
+    enum cs_stencil_kind kind;
+    struct cs_pair_lot *lot;
+    struct cs_pair_lanes candidates, held;
+};
+
+/* what an obstacle has no place in is 0 for it */
+static void read(const double *from, size_t n, const uint32_t at[4], double to[4][3]) {
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            to[k][c] = from && at[k] < n ? from[c * n + at[k]] : 0;
+}
+
+static void read_lane(const double *from, size_t n, const uint32_t at[4], uint32_t lane,
+                      double to[4][3][CS_PAIR_LANES]) {
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            to[k][c][lane] = from && at[k] < n ? from[c * n + at[k]] : 0;
+}
+
+/* what cannot move feels nothing, and holds nothing */
+static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
+    bool fixed = true;
+    for (int k = 0; k < 4; k++)
+        fixed = fixed && cs_points_inverse_mass(system, at[k]) == 0;
+    return fixed;
+}
+
+/* --- one by one --- */
+
+/* beside the share of the pair that was put last */
+static void add_turn(const struct work *work, const struct cs_reaction *reaction) {
+    struct cs_pair_lot *lot = work->lot;
+    struct cs_pair_turn *full = cs_arena_grow(lot->full, &lot->full_room, lot->n, sizeof *full);
+    lot->failed = lot->failed || !full;
+    if (!full)
+        return;
+    lot->full = full;
+    cs_reaction_turn(reaction, work->narrow->matrix, full + lot->n - 1);
+}
+
+static void answer(const struct work *work, const struct cs_reaction *reaction,
+                   struct cs_pair *pair) {
+    const struct cs_narrow *narrow = work->narrow;
+    struct cs_pair_share share;
+    if (narrow->ask == CS_PAIR_BOUND) {
+        cs_reaction_bound(reaction, pair->of, pair->share);
+        return;
+    }
+    cs_reaction_matrix(reaction, narrow->matrix, pair->to, &share);
+    pair->along = share.along;
+    memcpy(pair->share, share.weight, sizeof share.weight);
+    memcpy(pair->of, share.of, sizeof share.of);
+    if (narrow->set->exact)
+        add_turn(work, reaction);
+}
+
+static void add_alone(struct work *work, uint32_t lane) {
+    const struct cs_narrow *narrow = work->narrow;
+    const struct cs_system *system = narrow->search->system;
+    const struct cs_pair_lanes *from = &work->candidates;
+    const struct cs_meeting meeting = {from->range[lane], from->k[lane], from->mu[lane]};
+    struct cs_reaction reaction;
+    double p[4][3], v[4][3];
+    struct cs_pair *pair = cs_pair_lot_next(work->lot);
+    if (!pair)
+        return;
+    pair->n = 4;
+    memcpy(pair->at, from->at[lane], sizeof pair->at);
+    read(narrow->x, system->surfaces->n_points, pair->at, p);
+    read(narrow->v, system->surfaces->n_points, pair->at, v);
+    cs_stencil_set(&reaction.stencil, work->kind, p);
+    cs_reaction_set(&reaction, &meeting, &system->scene->contact, v);
+    answer(work, &reaction, pair);
+}
+
+/* --- forces and their change, in lanes --- */
+
+static void push(struct work *work) {
+    const struct cs_narrow *narrow = work->narrow;
+    const struct cs_pair_law law = {narrow->search->system->scene->contact,
+                                    cs_near_parts(narrow->at.parts)};
+    struct cs_pair_lanes *held = &work->held;
+    if (!held->n)
+        return;
+    if (narrow->ask == CS_PAIR_CHANGE)
+        cs_pair_lanes_change(work->kind, held, &law);
+    else
+        cs_pair_lanes_push(work->kind, held, &law);
+    for (uint32_t l = 0; l < held->n; l++) {
+        struct cs_pair *pair = cs_pair_lot_next(work->lot);
+        if (!pair)
+            break;
+        pair->n = 4;
+        memcpy(pair->at, held->at[l], sizeof pair->at);
+        for (int k = 0; k < 4; k++)
+            for (int c = 0; c < 3; c++)
+                pair->to[k][c] = held->to[k][c][l];
+    }
+    held->n = 0;
+}
+
+static void hold(struct work *work, uint32_t lane) {
+    const struct cs_narrow *narrow = work->narrow;
+    const struct cs_pair_lanes *from = &work->candidates;
+    struct cs_pair_lanes *held = &work->held;
+    const uint32_t l = held->n++;
+    memcpy(held->at[l], from->at[lane], sizeof held->at[l]);
+    held->range[l] = from->range[lane];
+    held->k[l] = from->k[lane];
+    held->mu[l] = from->mu[lane];
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            held->p[k][c][l] = from->p[k][c][lane];
+    const struct cs_system *system = narrow->search->system;
+    const size_t n = system->view.n;
+    read_lane(narrow->v, system->surfaces->n_points, held->at[l], l, held->v);
+    if (narrow->ask == CS_PAIR_CHANGE) {
+        read_lane(narrow->at.dx, n, held->at[l], l, held->dp);
+        read_lane(narrow->at.dv, n, held->at[l], l, held->dv);
+    }
+    if (held->n == CS_PAIR_LANES)
+        push(work);
+}
+
+/* --- candidates --- */
+
+static void measure(struct work *work) {
+    struct cs_pair_lanes *lanes = &work->candidates;
+    const enum cs_pair_ask ask = work->narrow->ask;
+    if (lanes->n)
+        cs_pair_lanes_measure(work->kind, lanes);
+    for (uint32_t l = 0; l < lanes->n; l++) {
+        if (!(lanes->d[l] < lanes->range[l]) ||
+            is_fixed(work->narrow->search->system, lanes->at[l]))
+            continue;
+        if (ask == CS_PAIR_ENERGY)
+            work->lot->energy += cs_law_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
+        else if (ask == CS_PAIR_FORCE || ask == CS_PAIR_CHANGE)
+            hold(work, l);
+        else
+            add_alone(work, l);
+    }
+    lanes->n = 0;
+}
+
+static void take(struct work *work, const uint32_t pair[2]) {
+    const struct cs_narrow *narrow = work->narrow;
+    const struct cs_search *search = narrow->search;
+    struct cs_pair_lanes *lanes = &work->candidates;
+    const uint32_t l = lanes->n++;
+    uint32_t *at = lanes->at[l];
+    cs_search_corners(search->system->surfaces, work->kind, pair, at);
+    const struct cs_meeting *meeting =
+        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]);
+    lanes->range[l] = meeting->range;
+    lanes->k[l] = meeting->k;
+    lanes->mu[l] = meeting->mu;
+    read_lane(narrow->x, search->system->surfaces->n_points, at, l, lanes->p);
+    if (lanes->n == CS_PAIR_LANES)
+        measure(work);
+}
+
+static void do_lot(void *arg, uint32_t number) {
+    const struct cs_narrow *narrow = arg;
+    const struct cs_search_lot *from = narrow->search->lots + number;
+    struct work work = {
+        .narrow = narrow, .kind = from->kind, .lot = narrow->set->lots + number};
+    cs_pair_lot_clear(work.lot);
+    for (size_t k = 0; k < from->n; k++)
+        take(&work, from->pairs + 2 * k);
+    measure(&work);
+    push(&work);
+}
+
+void cs_narrow_run(struct cs_narrow *narrow) {
+    cs_pool_run(narrow->set->n_lots, do_lot, narrow);
+    cs_pair_set_count(narrow->set);
+}

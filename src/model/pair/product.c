@@ -1,0 +1,142 @@
+/* Products pair by pair in lanes, and gathered by particles. */
+#include "model/pair/product.h"
+
+#include "base/pool.h"
+#include "base/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void finish(void *object) {
+    struct cs_product *product = object;
+    for (uint32_t l = 0; l < product->set->n_lots; l++) {
+        free(product->lots[l].factors);
+        free(product->lots[l].products);
+    }
+}
+
+enum cs_status cs_product_init(struct cs_product *product, const struct cs_pair_set *set,
+                               struct cs_arena *arena, struct cs_error *error) {
+    *product = (struct cs_product){.set = set};
+    product->lots = cs_arena_take_n(arena, set->n_lots, sizeof *product->lots, error);
+    if (!error->status)
+        cs_arena_own(arena, finish, product, error);
+    return error->status;
+}
+
+static void put_lane(const struct cs_pair *pair, size_t lane, struct cs_pair_factors *to) {
+    if (!lane)
+        *to = (struct cs_pair_factors){0};
+    for (int k = 0; k < 4; k++) {
+        to->weight[k][lane] = pair->share[k];
+        for (int c = 0; c < 3; c++)
+            to->g[k][c][lane] = pair->to[k][c];
+    }
+    to->along[lane] = pair->along;
+    memcpy(to->at[lane], pair->at, sizeof pair->at);
+    for (int e = 0; e < 6; e++)
+        to->of[e][lane] = pair->of[e];
+}
+
+static void put_lot(void *arg, uint32_t number) {
+    const struct cs_product *product = arg;
+    const struct cs_pair_lot *from = product->set->lots + number;
+    struct cs_product_lot *lot = product->lots + number;
+    const size_t blocks = (from->n + CS_PAIR_LANES - 1) / CS_PAIR_LANES;
+    struct cs_pair_factors *factors =
+        cs_arena_grow(lot->factors, &lot->factors_room, blocks, sizeof *factors);
+    double(*products)[3] =
+        cs_arena_grow(lot->products, &lot->products_room, 4 * from->n, sizeof *products);
+    lot->factors = factors ? factors : lot->factors;
+    lot->products = products ? products : lot->products;
+    lot->failed = from->n && (!factors || !products);
+    for (size_t p = 0; p < from->n && !lot->failed; p++)
+        put_lane(from->pairs + p, p % CS_PAIR_LANES, factors + p / CS_PAIR_LANES);
+}
+
+bool cs_product_set(struct cs_product *product) {
+    bool failed = false;
+    if (!product->set->n)
+        return true;
+    cs_pool_run(product->set->n_lots, put_lot, product);
+    for (uint32_t l = 0; l < product->set->n_lots; l++)
+        failed = failed || product->lots[l].failed;
+    return !failed;
+}
+
+struct job {
+    const struct cs_product *product;
+    const double *p;
+    double *y;
+};
+
+/* blocks of eight that are multiplied together */
+enum { TOGETHER = 8 };
+
+typedef double vectors[4][3][CS_PAIR_LANES];
+
+/* obstacles do not move */
+static void read_lanes(const struct job *job, const struct cs_pair_factors *factors,
+                       vectors p) {
+    const size_t n = job->product->set->n_particles;
+    for (size_t l = 0; l < CS_PAIR_LANES; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < 3; c++)
+                p[k][c][l] = factors->at[l][k] < n ? job->p[c * n + factors->at[l][k]] : 0;
+}
+
+static void write_lanes(vectors by, size_t count, double (*products)[3]) {
+    for (size_t l = 0; l < count; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < 3; c++)
+                products[4 * l + k][c] = by[k][c][l];
+}
+
+/* step by step for several blocks: what was just written number by number is not at once read
+ * as vectors */
+static void multiply_lanes(const struct job *job, const struct cs_product_lot *lot, size_t n,
+                           size_t first) {
+    vectors by[TOGETHER];
+    struct cs_pair_factors *factors = lot->factors + first;
+    const size_t left = n - first * CS_PAIR_LANES;
+    const size_t blocks =
+        left > TOGETHER * CS_PAIR_LANES ? TOGETHER : (left + CS_PAIR_LANES - 1) / CS_PAIR_LANES;
+    for (size_t b = 0; b < blocks; b++)
+        read_lanes(job, factors + b, by[b]);
+    for (size_t b = 0; b < blocks; b++)
+        cs_pair_lanes_multiply(factors + b, by[b]);
+    for (size_t b = 0; b < blocks; b++) {
+        const size_t rest = left - b * CS_PAIR_LANES;
+        write_lanes(by[b], rest < CS_PAIR_LANES ? rest : CS_PAIR_LANES,
+                    lot->products + 4 * (first + b) * CS_PAIR_LANES);
+    }
+}
+
+static void multiply_lot(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const size_t n = job->product->set->lots[number].n;
+    for (size_t b = 0; b * CS_PAIR_LANES < n; b += TOGETHER)
+        multiply_lanes(job, job->product->lots + number, n, b);
+}
+
+static void gather(void *arg, size_t begin, size_t end) {
+    const struct job *job = arg;
+    const struct cs_pair_set *set = job->product->set;
+    const size_t n = set->n_particles;
+    for (size_t i = begin; i < end; i++)
+        for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++) {
+            const struct cs_pair_end *at = set->ends + e;
+            const size_t pair = (size_t)(at->pair - set->lots[at->lot].pairs);
+            const double *by = job->product->lots[at->lot].products[4 * pair + at->corner];
+            for (size_t c = 0; c < 3; c++)
+                job->y[c * n + i] += by[c];
+        }
+}
+
+void cs_product_add(const struct cs_product *product, const double *p, double *y) {
+    struct job job = {product, p, y};
+    if (!product->set->n)
+        return;
+    cs_pool_run(product->set->n_lots, multiply_lot, &job);
+    cs_vector_share(product->set->n_particles, gather, &job);
+}

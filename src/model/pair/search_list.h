@@ -1,0 +1,56 @@
+/* search_list.h - the list of pairs that are near at a state, in lots. */
+#ifndef CS_PAIR_SEARCH_LIST_H
+#define CS_PAIR_SEARCH_LIST_H
+
+#include "model/pair/clusters.h"
+#include "model/pair/meeting.h"
+#include "model/pair/stencil.h"
+
+/* Points, or edges, whose pairs are listed together: they are one thread's. */
+enum { CS_SEARCH_LOT = 128 };
+
+/* Pairs of the points or edges [begin, end). */
+struct cs_search_lot {
+    enum cs_stencil_kind kind;
+    uint32_t begin, end;
+    uint32_t *pairs; /* (n, 2): point and triangle, or edge and a later edge; ascending */
+    size_t n, room;  /* room in pairs */
+    bool failed;     /* there was no memory */
+    struct cs_cluster_near near;
+    double answer; /* to a question about the pairs of each lot: who asks sets it */
+};
+
+struct cs_search {
+    const struct cs_system *system;     /* borrowed */
+    const struct cs_meetings *meetings; /* borrowed */
+    double margin;                      /* m, of new lists */
+    double held;    /* m, of the list as it is: more after cs_search_cover */
+    uint32_t *body; /* (n_points) of each point */
+    double *from;   /* (3,n_points) where the list was made */
+    struct cs_clusters triangles, edges;
+    struct cs_search_lot *lots; /* points first */
+    uint32_t n_lots;
+    double *drift;   /* (4, n_bodies) middle of the moves of a body, and how far they reach */
+    bool fresh;      /* the list was made */
+    uint64_t builds; /* lists that were made */
+};
+
+/* Makes the lists of all lots anew for the state search->from and the margin search->held, with
+ * all threads. false: no memory. */
+bool cs_search_list(struct cs_search *search);
+
+/* Points of a pair. */
+static inline void cs_search_corners(const struct cs_surfaces *surfaces,
+                                     enum cs_stencil_kind kind, const uint32_t pair[2],
+                                     uint32_t at[4]) {
+    if (kind == CS_STENCIL_EDGES) {
+        for (size_t k = 0; k < 4; k++)
+            at[k] = surfaces->edges[2 * (size_t)pair[k / 2] + k % 2];
+        return;
+    }
+    at[0] = pair[0];
+    for (size_t k = 0; k < 3; k++)
+        at[1 + k] = surfaces->triangles[3 * (size_t)pair[1] + k];
+}
+
+#endif
