@@ -59,8 +59,10 @@ static void print(const struct bench_settings *settings, const struct bench_mode
     add_body(settings, model, json);
     cs_text_add(json, ",\n\"mass\": {\"total\": 0.2},\n");
     add_springs(model, json);
-    if (model->r)
+    if (model->r && !model->meets)
         cs_text_add(json, ",\n\"pins\": [\"top-left\", \"top-right\"]");
+    if (model->meets)
+        cs_text_add(json, ",\n\"self_contact\": true, \"friction\": 0.3");
     if (model->company)
         cs_text_add(json, ",\n\"strain_limit\": 9");
     cs_text_add(json, "}],\n\"time\": {\"fps\": %.17g},\n", model->fps);
@@ -72,6 +74,9 @@ static void print(const struct bench_settings *settings, const struct bench_mode
                           "\"normal\": [0.4, 1, 0.1]}}],\n"
                           "\"forces\": {\"wind\": {\"direction\": [0, 0, 1], "
                           "\"strength\": 4}},\n");
+    if (model->meets)
+        cs_text_add(json, "\"contact\": {\"law\": \"force\", \"damping\": 0.0005},\n"
+                          "\"crossings\": \"limit\",\n");
     cs_text_add(json, "\"integrator\": \"velocity-verlet\"}\n");
 }
 

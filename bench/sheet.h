@@ -16,6 +16,7 @@ struct bench_model {
     enum bench_damping damping;
     bool slim;    /* no bend springs */
     bool company; /* wind, sphere, plane and strain limit are there too */
+    bool meets;   /* it meets itself, and its crossings are limited; nothing is pinned */
     double fps;
 };
 
