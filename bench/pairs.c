@@ -104,7 +104,7 @@ static void seen(void *object) {
 static void share(void *object) {
     struct bed *bed = object;
     move(bed, FRAME / 4);
-    bed->out[0] = cs_crossings_share(&bed->session.system, bed->x, bed->at);
+    bed->out[0] = cs_crossings_share(&bed->session.system, 0, bed->x, FRAME / 4, bed->at);
     move(bed, 0);
 }
 

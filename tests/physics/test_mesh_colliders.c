@@ -6,6 +6,7 @@
 #include "model/contact/obstacle.h"
 #include "model/contact/points.h"
 #include "model/cross/crossings.h"
+#include "model/cross/listed.h"
 #include "model/force/terms.h"
 #include "model/pair/pairs.h"
 #include "model/plan.h"
@@ -332,6 +333,24 @@ START_TEST(what_comes_is_foreseen) {
     ck_assert_msg(share < gap / whole && share > 0.8 * gap / whole, "%.3g", share);
     ck_assert_uint_eq(cs_crossings_count(net.system, 1.0 / 60, net.x).n, 0);
     ck_assert_uint_gt(cs_crossings_count(net.system, 0.5, net.x).n, 0);
+    // the list of contact, which covers the shorter ways, says what the tree says
+    struct cs_system *system = net.system;
+    struct cs_pairs *pairs = system->pairs;
+    uint32_t cut = 0, covered = 0;
+    for (int k = 1; k < 30; k++) {
+        const double t = (1.0 + k) / 60;
+        system->pairs = pairs;
+        covered += cs_listed_covers(system, true,
+                                    cs_points_places(system, CS_POINTS_BEGIN, 1.0 / 60, net.x),
+                                    cs_points_places(system, CS_POINTS_END, t, net.x));
+        const double listed = cs_crossings_share(system, 1.0 / 60, net.x, t, net.x);
+        system->pairs = NULL;
+        ck_assert_double_eq(cs_crossings_share(system, 1.0 / 60, net.x, t, net.x), listed);
+        cut += listed < 1;
+    }
+    ck_assert_uint_gt(cut, 10);
+    ck_assert_uint_gt(covered, 10);
+    system->pairs = pairs;
     fixture_close(&net);
 }
 END_TEST

@@ -233,9 +233,9 @@ START_TEST(list_limits_as_the_tree_does) {
         struct cs_pairs *pairs = cloth.system->pairs;
         shake(&cloth, 0.05 * (1 + k), &seed, x);
         listed += cs_listed_covers(cloth.system, true, cloth.x, x);
-        const double share = cs_crossings_share(cloth.system, cloth.x, x);
+        const double share = cs_crossings_share(cloth.system, 0, cloth.x, 0, x);
         cloth.system->pairs = NULL;
-        ck_assert_double_eq(cs_crossings_share(cloth.system, cloth.x, x), share);
+        ck_assert_double_eq(cs_crossings_share(cloth.system, 0, cloth.x, 0, x), share);
         cloth.system->pairs = pairs;
         cut += share < 1;
     }
