@@ -11,13 +11,8 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 1' INT TERM
 unset CLOTHSIM_PLUGIN_PATH
 
-# the defaults of all, and other forms of some that make other steps; dearer ones are slow
+# the defaults of all; other forms of some, which make other steps, are slow
 names=$("$program" integrators | sed -n 's/^\([a-z0-9-]*\)  *order [0-9].*/\1/p')
-for form in newmark:set=hht newmark:set=generalised-alpha,rho_inf=0.2 bdf2:solve=linear \
-    implicit-linearised:hessian=exact; do
-    case " $(echo $names) " in *" ${form%%:*} "*) names="$names $form" ;; esac
-done
-
 [ $# -eq 0 ] || names=$*
 
 code=0
