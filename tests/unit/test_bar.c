@@ -57,7 +57,7 @@ START_TEST(ends_that_are_round_have_ticks) {
     ck_assert_double_eq_tol(ticks[5], 0.2, 1e-15);
     ck_assert_uint_eq(cs_bar_ticks(none, 5, ticks), 1);
     ck_assert_double_eq(ticks[0], 4);
-    ck_assert_uint_eq(cs_bar_ticks((const double[2]){0, NAN}, 5, ticks), 1);
+    ck_assert_uint_eq(cs_bar_ticks((const double[2]){0, (double)NAN}, 5, ticks), 1);
     ck_assert_uint_eq(cs_bar_ticks((const double[2]){-HUGE_VAL, HUGE_VAL}, 5, ticks), 1);
 }
 END_TEST
@@ -130,7 +130,7 @@ START_TEST(a_hundredth_is_beyond_the_range) {
 END_TEST
 
 START_TEST(values_that_are_no_numbers_are_passed_over) {
-    const double values[] = {NAN, 2, -HUGE_VAL, -3, 1, HUGE_VAL, 1e300};
+    const double values[] = {(double)NAN, 2, -HUGE_VAL, -3, 1, HUGE_VAL, 1e300};
     ck_assert_double_eq(cs_measure_magnitude(values, 7), 3);
     ck_assert_double_eq(cs_measure_magnitude(values, 1), 0);
     ck_assert_double_eq(cs_measure_magnitude(values, 0), 0);

@@ -370,7 +370,7 @@ START_TEST(largest_strain_is_that_of_single_springs) {
             most = fmax(most, found);
             sheet_stir(&sheet, 0.1, 0);
             if (k == 1)
-                sheet.x[sheet.n / 2] = NAN;
+                sheet.x[sheet.n / 2] = (double)NAN;
         }
         sheet_close(&sheet);
     }
