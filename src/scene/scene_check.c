@@ -262,7 +262,7 @@ static enum cs_status check_meetings(const struct place *at, const struct cs_sce
         if (cs_scene_colliders(scene)[c].mesh.present)
             snprintf(path, sizeof path, "colliders[%u].mesh", c);
     return refuse(at, path,
-                  "contact.law is project, which knows colliders without triangles alone; "
+                  "contact.law is project, which handles only colliders that are not meshes; "
                   "expected contact.law force");
 }
 
