@@ -65,7 +65,8 @@ static bool is_cheaper(const struct cs_cell *cell, const struct cs_cell *than) {
 static bool relate(const struct cs_compare *compare, const struct cs_cell *cell,
                    const struct cs_cell *base, struct cs_ratio *ratio) {
     const struct cs_cell *cells = compare->sweep.cells;
-    *ratio = (struct cs_ratio){cell->cpu / base->cpu, (double)NAN, (double)NAN, 0};
+    *ratio = (struct cs_ratio){
+        .factor = cell->cpu / base->cpu, .low = (double)NAN, .high = (double)NAN};
     if (compare->rounds.n == 0 || !cs_rounds_ratio(&compare->rounds, (uint32_t)(cell - cells),
                                                    (uint32_t)(base - cells), ratio))
         return ratio->factor >= CS_APART_UNPAIRED;
@@ -208,8 +209,7 @@ static bool is_narrow(const struct cs_rank *rank, double share) {
     const struct cs_ratio *ratio = &rank->ratio;
     if (!rank->next || ratio->factor > FAR_NEXT)
         return true;
-    return ratio->pairs > 0 && ratio->high <= ratio->factor * (1 + share) &&
-           ratio->low >= ratio->factor / (1 + share);
+    return ratio->pairs > 0 && ratio->within <= share;
 }
 
 bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share) {

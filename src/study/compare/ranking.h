@@ -43,7 +43,7 @@ void cs_ranking_finish(struct cs_ranking *ranking);
 /* The cheapest row with an error of at most bound, and the next; best NULL: no row has. */
 void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank);
 
-/* Whether each ratio of contenders is known to that share. */
+/* Whether the pairs of each ratio of contenders leave open no more than that share. */
 bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share);
 
 #endif

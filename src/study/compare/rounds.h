@@ -2,8 +2,9 @@
  *
  * In each round every cell is run once, in an order of its own. What two cells took in the same
  * round is a pair; the ratio of two cells is the median over their pairs, and its interval is
- * what the median of resampled pairs is in 95 of 100 cases (bootstrap: Efron 1979). The
- * generator starts from a fixed seed: the same times give the same interval.
+ * what the median of resampled pairs is in 95 of 100 cases (bootstrap: Efron 1979), widened by
+ * what differs between comparisons (two levels: Kalibera, Jones 2013). The generator starts
+ * from a fixed seed: the same times give the same interval.
  */
 #ifndef CS_ROUNDS_H
 #define CS_ROUNDS_H
@@ -24,7 +25,8 @@ struct cs_rounds {
 /* How many times dearer one cell is than another. */
 struct cs_ratio {
     double factor;    /* median */
-    double low, high; /* 95 % */
+    double low, high; /* 95 %, of comparisons that are repeated */
+    double within;    /* share that the pairs of this one alone leave open to either side */
     uint32_t
         pairs; /* 0: the cells were timed once, each by itself; then low and high are NAN */
 };
