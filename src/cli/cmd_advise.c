@@ -25,8 +25,9 @@ enum {
 };
 
 static const struct cs_arg rows[ADVISE_ROWS] = {
-    [ADVISE_INTEGRATORS] = {"integrators", 'i', "NAME[:KEY=VALUE,...]",
-                            "a method; may be repeated (default: all)", true},
+    [ADVISE_INTEGRATORS] =
+        {"integrators", 'i', "LIST",
+         "methods, NAME:KEY=VALUE,...,NAME...; may be repeated (default: all)", true},
     [ADVISE_CHECK] = {"check", 0, NULL, "bisect the limits as well, and print them beside",
                       false},
     [ADVISE_ERROR] = {"error", 0, "METRES",
@@ -118,7 +119,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
         cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||
         cs_args_whole(args, ADVISE_JOBS, 1, CS_WORKERS_MOST, &study.workers, error) ||
-        cs_args_all(args, ADVISE_INTEGRATORS, &study.methods, &study.n_methods, error) ||
+        cs_args_methods(args, ADVISE_INTEGRATORS, &study.methods, &study.n_methods, error) ||
         cs_args_overrides(args, ADVISE_SET, &study.session.overrides,
                           &study.session.n_overrides, error) ||
         cs_args_all(args, ADVISE_PLUGIN, &study.session.plugins, &study.session.n_plugins,

@@ -131,7 +131,7 @@ static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
     const char *const *methods;
     uint32_t n_methods;
     if (cs_stability_read(args, &settings, error) ||
-        cs_args_all(args, STABILITY_INTEGRATORS, &methods, &n_methods, error))
+        cs_args_methods(args, STABILITY_INTEGRATORS, &methods, &n_methods, error))
         return error->status;
     /* before the operand is checked: here it is only part of a name, and may be absent */
     if (cs_args_get(args, STABILITY_EXTREME))

@@ -19,8 +19,10 @@ enum {
 };
 
 static const struct cs_arg rows[SWEEP_ROWS] = {
-    [SWEEP_INTEGRATORS] = {"integrators", 'i', "NAME[:KEY=VALUE,...]",
-                           "a method; may be repeated (default: the scene's own)", true},
+    [SWEEP_INTEGRATORS] = {"integrators", 'i', "LIST",
+                           "methods, NAME:KEY=VALUE,...,NAME...; may be repeated (default: the "
+                           "scene's own)",
+                           true},
     [SWEEP_SET] = {"set", 's', "PATH=VALUE,VALUE,...",
                    "the values of a key of the scene, each with each of the others; may be "
                    "repeated",
@@ -104,7 +106,7 @@ static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     if (read_keys(args, &product, error) ||
         cs_args_whole(args, SWEEP_FRAMES, 1, 10000000, &product.frames, error) ||
         cs_args_shard(args, SWEEP_SHARD, &product.shard, error) ||
-        cs_args_all(args, SWEEP_INTEGRATORS, &product.methods, &product.n_methods, error) ||
+        cs_args_methods(args, SWEEP_INTEGRATORS, &product.methods, &product.n_methods, error) ||
         cs_args_all(args, SWEEP_PLUGIN, &product.session.plugins, &product.session.n_plugins,
                     error))
         return error->status;

@@ -9,8 +9,8 @@
 
 const struct cs_arg cs_stability_rows[STABILITY_ROWS] = {
     [STABILITY_INTEGRATORS] = {"integrators", 'i', "LIST",
-                               "NAME[:KEY=VALUE,...]; all: every method; may be repeated "
-                               "(default: the scene's own)",
+                               "methods, NAME:KEY=VALUE,...,NAME...; all: every method; "
+                               "may be repeated (default: the scene's own)",
                                true},
     [STABILITY_AXIS] = {"axis", 0, "NAME",
                         "stiffness, damping, mass or resolution (default: stiffness)", false},

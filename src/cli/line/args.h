@@ -60,6 +60,10 @@ const char *cs_args_get(const struct cs_args *args, uint32_t row);
 enum cs_status cs_args_all(struct cs_args *args, uint32_t row, const char *const **values,
                            uint32_t *n, struct cs_error *error);
 
+/* The methods of all values of an option, each a list NAME:key=value,...,NAME,... */
+enum cs_status cs_args_methods(struct cs_args *args, uint32_t row, const char *const **methods,
+                               uint32_t *n, struct cs_error *error);
+
 /* An option as a whole number in min..max; *value is left alone where it was not given. */
 enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t min,
                              uint32_t max, uint32_t *value, struct cs_error *error);

@@ -1,5 +1,6 @@
 /* Reads the values of options as numbers, choices and overrides, and checks them. */
 #include "cli/line/args.h"
+#include "sim/method.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,6 +19,25 @@ enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t 
                        args->command->rows[row].name, min, max, text);
     *value = (uint32_t)read;
     return CS_OK;
+}
+
+enum cs_status cs_args_methods(struct cs_args *args, uint32_t row, const char *const **methods,
+                               uint32_t *n, struct cs_error *error) {
+    size_t most = 0;
+    for (uint32_t i = 0; i < args->n_given; i++)
+        if (args->given[i].row == row)
+            most += strlen(args->given[i].value) + 1;
+    const char **all = cs_arena_take_n(&args->arena, most, sizeof *all, error);
+    *n = 0;
+    for (uint32_t i = 0; i < args->n_given && !error->status; i++) {
+        if (args->given[i].row != row)
+            continue;
+        char *rest = cs_arena_take_text(&args->arena, args->given[i].value, error);
+        while (rest)
+            all[(*n)++] = cs_method_split(&rest);
+    }
+    *methods = all;
+    return error->status;
 }
 
 enum cs_status cs_args_shard(const struct cs_args *args, uint32_t row, struct cs_shard *shard,
