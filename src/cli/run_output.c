@@ -25,8 +25,19 @@ static bool is_numbered(const char *name, const char *prefix, const char *ending
 }
 
 bool cs_output_is_picture(const char *name) {
-    return is_numbered(name, "frame_", ".png") || !strcmp(name, "run.json") ||
-           !strcmp(name, "run.checkpoint");
+    static const char *const numbered[][2] = {{"frame_", ".png"},     {"bodies_", ".obj"},
+                                              {"bodies_", ".vtp"},    {"colliders_", ".obj"},
+                                              {"colliders_", ".vtp"}, {NULL, NULL}};
+    static const char *const alone[] = {
+        "run.json", "run.checkpoint", "run.npz",       "run.npz.part",
+        "run.pvd",  "bodies.pc2",     "colliders.pc2", NULL};
+    for (size_t k = 0; numbered[k][0]; k++)
+        if (is_numbered(name, numbered[k][0], numbered[k][1]))
+            return true;
+    for (size_t k = 0; alone[k]; k++)
+        if (!strcmp(name, alone[k]))
+            return true;
+    return false;
 }
 
 bool cs_output_is_state(const char *name) {

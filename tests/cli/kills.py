@@ -29,7 +29,8 @@ FRAMES, EVERY = 24, 5
 
 def command(program, method, name, rest):
     return [program, "run", "s.json", "-n", str(FRAMES), "-i", method, "-q", "--renderer", "cpu",
-            "--states", name + "-states", "--watch", name + ".csv", *rest]
+            "--states", name + "-states", "--watch", name + ".csv", "--export",
+            "obj,pc2,vtp,npz", "--export-values", "force", *rest]
 
 
 def survey(name):

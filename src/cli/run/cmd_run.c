@@ -22,6 +22,8 @@ enum {
     RUN_CHECKPOINT,
     RUN_RESUME,
     RUN_STATES,
+    RUN_EXPORT,
+    RUN_VALUES,
     RUN_HASH,
     RUN_JSON,
     RUN_WATCH,
@@ -54,7 +56,8 @@ static const struct cs_arg rows[RUN_ROWS] = {
                  "folder for frame_00001.png ... and run.json (default: out)", false},
     [RUN_OVERWRITE] = {"overwrite", 'y', NULL, "replace the files of an earlier run", false},
     [RUN_NO_RENDER] = {"no-render", 0, NULL, "draw nothing", false},
-    [RUN_EVERY] = {"every", 0, "K", "draw frames K, 2K, 3K ... only (default: 1)", false},
+    [RUN_EVERY] = {"every", 0, "K", "draw and export frames K, 2K, 3K ... only (default: 1)",
+                   false},
     [RUN_CHECKPOINT] = {"checkpoint", 0, "EVERY",
                         "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
                         false},
@@ -64,6 +67,12 @@ static const struct cs_arg rows[RUN_ROWS] = {
                     "write x_00000.npy, v_00000.npy ...: positions and velocities of the start "
                     "(0) and of each frame",
                     false},
+    [RUN_EXPORT] = {"export", 0, "FORMAT[,...]",
+                    "write the run into DIR for other programs: obj and pc2 (Blender), vtp "
+                    "(ParaView), npz (NumPy)",
+                    false},
+    [RUN_VALUES] = {"export-values", 0, "VALUE[,...]",
+                    "force, strain: of each particle, in files of vtp and npz", false},
     [RUN_HASH] = {"hash", 0, NULL, "print number and state hash of each frame, one a line",
                   false},
     [RUN_JSON] = {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
@@ -171,7 +180,9 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
         cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
         cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))
         return error->status;
-    if (check_stream(settings, error))
+    if (check_stream(settings, error) ||
+        cs_run_export_read(cs_args_get(args, RUN_EXPORT), cs_args_get(args, RUN_VALUES),
+                           &settings->export, error))
         return error->status;
     return read_session(args, &settings->session, error);
 }

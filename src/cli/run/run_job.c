@@ -37,9 +37,9 @@ static bool makes_checkpoints(const struct cs_job_settings *settings) {
     return settings->checkpoint.frames || settings->checkpoint.seconds > 0 || settings->resume;
 }
 
-/* pictures and checkpoints go into the folder */
+/* pictures, checkpoints and exports go into the folder */
 static bool uses_folder(const struct cs_job_settings *settings) {
-    return settings->session.render || makes_checkpoints(settings);
+    return settings->session.render || makes_checkpoints(settings) || settings->export.formats;
 }
 
 static enum cs_status check_outputs(const struct cs_job *job, struct cs_error *error) {
@@ -116,49 +116,17 @@ static enum cs_status keep(struct cs_job *job, const struct cs_job_frame *frame,
     return CS_OK;
 }
 
-/* Hands the picture over with what says where it came from. */
-static enum cs_status give_picture(struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_picture *picture = &job->begun;
-    const struct cs_scene *scene = &job->session.scene;
-    char number[16];
-    struct cs_text time = {0}, range = {0};
-    snprintf(number, sizeof number, "%u", picture->number);
-    cs_text_add_real(&time, picture->time);
-    if (cs_picture_is_coloured(scene)) {
-        cs_text_add_real(&range, picture->range[0]);
-        cs_text_add(&range, "..");
-        cs_text_add_real(&range, picture->range[1]);
-        cs_text_add(&range, " %s", cs_picture_unit(scene));
-    }
-    const struct cs_png_text texts[] = {
-        {"Software", "clothsim " CS_VERSION},
-        {"Source", job->scene_hash},
-        {"clothsim:frame", number},
-        {"clothsim:time", cs_text_get(&time)},
-        {"clothsim:integrator", cs_text_get(&job->method)},
-        {"clothsim:state-hash", picture->hash},
-        {"clothsim:renderer", cs_text_get(&job->renderer)},
-        {"clothsim:range", cs_text_get(&range)},
-    };
-    /* the range comes last, so that it can be left out where nothing is coloured */
-    const uint32_t n_texts = sizeof texts / sizeof *texts - !range.length;
-    if (time.failed || range.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
-    else
-        cs_frames_give(job->writer, picture->number, texts, n_texts, error);
-    cs_text_finish(&time);
-    cs_text_finish(&range);
-    return error->status;
-}
-
 /* Waits for the picture under way and hands it over. */
 static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
     const double start = cs_clock_wall();
     if (!job->begun.number)
         return CS_OK;
+    const struct cs_picture_origin origin = {&job->session.scene, job->scene_hash,
+                                             cs_text_get(&job->method),
+                                             cs_text_get(&job->renderer)};
     const enum cs_status status = cs_picture_end(&job->picture, error);
     job->wait_seconds += cs_clock_wall() - start;
-    if (!status && !give_picture(job, error))
+    if (!status && !cs_job_picture_give(&job->begun, &origin, job->writer, error))
         job->drawn++;
     job->begun.number = 0;
     return error->status;
@@ -174,7 +142,8 @@ static enum cs_status begin_picture(struct cs_job *job, struct cs_job_frame *fra
     struct cs_image *image = cs_frames_take(job->writer);
     job->wait_seconds += cs_clock_wall() - start;
     cs_picture_begin(&job->picture, run, image);
-    job->begun = (struct cs_job_picture){.number = run->frame, .time = run->t};
+    job->begun = (struct cs_job_picture){
+        .number = run->frame, .frame = run->frame, .time = run->t};
     memcpy(job->begun.hash, job->hash, sizeof job->hash);
     memcpy(job->begun.range, job->picture.range, sizeof job->begun.range);
     memcpy(frame->range, job->picture.range, sizeof frame->range);
@@ -228,6 +197,8 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (job->writer && run->frame % settings->every == 0 && begin_picture(job, &frame, error))
         return error->status;
+    if (cs_export_take(&job->export, run->frame, run->t, run->x, run->v, error))
+        return error->status;
     if (cs_job_wants_json(settings) && keep(job, &frame, error))
         return error->status;
     return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
@@ -278,11 +249,13 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
     const struct cs_job_settings *settings = job->settings;
     cs_text_add(&job->outputs,
                 "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
-                "%s\nwatch: %s\nledger: %s\nJSON: %s\n",
+                "%s\nwatch: %s\nledger: %s\nJSON: %s\nexport:",
                 settings->session.render ? cs_text_get(&job->renderer) : "none",
                 settings->every, settings->level, yes(settings->fast),
                 yes(settings->states != NULL), yes(settings->watch != NULL),
                 yes(settings->ledger != NULL), yes(cs_job_wants_json(settings)));
+    cs_run_export_print(&settings->export, &job->outputs);
+    cs_text_add(&job->outputs, "\n");
     if (job->outputs.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for checkpoints");
     const struct cs_resume_of of = {.scene = cs_text_get(&job->scene),
@@ -310,12 +283,23 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
+/* of the job's run, as it stands; not open where nothing is exported */
+static enum cs_status begin_exports(struct cs_job *job, struct cs_error *error) {
+    struct cs_export_settings settings = job->settings->export;
+    settings.folder = job->settings->folder;
+    settings.every = job->settings->every;
+    return settings.formats ? cs_run_export_begin(&job->export, &settings, &job->session.run,
+                                                  job->settings->resume, error)
+                            : CS_OK;
+}
+
 /* Also of a run that failed: its last picture is of a frame that was fine, and so is the last
  * checkpoint. The first failure wins: a later one of drawing or writing changes nothing. */
 static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
     if (settle_pictures(job, &later) == CS_OK)
         cs_resume_write(&job->checkpoints, &later);
+    cs_export_finish(&job->export, makes_checkpoints(job->settings), &later);
     if (!error->status)
         *error = later;
 }
@@ -367,7 +351,7 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
     /* a checkpoint that is refused leaves the rows of the run that it is of */
-    if (settings->resume ? go_on(job, error) : begin(job, error))
+    if ((settings->resume ? go_on(job, error) : begin(job, error)) || begin_exports(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
     /* also after a failure: rows and frames that were finished are kept */
@@ -382,6 +366,7 @@ void cs_job_finish(struct cs_job *job) {
     /* a picture under way is drawn into an image of the writer's */
     cs_picture_close(&job->picture);
     cs_frames_destroy(job->writer);
+    cs_export_close(&job->export);
     cs_output_release(&job->folder);
     cs_output_release(&job->states);
     cs_session_close(&job->session);

@@ -4,9 +4,10 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "cli/run/run_export.h"
+#include "cli/run/run_picture.h"
 #include "cli/run/run_resume.h"
 #include "cli/run_output.h"
-#include "io/frames.h"
 #include "sim/account.h"
 #include "study/picture.h"
 #include "study/session.h"
@@ -24,6 +25,7 @@ struct cs_job_settings {
     uint32_t level;                     /* zlib */
     struct cs_resume_pace checkpoint;   /* zeroed: none */
     bool resume;                        /* go on from the checkpoint in the folder */
+    struct cs_export_settings export;   /* into the folder, as often as pictures */
     bool fast, hash, overwrite, quiet;
 };
 
@@ -36,14 +38,6 @@ struct cs_job_frame {
     bool drawn;
     double range[2];    /* of the colours, where drawn by a value */
     uint64_t crossings; /* where they are counted */
-};
-
-/* The frame whose picture is being drawn while the run goes on. */
-struct cs_job_picture {
-    uint32_t number; /* 0: none */
-    double time;     /* s */
-    char hash[CS_HASH_DIGITS];
-    double range[2];
 };
 
 /* Zeroed: nothing done. */
@@ -68,6 +62,7 @@ struct cs_job {
     char hash[CS_HASH_DIGITS];       /* of the last frame's state */
     struct cs_job_picture begun;     /* not yet written */
     uint32_t drawn;                  /* pictures written */
+    struct cs_export export;
     struct cs_text outputs;          /* which there are, as far as checkpoints depend on it */
     struct cs_output folder, states; /* owned while the run lasts */
     struct cs_resume checkpoints;

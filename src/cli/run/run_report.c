@@ -131,6 +131,8 @@ static void add_files(const struct cs_job *job, struct cs_text *out) {
     const struct cs_job_settings *settings = job->settings;
     if (job->drawn)
         add_row(out, "pictures", "%u in %s", job->drawn, settings->folder);
+    if (settings->export.formats)
+        add_row(out, "exports", "%u samples in %s", job->export.n_samples, settings->folder);
     if (settings->states)
         add_row(out, "states", "%u in %s", job->session.run.frame + 1, settings->states);
 }

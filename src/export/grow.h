@@ -1,0 +1,32 @@
+/* grow.h - a file that grows sample by sample and is whole after each: its path is its own from
+ * the start, and its reader never looks behind what it says it holds. */
+#ifndef CS_EXPORT_GROW_H
+#define CS_EXPORT_GROW_H
+
+#include "export/name.h"
+
+#include <stddef.h>
+
+/* Zeroed: closed. */
+struct cs_grown {
+    int file;        /* descriptor + 1; 0: closed */
+    uint64_t length; /* bytes */
+    char path[CS_EXPORT_PATH];
+};
+
+/* A new file; or, kept above 0, the first bytes of one that is there. CS_ERR_FILE, as in all
+ * below: also where that one is shorter. */
+enum cs_status cs_grown_open(struct cs_grown *grown, const char *path, uint64_t kept,
+                             struct cs_error *error);
+
+/* Writes n bytes from `at` on, which is not behind the end. Where that fails the file is no
+ * longer than before. */
+enum cs_status cs_grown_write(struct cs_grown *grown, uint64_t at, const void *bytes, size_t n,
+                              struct cs_error *error);
+
+enum cs_status cs_grown_read(const struct cs_grown *grown, uint64_t at, void *bytes, size_t n,
+                             struct cs_error *error);
+
+void cs_grown_close(struct cs_grown *grown);
+
+#endif

@@ -1,0 +1,51 @@
+/* skin.h - what is exported: bodies, or colliders, as points joined to triangles and lines. */
+#ifndef CS_EXPORT_SKIN_H
+#define CS_EXPORT_SKIN_H
+
+#include "base/arena.h"
+#include "model/contact/obstacle.h"
+#include "model/system/system.h"
+
+/* Values of all points, as they are at the sample taken last. */
+struct cs_export_field {
+    const char *name, *plural; /* of one point's value, of all */
+    uint32_t components;
+    uint64_t *words; /* (n, components) doubles as of base/little.h */
+};
+
+enum { CS_EXPORT_FIELDS = 4 };
+
+/* Points of bodies are the particles, in their order. The arrays are the arena's. */
+struct cs_skin {
+    const char *name, *item; /* of files: "bodies"; of one of them: "body" */
+    uint32_t n, n_triangles, n_lines, n_items;
+    uint32_t *triangles; /* (n_triangles, 3), counter-clockwise from outside */
+    uint32_t *lines;     /* (n_lines, 2): bodies that are a row of particles */
+    float
+        *uv; /* (n_triangles, 3, 2) of corners, v upwards, NAN where a body has none; or NULL */
+    uint32_t *items;                                     /* (n_items) numbers in the scene */
+    uint32_t *first_point, *first_triangle, *first_line; /* (n_items + 1) */
+    double *own; /* (n, 3) places in the frames of colliders; NULL of bodies */
+    bool moves;
+    uint32_t n_fields;
+    struct cs_export_field fields[CS_EXPORT_FIELDS]; /* the first: positions in m */
+};
+
+/* Takes what every skin has; the counts are set, but for those in the lists of firsts. */
+enum cs_status cs_skin_take(struct cs_skin *skin, bool uv, struct cs_arena *arena,
+                            struct cs_error *error);
+
+/* Takes a field of so many components a point. */
+struct cs_export_field *cs_skin_add_field(struct cs_skin *skin, const char *const names[2],
+                                          uint32_t components, struct cs_arena *arena,
+                                          struct cs_error *error);
+
+/* All bodies of a system. */
+enum cs_status cs_skin_of_bodies(struct cs_skin *skin, const struct cs_system *system,
+                                 struct cs_arena *arena, struct cs_error *error);
+
+/* Sets a field from an array (components, n). */
+void cs_skin_set(const struct cs_skin *skin, const struct cs_export_field *field,
+                 const double *values);
+
+#endif
