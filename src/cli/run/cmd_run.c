@@ -56,8 +56,9 @@ static const struct cs_arg rows[RUN_ROWS] = {
                  "folder for frame_00001.png ... and run.json (default: out)", false},
     [RUN_OVERWRITE] = {"overwrite", 'y', NULL, "replace the files of an earlier run", false},
     [RUN_NO_RENDER] = {"no-render", 0, NULL, "draw nothing", false},
-    [RUN_EVERY] = {"every", 0, "K", "draw and export frames K, 2K, 3K ... only (default: 1)",
-                   false},
+    [RUN_EVERY] =
+        {"every", 0, "K",
+         "draw and export frames K, 2K, 3K ... only, numbered 1, 2, 3 ... (default: 1)", false},
     [RUN_CHECKPOINT] = {"checkpoint", 0, "EVERY",
                         "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
                         false},

@@ -143,7 +143,7 @@ static enum cs_status begin_picture(struct cs_job *job, struct cs_job_frame *fra
     job->wait_seconds += cs_clock_wall() - start;
     cs_picture_begin(&job->picture, run, image);
     job->begun = (struct cs_job_picture){
-        .number = run->frame, .frame = run->frame, .time = run->t};
+        .number = run->frame / job->settings->every, .frame = run->frame, .time = run->t};
     memcpy(job->begun.hash, job->hash, sizeof job->hash);
     memcpy(job->begun.range, job->picture.range, sizeof job->begun.range);
     memcpy(frame->range, job->picture.range, sizeof frame->range);

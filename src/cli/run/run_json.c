@@ -160,6 +160,8 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
         const struct cs_job_frame *frame = job->kept + i;
         cs_text_add(out, "%s\n    {\"number\": %u, \"hash\": \"%s\", \"drawn\": %s",
                     i ? "," : "", i + 1, frame->hash, frame->drawn ? "true" : "false");
+        if (frame->drawn)
+            cs_text_add(out, ", \"picture\": %u", (i + 1) / job->settings->every);
         if (job->tally.counted)
             cs_text_add(out, ", \"crossings\": %llu", (unsigned long long)frame->crossings);
         if (coloured && frame->drawn) {
