@@ -136,22 +136,24 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
                          picture->range);
 }
 
-static const char *title_of(const struct cs_scene *scene) {
-    return scene->render.look == CS_LOOK_FORCE    ? "force N"
-           : scene->render.look == CS_LOOK_STRAIN ? "strain %"
-                                                  : NULL;
+const char *cs_picture_title(int32_t look) {
+    return look == CS_LOOK_FORCE ? "force N" : look == CS_LOOK_STRAIN ? "strain %" : NULL;
+}
+
+double cs_picture_factor(int32_t look) {
+    return look == CS_LOOK_STRAIN ? 100 : 1;
 }
 
 static void paint(void *object) {
     struct cs_picture *picture = object;
-    const bool strain = picture->scene->render.look == CS_LOOK_STRAIN;
+    const int32_t look = picture->scene->render.look;
     const double start = cs_clock_wall();
     const struct cs_frame frame = {.t = picture->t,
                                    .x = picture->x,
                                    .scalar = picture->scalar,
                                    .range = {picture->range[0], picture->range[1]},
-                                   .title = title_of(picture->scene),
-                                   .factor = strain ? 100 : 1,
+                                   .title = cs_picture_title(look),
+                                   .factor = cs_picture_factor(look),
                                    .inv_mass = picture->inv_mass,
                                    .goals = picture->goals,
                                    .marks = picture->marks,

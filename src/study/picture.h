@@ -58,6 +58,10 @@ void cs_picture_range(const struct cs_scene *scene, double most, double range[2]
 bool cs_picture_is_coloured(const struct cs_scene *scene);
 const char *cs_picture_unit(const struct cs_scene *scene);
 
+/* Of a look's colour bar: quantity and unit, NULL without; and the factor of its figures. */
+const char *cs_picture_title(int32_t look);
+double cs_picture_factor(int32_t look);
+
 /* What drew the pictures. */
 const char *cs_picture_renderer(const struct cs_picture *picture);
 

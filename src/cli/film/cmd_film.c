@@ -1,11 +1,12 @@
-/* clothsim film: makes one film of the pictures of a run, by ffmpeg. */
+/* clothsim film: makes one film of the pictures of a run, by ffmpeg, or a contact sheet. */
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/film/film_sheet.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/run_output.h"
-#include "io/json.h"
+#include "io/png.h"
 #include "io/program.h"
 
 #include <stdio.h>
@@ -13,14 +14,20 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FILM_OUT, FILM_FPS, FILM_OVERWRITE, FILM_QUIET, FILM_ROWS };
+enum { FILM_OUT, FILM_FPS, FILM_SHEET, FILM_TILE, FILM_OVERWRITE, FILM_QUIET, FILM_ROWS };
 enum { PATH_BYTES = 4096 };
 
 static const struct cs_arg rows[FILM_ROWS] = {
-    [FILM_OUT] = {"out", 'o', "FILE", "an .mp4 or .webm (default: film.mp4 in DIR)", false},
+    [FILM_OUT] = {"out", 'o', "FILE",
+                  "an .mp4 or .webm (default: film.mp4 in DIR); a .png of a sheet (sheet.png)",
+                  false},
     [FILM_FPS] = {"fps", 0, "RATE", "pictures a second (default: as fast as the scene moved)",
                   false},
-    [FILM_OVERWRITE] = {"overwrite", 'y', NULL, "replace a film that is there", false},
+    [FILM_SHEET] = {"sheet", 0, "COLUMNSxROWS",
+                    "instead of a film one picture of so many at most, such as 5x4", false},
+    [FILM_TILE] = {"tile", 0, "PIXELS", "width of each on a sheet at most (default: 320)",
+                   false},
+    [FILM_OVERWRITE] = {"overwrite", 'y', NULL, "replace a film or sheet that is there", false},
     [FILM_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
 };
 
@@ -31,50 +38,6 @@ struct film {
     bool webm;
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
-
-static double number_of(const struct cs_json *object, const char *key) {
-    const struct cs_json *value = object ? cs_json_find(object, key) : NULL;
-    return value && cs_json_kind_of(value) == CS_JSON_NUMBER ? cs_json_number(value) : 0;
-}
-
-/* The scene's frames a second over the step from one drawn frame to the next; 0: no pictures.
- */
-static double rate_of(const struct cs_json *report) {
-    const struct cs_json *scene = cs_json_find(report, "scene"),
-                         *frames = cs_json_find(report, "frames");
-    double drawn[2] = {0, 0};
-    int n = 0;
-    if (!scene || !frames)
-        return 0;
-    for (const struct cs_json *f = cs_json_first(frames); f && n < 2; f = cs_json_next(f)) {
-        const struct cs_json *is = cs_json_find(f, "drawn");
-        if (is && cs_json_kind_of(is) == CS_JSON_BOOL && cs_json_is_true(is))
-            drawn[n++] = number_of(f, "number");
-    }
-    const double fps = number_of(cs_json_find(scene, "time"), "fps");
-    return n == 0 ? 0 : fps / (n == 2 ? drawn[1] - drawn[0] : 1);
-}
-
-/* run.json in the folder says how fast the pictures follow each other, and that there are some
- */
-static enum cs_status read_rate(struct film *film, struct cs_error *error) {
-    char path[PATH_BYTES], *text;
-    size_t length;
-    struct cs_json *report;
-    struct cs_json_fault fault;
-    snprintf(path, sizeof path, "%.4000s/run.json", film->folder);
-    if (cs_file_read(path, CS_JSON_BYTES_MAX, &text, &length, error))
-        return error->status;
-    cs_json_parse(text, length, &report, &fault);
-    free(text);
-    if (report)
-        film->rate = rate_of(report);
-    cs_json_destroy(report);
-    if (!(film->rate > 0))
-        return cs_fail(error, CS_ERR_FILE,
-                       "%s: expected the report of a run that drew pictures", path);
-    return CS_OK;
-}
 
 /* Where the film goes, by its ending what it is; the part keeps the ending, which ffmpeg reads.
  */
@@ -181,25 +144,92 @@ static enum cs_status make(const struct film *film, struct cs_error *error) {
                  : cs_fail(error, CS_ERR_FILE, "%s: ffmpeg could not make it", film->out);
 }
 
+static enum cs_status make_film(const struct cs_args *args, const struct cs_film_report *report,
+                                struct cs_text *told, struct cs_error *error) {
+    struct film film = {.folder = args->operands[0], .rate = cs_film_rate(report)};
+    if (cs_args_get(args, FILM_TILE))
+        return cs_fail(error, CS_ERR_USAGE, "--tile is of a sheet: give --sheet too");
+    if (cs_args_real(args, FILM_FPS, &film.rate, error) || place(args, &film, error) ||
+        make(&film, error))
+        return error->status;
+    cs_text_add(told, "%s: %g pictures a second\n", film.out, film.rate);
+    return CS_OK;
+}
+
+enum { MOST_TILES = 1000 };
+
+static enum cs_status read_sheet(const struct cs_args *args, struct cs_sheet *sheet,
+                                 struct cs_error *error) {
+    const char *found = cs_args_get(args, FILM_SHEET);
+    char rest;
+    *sheet = (struct cs_sheet){.tile = 320};
+    if (cs_args_get(args, FILM_FPS))
+        return cs_fail(error, CS_ERR_USAGE, "--fps is of a film: a sheet has none");
+    if (strspn(found, "0123456789x") != strlen(found) || strlen(found) > 9 ||
+        sscanf(found, "%ux%u%c", &sheet->columns, &sheet->rows, &rest) != 2 ||
+        !sheet->columns || sheet->columns > MOST_TILES || !sheet->rows ||
+        sheet->rows > MOST_TILES)
+        return cs_fail(
+            error, CS_ERR_USAGE,
+            "--sheet: found \"%.60s\", expected columns and rows of 1 to %d, such as "
+            "5x4",
+            found, MOST_TILES);
+    return cs_args_whole(args, FILM_TILE, 16, 4096, &sheet->tile, error);
+}
+
+static enum cs_status place_sheet(const struct cs_args *args, char out[PATH_BYTES],
+                                  struct cs_error *error) {
+    const char *name = cs_args_get(args, FILM_OUT);
+    if (name)
+        snprintf(out, PATH_BYTES, "%.4000s", name);
+    else
+        snprintf(out, PATH_BYTES, "%.4000s/sheet.png", args->operands[0]);
+    const char *ending = strrchr(out, '.');
+    if (!ending || strcmp(ending, ".png"))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--out: expected a name that ends in .png, found \"%.60s\"", out);
+    return cs_args_get(args, FILM_OVERWRITE) ? CS_OK : cs_output_check_file(out, error);
+}
+
+static enum cs_status make_sheet(const struct cs_args *args,
+                                 const struct cs_film_report *report, struct cs_text *told,
+                                 struct cs_error *error) {
+    const struct cs_png_text text = {"Software", "clothsim " CS_VERSION};
+    char out[PATH_BYTES];
+    struct cs_sheet sheet;
+    struct cs_image image;
+    if (read_sheet(args, &sheet, error) || place_sheet(args, out, error) ||
+        cs_sheet_make(&sheet, args->operands[0], report, &image, error))
+        return error->status;
+    cs_png_write(out, &image, 6, &text, 1, error);
+    free(image.rgb);
+    cs_text_add(told, "%s: %u x %u pictures%s\n", out, sheet.columns, sheet.rows,
+                sheet.bar || report->pictures->range[0] == report->pictures->range[1]
+                    ? ""
+                    : ", whose colours differ in range: see --range of clothsim run");
+    return error->status;
+}
+
 static enum cs_status film(struct cs_args *args, struct cs_error *error) {
-    struct film film = {.folder = args->operands[0]};
-    struct cs_text text = {0};
-    double rate = 0;
-    if (read_rate(&film, error) || cs_args_real(args, FILM_FPS, &rate, error) ||
-        place(args, &film, error))
+    struct cs_film_report report;
+    struct cs_text told = {0};
+    if (cs_film_report_read(args->operands[0], &report, error))
         return error->status;
-    if (rate > 0)
-        film.rate = rate;
-    if (make(&film, error) || cs_args_get(args, FILM_QUIET))
-        return error->status;
-    cs_text_add(&text, "%s: %g pictures a second\n", film.out, film.rate);
-    return cs_print_out(stdout, &text, error);
+    if (cs_args_get(args, FILM_SHEET))
+        make_sheet(args, &report, &told, error);
+    else
+        make_film(args, &report, &told, error);
+    cs_film_report_finish(&report);
+    if (!error->status && !cs_args_get(args, FILM_QUIET))
+        return cs_print_out(stdout, &told, error);
+    cs_text_finish(&told);
+    return error->status;
 }
 
 const struct cs_command cs_command_film = {
     .name = "film",
     .operands = "DIR",
-    .summary = "make a film of the pictures of a run",
+    .summary = "make a film or a contact sheet of the pictures of a run",
     .notes = "DIR is the folder that clothsim run wrote. ffmpeg makes the film.\n\n"
              "Example: clothsim film out -o cloth.webm\n",
     .rows = rows,

@@ -1,0 +1,97 @@
+/* Reads the report of a run for its pictures. */
+#include "cli/film/film_report.h"
+
+#include "base/file.h"
+#include "io/json.h"
+#include "scene/scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_BYTES = 4096 };
+
+static const struct cs_json *member(const struct cs_json *object, const char *key,
+                                    enum cs_json_kind kind) {
+    const struct cs_json *value = object ? cs_json_find(object, key) : NULL;
+    return value && cs_json_kind_of(value) == kind ? value : NULL;
+}
+
+static double number_of(const struct cs_json *object, const char *key) {
+    const struct cs_json *value = member(object, key, CS_JSON_NUMBER);
+    return value ? cs_json_number(value) : 0;
+}
+
+static int32_t look_of(const struct cs_json *render) {
+    const struct cs_json *look = member(render, "look", CS_JSON_TEXT);
+    for (int32_t k = 0; look && cs_look_names[k]; k++)
+        if (!strcmp(cs_look_names[k], cs_json_text(look)))
+            return k;
+    return CS_LOOK_LIT;
+}
+
+/* false: it was not drawn. Runs of older versions gave a picture the number of its frame. */
+static bool read_picture(const struct cs_json *frame, struct cs_film_picture *picture) {
+    const struct cs_json *drawn = member(frame, "drawn", CS_JSON_BOOL);
+    const struct cs_json *range = member(frame, "range", CS_JSON_LIST);
+    if (!drawn || !cs_json_is_true(drawn))
+        return false;
+    *picture = (struct cs_film_picture){.frame = number_of(frame, "number")};
+    const double number = number_of(frame, "picture");
+    picture->number = (uint32_t)(number > 0 ? number : picture->frame);
+    for (uint32_t k = 0; range && k < 2 && cs_json_count(range) == 2; k++) {
+        const struct cs_json *end = cs_json_at(range, k);
+        picture->range[k] = cs_json_kind_of(end) == CS_JSON_NUMBER ? cs_json_number(end) : 0;
+    }
+    return true;
+}
+
+static enum cs_status read_pictures(const struct cs_json *root, struct cs_film_report *report,
+                                    struct cs_error *error) {
+    const struct cs_json *scene = member(root, "scene", CS_JSON_OBJECT),
+                         *frames = member(root, "frames", CS_JSON_LIST);
+    report->fps = number_of(member(scene, "time", CS_JSON_OBJECT), "fps");
+    report->look = look_of(member(scene, "render", CS_JSON_OBJECT));
+    if (!frames || !(report->fps > 0))
+        return CS_OK;
+    report->pictures = calloc((size_t)cs_json_count(frames) + 1, sizeof *report->pictures);
+    if (!report->pictures)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of pictures");
+    for (const struct cs_json *f = cs_json_first(frames); f; f = cs_json_next(f))
+        report->n += read_picture(f, report->pictures + report->n);
+    return CS_OK;
+}
+
+enum cs_status cs_film_report_read(const char *folder, struct cs_film_report *report,
+                                   struct cs_error *error) {
+    char path[PATH_BYTES], *text;
+    size_t length;
+    struct cs_json *root;
+    struct cs_json_fault fault;
+    *report = (struct cs_film_report){0};
+    snprintf(path, sizeof path, "%.4000s/run.json", folder);
+    if (cs_file_read(path, CS_JSON_BYTES_MAX, &text, &length, error))
+        return error->status;
+    cs_json_parse(text, length, &root, &fault);
+    free(text);
+    if (root)
+        read_pictures(root, report, error);
+    cs_json_destroy(root);
+    if (!error->status && report->n == 0)
+        cs_fail(error, CS_ERR_FILE, "%s: expected the report of a run that drew pictures",
+                path);
+    if (error->status)
+        cs_film_report_finish(report);
+    return error->status;
+}
+
+void cs_film_report_finish(struct cs_film_report *report) {
+    free(report->pictures);
+    *report = (struct cs_film_report){0};
+}
+
+double cs_film_rate(const struct cs_film_report *report) {
+    const struct cs_film_picture *first = report->pictures;
+    const double between = report->n > 1 ? first[1].frame - first[0].frame : 1;
+    return report->fps / (between > 0 ? between : 1);
+}
