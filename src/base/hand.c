@@ -1,8 +1,9 @@
 /* A worker thread that does one piece of work at a time. */
 #include "base/hand.h"
 
+#include "base/thread.h"
+
 #include <pthread.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -35,16 +36,11 @@ static void *live(void *object) {
 
 struct cs_hand *cs_hand_create(void) {
     struct cs_hand *hand = calloc(1, sizeof *hand);
-    sigset_t all, before;
     if (!hand)
         return NULL;
     pthread_mutex_init(&hand->lock, NULL);
     pthread_cond_init(&hand->changed, NULL);
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const bool started = !pthread_create(&hand->thread, NULL, live, hand);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (started)
+    if (!cs_thread_start(&hand->thread, live, hand))
         return hand;
     free(hand);
     return NULL;

@@ -2,9 +2,10 @@
  * takes blocks from the others when it has done its own. */
 #include "base/pool.h"
 
+#include "base/thread.h"
+
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -166,16 +167,6 @@ static void forget(void) {
     pool = NULL;
 }
 
-/* signals are the caller's: the threads start with all of them blocked */
-static int start_thread(struct pool *p) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int failed = pthread_create(p->threads + p->n, NULL, serve, p);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return failed;
-}
-
 static enum cs_status start(uint32_t threads, struct cs_error *error) {
     static bool forgotten_by_children;
     pool = aligned_alloc(_Alignof(struct pool), sizeof *pool);
@@ -192,7 +183,7 @@ static enum cs_status start(uint32_t threads, struct cs_error *error) {
     pthread_cond_init(&pool->left, NULL);
     /* n counts the threads that run: cs_pool_stop joins no others */
     for (pool->n = 1; pool->n < threads; pool->n++) {
-        const int failed = start_thread(pool);
+        const int failed = cs_thread_start(pool->threads + pool->n, serve, pool);
         if (!failed)
             continue;
         cs_fail(error, CS_ERR_MEMORY, "cannot start thread %u of %u: %s", pool->n + 1, threads,

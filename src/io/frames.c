@@ -3,9 +3,9 @@
 
 #include "base/arena.h"
 #include "base/clock.h"
+#include "base/thread.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,16 +82,6 @@ static void *work(void *argument) {
     return NULL;
 }
 
-/* signals are the caller's: the worker starts with all of them blocked */
-static bool start_worker(struct cs_frames *frames) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    const bool started = !pthread_create(&frames->worker, NULL, work, frames);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
-}
-
 static bool take_image(struct cs_image *image, uint32_t width, uint32_t height) {
     image->width = width;
     image->height = height;
@@ -120,7 +110,7 @@ enum cs_status cs_frames_create(const char *folder, uint32_t width, uint32_t hei
                        width, height);
     }
     /* without a thread the same frames come out, only later */
-    made->threaded = threaded && start_worker(made);
+    made->threaded = threaded && !cs_thread_start(&made->worker, work, made);
     *frames = made;
     return CS_OK;
 }
