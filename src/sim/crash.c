@@ -1,80 +1,193 @@
 /* Names the module when a fatal signal, or an end of the program, comes out of it. */
 #include "sim/crash.h"
 
-#include "base/status.h"
-
+#include <errno.h>
 #include <signal.h>
-#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static const struct {
     int number;
     const char *what;
-} signals[] = {{SIGSEGV, "used memory that is not there\n"},
-               {SIGBUS, "used memory that is not there\n"},
-               {SIGFPE, "divided by zero\n"},
-               {SIGILL, "ran into what is no code\n"},
-               {SIGABRT, "aborted\n"}};
-enum { SIGNALS = sizeof signals / sizeof *signals, STACK = 65536 };
+} signals[] = {{SIGSEGV, ": it used memory that is not there"},
+               {SIGBUS, ": it used memory that is not there"},
+               {SIGFPE, ": it divided by zero"},
+               {SIGILL, ": it ran into what is no code"},
+               {SIGABRT, ": it aborted"}};
+enum { SIGNALS = sizeof signals / sizeof *signals, STACK = 65536, TEXT = 1024 };
 
 /* a handler has no argument of its own: what it prints lies ready */
-static struct { const char *kind, *name, *place; /* kind NULL: nobody is watched */ } watched;
+static struct cs_crash_log own;
+static struct cs_crash_log *calls = &own;
 static struct sigaction before[SIGNALS];
 
-/* only what is safe in a handler: write and _exit */
-static bool put(const char *text) {
-    return write(STDERR_FILENO, text, strlen(text)) >= 0;
+/* as much as there is room for; safe in a handler */
+static void add(char text[TEXT], const char *part) {
+    strncat(text, part, TEXT - 1 - strlen(text));
 }
 
-static _Noreturn void tell(const char *how, const char *what) {
-    const char *const parts[] = {"clothsim: ", watched.kind, " \"",         watched.name,
-                                 "\" ",        how,          watched.place, what};
+static void describe(const struct cs_crash_call *call, const char *how, const char *what,
+                     char text[TEXT]) {
+    const char *const parts[] = {call->starved ? "out of memory: " : "",
+                                 call->kind,
+                                 " \"",
+                                 call->name,
+                                 "\" ",
+                                 how,
+                                 call->place,
+                                 what};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        if (!put(parts[k]))
-            _exit(cs_status_exit_code(CS_ERR_INTERNAL));
-    _exit(cs_status_exit_code(CS_ERR_MODULE));
+        add(text, parts[k]);
+}
+
+static enum cs_status status_of(const struct cs_crash_call *call) {
+    return call->starved ? CS_ERR_MEMORY : CS_ERR_MODULE;
+}
+
+/* Only what is safe in a handler: write and _exit. Whoever watches from outside tells it there.
+ */
+static _Noreturn void tell(const struct cs_crash_call *call, const char *how,
+                           const char *what) {
+    char text[TEXT] = "clothsim: ";
+    describe(call, how, what, text);
+    add(text, "\n");
+    if (calls == &own && write(STDERR_FILENO, text, strlen(text)) < 0)
+        _exit(cs_status_exit_code(CS_ERR_INTERNAL));
+    _exit(cs_status_exit_code(status_of(call)));
+}
+
+/* Of this thread, or of any: modules have threads of their own. NULL: it is our own fault. */
+static struct cs_crash_call *find_call(void) {
+    struct cs_crash_call *found = NULL;
+    for (int k = 0; k < CS_CRASH_SIDES; k++) {
+        struct cs_crash_call *call = calls->calls + k;
+        if (!cs_crash_is_under_way(call))
+            continue;
+        if (pthread_equal(call->thread, pthread_self()))
+            return call;
+        found = call;
+    }
+    return found;
+}
+
+static const char *signal_text(int number) {
+    for (size_t k = 0; k < SIGNALS; k++)
+        if (signals[k].number == number)
+            return signals[k].what;
+    return "";
 }
 
 static void report(int number) {
-    char what[64] = ": it ";
-    size_t k = 0;
-    while (k < SIGNALS - 1 && signals[k].number != number)
-        k++;
-    strncat(what, signals[k].what, sizeof what - strlen(what) - 1);
-    tell("crashed ", what);
+    /* no hook of malloc is needed: a failed one says so here, and libraries rarely look */
+    const bool starved = errno == ENOMEM;
+    struct cs_crash_call *call = find_call();
+    if (!call) {
+        for (size_t k = 0; k < SIGNALS; k++)
+            sigaction(signals[k].number, before + k, NULL);
+        raise(number);
+        return;
+    }
+    call->starved |= starved;
+    call->signal = number;
+    tell(call, "crashed ", signal_text(number));
 }
 
 /* a module that calls exit would else end a run as if it had finished */
 static void report_exit(void) {
-    if (watched.kind)
-        tell("ended the program ", "\n");
+    struct cs_crash_call *call = find_call();
+    if (!call)
+        return;
+    call->starved |= errno == ENOMEM;
+    tell(call, "ended the program ", "");
 }
 
 /* a handler on the stack that has overflowed could not run */
-static void take_stack(void) {
+static void prepare(void) {
     static char stack[STACK];
     const stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
+    struct sigaction action = {.sa_handler = report, .sa_flags = SA_ONSTACK};
     sigaltstack(&other, NULL);
     atexit(report_exit);
-}
-
-void cs_crash_watch(const char *kind, const char *name, const char *place) {
-    static bool prepared;
-    struct sigaction action = {.sa_handler = report, .sa_flags = SA_ONSTACK};
-    if (!prepared)
-        take_stack();
-    prepared = true;
-    watched.name = name;
-    watched.place = place;
-    watched.kind = kind;
-    for (int k = 0; k < SIGNALS; k++)
+    for (size_t k = 0; k < SIGNALS; k++)
         sigaction(signals[k].number, &action, before + k);
 }
 
-void cs_crash_forget(void) {
-    watched.kind = NULL;
-    for (int k = 0; k < SIGNALS; k++)
-        sigaction(signals[k].number, before + k, NULL);
+void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
+                    const char *place) {
+    static pthread_once_t prepared = PTHREAD_ONCE_INIT;
+    struct cs_crash_call *call = calls->calls + side;
+    pthread_once(&prepared, prepare);
+    /* not snprintf: it would be called at every advance */
+    const size_t length = strnlen(name, sizeof call->name - 1);
+    memcpy(call->name, name, length);
+    call->name[length] = 0;
+    call->kind = kind;
+    call->place = place;
+    call->thread = pthread_self();
+    call->process = getpid();
+    atomic_fetch_add(&call->edges, 1);
+    errno = 0;
+}
+
+void cs_crash_forget(enum cs_crash_side side) {
+    const bool starved = errno == ENOMEM;
+    struct cs_crash_call *call = calls->calls + side;
+    /* a module that forks would else have every file written twice */
+    if (call->process != getpid())
+        _exit(cs_status_exit_code(CS_ERR_MODULE));
+    call->starved |= starved;
+    atomic_fetch_add(&call->edges, 1);
+}
+
+bool cs_crash_was_starved(enum cs_crash_side side) {
+    struct cs_crash_call *call = calls->calls + side;
+    const bool starved = call->starved;
+    call->starved = false;
+    return starved;
+}
+
+void cs_crash_log_to(struct cs_crash_log *log) {
+    calls = log;
+}
+
+/* The call that crashed, or is under way, or else was the last one. */
+static const struct cs_crash_call *find_culprit(const struct cs_crash_log *log) {
+    const struct cs_crash_call *best = NULL;
+    for (int k = 0; k < CS_CRASH_SIDES; k++) {
+        const struct cs_crash_call *call = log->calls + k;
+        if (call->signal)
+            return call;
+        if (call->kind &&
+            (!best || (cs_crash_is_under_way(call) && !cs_crash_is_under_way(best))))
+            best = call;
+    }
+    return best;
+}
+
+static void print_end(int end, char text[TEXT]) {
+    if (WIFSIGNALED(end))
+        snprintf(text, TEXT, "signal %d (%s)", WTERMSIG(end), strsignal(WTERMSIG(end)));
+    else
+        snprintf(text, TEXT, "code %d", WEXITSTATUS(end));
+}
+
+enum cs_status cs_crash_tell(const struct cs_crash_log *log, int end, struct cs_error *error) {
+    const struct cs_crash_call *call = find_culprit(log);
+    char how[TEXT] = "", what[TEXT + 32], text[TEXT] = "";
+    print_end(end, how);
+    if (!call)
+        return cs_fail(error, CS_ERR_INTERNAL, "the run was ended by %s", how);
+    if (call->signal)
+        describe(call, "crashed ", signal_text(call->signal), text);
+    else if (cs_crash_is_under_way(call)) {
+        snprintf(what, sizeof what, " with %s", how);
+        describe(call, "ended the program ", what, text);
+    } else {
+        snprintf(what, sizeof what, " with %s", how);
+        describe(call, "ended the program after it was called ", what, text);
+    }
+    return cs_fail(error, status_of(call), "%s", text);
 }

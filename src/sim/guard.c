@@ -1,7 +1,13 @@
-/* Saves and restores the floating-point mode around foreign code. */
+/* Saves and restores what foreign code could change for the whole process. */
 #include "sim/guard.h"
 
 #include <fenv.h>
+#include <locale.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -30,14 +36,83 @@ static void control_set(unsigned control) {
 }
 #endif
 
-struct cs_guard cs_guard_take(void) {
-    return (struct cs_guard){control_get(), fegetround()};
+const char cs_guard_mode[] = "the floating-point mode";
+static const int numbers[CS_GUARD_SIGNALS] = {SIGINT, SIGTERM};
+
+static unsigned open_streams(void) {
+    struct pollfd streams[] = {{.fd = 0}, {.fd = 1}, {.fd = 2}};
+    enum { STREAMS = sizeof streams / sizeof *streams };
+    unsigned open = 0;
+    poll(streams, STREAMS, 0);
+    for (unsigned k = 0; k < STREAMS; k++)
+        open |= (unsigned)!(streams[k].revents & POLLNVAL) << k;
+    return open;
 }
 
-bool cs_guard_restore(struct cs_guard guard) {
-    if (control_get() == guard.control && fegetround() == guard.rounding)
+static bool is_parent(void) {
+    siginfo_t info;
+    return !waitid(P_ALL, 0, &info, WEXITED | WNOHANG | WNOWAIT);
+}
+
+struct cs_guard cs_guard_take(void) {
+    struct cs_guard guard = {.control = control_get(),
+                             .rounding = fegetround(),
+                             .streams = open_streams(),
+                             .parent = is_parent()};
+    struct stat info;
+    for (int k = 0; k < CS_GUARD_SIGNALS; k++)
+        sigaction(numbers[k], NULL, guard.signals + k);
+    if (!stat(".", &info)) {
+        guard.device = info.st_dev;
+        guard.number = info.st_ino;
+    }
+    return guard;
+}
+
+static bool restore_signals(const struct cs_guard *guard) {
+    bool changed = false;
+    for (int k = 0; k < CS_GUARD_SIGNALS; k++) {
+        struct sigaction now;
+        sigaction(numbers[k], NULL, &now);
+        if (now.sa_handler == guard->signals[k].sa_handler)
+            continue;
+        sigaction(numbers[k], guard->signals + k, NULL);
+        changed = true;
+    }
+    return changed;
+}
+
+/* numbers are read and written with a point */
+static bool restore_locale(void) {
+    if (!strcmp(setlocale(LC_NUMERIC, NULL), "C") && !strcmp(localeconv()->decimal_point, "."))
         return false;
-    fesetround(guard.rounding);
-    control_set(guard.control);
+    uselocale(LC_GLOBAL_LOCALE);
+    setlocale(LC_ALL, "C");
     return true;
+}
+
+static bool has_moved(const struct cs_guard *guard) {
+    struct stat info;
+    return stat(".", &info) || info.st_dev != guard->device || info.st_ino != guard->number;
+}
+
+static bool restore_mode(const struct cs_guard *guard) {
+    if (control_get() == guard->control && fegetround() == guard->rounding)
+        return false;
+    fesetround(guard->rounding);
+    control_set(guard->control);
+    return true;
+}
+
+const char *cs_guard_restore(const struct cs_guard *guard) {
+    /* all of them are put back, whichever is told */
+    const bool mode = restore_mode(guard), signals = restore_signals(guard),
+               locale = restore_locale();
+    return mode                               ? cs_guard_mode
+           : signals                          ? "what signals do"
+           : locale                           ? "the locale"
+           : has_moved(guard)                 ? "the working folder"
+           : open_streams() != guard->streams ? "which standard streams are open"
+           : is_parent() && !guard->parent    ? "which processes there are"
+                                              : NULL;
 }

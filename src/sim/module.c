@@ -159,16 +159,17 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
     const struct cs_guard guard = cs_guard_take();
     if (check_file(file, error))
         return error->status;
-    cs_crash_watch("module", file, "when it was loaded");
+    cs_crash_watch(CS_CRASH_METHOD, "module", file, "when it was loaded");
     void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-    cs_crash_forget();
-    const bool changed = cs_guard_restore(guard);
+    cs_crash_forget(CS_CRASH_METHOD);
+    const bool starved = cs_crash_was_starved(CS_CRASH_METHOD);
+    const char *changed = cs_guard_restore(&guard);
     if (!handle)
-        return cs_fail(error, CS_ERR_MODULE, "cannot be loaded: %s", dlerror());
+        return cs_fail(error, starved ? CS_ERR_MEMORY : CS_ERR_MODULE, "%scannot be loaded: %s",
+                       starved ? "out of memory: " : "", dlerror());
     if (changed)
-        return cs_fail(error, CS_ERR_MODULE,
-                       "changes the floating-point mode when it is loaded (was it linked with "
-                       "-ffast-math?)");
+        return cs_fail(error, CS_ERR_MODULE, "changes %s when it is loaded%s", changed,
+                       changed == cs_guard_mode ? " (was it linked with -ffast-math?)" : "");
     const struct cs_module *found = dlsym(handle, "clothsim_module");
     if (!found)
         return cs_fail(error, CS_ERR_MODULE, "has no symbol clothsim_module");

@@ -62,7 +62,11 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
         return CS_OK;
     struct cs_error refusal = {0};
     const struct cs_module *module;
-    if (cs_module_open(file, &module, &refusal))
+    cs_module_open(file, &module, &refusal);
+    /* that there is no memory is no fault of the module's, and no other one is looked for */
+    if (refusal.status == CS_ERR_MEMORY)
+        return cs_fail(error, refusal.status, "%s: %s", file, refusal.message);
+    if (refusal.status)
         return add_entry(registry, file, NULL, refusal.message, error);
     for (uint32_t k = 0; k < module->n && !error->status; k++) {
         const struct cs_integrator *integrator = module->integrators[k];

@@ -26,24 +26,26 @@ const char *cs_outcome_text(enum cs_outcome outcome) {
     return "unknown";
 }
 
-/* What a call into the method came to: its result, or a changed floating-point mode. */
-static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_guard guard,
-                            struct cs_error *error) {
-    const char *name = run->integrator->name;
-    if (cs_guard_restore(guard))
-        return cs_fail(error, CS_ERR_MODULE,
-                       "integrator \"%s\" changed the floating-point mode", name);
+/* What a call into the method came to: its result, or what it changed in the process. */
+static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_error *error) {
+    const char *name = run->integrator->name, *changed = cs_guard_restore(&run->host->guard);
+    const bool starved = cs_crash_was_starved(CS_CRASH_METHOD);
+    if (changed)
+        return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\" changed %s", name, changed);
     if (step == CS_STEP_OK || (step == CS_STEP_HALT && run->outcome != CS_RUNNING))
         return CS_OK;
     const struct cs_error *said = &run->host->error;
-    return cs_fail(error, said->status ? said->status : CS_ERR_MODULE,
-                   "integrator \"%s\" failed at t = %.6g s: %s", name, run->t,
+    const enum cs_status status = said->status ? said->status : CS_ERR_MODULE;
+    const bool memory = starved && status == CS_ERR_MODULE;
+    return cs_fail(error, memory ? CS_ERR_MEMORY : status,
+                   "%sintegrator \"%s\" failed at t = %.6g s: %s",
+                   memory ? "out of memory: " : "", name, run->t,
                    said->status ? said->message : "it gave no reason");
 }
 
 /* Round each call into the method: what it was, if it brings the program down. */
 static void watch(const struct cs_run *run, const char *place) {
-    cs_crash_watch("integrator", run->integrator->name, place);
+    cs_crash_watch(CS_CRASH_METHOD, "integrator", run->integrator->name, place);
 }
 
 static enum cs_step restart(struct cs_run *run, double t) {
@@ -51,7 +53,7 @@ static enum cs_step restart(struct cs_run *run, double t) {
     cs_host_pin(run->host, true);
     const enum cs_step step = run->integrator->restart(run->host->self, t, run->x, run->v);
     cs_host_pin(run->host, false);
-    cs_crash_forget();
+    cs_crash_forget(CS_CRASH_METHOD);
     return step;
 }
 
@@ -74,43 +76,40 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
     const enum cs_step step =
         run->integrator->advance(run->host->self, from, to, run->x, run->v);
     cs_host_pin(run->host, false);
-    cs_crash_forget();
+    cs_crash_forget(CS_CRASH_METHOD);
     return step == CS_STEP_OK ? check_left(run, to) : step;
 }
 
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
     const size_t before = host->arena.used;
-    const struct cs_guard guard = cs_guard_take();
+    host->guard = cs_guard_take();
     host->creating = true;
     watch(run, "in create");
     const enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
-    cs_crash_forget();
+    cs_crash_forget(CS_CRASH_METHOD);
     host->creating = false;
     run->method_bytes = host->arena.used - before;
-    return judge(run, step, guard, error) ? error->status : cs_run_restart(run, 0, error);
+    return judge(run, step, error) ? error->status : cs_run_restart(run, 0, error);
 }
 
 enum cs_status cs_run_restart(struct cs_run *run, double t, struct cs_error *error) {
-    const struct cs_guard guard = cs_guard_take();
-    return judge(run, restart(run, t), guard, error);
+    return judge(run, restart(run, t), error);
 }
 
 enum cs_status cs_run_advance(struct cs_run *run, double from, double to,
                               struct cs_error *error) {
-    const struct cs_guard guard = cs_guard_take();
-    return judge(run, advance(run, from, to), guard, error);
+    return judge(run, advance(run, from, to), error);
 }
 
 enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
                               const struct cs_archive *archive, struct cs_error *error) {
-    const struct cs_guard guard = cs_guard_take();
     watch(run, "in save or load");
     cs_host_pin(run->host, true);
     const enum cs_step step = call(run->host->self, archive);
     cs_host_pin(run->host, false);
-    cs_crash_forget();
-    return judge(run, step, guard, error);
+    cs_crash_forget(CS_CRASH_METHOD);
+    return judge(run, step, error);
 }
 
 /* From run->t to end, in one go but for the events on the way, at which the method starts anew.
@@ -154,7 +153,7 @@ static void count_method(struct cs_run *run) {
     *found = (struct cs_stats){.size = sizeof *found};
     watch(run, "in stats");
     run->integrator->stats(run->host->self, found);
-    cs_crash_forget();
+    cs_crash_forget(CS_CRASH_METHOD);
     found->rejected += before->rejected;
     found->newton += before->newton;
     found->setups += before->setups;
@@ -163,11 +162,10 @@ static void count_method(struct cs_run *run) {
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
-    const struct cs_guard guard = cs_guard_take();
     const enum cs_step step = advance_frame(run, next);
     run->advance_seconds += cs_clock_wall() - begin;
     count_method(run);
-    if (judge(run, step, guard, error))
+    if (judge(run, step, error))
         return error->status;
     if (run->outcome == CS_RUNNING) {
         run->t = next;
@@ -191,7 +189,9 @@ bool cs_run_has_goals(const struct cs_integrator *integrator) {
 
 void cs_run_goals(const struct cs_run *run, double *g) {
     CS_ASSERT(cs_run_has_goals(run->integrator));
+    watch(run, "in goals");
     run->integrator->goals(run->host->self, run->x, g);
+    cs_crash_forget(CS_CRASH_METHOD);
 }
 
 size_t cs_run_bytes(const struct cs_run *run) {
@@ -215,7 +215,7 @@ void cs_run_finish(struct cs_run *run) {
     if (run->integrator->destroy && run->host->self) {
         watch(run, "in destroy");
         run->integrator->destroy(run->host->self);
-        cs_crash_forget();
+        cs_crash_forget(CS_CRASH_METHOD);
     }
     cs_arena_finish(&run->host->arena);
     free(run->host);

@@ -24,6 +24,7 @@ struct cs_run_host {
     struct cs_contact contact; /* only with contact by projection */
     double reach;  /* m, to which a step may go behind a surface, of contact by projection */
     bool creating; /* the method may take memory */
+    struct cs_guard guard; /* the process as it was before the first call */
     struct cs_run_settings settings;
     struct cs_budget budget;
     void *self;             /* the method's own */

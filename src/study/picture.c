@@ -5,6 +5,7 @@
 #include "base/pool.h"
 #include "io/png.h"
 #include "model/cross/crossings.h"
+#include "sim/crash.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,6 +80,17 @@ static void free_textures(struct cs_picture *picture) {
     picture->textures = NULL;
 }
 
+/* OpenGL is another's code, too; its libraries end the program where memory runs out */
+static void watch(const char *renderer, const char *place) {
+    cs_crash_watch(CS_CRASH_DRAWING, "renderer", renderer, place);
+}
+
+static void forget(struct cs_error *error) {
+    cs_crash_forget(CS_CRASH_DRAWING);
+    if (cs_crash_was_starved(CS_CRASH_DRAWING) && error->status == CS_ERR_MODULE)
+        error->status = CS_ERR_MEMORY;
+}
+
 /* done by the worker thread, as all that touches the canvas */
 static void make_canvas(void *object) {
     struct cs_picture *picture = object;
@@ -90,7 +102,18 @@ static void make_canvas(void *object) {
                                                 .threads = cs_pool_threads(),
                                                 .share = cs_pool_run};
     cs_obstacles_at(picture->system, 0, picture->obstacles);
+    watch(picture->renderer->name, "while it was opened");
     picture->renderer->create(&settings, &picture->canvas, &picture->error);
+    forget(&picture->error);
+}
+
+static enum cs_status open_renderer(enum cs_renderer_kind kind,
+                                    const struct cs_renderer **renderer,
+                                    struct cs_error *error) {
+    watch(cs_renderer_names[kind], "while it was loaded");
+    cs_renderer_open(cs_renderer_folder(), kind, renderer, error);
+    forget(error);
+    return error->status;
 }
 
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
@@ -98,7 +121,7 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
                                struct cs_error *error) {
     *picture = (struct cs_picture){.scene = system->scene, .system = system, .fast = fast};
     if (!read_textures(picture, error) && !take_arrays(picture, error) &&
-        !cs_renderer_open(cs_renderer_folder(), kind, &picture->renderer, error)) {
+        !open_renderer(kind, &picture->renderer, error)) {
         /* what viewpoint forces see is drawn from the events, which move on with the run */
         const bool apart = beside && !picture->scene->render.viewpoint_forces;
         picture->hand = apart ? cs_hand_create() : NULL;
@@ -158,7 +181,9 @@ static void paint(void *object) {
                                    .goals = picture->goals,
                                    .marks = picture->marks,
                                    .obstacles = picture->obstacles};
+    watch(picture->renderer->name, "while it drew");
     picture->renderer->paint(picture->canvas, &frame, picture->image, &picture->error);
+    forget(&picture->error);
     picture->seconds += cs_clock_wall() - start;
 }
 
@@ -194,7 +219,9 @@ const char *cs_picture_renderer(const struct cs_picture *picture) {
 
 static void destroy_canvas(void *object) {
     struct cs_picture *picture = object;
+    watch(picture->renderer->name, "while it was closed");
     picture->renderer->destroy(picture->canvas);
+    forget(&picture->error);
 }
 
 void cs_picture_close(struct cs_picture *picture) {

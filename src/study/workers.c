@@ -1,6 +1,8 @@
 /* Shares independent tasks among forked processes. */
 #include "study/workers.h"
 
+#include "sim/crash.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -20,6 +22,8 @@
 struct shared {
     atomic_uint next;
     struct cs_error errors[CS_WORKERS_MOST]; /* one a worker */
+    struct cs_crash_log logs[CS_WORKERS_MOST];
+    atomic_bool done[CS_WORKERS_MOST]; /* it came to its end itself */
 };
 
 void *cs_workers_take(size_t bytes, struct cs_error *error) {
@@ -84,22 +88,23 @@ static void collect(struct shared *shared, uint32_t worker, int end, struct cs_e
         *error = shared->errors[worker];
     else if (WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF)
         return;
-    else if (WIFSIGNALED(end))
-        cs_fail(error, CS_ERR_MODULE, "a worker was ended by signal %d (%s)", WTERMSIG(end),
-                strsignal(WTERMSIG(end)));
-    else if (WEXITSTATUS(end))
-        cs_fail(error, CS_ERR_MODULE, "a worker ended with code %d", WEXITSTATUS(end));
+    else if (end || !shared->done[worker])
+        cs_crash_tell(shared->logs + worker, end, error);
     if (error->status)
         atomic_store(&shared->next, UINT32_MAX / 2);
 }
 
 /* the process of a worker; < 0: there is none */
 static pid_t start(struct cs_workers *workers, struct shared *shared, uint32_t worker) {
+    /* that of the worker before, which was ended in a task */
+    shared->logs[worker] = (struct cs_crash_log){0};
     const pid_t child = fork();
     if (child)
         return child;
+    cs_crash_log_to(shared->logs + worker);
     keep_memory();
     serve(workers, shared, worker);
+    atomic_store(shared->done + worker, true);
     _exit(0);
 }
 
