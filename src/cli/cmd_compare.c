@@ -3,12 +3,14 @@
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
+#include "cli/outside.h"
 #include "study/compare/compare.h"
 #include "study/compare/compare_report.h"
 #include "study/compare/compare_sheet.h"
 #include "study/compare/compare_table.h"
 #include "study/compare/sweep_list.h"
 #include "study/compare/verdict.h"
+#include "study/isolate.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,6 +38,9 @@ enum {
     COMPARE_QUIET,
     COMPARE_ROWS
 };
+
+/* for one call of a method: the frames of a reference may take long */
+enum { PATIENCE_SECONDS = 600 };
 
 static const struct cs_arg rows[COMPARE_ROWS] = {
     [COMPARE_INTEGRATORS] = {"integrators", 'i', "LIST",
@@ -236,7 +241,8 @@ static enum cs_status check_cells(const struct cs_compare *compare, struct cs_er
                : CS_OK;
 }
 
-static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
+static enum cs_status compare_here(void *ctx, struct cs_error *error) {
+    struct cs_args *args = ctx;
     struct cs_compare_settings settings;
     struct screen screen = {.quiet = cs_args_get(args, COMPARE_QUIET)};
     int kind = CS_RENDERER_AUTO;
@@ -270,6 +276,16 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
            : screen.error.status
                ? cs_fail(error, screen.error.status, "%s", screen.error.message)
                : CS_OK;
+}
+
+static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
+    const char *methods = cs_args_get(args, COMPARE_INTEGRATORS);
+    struct cs_isolate isolate = {
+        .seconds = PATIENCE_SECONDS, .task = compare_here, .ctx = args};
+    if (!cs_outside_is_named(args, COMPARE_PLUGIN, &methods, 1))
+        return compare_here(args, error);
+    isolate.stop = cs_interrupt_catch();
+    return cs_isolate_run(&isolate, error);
 }
 
 const struct cs_command cs_command_compare = {

@@ -2,16 +2,18 @@
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
+#include "cli/outside.h"
 #include "sim/method.h"
 #include "study/conform/conform.h"
 #include "study/conform/conform_cache.h"
+#include "study/isolate.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 enum { CONFORM_JSON, CONFORM_LIST, CONFORM_ONLY, CONFORM_PLUGIN, CONFORM_QUIET, CONFORM_ROWS };
-enum { NOTE_COLUMN = 55, METHODS_MAX = 64 };
+enum { NOTE_COLUMN = 55, METHODS_MAX = 64, PATIENCE_SECONDS = 60 };
 
 static const struct cs_arg rows[CONFORM_ROWS] = {
     [CONFORM_JSON] = {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
@@ -204,7 +206,8 @@ static enum cs_status print_list(struct cs_error *error) {
     return cs_print_out(stdout, &out, error);
 }
 
-static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
+static enum cs_status conform_here(void *ctx, struct cs_error *error) {
+    struct cs_args *args = ctx;
     const char *file = cs_args_get(args, CONFORM_JSON);
     struct cs_registry registry = {0};
     /* JSON on standard output takes the place of the text */
@@ -229,6 +232,14 @@ static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
     cs_conform_cache_finish(&output.cache);
     cs_registry_finish(&registry);
     return error->status;
+}
+
+static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
+    const struct cs_isolate isolate = {
+        .seconds = PATIENCE_SECONDS, .task = conform_here, .ctx = args};
+    return cs_outside_is_named(args, CONFORM_PLUGIN, args->operands, args->n_operands)
+               ? cs_isolate_run(&isolate, error)
+               : conform_here(args, error);
 }
 
 const struct cs_command cs_command_conform = {

@@ -7,6 +7,7 @@
 #include "cli/run/run_range.h"
 #include "cli/run/run_report.h"
 #include "model/force/measure.h"
+#include "study/isolate.h"
 
 #include <string.h>
 
@@ -21,6 +22,7 @@ enum {
     RUN_EVERY,
     RUN_CHECKPOINT,
     RUN_RESUME,
+    RUN_ISOLATE,
     RUN_STATES,
     RUN_EXPORT,
     RUN_VALUES,
@@ -64,6 +66,10 @@ static const struct cs_arg rows[RUN_ROWS] = {
                         false},
     [RUN_RESUME] = {"resume", 0, "DIR",
                     "go on from the checkpoint in DIR, with the same scene and options", false},
+    [RUN_ISOLATE] = {"isolate", 0, "SECONDS",
+                     "run in a process of its own, and end it where one call into the method "
+                     "or the renderer takes longer",
+                     false},
     [RUN_STATES] = {"states", 0, "DIR",
                     "write x_00000.npy, v_00000.npy ...: positions and velocities of the start "
                     "(0) and of each frame",
@@ -254,7 +260,8 @@ static enum cs_status tell_outcome(const struct cs_job *job, bool strict,
     return error->status;
 }
 
-static enum cs_status run(struct cs_args *args, struct cs_error *error) {
+static enum cs_status run_here(void *ctx, struct cs_error *error) {
+    struct cs_args *args = ctx;
     struct cs_job_settings settings;
     struct cs_job job = {0};
     struct cs_run_range range = {0};
@@ -272,6 +279,16 @@ static enum cs_status run(struct cs_args *args, struct cs_error *error) {
     cs_job_finish(&job);
     cs_run_range_finish(&range);
     return error->status;
+}
+
+static enum cs_status run(struct cs_args *args, struct cs_error *error) {
+    struct cs_isolate isolate = {.task = run_here, .ctx = args};
+    if (cs_args_real(args, RUN_ISOLATE, &isolate.seconds, error))
+        return error->status;
+    if (!(isolate.seconds > 0))
+        return run_here(args, error);
+    isolate.stop = cs_interrupt_catch();
+    return cs_isolate_run(&isolate, error);
 }
 
 const struct cs_command cs_command_run = {
