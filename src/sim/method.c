@@ -141,7 +141,8 @@ enum cs_status cs_method_check(const struct cs_method *method, const char *place
         const struct cs_option_use *use = integrator->uses + k;
         const struct cs_option *row = cs_option_find(&method->table, use->option),
                                *choice = cs_option_find(&method->table, use->choice);
-        if (cs_method_is_given(method, row) &&
+        // what prints every value prints defaults that have no effect too
+        if (cs_method_is_given(method, row) && !cs_option_is_default(row, method->options) &&
             !(use->values >> cs_method_choice(method, choice) & 1))
             return refuse_idle(method, use, choice, place, status, error);
     }

@@ -39,8 +39,9 @@ enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
 enum cs_status cs_method_set(struct cs_method *method, const char *key, const char *value,
                              const char *place, enum cs_status status, struct cs_error *error);
 
-/* Refuses a given option that has no effect beside the others; place and status as above. To
- * be called when all are set, which cs_method_read and cs_method_set_pairs do. */
+/* Refuses a given option, other than its default, that has no effect beside the others; place
+ * and status as above. To be called when all are set, which cs_method_read and
+ * cs_method_set_pairs do. */
 enum cs_status cs_method_check(const struct cs_method *method, const char *place,
                                enum cs_status status, struct cs_error *error);
 
