@@ -137,6 +137,10 @@ enum cs_status cs_json_override(struct cs_json *root, const char *path, const ch
                                 struct cs_error *error) {
     struct step step;
     struct cs_json *parent = root, *made = NULL;
+    /* its keys get into the scene, and from there into reports */
+    if (!cs_utf8_is_plain(path))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--set %s: the path is not UTF-8 text without control characters", path);
     if (make_value(path, value, &made, error))
         return error->status;
     if (make_way(&parent, path, &step, error)) {

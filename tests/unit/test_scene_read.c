@@ -371,7 +371,10 @@ START_TEST(bad_overrides_are_refused) {
          "',' or ']' (at column 6)"},
         {{"about", "\xff"},
          CS_ERR_USAGE,
-         "--set about: the value is not UTF-8 text without control characters"}};
+         "--set about: the value is not UTF-8 text without control characters"},
+        {{"integrator.\xe4", "1"},
+         CS_ERR_USAGE,
+         "--set integrator.\xe4: the path is not UTF-8 text without control characters"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         assert_refused("{\"bodies\": [" BODY "]}", &rows[i].override, 1, rows[i].status,
                        rows[i].message);
