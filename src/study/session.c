@@ -5,6 +5,7 @@
 #include "model/plan.h"
 #include "model/system_build.h"
 #include "scene/crossings.h"
+#include "scene/pairs.h"
 #include "scene/shape.h"
 #include "sim/folders.h"
 #include "study/perturb.h"
@@ -102,18 +103,25 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
     return CS_OK;
 }
 
+/* pairs of surfaces are most of the work where there are any */
+static uint32_t threads_of(const struct cs_scene *scene) {
+    const size_t least =
+        cs_scene_any_meet(scene) ? CS_THREADS_AUTO_LEAST_MEETING : CS_THREADS_AUTO_LEAST;
+    size_t n = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        n += (size_t)cs_shape_count(cs_scene_bodies(scene) + b);
+    return n < least ? 1 : cs_pool_processors(CS_THREADS_AUTO_MOST);
+}
+
 /* before the plan, which says what they take */
 static enum cs_status start_threads(struct cs_session *session, struct cs_error *error) {
     uint32_t threads = session->settings.threads;
-    size_t n = 0;
     if (!threads)
         return CS_OK;
-    for (uint32_t b = 0; b < session->scene.bodies.n; b++)
-        n += (size_t)cs_shape_count(cs_scene_bodies(&session->scene) + b);
     const bool chosen = threads == CS_THREADS_AUTO;
     struct cs_error refused = {0};
     if (chosen)
-        threads = n < CS_THREADS_AUTO_LEAST ? 1 : cs_pool_processors(CS_THREADS_AUTO_MOST);
+        threads = threads_of(&session->scene);
     session->pooled = !cs_pool_start(threads, &refused);
     /* one thread gives the same bits: a failure only where more were asked for */
     return session->pooled || chosen ? CS_OK

@@ -42,9 +42,15 @@ struct cs_session_settings {
     struct cs_run_settings run;
 };
 
-/* One thread for a scene that is done before others have woken up; else one a processor, up to
- * that many. */
-enum { CS_THREADS_AUTO = UINT16_MAX, CS_THREADS_AUTO_MOST = 16, CS_THREADS_AUTO_LEAST = 16384 };
+/* One thread for a scene that is done before others have woken up, of fewer particles than the
+ * least, which is another where surfaces keep off each other; else one a processor, up to that
+ * many. */
+enum {
+    CS_THREADS_AUTO = UINT16_MAX,
+    CS_THREADS_AUTO_MOST = 16,
+    CS_THREADS_AUTO_LEAST = 16384,
+    CS_THREADS_AUTO_LEAST_MEETING = 1024
+};
 
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_session {

@@ -96,7 +96,8 @@ static const struct cs_arg rows[RUN_ROWS] = {
                     false},
     [RUN_THREADS] = {"threads", 0, "N",
                      "threads that step the scene, 1 to 64 (default: one a processor, up to "
-                     "16; 1 below 16384 particles: too little work to share)",
+                     "16; 1 below 16384 particles, or 1024 that meet by force: "
+                     "too little work to share)",
                      false},
     [RUN_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)", false},
     [RUN_RANGE] = {"range", 0, "RANGE",
