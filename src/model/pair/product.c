@@ -2,17 +2,19 @@
 #include "model/pair/product.h"
 
 #include "base/pool.h"
-#include "base/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* particles whose corners are gathered together */
+enum { PARTICLES = 256 };
+
 static void finish(void *object) {
     struct cs_product *product = object;
-    for (uint32_t l = 0; l < product->set->n_lots; l++) {
+    for (uint32_t l = 0; l < product->set->n_lots; l++)
         free(product->lots[l].factors);
-        free(product->lots[l].products);
-    }
+    free(product->products);
+    free(product->places);
 }
 
 enum cs_status cs_product_init(struct cs_product *product, const struct cs_pair_set *set,
@@ -45,22 +47,58 @@ static void put_lot(void *arg, uint32_t number) {
     const size_t blocks = (from->n + CS_PAIR_LANES - 1) / CS_PAIR_LANES;
     struct cs_pair_factors *factors =
         cs_arena_grow(lot->factors, &lot->factors_room, blocks, sizeof *factors);
-    double(*products)[3] =
-        cs_arena_grow(lot->products, &lot->products_room, 4 * from->n, sizeof *products);
     lot->factors = factors ? factors : lot->factors;
-    lot->products = products ? products : lot->products;
-    lot->failed = from->n && (!factors || !products);
+    lot->failed = from->n && !factors;
     for (size_t p = 0; p < from->n && !lot->failed; p++)
         put_lane(from->pairs + p, p % CS_PAIR_LANES, factors + p / CS_PAIR_LANES);
 }
 
+static uint32_t pieces_of(const struct cs_pair_set *set) {
+    return (set->n_particles + PARTICLES - 1) / PARTICLES;
+}
+
+/* of the particles of one piece, behind the last of them */
+static size_t end_of(const struct cs_pair_set *set, size_t begin) {
+    return set->n_particles - begin < PARTICLES ? set->n_particles : begin + PARTICLES;
+}
+
+static void place_ends(void *arg, uint32_t piece) {
+    const struct cs_product *product = arg;
+    const struct cs_pair_set *set = product->set;
+    const size_t begin = (size_t)piece * PARTICLES;
+    for (uint32_t e = set->starts[begin]; e < set->starts[end_of(set, begin)]; e++) {
+        const struct cs_pair_end *at = set->ends + e;
+        const size_t pair = (size_t)(at->pair - set->lots[at->lot].pairs);
+        product->places[e] = (uint32_t)(4 * (product->lots[at->lot].first + pair) + at->corner);
+    }
+}
+
+/* false: no memory */
+static bool take_places(struct cs_product *product) {
+    const size_t n = 4 * product->set->n;
+    double(*products)[3] =
+        cs_arena_grow(product->products, &product->products_room, n, sizeof *products);
+    product->products = products ? products : product->products;
+    uint32_t *places = cs_arena_grow(product->places, &product->places_room, n, sizeof *places);
+    product->places = places ? places : product->places;
+    return products && places;
+}
+
 bool cs_product_set(struct cs_product *product) {
-    bool failed = false;
-    if (!product->set->n)
+    const struct cs_pair_set *set = product->set;
+    size_t first = 0;
+    if (!set->n)
         return true;
-    cs_pool_run(product->set->n_lots, put_lot, product);
-    for (uint32_t l = 0; l < product->set->n_lots; l++)
+    if (!take_places(product))
+        return false;
+    cs_pool_run(set->n_lots, put_lot, product);
+    bool failed = false;
+    for (uint32_t l = 0; l < set->n_lots; l++) {
         failed = failed || product->lots[l].failed;
+        product->lots[l].first = first;
+        first += set->lots[l].n;
+    }
+    cs_pool_run(pieces_of(set), place_ends, product);
     return !failed;
 }
 
@@ -107,8 +145,9 @@ static void multiply_lanes(const struct job *job, const struct cs_product_lot *l
         cs_pair_lanes_multiply(factors + b, by[b]);
     for (size_t b = 0; b < blocks; b++) {
         const size_t rest = left - b * CS_PAIR_LANES;
+        const size_t pair = lot->first + (first + b) * CS_PAIR_LANES;
         write_lanes(by[b], rest < CS_PAIR_LANES ? rest : CS_PAIR_LANES,
-                    lot->products + 4 * (first + b) * CS_PAIR_LANES);
+                    job->product->products + 4 * pair);
     }
 }
 
@@ -119,18 +158,22 @@ static void multiply_lot(void *arg, uint32_t number) {
         multiply_lanes(job, job->product->lots + number, n, b);
 }
 
-static void gather(void *arg, size_t begin, size_t end) {
+static void gather(void *arg, uint32_t piece) {
     const struct job *job = arg;
-    const struct cs_pair_set *set = job->product->set;
-    const size_t n = set->n_particles;
-    for (size_t i = begin; i < end; i++)
+    const struct cs_product *product = job->product;
+    const struct cs_pair_set *set = product->set;
+    const size_t n = set->n_particles, begin = (size_t)piece * PARTICLES;
+    const size_t end = end_of(set, begin);
+    for (size_t i = begin; i < end; i++) {
+        double sum[3] = {job->y[i], job->y[n + i], job->y[2 * n + i]};
         for (uint32_t e = set->starts[i]; e < set->starts[i + 1]; e++) {
-            const struct cs_pair_end *at = set->ends + e;
-            const size_t pair = (size_t)(at->pair - set->lots[at->lot].pairs);
-            const double *by = job->product->lots[at->lot].products[4 * pair + at->corner];
-            for (size_t c = 0; c < 3; c++)
-                job->y[c * n + i] += by[c];
+            const double *by = product->products[product->places[e]];
+            for (int c = 0; c < 3; c++)
+                sum[c] += by[c];
         }
+        for (size_t c = 0; c < 3; c++)
+            job->y[c * n + i] = sum[c];
+    }
 }
 
 void cs_product_add(const struct cs_product *product, const double *p, double *y) {
@@ -138,5 +181,5 @@ void cs_product_add(const struct cs_product *product, const double *p, double *y
     if (!product->set->n)
         return;
     cs_pool_run(product->set->n_lots, multiply_lot, &job);
-    cs_vector_share(product->set->n_particles, gather, &job);
+    cs_pool_run(pieces_of(product->set), gather, &job);
 }

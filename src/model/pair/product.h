@@ -7,14 +7,17 @@
 /* What one lot of a set has for products. */
 struct cs_product_lot {
     struct cs_pair_factors *factors; /* CS_PAIR_LANES pairs each */
-    double (*products)[3];           /* (4 n) what a vector makes of each corner */
-    size_t factors_room, products_room;
-    bool failed; /* there was no memory */
+    size_t factors_room;
+    size_t first; /* pairs of the lots before it */
+    bool failed;  /* there was no memory */
 };
 
 struct cs_product {
     const struct cs_pair_set *set; /* borrowed */
     struct cs_product_lot *lots;   /* those of the set */
+    double (*products)[3];         /* (4 n) what a vector makes of each corner of all pairs */
+    uint32_t *places;              /* (4 n) where the set's ends have theirs */
+    size_t products_room, places_room;
 };
 
 /* For a set whose pairs have four particles each; the arena owns what it takes. CS_ERR_MEMORY.
