@@ -9,8 +9,9 @@
 #include <clothsim/small.h>
 
 enum {
-    CELLS = 1024, /* of one block of a loop at least: a whole number of lanes */
-    LOOPS = 4     /* of a smoother and what follows it at most */
+    CELLS = 1024,    /* of one block of a loop at least: a whole number of lanes */
+    CELLS_FEW = 128, /* where threads would else have no blocks to share */
+    LOOPS = 4        /* of a smoother and what follows it at most */
 };
 
 size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers) {
@@ -59,7 +60,9 @@ static void run_block_of_one(void *arg, uint32_t block) {
 
 /* so many that no spring of a grid reaches beyond the next block */
 static size_t cells_of_block(const struct cs_level *level) {
-    size_t cells = CELLS;
+    const uint32_t threads = cs_pool_threads();
+    const bool few = threads > 1 && level->end - level->begin < 2 * LOOPS * threads * CELLS;
+    size_t cells = few ? CELLS_FEW : CELLS;
     for (uint32_t s = 0; s < level->n_steps; s++)
         cells = level->steps[s] > cells ? level->steps[s] : cells;
     return (cells + CS_LANES - 1) / CS_LANES * CS_LANES;
