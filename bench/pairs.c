@@ -59,12 +59,14 @@ static void build(void *object) {
 
 static void candidates(void *object) {
     struct bed *bed = object;
+    bed->session.system.pairs->search.closed = false;
     const struct cs_eval at = here(bed, CS_PART_ALL);
     bed->out[0] = cs_pairs_energy(bed->session.system.pairs, &at);
 }
 
 static void pairs(void *object) {
     struct bed *bed = object;
+    bed->session.system.pairs->search.closed = false;
     const struct cs_eval at = here(bed, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE);
     cs_terms_force(&bed->session.system, &at, bed->out);
 }

@@ -98,6 +98,66 @@ CS_INLINE void change(enum cs_stencil_kind kind, struct cs_pair_lanes *restrict 
 KERNEL(push)
 KERNEL(change)
 
+CS_INLINE void write_share(const struct cs_pair_share *share, int lane,
+                           struct cs_pair_factors *factors) {
+    factors->along[lane] = share->along;
+    CS_UNROLLED
+    for (int k = 0; k < 4; k++)
+        factors->weight[k][lane] = share->weight[k];
+    CS_UNROLLED
+    for (int e = 0; e < 6; e++)
+        factors->of[e][lane] = share->of[e];
+}
+
+/* a definite matrix; `bound` known to the compiler, or the loop would have a branch */
+CS_INLINE void share_bound(enum cs_stencil_kind kind, struct cs_pair_lanes *restrict lanes,
+                           struct cs_contact_keys keys, struct cs_matrix matrix,
+                           struct cs_pair_factors *restrict factors) {
+    const struct cs_pair_law law = {.keys = keys};
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        struct cs_reaction reaction;
+        struct cs_pair_share share;
+        double g[4][3];
+        react(kind, lanes, l, &law, &reaction);
+        cs_reaction_matrix(&reaction, &matrix, g, &share);
+        write_lane(g, l, factors->g);
+        write_share(&share, l, factors);
+    }
+}
+
+CS_INLINE void share_matrix(enum cs_stencil_kind kind, struct cs_pair_lanes *restrict lanes,
+                            struct cs_contact_keys keys, struct cs_matrix matrix,
+                            struct cs_pair_factors *restrict factors) {
+    const struct cs_matrix definite = {.cd = matrix.cd, .ck = matrix.ck, .psd = true};
+    struct cs_matrix bound = definite;
+    bound.bound = true;
+    if (matrix.bound)
+        share_bound(kind, lanes, keys, bound, factors);
+    else
+        share_bound(kind, lanes, keys, definite, factors);
+}
+
+CS_CLONES static void share_triangles(struct cs_pair_lanes *restrict lanes,
+                                      struct cs_contact_keys keys, struct cs_matrix matrix,
+                                      struct cs_pair_factors *restrict factors) {
+    share_matrix(CS_STENCIL_TRIANGLE, lanes, keys, matrix, factors);
+}
+
+CS_CLONES static void share_edges(struct cs_pair_lanes *restrict lanes,
+                                  struct cs_contact_keys keys, struct cs_matrix matrix,
+                                  struct cs_pair_factors *restrict factors) {
+    share_matrix(CS_STENCIL_EDGES, lanes, keys, matrix, factors);
+}
+
+void cs_pair_lanes_matrix(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
+                          const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
+                          struct cs_pair_factors *factors) {
+    if (kind == CS_STENCIL_EDGES)
+        share_edges(lanes, *keys, *matrix, factors);
+    else
+        share_triangles(lanes, *keys, *matrix, factors);
+}
+
 CS_INLINE void multiply(double g[4][3], const struct cs_pair_share *share, double p[4][3],
                         double by[4][3]) {
     const double *s = share->of;

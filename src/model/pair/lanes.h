@@ -40,6 +40,11 @@ struct cs_pair_factors {
     uint32_t at[CS_PAIR_LANES][4];
 };
 
+/* Sets all of them but `at`, as cs_reaction_matrix of a matrix that is psd. */
+void cs_pair_lanes_matrix(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
+                          const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
+                          struct cs_pair_factors *factors);
+
 /* In place of p: the share of each pair times p, less what the diagonal blocks of the solver
  * have of it. How gradients turn is not in it. */
 void cs_pair_lanes_multiply(struct cs_pair_factors *factors, double p[4][3][CS_PAIR_LANES]);

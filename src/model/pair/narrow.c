@@ -1,5 +1,5 @@
-/* Candidates of a lot are measured in lanes; those in range fill lanes again where a force is
- * asked for, and are answered one by one else. */
+/* Pairs in range of a lot: forces, their changes, energies and shares of a clamped matrix are
+ * worked out in lanes, what is asked more seldom one by one. */
 #include "model/pair/narrow.h"
 
 #include "base/pool.h"
@@ -13,7 +13,7 @@ struct work {
     const struct cs_narrow *narrow;
     enum cs_stencil_kind kind;
     struct cs_pair_lot *lot;
-    struct cs_pair_lanes candidates, held;
+    struct cs_pair_lanes lanes;
 };
 
 /* what an obstacle has no place in is 0 for it */
@@ -63,14 +63,13 @@ static void answer(const struct work *work, const struct cs_reaction *reaction,
     pair->along = share.along;
     memcpy(pair->share, share.weight, sizeof share.weight);
     memcpy(pair->of, share.of, sizeof share.of);
-    if (narrow->set->exact)
-        add_turn(work, reaction);
+    add_turn(work, reaction);
 }
 
 static void add_alone(struct work *work, uint32_t lane) {
     const struct cs_narrow *narrow = work->narrow;
     const struct cs_system *system = narrow->search->system;
-    const struct cs_pair_lanes *from = &work->candidates;
+    const struct cs_pair_lanes *from = &work->lanes;
     const struct cs_meeting meeting = {from->range[lane], from->k[lane], from->mu[lane]};
     struct cs_reaction reaction;
     double p[4][3], v[4][3];
@@ -86,91 +85,104 @@ static void add_alone(struct work *work, uint32_t lane) {
     answer(work, &reaction, pair);
 }
 
-/* --- forces and their change, in lanes --- */
+/* --- in lanes --- */
+
+static void add_energy(struct work *work) {
+    struct cs_pair_lanes *lanes = &work->lanes;
+    cs_pair_lanes_measure(work->kind, lanes);
+    for (uint32_t l = 0; l < lanes->n; l++)
+        work->lot->energy += cs_law_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
+}
 
 static void push(struct work *work) {
     const struct cs_narrow *narrow = work->narrow;
     const struct cs_pair_law law = {narrow->search->system->scene->contact,
                                     cs_near_parts(narrow->at.parts)};
-    struct cs_pair_lanes *held = &work->held;
-    if (!held->n)
-        return;
+    struct cs_pair_lanes *lanes = &work->lanes;
     if (narrow->ask == CS_PAIR_CHANGE)
-        cs_pair_lanes_change(work->kind, held, &law);
+        cs_pair_lanes_change(work->kind, lanes, &law);
     else
-        cs_pair_lanes_push(work->kind, held, &law);
-    for (uint32_t l = 0; l < held->n; l++) {
+        cs_pair_lanes_push(work->kind, lanes, &law);
+    for (uint32_t l = 0; l < lanes->n; l++) {
         struct cs_pair *pair = cs_pair_lot_next(work->lot);
         if (!pair)
             break;
         pair->n = 4;
-        memcpy(pair->at, held->at[l], sizeof pair->at);
+        memcpy(pair->at, lanes->at[l], sizeof pair->at);
         for (int k = 0; k < 4; k++)
             for (int c = 0; c < 3; c++)
-                pair->to[k][c] = held->to[k][c][l];
+                pair->to[k][c] = lanes->to[k][c][l];
     }
-    held->n = 0;
 }
 
-static void hold(struct work *work, uint32_t lane) {
-    const struct cs_narrow *narrow = work->narrow;
-    const struct cs_pair_lanes *from = &work->candidates;
-    struct cs_pair_lanes *held = &work->held;
-    const uint32_t l = held->n++;
-    memcpy(held->at[l], from->at[lane], sizeof held->at[l]);
-    held->range[l] = from->range[lane];
-    held->k[l] = from->k[lane];
-    held->mu[l] = from->mu[lane];
-    for (int k = 0; k < 4; k++)
+static void read_factors(const struct cs_pair_factors *factors, uint32_t lane,
+                         struct cs_pair *pair) {
+    pair->along = factors->along[lane];
+    for (int k = 0; k < 4; k++) {
+        pair->share[k] = factors->weight[k][lane];
         for (int c = 0; c < 3; c++)
-            held->p[k][c][l] = from->p[k][c][lane];
-    const struct cs_system *system = narrow->search->system;
-    const size_t n = system->view.n;
-    read_lane(narrow->v, system->surfaces->n_points, held->at[l], l, held->v);
-    if (narrow->ask == CS_PAIR_CHANGE) {
-        read_lane(narrow->at.dx, n, held->at[l], l, held->dp);
-        read_lane(narrow->at.dv, n, held->at[l], l, held->dv);
+            pair->to[k][c] = factors->g[k][c][lane];
     }
-    if (held->n == CS_PAIR_LANES)
-        push(work);
+    for (int e = 0; e < 6; e++)
+        pair->of[e] = factors->of[e][lane];
 }
 
-/* --- candidates --- */
-
-static void measure(struct work *work) {
-    struct cs_pair_lanes *lanes = &work->candidates;
-    const enum cs_pair_ask ask = work->narrow->ask;
-    if (lanes->n)
-        cs_pair_lanes_measure(work->kind, lanes);
-    for (uint32_t l = 0; l < lanes->n; l++) {
-        if (!(lanes->d[l] < lanes->range[l]) ||
-            is_fixed(work->narrow->search->system, lanes->at[l]))
-            continue;
-        if (ask == CS_PAIR_ENERGY)
-            work->lot->energy += cs_law_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
-        else if (ask == CS_PAIR_FORCE || ask == CS_PAIR_CHANGE)
-            hold(work, l);
-        else
-            add_alone(work, l);
+static void share(struct work *work) {
+    const struct cs_narrow *narrow = work->narrow;
+    struct cs_pair_factors factors;
+    cs_pair_lanes_matrix(work->kind, &work->lanes, &narrow->search->system->scene->contact,
+                         narrow->matrix, &factors);
+    for (uint32_t l = 0; l < work->lanes.n; l++) {
+        struct cs_pair *pair = cs_pair_lot_next(work->lot);
+        if (!pair)
+            break;
+        pair->n = 4;
+        memcpy(pair->at, work->lanes.at[l], sizeof pair->at);
+        read_factors(&factors, l, pair);
     }
-    lanes->n = 0;
+}
+
+static void act(struct work *work) {
+    const struct cs_narrow *narrow = work->narrow;
+    if (!work->lanes.n)
+        return;
+    if (narrow->ask == CS_PAIR_ENERGY)
+        add_energy(work);
+    else if (narrow->ask == CS_PAIR_FORCE || narrow->ask == CS_PAIR_CHANGE)
+        push(work);
+    else if (narrow->ask == CS_PAIR_MATRIX && !narrow->set->exact)
+        share(work);
+    else
+        for (uint32_t l = 0; l < work->lanes.n; l++)
+            add_alone(work, l);
+    work->lanes.n = 0;
 }
 
 static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_narrow *narrow = work->narrow;
     const struct cs_search *search = narrow->search;
-    struct cs_pair_lanes *lanes = &work->candidates;
-    const uint32_t l = lanes->n++;
+    const struct cs_system *system = search->system;
+    const size_t n = system->view.n, n_points = system->surfaces->n_points;
+    struct cs_pair_lanes *lanes = &work->lanes;
+    const uint32_t l = lanes->n;
     uint32_t *at = lanes->at[l];
-    cs_search_corners(search->system->surfaces, work->kind, pair, at);
+    cs_search_corners(system->surfaces, work->kind, pair, at);
+    if (is_fixed(system, at))
+        return;
     const struct cs_meeting *meeting =
         cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]);
     lanes->range[l] = meeting->range;
     lanes->k[l] = meeting->k;
     lanes->mu[l] = meeting->mu;
-    read_lane(narrow->x, search->system->surfaces->n_points, at, l, lanes->p);
-    if (lanes->n == CS_PAIR_LANES)
-        measure(work);
+    read_lane(narrow->x, n_points, at, l, lanes->p);
+    if (narrow->ask != CS_PAIR_ENERGY)
+        read_lane(narrow->v, n_points, at, l, lanes->v);
+    if (narrow->ask == CS_PAIR_CHANGE) {
+        read_lane(narrow->at.dx, n, at, l, lanes->dp);
+        read_lane(narrow->at.dv, n, at, l, lanes->dv);
+    }
+    if (++lanes->n == CS_PAIR_LANES)
+        act(work);
 }
 
 static void do_lot(void *arg, uint32_t number) {
@@ -179,10 +191,9 @@ static void do_lot(void *arg, uint32_t number) {
     struct work work = {
         .narrow = narrow, .kind = from->kind, .lot = narrow->set->lots + number};
     cs_pair_lot_clear(work.lot);
-    for (size_t k = 0; k < from->n; k++)
-        take(&work, from->pairs + 2 * k);
-    measure(&work);
-    push(&work);
+    for (size_t k = 0; k < from->n_close; k++)
+        take(&work, from->close + 2 * k);
+    act(&work);
 }
 
 void cs_narrow_run(struct cs_narrow *narrow) {

@@ -1,4 +1,4 @@
-/* narrow.h - which pairs of the search's list are in range at a state, and what these do. */
+/* narrow.h - what the pairs in range at a state do. */
 #ifndef CS_PAIR_NARROW_H
 #define CS_PAIR_NARROW_H
 
@@ -15,7 +15,7 @@ enum cs_pair_ask {
 };
 
 struct cs_narrow {
-    const struct cs_search *search; /* good for x */
+    const struct cs_search *search; /* its close pairs are those of x */
     const double *x, *v;            /* (3, n_points) at the state; v NULL: at rest */
     struct cs_pair_set *set;
     enum cs_pair_ask ask;

@@ -2,6 +2,7 @@
 #include "model/pair/pairs.h"
 
 #include "model/contact/points.h"
+#include "model/pair/close.h"
 #include "model/pair/narrow.h"
 
 static void run(struct cs_pairs *pairs, struct cs_narrow *narrow) {
@@ -10,7 +11,7 @@ static void run(struct cs_pairs *pairs, struct cs_narrow *narrow) {
     narrow->x = cs_points_places(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
     narrow->v = cs_points_velocities(pairs->system, at->t, at->v);
     cs_meetings_rub(pairs->system, &pairs->meetings);
-    if (cs_search_update(&pairs->search, narrow->x)) {
+    if (cs_close_find(&pairs->search, narrow->x)) {
         cs_narrow_run(narrow);
         return;
     }

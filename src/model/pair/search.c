@@ -9,6 +9,7 @@ static void finish(void *object) {
     struct cs_search *search = object;
     for (uint32_t l = 0; l < search->n_lots; l++) {
         free(search->lots[l].pairs);
+        free(search->lots[l].close);
         cs_cluster_near_finish(&search->lots[l].near);
     }
     cs_cells_finish(&search->triangles.cells);
@@ -44,6 +45,7 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
                                  .n_lots = point_lots + edge_lots};
     search->body = cs_arena_take_n(arena, n, sizeof *search->body, error);
     search->from = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *search->from, error);
+    search->close_at = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *search->from, error);
     take_clusters(&search->triangles, surfaces->n_triangles, arena, error);
     take_clusters(&search->edges, surfaces->n_edges, arena, error);
     search->lots = cs_arena_take_n(arena, search->n_lots, sizeof *search->lots, error);

@@ -16,6 +16,8 @@ struct cs_search_lot {
     uint32_t *pairs; /* (n, 2): point and triangle, or edge and a later edge; ascending */
     size_t n, room;  /* room in pairs */
     bool failed;     /* there was no memory */
+    uint32_t *close; /* (n_close, 2) those of them in range, of cs_close_find */
+    size_t n_close, close_room;
     struct cs_cluster_near near;
     double answer; /* to a question about the pairs of each lot: who asks sets it */
 };
@@ -30,9 +32,11 @@ struct cs_search {
     struct cs_clusters triangles, edges;
     struct cs_search_lot *lots; /* points first */
     uint32_t n_lots;
-    double *drift;   /* (4, n_bodies) middle of the moves of a body, and how far they reach */
-    bool fresh;      /* the list was made */
-    uint64_t builds; /* lists that were made */
+    double *drift;    /* (4, n_bodies) middle of the moves of a body, and how far they reach */
+    bool fresh;       /* the list was made */
+    double *close_at; /* (3,n_points) where close pairs were found */
+    bool closed;      /* they were */
+    uint64_t builds;  /* lists that were made */
 };
 
 /* Makes the lists of all lots anew for the state search->from and the margin search->held, with
