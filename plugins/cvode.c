@@ -6,6 +6,7 @@
 #include "cvode_order.h"
 
 #include "sundials_common.h"
+#include "sundials_pass.h"
 
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
@@ -122,21 +123,28 @@ static int moved(struct sundials *base, double t, double dt) {
     return code == CV_SUCCESS ? start_anew(self, t, next) : code;
 }
 
-/* One step; then the order may be another one. CVODE cannot lower it without a new start. */
-static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached, int task) {
-    int code = CVode(memory, t1, y, reached, task);
-    void *object = NULL;
-    double h = 0;
-    if (code < 0 || CVodeGetUserData(memory, &object) != CV_SUCCESS)
-        return code;
-    struct cvode *self = object;
-    if (!self->order.chosen || CVodeGetLastStep(memory, &h) != CV_SUCCESS ||
-        !cvode_order_watch(&self->order, h * self->base.host->view->omega))
-        return code;
+/* CVODE cannot lower its order without a new start; h: the last step's length in s. */
+static int change_order(struct cvode *self, double t, double h, double stop) {
     if (self->order.high)
-        return CVodeSetMaxOrd(memory, CVODE_ORDER_HIGH);
-    code = start_anew(self, *reached, h);
-    return code == CV_SUCCESS && *reached < t1 ? CVodeSetStopTime(memory, t1) : code;
+        return CVodeSetMaxOrd(self->base.memory, CVODE_ORDER_HIGH);
+    const int code = start_anew(self, t, h);
+    return code == CV_SUCCESS && !self->base.shown ? CVodeSetStopTime(self->base.memory, stop)
+                                                   : code;
+}
+
+/* One step from *reached, before which the last one may change the order: not behind that one,
+ * whose interpolant may be asked for. */
+static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached, int task) {
+    void *object = NULL;
+    double h = 0; // before the first step since a start it is 0
+    int code = CVodeGetUserData(memory, &object);
+    if (code == CV_SUCCESS)
+        code = CVodeGetLastStep(memory, &h);
+    struct cvode *self = object;
+    if (code == CV_SUCCESS && self->order.chosen && h > 0 &&
+        cvode_order_watch(&self->order, h * self->base.host->view->omega))
+        code = change_order(self, *reached, h, t1);
+    return code == CV_SUCCESS ? CVode(memory, t1, y, reached, task) : code;
 }
 
 static const struct sundials_library library = {
@@ -146,6 +154,7 @@ static const struct sundials_library library = {
     .set_stop = CVodeSetStopTime,
     .evolve = evolve,
     .one_step = CV_ONE_STEP,
+    .interpolate = CVodeGetDky,
     .system = newton_system,
     .moved = moved,
 };
@@ -218,6 +227,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, int 
     if (sundials_open(&self->base, host, &library, bdf ? BDF_VECTORS : ADAMS_VECTORS,
                       bdf ? self->asked.linear_rtol : 0) != CS_STEP_OK)
         return CS_STEP_FAIL;
+    if (bdf)
+        sundials_pass_begin(&self->base);
     self->history.spare = sundials_vectors_take(&self->base.vectors);
     const int code = open_memory(self, family);
     return code == CV_SUCCESS ? CS_STEP_OK : sundials_fail(&self->base, code, 0);

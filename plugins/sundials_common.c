@@ -2,6 +2,7 @@
  */
 #include "sundials_common.h"
 
+#include "sundials_pass.h"
 #include "sundials_solver.h"
 
 #include <float.h>
@@ -92,7 +93,10 @@ int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object
 enum cs_step sundials_restart(void *object, double t, const double *x, const double *v) {
     (void)v; // is x + 3n
     struct sundials *self = object;
-    sundials_wrap(self->state, (double *)x);
+    if (self->shown)
+        sundials_pass_restart(self, t, x);
+    else
+        sundials_wrap(self->state, (double *)x);
     self->status = CS_STEP_OK;
     self->message[0] = 0;
     const int code = self->library->moved(self, t, 0);
@@ -131,9 +135,11 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
     struct sundials *self = object;
     const struct cs_host *host = self->host;
     const struct sundials_library *library = self->library;
-    sundials_wrap(self->state, x);
     self->status = CS_STEP_OK;
     self->message[0] = 0;
+    if (self->shown)
+        return sundials_pass_advance(self, t0, t1, x, v);
+    sundials_wrap(self->state, x);
     const bool limited = !self->equal_steps && CS_HAS(host, longest_step) && host->longest_step;
     int code = set_stop(self, limited, t0, t1, x);
     if (code < 0)

@@ -1,9 +1,10 @@
 /* sundials_common.h - what the methods on SUNDIALS share: context, state, right-hand side,
  * error messages, the loop over steps, and the linear solver of the implicit ones.
  *
- * y = (x, v), y' = (v, f/m). A library is driven step by step up to the frame time, which is
- * its stop time, and after each step comes the commit. It keeps its history across frames, and
- * hears of it where the state was moved from outside.
+ * y = (x, v), y' = (v, f/m). A library is driven step by step, and after each step comes the
+ * commit. Where something acts between steps the frame time is its stop time; where nothing
+ * does it steps as it likes, and frames are interpolated: see sundials_pass.h. It keeps its
+ * history across frames, and hears of it where the state was moved from outside.
  */
 #ifndef SUNDIALS_COMMON_H
 #define SUNDIALS_COMMON_H
@@ -25,6 +26,8 @@ struct sundials_library {
     int (*evolve)(void *memory, sunrealtype t, N_Vector y, sunrealtype *reached, int task);
     int one_step;  /* the task */
     bool recovers; /* from a right-hand side that fails at a stage: by a smaller step */
+    /* the k-th derivative of the last step's interpolant at t; NULL: never asked */
+    int (*interpolate)(void *memory, sunrealtype t, int k, N_Vector y);
     /* where the nonlinear solver stands, and its g: see solve_reduced */
     int (*system)(void *memory, double *t, N_Vector *y, double *g);
     /* the state was moved at t after a step of dt; 0: from outside, forget all */
@@ -37,7 +40,9 @@ struct sundials {
     SUNContext context; /* owned */
     void *memory;       /* owned by the method */
     struct sundials_vectors vectors;
-    N_Vector state; /* wraps the host's x and v */
+    N_Vector state; /* wraps the host's x and v, unless steps pass frames */
+    N_Vector shown; /* that wraps them then; NULL: steps end at frames */
+    double reached; /* s, where the state is then */
     struct _generic_SUNLinearSolver solver;
     struct _generic_SUNLinearSolver_Ops solver_ops;
     double linear_rtol; /* relative residual of the linear solves */

@@ -253,6 +253,13 @@ struct cs_host {
      * CS_NEED_DIAGONAL. */
     void (*force_diagonal)(void *ctx, double t, const double *x, const double *v, double *f,
                            double *blocks);
+
+    /* For the whole run: nothing acts between steps, and no event comes (no contact, strain
+     * limit, velocity loss or crossings). Then a step may end behind t1: the method gives the
+     * state at t1 by interpolation, commits it as if the step had ended there, and commits the
+     * rest of the step in the next advance. commit leaves its own state alone, unless it sets
+     * *changed. Not in hosts whose size ends before it: ask CS_HAS(host, may_pass) first. */
+    bool may_pass;
 };
 
 /* What only the method can count. */

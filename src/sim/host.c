@@ -263,6 +263,17 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
     return CS_OK;
 }
 
+/* commit looks only, and no event comes */
+static bool may_pass(const struct cs_system *system) {
+    static const enum cs_feature acting[] = {CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,
+                                             CS_FEATURE_CROSSINGS, CS_FEATURE_STRAIN_LIMIT,
+                                             CS_FEATURE_EVENTS};
+    bool acts = cs_passage_is_judged(system);
+    for (size_t k = 0; k < sizeof acting / sizeof *acting; k++)
+        acts |= system->plan.rows[acting[k]].built;
+    return !acts;
+}
+
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error) {
     struct cs_system *system = run->system;
@@ -284,6 +295,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .solve = host_solve,
         .apply = host_apply,
         .commit = cs_host_commit,
+        .may_pass = may_pass(system),
     };
     cs_bound_set(&host->bound, system, 0);
     if (add_rate(host, error) || add_contact(host, error))

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 /* a cloth that falls on a ball and a floor: commits that move the state are most */
@@ -180,9 +181,98 @@ START_TEST(history_survives_contact) {
 }
 END_TEST
 
+/* hangs by two corners; what follows the pins closes the body, and may act between steps */
+#define HANGING                                                                                \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [8, 8]}, \"mass\": {\"total\": 0.2}, \"springs\":"   \
+    " {\"stretch\": 1000, \"shear\": 300, \"bend\": 100, \"damping\": 0.002,"                  \
+    " \"damping_model\": \"relative\"}, \"pins\": [\"top-left\", \"top-right\"] %s,"           \
+    " \"time\": {\"fps\": %d}}"
+enum { HANGING_VALUES = 6 * 64, ENDS = 5 };
+
+struct hung {
+    double states[ENDS][HANGING_VALUES]; /* after 0.1, 0.2, ... s */
+    uint64_t forces;
+};
+
+static void hang(const char *method, const char *more, int fps, struct hung *out) {
+    struct fixture cloth;
+    fixture_open(&cloth, method, HANGING, more, fps);
+    fixture_start(&cloth);
+    for (int end = 0; end < ENDS; end++) {
+        fixture_frames(&cloth, (uint32_t)fps / 10);
+        memcpy(out->states[end], cloth.x, sizeof out->states[end]);
+    }
+    out->forces = cloth.session.run.counts.forces;
+    fixture_close(&cloth);
+}
+
+/* Frames are interpolated: neither the motion nor its cost depends on how many there are. Where
+ * anything acts between steps each frame ends one. */
+START_TEST(steps_pass_frames) {
+    static struct hung few, many;
+    hang("cvode-bdf:rtol=1e-2", "}]", 10, &few);
+    hang("cvode-bdf:rtol=1e-2", "}]", 500, &many);
+    ck_assert_mem_eq(few.states, many.states, sizeof few.states);
+    ck_assert_uint_eq(few.forces, many.forces);
+    ck_assert_uint_lt(few.forces, 250);
+    hang("cvode-bdf:rtol=1e-2", "}], \"forces\": {\"velocity_loss\": 1e-12}", 500, &many);
+    ck_assert_uint_gt(many.forces, 250);
+}
+END_TEST
+
+/* The interpolant is as good as the steps: between them the error follows the tolerance too. */
+START_TEST(interpolated_frames_follow_the_tolerance) {
+    static const double rtols[] = {1e-2, 1e-4, 1e-6};
+    static struct hung reference, found;
+    hang("dopri5:rtol=1e-11", "}]", 10, &reference);
+    for (size_t k = 0; k < sizeof rtols / sizeof *rtols; k++) {
+        char method[64];
+        snprintf(method, sizeof method, "cvode-bdf:rtol=%g", rtols[k]);
+        hang(method, "}]", 10, &found);
+        for (int end = 0; end < ENDS; end++) {
+            const double error =
+                cs_rms_difference(found.states[end], reference.states[end], HANGING_VALUES / 2);
+            ck_assert_msg(error < 3 * rtols[k] && error > 1e-4 * rtols[k],
+                          "%s: %.3g m off after %d frames", method, error, end + 1);
+        }
+    }
+}
+END_TEST
+
+/* what the host says of a scene that goes on so */
+static bool may_pass(const char *more) {
+    struct fixture cloth;
+    fixture_open(&cloth, "cvode-bdf", HANGING, more, 60);
+    fixture_start(&cloth);
+    const bool passes = cs_run_calls(&cloth.session.run)->may_pass;
+    fixture_close(&cloth);
+    return passes;
+}
+
+START_TEST(what_acts_between_steps_is_told) {
+    static const char *const acting[] = {
+        ", \"strain_limit\": 1.1}]",
+        "}], \"forces\": {\"velocity_loss\": 0.01}",
+        "}], \"colliders\": [{\"floor\": {\"height\": -9}}]",
+        "}], \"colliders\": [{\"floor\": {\"height\": -9}}], \"contact\": {\"law\": \"force\"}",
+        "}], \"crossings\": \"stop\"",
+        "}], \"events\": [{\"at\": 1, \"release\": {\"particles\": [\"top-left\"]}}]"};
+    ck_assert(may_pass("}]"));
+    ck_assert(may_pass("}], \"forces\": {\"drag\": 0.1}"));
+    for (size_t k = 0; k < sizeof acting / sizeof *acting; k++)
+        ck_assert_msg(!may_pass(acting[k]), "%s", acting[k]);
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {steps_take_nothing,    create_may_fail_anywhere,
-                                  failures_have_reasons, failed_solve_ends_the_run,
-                                  codes_are_named,       history_survives_contact};
+    const TTest *const tests[] = {steps_take_nothing,
+                                  create_may_fail_anywhere,
+                                  failures_have_reasons,
+                                  failed_solve_ends_the_run,
+                                  codes_are_named,
+                                  history_survives_contact,
+                                  steps_pass_frames,
+                                  interpolated_frames_follow_the_tolerance,
+                                  what_acts_between_steps_is_told};
     return fixture_run("sundials", tests, sizeof tests / sizeof *tests);
 }
