@@ -1,6 +1,7 @@
 /* When a list is made, and for how long it is good. */
 #include "model/pair/search.h"
 
+#include <clothsim/clones.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +65,43 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
 
 /* --- how long the list is good --- */
 
+/* several vectors: of fewer the compiler makes single numbers */
+enum { LANES = 32 };
+
+/* least and greatest move of each lane */
+struct span {
+    double low[LANES], high[LANES];
+};
+
+CS_INLINE void widen(struct span *span, const double *now, const double *then) {
+    for (int l = 0; l < LANES; l++) {
+        const double move = now[l] - then[l];
+        span->low[l] = move < span->low[l] ? move : span->low[l];
+        span->high[l] = move > span->high[l] ? move : span->high[l];
+    }
+}
+
+/* Into lane 0: least and greatest of now - then, the first one where that is not a number. By
+ * lanes, as each comparison waits for the one before it. */
+CS_CLONES static void find_span(const double *now, const double *then, size_t count,
+                                struct span *out) {
+    struct span span;
+    for (int l = 0; l < LANES; l++)
+        span.low[l] = span.high[l] = now[0] - then[0];
+    for (size_t i = 0; i + LANES <= count; i += LANES)
+        widen(&span, now + i, then + i);
+    for (size_t i = count - count % LANES; i < count; i++) {
+        const double move = now[i] - then[i];
+        span.low[0] = move < span.low[0] ? move : span.low[0];
+        span.high[0] = move > span.high[0] ? move : span.high[0];
+    }
+    for (int l = 1; l < LANES; l++) {
+        span.low[0] = span.low[l] < span.low[0] ? span.low[l] : span.low[0];
+        span.high[0] = span.high[l] > span.high[0] ? span.high[l] : span.high[0];
+    }
+    *out = span;
+}
+
 /* middle of the box about a body's moves since `then`, and half its diagonal */
 static void measure_drift(const struct cs_search *search, uint32_t body, const double *from,
                           const double *x) {
@@ -72,13 +110,9 @@ static void measure_drift(const struct cs_search *search, uint32_t body, const d
     const size_t n = surfaces->n_points, count = surfaces->first_point[body + 1] - first;
     double *drift = search->drift + 4 * (size_t)body, squared = 0;
     for (size_t c = 0; c < 3; c++) {
-        const double *now = x + c * n + first, *then = from + c * n + first;
-        double low = now[0] - then[0], high = low;
-        for (size_t i = 1; i < count; i++) {
-            const double move = now[i] - then[i];
-            low = move < low ? move : low;
-            high = move > high ? move : high;
-        }
+        struct span span;
+        find_span(x + c * n + first, from + c * n + first, count, &span);
+        const double low = span.low[0], high = span.high[0];
         drift[c] = 0.5 * (low + high);
         squared += 0.25 * (high - low) * (high - low);
     }
