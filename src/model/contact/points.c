@@ -8,9 +8,22 @@
 
 #include <string.h>
 
-struct cs_points {
-    double *places[2], *velocities; /* (3, n_points) */
+/* the arrays: places at both ends of a step, and velocities */
+enum { VELOCITIES = 2, ARRAYS };
+
+/* Where the vertices of an obstacle are, and how they move, in one array. */
+struct pose {
+    double centre[3], axes[3][3], velocity[3], spin[3], pivot[3];
 };
+
+struct cs_points {
+    double *of[ARRAYS]; /* (3, n_points) */
+    struct pose *posed; /* (ARRAYS, obstacles) as the arrays have them: what is at rest stays */
+};
+
+static size_t obstacles_of(const struct cs_scene *scene) {
+    return cs_scene_surfaces(scene) - scene->bodies.n;
+}
 
 static double *take(struct cs_system *system, struct cs_error *error) {
     return cs_arena_take_n(&system->arena, 3 * (size_t)system->surfaces->n_points,
@@ -24,18 +37,20 @@ enum cs_status cs_points_build(struct cs_system *system, struct cs_error *error)
     struct cs_points *points = cs_arena_take(&system->arena, sizeof *points, error);
     if (!points)
         return error->status;
-    for (int k = 0; k < 2; k++)
-        points->places[k] = take(system, error);
-    points->velocities = take(system, error);
+    for (int k = 0; k < ARRAYS; k++)
+        points->of[k] = take(system, error);
+    points->posed = cs_arena_take_n(&system->arena, ARRAYS * obstacles_of(system->scene),
+                                    sizeof *points->posed, error);
     system->points = points;
     return error->status;
 }
 
 size_t cs_points_bytes(const struct cs_scene *scene) {
     const size_t points = cs_surfaces_points(scene);
-    const bool any = cs_scene_surfaces(scene) > scene->bodies.n;
-    return cs_surfaces_bytes(scene) +
-           (any ? sizeof(struct cs_points) + 9 * points * sizeof(double) : 0);
+    const size_t obstacles = obstacles_of(scene);
+    const size_t bytes = sizeof(struct cs_points) + ARRAYS * 3 * points * sizeof(double) +
+                         ARRAYS * obstacles * sizeof(struct pose);
+    return cs_surfaces_bytes(scene) + (obstacles ? bytes : 0);
 }
 
 static void copy_particles(const struct cs_system *system, const double *from, double *to) {
@@ -58,22 +73,45 @@ static void pose_vertex(const struct cs_obstacle *obstacle, size_t i, double p[3
                obstacle->axes[2][c] * own[2 * n] + obstacle->centre[c];
 }
 
-/* Sets places or velocities of all obstacles' vertices. */
-static void set_vertices(const struct cs_system *system, double t, bool velocities,
-                         double *to) {
-    const struct cs_surfaces *surfaces = system->surfaces;
+/* whether an array has an obstacle as it is; from now on it has */
+static bool is_posed(const struct cs_obstacle *obstacle, struct pose *posed) {
+    struct pose pose;
+    memcpy(pose.centre, obstacle->centre, sizeof pose.centre);
+    memcpy(pose.axes, obstacle->axes, sizeof pose.axes);
+    memcpy(pose.velocity, obstacle->velocity, sizeof pose.velocity);
+    memcpy(pose.spin, obstacle->spin, sizeof pose.spin);
+    memcpy(pose.pivot, obstacle->pivot, sizeof pose.pivot);
+    const bool same = !memcmp(posed, &pose, sizeof pose);
+    *posed = pose;
+    return same;
+}
+
+/* Sets places or velocities of the vertices [first, end) of an obstacle. */
+static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
+                         const struct cs_obstacle *obstacle, bool velocities, double *to) {
+    const uint32_t first = surfaces->first_point[surface];
     const size_t n_points = surfaces->n_points;
-    for (uint32_t s = system->scene->bodies.n; s < surfaces->n_bodies; s++) {
-        const uint32_t first = surfaces->first_point[s];
+    for (uint32_t i = first; i < surfaces->first_point[surface + 1]; i++) {
+        double p[3], v[3];
+        pose_vertex(obstacle, i - first, p);
+        if (velocities)
+            cs_obstacle_velocity(obstacle, p, v);
+        for (size_t c = 0; c < 3; c++)
+            to[c * n_points + i] = velocities ? v[c] : p[c];
+    }
+}
+
+/* of all obstacles, in one of the arrays */
+static void set_obstacles(const struct cs_system *system, double t, int array) {
+    struct cs_points *points = system->points;
+    const uint32_t n_bodies = system->scene->bodies.n;
+    const uint32_t n = system->surfaces->n_bodies - n_bodies;
+    for (uint32_t k = 0; k < n; k++) {
         struct cs_obstacle obstacle;
-        cs_obstacle_at(system, s - system->scene->bodies.n, t, &obstacle);
-        for (uint32_t i = first; i < surfaces->first_point[s + 1]; i++) {
-            double p[3], v[3];
-            pose_vertex(&obstacle, i - first, p);
-            cs_obstacle_velocity(&obstacle, p, v);
-            for (size_t c = 0; c < 3; c++)
-                to[c * n_points + i] = velocities ? v[c] : p[c];
-        }
+        cs_obstacle_at(system, k, t, &obstacle);
+        if (!is_posed(&obstacle, points->posed + (size_t)array * n + k))
+            set_vertices(system->surfaces, n_bodies + k, &obstacle, array == VELOCITIES,
+                         points->of[array]);
     }
 }
 
@@ -81,15 +119,15 @@ const double *cs_points_places(const struct cs_system *system, enum cs_points_en
                                const double *x) {
     if (!system->points)
         return x;
-    copy_particles(system, x, system->points->places[end]);
-    set_vertices(system, t, false, system->points->places[end]);
-    return system->points->places[end];
+    copy_particles(system, x, system->points->of[end]);
+    set_obstacles(system, t, (int)end);
+    return system->points->of[end];
 }
 
 const double *cs_points_velocities(const struct cs_system *system, double t, const double *v) {
     if (!system->points)
         return v;
-    copy_particles(system, v, system->points->velocities);
-    set_vertices(system, t, true, system->points->velocities);
-    return system->points->velocities;
+    copy_particles(system, v, system->points->of[VELOCITIES]);
+    set_obstacles(system, t, VELOCITIES);
+    return system->points->of[VELOCITIES];
 }
