@@ -30,7 +30,7 @@ FRAMES, EVERY = 24, 5
 def command(program, method, name, rest):
     return [program, "run", "s.json", "-n", str(FRAMES), "-i", method, "-q", "--renderer", "cpu",
             "--states", name + "-states", "--watch", name + ".csv", "--export",
-            "obj,pc2,vtp,npz", "--export-values", "force", *rest]
+            "pc2,npz", *rest]
 
 
 def survey(name):
