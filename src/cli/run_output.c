@@ -24,7 +24,7 @@ static bool is_numbered(const char *name, const char *prefix, const char *ending
     return digits >= NUMBER_DIGITS && !strcmp(name + start + digits, ending);
 }
 
-bool cs_output_is_picture(const char *name) {
+bool cs_output_is_result(const char *name) {
     static const char *const numbered[][2] = {{"frame_", ".png"},     {"bodies_", ".obj"},
                                               {"bodies_", ".vtp"},    {"colliders_", ".obj"},
                                               {"colliders_", ".vtp"}, {NULL, NULL}};

@@ -11,7 +11,7 @@
 
 /* What may be in a folder: numbered frame_*.png, run.json, run.checkpoint and what --export
  * writes; or numbered x_*.npy and v_*.npy. */
-bool cs_output_is_picture(const char *name);
+bool cs_output_is_result(const char *name);
 bool cs_output_is_state(const char *name);
 typedef bool cs_output_kind(const char *name);
 

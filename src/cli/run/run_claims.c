@@ -47,7 +47,7 @@ static enum cs_status claim_outputs(struct cs_claims *claims,
         cs_claims_folder(claims, outputs->states, cs_output_is_state, "--states", error))
         return error->status;
     return outputs->folder
-               ? cs_claims_folder(claims, outputs->folder, cs_output_is_picture, "--out", error)
+               ? cs_claims_folder(claims, outputs->folder, cs_output_is_result, "--out", error)
                : CS_OK;
 }
 
@@ -66,7 +66,7 @@ enum cs_status cs_run_check_claims(const struct cs_session *session,
 enum cs_status cs_run_check_fresh(const struct cs_run_outputs *outputs,
                                   struct cs_error *error) {
     const char *const files[] = {outputs->json, outputs->watch, outputs->ledger};
-    if (cs_output_check(outputs->folder, cs_output_is_picture, error))
+    if (cs_output_check(outputs->folder, cs_output_is_result, error))
         return error->status;
     for (size_t k = 0; k < sizeof files / sizeof *files; k++)
         if (files[k] && strcmp(files[k], "-") != 0 && cs_output_check_file(files[k], error))

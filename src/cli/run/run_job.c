@@ -86,7 +86,7 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
         cs_output_own(&job->states, NULL, settings->states, cs_output_is_state, earlier, error))
         return error->status;
     if (uses_folder(settings) && cs_output_own(&job->folder, &job->states, settings->folder,
-                                               cs_output_is_picture, earlier, error))
+                                               cs_output_is_result, earlier, error))
         return error->status;
     if (!settings->session.render)
         return CS_OK;
