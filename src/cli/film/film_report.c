@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_BYTES = 4096 };
+enum { PATH_BYTES = 4096, MOST_PICTURES = 10000000 };
 
 static const struct cs_json *member(const struct cs_json *object, const char *key,
                                     enum cs_json_kind kind) {
@@ -37,8 +37,11 @@ static bool read_picture(const struct cs_json *frame, struct cs_film_picture *pi
     if (!drawn || !cs_json_is_true(drawn))
         return false;
     *picture = (struct cs_film_picture){.frame = number_of(frame, "number")};
-    const double number = number_of(frame, "picture");
-    picture->number = (uint32_t)(number > 0 ? number : picture->frame);
+    const double given = number_of(frame, "picture");
+    const double number = given > 0 ? given : picture->frame;
+    if (!(number >= 1 && number <= MOST_PICTURES))
+        return false;
+    picture->number = (uint32_t)number;
     for (uint32_t k = 0; range && k < 2 && cs_json_count(range) == 2; k++) {
         const struct cs_json *end = cs_json_at(range, k);
         picture->range[k] = cs_json_kind_of(end) == CS_JSON_NUMBER ? cs_json_number(end) : 0;
