@@ -5,6 +5,7 @@
 #include "export/zip.h"
 #include "io/npy.h"
 
+#include <string.h>
 #include <unistd.h>
 
 static size_t words_of(const struct cs_skin *skin, uint32_t f) {
@@ -95,24 +96,28 @@ static void begin_array(struct cs_zip *zip, const struct array *array) {
     cs_zip_put(zip, head, sizeof head);
 }
 
-/* (n, columns) whole numbers; columns 0: (n) */
-static void put_whole(struct cs_zip *zip, const char *name, const uint32_t *values, uint64_t n,
-                      uint64_t columns) {
-    begin_array(zip, &(struct array){name, "<i4", {n, columns}, columns ? 2 : 1, 4});
-    for (uint64_t k = 0; k < n * (columns ? columns : 1); k++) {
-        const uint32_t word = htole32(values[k]);
-        cs_zip_put(zip, &word, sizeof word);
+/* An array of numbers of 32 bits, whole or not. */
+static void put_array(struct cs_zip *zip, const struct array *array, const void *numbers) {
+    enum { BLOCK = 1024 };
+    uint32_t block[BLOCK];
+    uint64_t n = 1;
+    for (unsigned k = 0; k < array->n_axes; k++)
+        n *= array->shape[k];
+    begin_array(zip, array);
+    for (uint64_t done = 0; done < n; done += BLOCK) {
+        const size_t count = n - done < BLOCK ? (size_t)(n - done) : BLOCK;
+        memcpy(block, (const char *)numbers + done * sizeof *block, count * sizeof *block);
+        for (size_t k = 0; k < count; k++)
+            block[k] = htole32(block[k]);
+        cs_zip_put(zip, block, count * sizeof *block);
     }
     cs_zip_end(zip);
 }
 
-static void put_uv(struct cs_zip *zip, const struct cs_skin *skin) {
-    begin_array(zip, &(struct array){"uv", "<f4", {skin->n_triangles, 3, 2}, 3, 4});
-    for (size_t k = 0; k < 6 * (size_t)skin->n_triangles; k++) {
-        const uint32_t word = cs_little_float(skin->uv[k]);
-        cs_zip_put(zip, &word, sizeof word);
-    }
-    cs_zip_end(zip);
+/* (n, columns) whole numbers; columns 0: (n) */
+static void put_whole(struct cs_zip *zip, const char *name, const uint32_t *values, uint64_t n,
+                      uint64_t columns) {
+    put_array(zip, &(struct array){name, "<i4", {n, columns}, columns ? 2 : 1, 4}, values);
 }
 
 /* what does not change, of bodies and of colliders */
@@ -123,7 +128,8 @@ static void put_meshes(struct cs_zip *zip, const struct cs_skin *const skins[2])
     put_whole(zip, "body_offsets", bodies->first_point, bodies->n_items + 1, 0);
     put_whole(zip, "face_offsets", bodies->first_triangle, bodies->n_items + 1, 0);
     if (bodies->uv)
-        put_uv(zip, bodies);
+        put_array(zip, &(struct array){"uv", "<f4", {bodies->n_triangles, 3, 2}, 3, 4},
+                  bodies->uv);
     if (colliders->n == 0)
         return;
     put_whole(zip, "colliders", colliders->items, colliders->n_items, 0);
