@@ -13,7 +13,7 @@
 struct uv_list {
     uint32_t n;
     uint32_t *last;     /* (skin->n) number from 1; 0: none */
-    float (*values)[2]; /* (skin->n) of it; NAN: none */
+    float (*values)[2]; /* (skin->n) of it */
 };
 
 static void add_uv(struct uv_list *list, uint32_t point, const float uv[2],
@@ -27,14 +27,9 @@ static void add_uv(struct uv_list *list, uint32_t point, const float uv[2],
  * numbers of a corner's place and of its coordinates are then the same, which some readers ask
  * for and others need if they are not to part the corners. */
 static void list_points(const struct cs_skin *skin, struct uv_list *list, struct cs_text *out) {
-    static const float none[2] = {0, 0};
+    cs_skin_point_uv(skin, list->values);
     for (uint32_t i = 0; i < skin->n; i++)
-        list->values[i][0] = (float)NAN;
-    for (size_t corner = 3 * (size_t)skin->n_triangles; corner-- > 0;)
-        memcpy(list->values[skin->triangles[corner]], skin->uv + 2 * corner,
-               sizeof *list->values);
-    for (uint32_t i = 0; i < skin->n; i++)
-        add_uv(list, i, isnan(list->values[i][0]) ? none : list->values[i], out);
+        add_uv(list, i, list->values[i], out);
 }
 
 /* Number of a corner's coordinates, which are added where the point has others. */

@@ -5,6 +5,7 @@
 #include "model/system/faces.h"
 
 #include <math.h>
+#include <string.h>
 
 enum cs_status cs_skin_take(struct cs_skin *skin, bool uv, struct cs_arena *arena,
                             struct cs_error *error) {
@@ -70,6 +71,13 @@ static void set_uv(const struct cs_body_range *body, uint32_t t, const uint32_t 
             at[1] = (float)(1 - (double)row / (body->rows - 1));
         }
     }
+}
+
+void cs_skin_point_uv(const struct cs_skin *skin, float (*uv)[2]) {
+    memset(uv, 0, skin->n * sizeof *uv);
+    for (size_t corner = 3 * (size_t)skin->n_triangles; corner-- > 0;)
+        if (!isnan(skin->uv[2 * corner]))
+            memcpy(uv[skin->triangles[corner]], skin->uv + 2 * corner, sizeof *uv);
 }
 
 static void fill_body(struct cs_skin *skin, const struct cs_body_range *body, uint32_t b) {

@@ -44,6 +44,10 @@ struct cs_export_field *cs_skin_add_field(struct cs_skin *skin, const char *cons
 enum cs_status cs_skin_of_bodies(struct cs_skin *skin, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error);
 
+/* uv (n): texture coordinates of each point, where skin->uv is there: those of its first
+ * corner, which are all that it has but at seams; 0 where it has none. */
+void cs_skin_point_uv(const struct cs_skin *skin, float (*uv)[2]);
+
 /* Sets a field from an array (components, n). */
 void cs_skin_set(const struct cs_skin *skin, const struct cs_export_field *field,
                  const double *values);

@@ -50,11 +50,14 @@ static void print_head(const struct cs_skin *skin, struct cs_text *head) {
                 "NumberOfStrips=\"0\" NumberOfPolys=\"%u\">\n<Points>\n",
                 skin->n, skin->n_lines, skin->n_triangles);
     add_field(head, skin, 0, &offset);
-    cs_text_add(head, "</Points>\n<PointData>\n");
+    cs_text_add(head, "</Points>\n<PointData%s>\n", skin->uv ? " TCoords=\"uv\"" : "");
     for (uint32_t f = 1; f < skin->n_fields; f++)
         add_field(head, skin, f, &offset);
     add_array(head, &(struct array){"Int32", skin->item, 1, skin->n * sizeof(int32_t)},
               &offset);
+    if (skin->uv)
+        add_array(head, &(struct array){"Float32", "uv", 2, skin->n * sizeof(float[2])},
+                  &offset);
     cs_text_add(head, "</PointData>\n");
     add_cells(head, "Lines", skin->n_lines, 2, &offset);
     add_cells(head, "Polys", skin->n_triangles, 3, &offset);
@@ -80,11 +83,23 @@ static void fill_cells(uint8_t **at, const uint32_t *points, uint32_t n, uint32_
         ends[k] = htole32((k + 1) * corners);
 }
 
+static void fill_uv(const struct cs_skin *skin, uint8_t **at) {
+    float(*uv)[2] = (float(*)[2])(void *)begin_array(at, 2 * (size_t)skin->n);
+    cs_skin_point_uv(skin, uv);
+    for (size_t i = 0; i < skin->n; i++)
+        for (size_t c = 0; c < 2; c++) {
+            const uint32_t word = cs_little_float(uv[i][c]);
+            memcpy(uv[i] + c, &word, sizeof word);
+        }
+}
+
 static void fill_fixed(const struct cs_skin *skin, uint8_t *at) {
     uint32_t *item = begin_array(&at, skin->n);
     for (uint32_t b = 0; b < skin->n_items; b++)
         for (uint32_t i = skin->first_point[b]; i < skin->first_point[b + 1]; i++)
             item[i] = htole32(skin->items[b]);
+    if (skin->uv)
+        fill_uv(skin, &at);
     fill_cells(&at, skin->lines, skin->n_lines, 2);
     fill_cells(&at, skin->triangles, skin->n_triangles, 3);
 }
@@ -94,6 +109,8 @@ enum cs_status cs_vtp_make(struct cs_vtp *vtp, const struct cs_skin *skin,
     vtp->fixed_bytes =
         5 * sizeof(uint64_t) + sizeof(uint32_t) * (skin->n + 3 * (size_t)skin->n_lines +
                                                    4 * (size_t)skin->n_triangles);
+    if (skin->uv)
+        vtp->fixed_bytes += sizeof(uint64_t) + skin->n * sizeof(float[2]);
     vtp->fixed = cs_arena_take(arena, vtp->fixed_bytes, error);
     print_head(skin, &vtp->head);
     if (vtp->head.failed)

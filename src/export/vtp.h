@@ -9,7 +9,7 @@
 /* What the files of all samples have in common. Zeroed: nothing. */
 struct cs_vtp {
     struct cs_text head; /* XML up to the appended data, owned */
-    uint8_t *fixed; /* appended data that stay: which body, lines, triangles; the arena's */
+    uint8_t *fixed;      /* appended data that stay, which the arena owns */
     size_t fixed_bytes;
 };
 
