@@ -9,6 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum cs_status cs_file_status(int reason) {
+    return reason == ENOMEM ? CS_ERR_MEMORY : CS_ERR_FILE;
+}
+
 /* CS_ERR_FILE unless info is a regular file */
 static enum cs_status check_regular(const struct stat *info, const char *verb, const char *path,
                                     struct cs_error *error) {
@@ -58,7 +62,8 @@ enum cs_status cs_file_read(const char *path, size_t max, char **bytes, size_t *
     /* without O_NONBLOCK a fifo would wait here for its writer */
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0 || fstat(file, &info)) {
-        status = cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": %s", path, strerror(errno));
+        status = cs_fail(error, cs_file_status(errno), "cannot read \"%s\": %s", path,
+                         strerror(errno));
         goto done;
     }
     if ((status = check_regular(&info, "read", path, error)) ||
@@ -121,10 +126,11 @@ enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
     /* the old file stays whole until cs_file_finish renames over it */
     const int file = open_temporary(out->temporary);
     if (file < 0)
-        return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", path, strerror(errno));
+        return cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s", path,
+                       strerror(errno));
     out->file = fdopen(file, "wb");
     if (!out->file) {
-        cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", path, strerror(errno));
+        cs_fail(error, cs_file_status(errno), "cannot write \"%s\": %s", path, strerror(errno));
         close(file);
         unlink(out->temporary);
         return error->status;
@@ -169,7 +175,7 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
     }
     reason = failed ? reason : errno;
     unlink(out->temporary);
-    return cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", out->path,
+    return cs_fail(error, cs_file_status(reason), "cannot write \"%s\": %s", out->path,
                    reason ? strerror(reason) : "an earlier write failed");
 }
 

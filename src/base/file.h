@@ -22,6 +22,9 @@ struct cs_file_out {
 };
 enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
                               struct cs_error *error);
+/* What a call that failed comes to, by its errno: CS_ERR_MEMORY or CS_ERR_FILE. */
+enum cs_status cs_file_status(int reason);
+
 /* Checks every earlier write, closes and renames; on failure the temporary is gone. */
 enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error);
 /* Gives up: closes and removes the temporary. Safe on a zeroed or finished one. */

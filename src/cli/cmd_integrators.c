@@ -65,6 +65,7 @@ static void add_listed(const struct cs_integrator *integrator, struct cs_text *o
     cs_print_hanging("", integrator->summary, INDENT, out);
     cs_text_add(&source, "source: %s", integrator->source);
     cs_print_hanging("", cs_text_get(&source), INDENT, out);
+    out->failed |= source.failed;
     cs_text_finish(&source);
 }
 
@@ -101,6 +102,7 @@ static void add_option(const struct cs_option *row, const void *defaults, struct
                 cs_text_get(&value), cs_text_get(&range));
     cs_text_add(out, "%s\n", cs_text_get(&left));
     cs_print_hanging("", row->help, 2 * DETAIL_COLUMN, out);
+    out->failed |= left.failed || value.failed || range.failed;
     cs_text_finish(&left);
     cs_text_finish(&value);
     cs_text_finish(&range);
@@ -152,6 +154,7 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
         cs_text_add(&fails, "%s%s", fails.length ? ", " : "", *check);
     if (fails.length)
         cs_print_hanging("fails", cs_text_get(&fails), DETAIL_COLUMN, &out);
+    out.failed |= order.failed || list.failed || fails.failed;
     cs_text_finish(&fails);
     cs_print_hanging("module", found->file, DETAIL_COLUMN, &out);
     cs_text_finish(&order);

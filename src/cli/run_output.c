@@ -75,7 +75,7 @@ enum cs_status cs_output_check_file(const char *path, struct cs_error *error) {
 static DIR *open_folder(const char *folder, struct cs_error *error) {
     DIR *entries = opendir(folder);
     if (!entries && errno != ENOENT)
-        cs_fail(error, CS_ERR_FILE, "cannot read the folder \"%s\": %s", folder,
+        cs_fail(error, cs_file_status(errno), "cannot read the folder \"%s\": %s", folder,
                 strerror(errno));
     return entries;
 }

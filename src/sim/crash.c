@@ -142,11 +142,12 @@ void cs_crash_forget(enum cs_crash_side side) {
     atomic_fetch_add(&call->edges, 1);
 }
 
+void cs_crash_begin(enum cs_crash_side side) {
+    calls->calls[side].starved = false;
+}
+
 bool cs_crash_was_starved(enum cs_crash_side side) {
-    struct cs_crash_call *call = calls->calls + side;
-    const bool starved = call->starved;
-    call->starved = false;
-    return starved;
+    return calls->calls[side].starved;
 }
 
 void cs_crash_log_to(struct cs_crash_log *log) {

@@ -41,7 +41,9 @@ void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
 /* The call is over. A copy of the process that it made ends here. */
 void cs_crash_forget(enum cs_crash_side side);
 
-/* true: an allocation failed in a call since it was last asked. */
+/* Another module, or another object of it: what failed before does not matter any more. */
+void cs_crash_begin(enum cs_crash_side side);
+/* true: an allocation failed in a call since then. What goes on without may crash much later. */
 bool cs_crash_was_starved(enum cs_crash_side side);
 
 /* Calls are noted there from now on, in memory that another process sees, and that one is left

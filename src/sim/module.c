@@ -159,6 +159,7 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
     const struct cs_guard guard = cs_guard_take();
     if (check_file(file, error))
         return error->status;
+    cs_crash_begin(CS_CRASH_METHOD);
     cs_crash_watch(CS_CRASH_METHOD, "module", file, "when it was loaded");
     void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     cs_crash_forget(CS_CRASH_METHOD);

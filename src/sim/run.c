@@ -84,6 +84,7 @@ static enum cs_status start(struct cs_run *run, const void *options, struct cs_e
     struct cs_run_host *host = run->host;
     const size_t before = host->arena.used;
     host->guard = cs_guard_take();
+    cs_crash_begin(CS_CRASH_METHOD);
     host->creating = true;
     watch(run, "in create");
     const enum cs_step step = run->integrator->create(&host->calls, options, &host->self);

@@ -87,8 +87,11 @@ static void watch(const char *renderer, const char *place) {
 
 static void forget(struct cs_error *error) {
     cs_crash_forget(CS_CRASH_DRAWING);
-    if (cs_crash_was_starved(CS_CRASH_DRAWING) && error->status == CS_ERR_MODULE)
-        error->status = CS_ERR_MEMORY;
+    if (error->status != CS_ERR_MODULE || !cs_crash_was_starved(CS_CRASH_DRAWING))
+        return;
+    const struct cs_error said = *error;
+    *error = (struct cs_error){0};
+    cs_fail(error, CS_ERR_MEMORY, "out of memory: %.900s", said.message);
 }
 
 /* done by the worker thread, as all that touches the canvas */
@@ -110,6 +113,7 @@ static void make_canvas(void *object) {
 static enum cs_status open_renderer(enum cs_renderer_kind kind,
                                     const struct cs_renderer **renderer,
                                     struct cs_error *error) {
+    cs_crash_begin(CS_CRASH_DRAWING);
     watch(cs_renderer_names[kind], "while it was loaded");
     cs_renderer_open(cs_renderer_folder(), kind, renderer, error);
     forget(error);
