@@ -60,7 +60,7 @@ static const struct cs_crash_call *find_hung(const struct cs_isolate *isolate,
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         const struct cs_crash_call *call = shared->log.calls + k;
         const unsigned edges = atomic_load(&call->edges);
-        if (edges != patience->edges[k] || !patience->since[k]) {
+        if (edges != patience->edges[k] || !(patience->since[k] > 0)) {
             patience->edges[k] = edges;
             patience->since[k] = now;
         } else if (edges % 2 && now - patience->since[k] > isolate->seconds) {
