@@ -59,18 +59,21 @@ static _Noreturn void tell(const struct cs_crash_call *call, const char *how,
     _exit(cs_status_exit_code(status_of(call)));
 }
 
-/* Of this thread, or of any: modules have threads of their own. NULL: it is our own fault. */
+/* Of this thread; or of any where this one calls no modules, as they have threads of their own.
+ * NULL: it is our own fault. */
 static struct cs_crash_call *find_call(void) {
     struct cs_crash_call *found = NULL;
+    bool calls_modules = false;
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         struct cs_crash_call *call = calls->calls + k;
-        if (!cs_crash_is_under_way(call))
-            continue;
-        if (pthread_equal(call->thread, pthread_self()))
+        const bool own_thread = call->kind && pthread_equal(call->thread, pthread_self());
+        const bool under_way = cs_crash_is_under_way(call);
+        if (own_thread && under_way)
             return call;
-        found = call;
+        calls_modules |= own_thread;
+        found = under_way ? call : found;
     }
-    return found;
+    return calls_modules ? NULL : found;
 }
 
 static const char *signal_text(int number) {

@@ -19,11 +19,6 @@ static void nothing(double *x) {
 }
 
 static void hang(double *x) {
-    for (volatile double *word = x;; word[0] = word[0])
-        continue;
-}
-
-static void sleep_on(double *x) {
     (void)x;
     for (;;)
         pause();
@@ -153,7 +148,7 @@ enum when { CREATE, ADVANCE, STATS, DESTROY };
 #define DEEDS(X)                                                                               \
     X("nothing", ADVANCE, nothing)                                                             \
     X("hang", ADVANCE, hang)                                                                   \
-    X("sleep-in-create", CREATE, sleep_on)                                                     \
+    X("hang-in-create", CREATE, hang)                                                          \
     X("kill", ADVANCE, kill_itself)                                                            \
     X("end", ADVANCE, end)                                                                     \
     X("fork", ADVANCE, fork_once)                                                              \
