@@ -18,6 +18,7 @@
 
 /* between two looks at the calls */
 enum { PAUSE_NANOSECONDS = 20000000 };
+#define LONGEST_LOOK 0.2 /* s */
 
 /* In memory that both see. */
 struct shared {
@@ -26,11 +27,12 @@ struct shared {
     atomic_bool done;      /* it came to its end: the error is whole */
 };
 
-/* The calls of both sides since they were last seen to change. */
+/* Since the calls of both sides were last seen to change. */
 struct patience {
     unsigned edges[CS_CRASH_SIDES];
-    double since[CS_CRASH_SIDES]; /* s */
-    bool told;                    /* the child was asked to stop */
+    double waited[CS_CRASH_SIDES]; /* s */
+    double looked;                 /* s, by the clock */
+    bool told;                     /* the child was asked to stop */
 };
 
 static _Noreturn void serve(const struct cs_isolate *isolate, struct shared *shared,
@@ -56,16 +58,17 @@ static _Noreturn void serve(const struct cs_isolate *isolate, struct shared *sha
 static const struct cs_crash_call *find_hung(const struct cs_isolate *isolate,
                                              const struct shared *shared,
                                              struct patience *patience) {
-    const double now = cs_clock_wall();
+    const double now = cs_clock_wall(), passed = now - patience->looked;
+    /* while both were stopped, nobody waited */
+    const double step = passed < LONGEST_LOOK ? passed : LONGEST_LOOK;
+    patience->looked = now;
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         const struct cs_crash_call *call = shared->log.calls + k;
         const unsigned edges = atomic_load(&call->edges);
-        if (edges != patience->edges[k] || !(patience->since[k] > 0)) {
-            patience->edges[k] = edges;
-            patience->since[k] = now;
-        } else if (edges % 2 && now - patience->since[k] > isolate->seconds) {
+        patience->waited[k] = edges == patience->edges[k] ? patience->waited[k] + step : 0;
+        patience->edges[k] = edges;
+        if (edges % 2 && patience->waited[k] > isolate->seconds)
             return call;
-        }
     }
     return NULL;
 }
