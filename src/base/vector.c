@@ -10,6 +10,7 @@
 
 enum {
     BLOCK = 4096,
+    PART = 1024, /* of what several threads share, where no sum depends on it */
     LANES = 8,
     WAITING = 512 /* block sums on the stack; a longer array is summed in several goes */
 };
@@ -21,18 +22,18 @@ static size_t end_of(size_t begin, size_t n) {
 struct shared {
     void (*part)(void *arg, size_t begin, size_t end);
     void *arg;
-    size_t n;
+    size_t n, size;
 };
 
 static void do_part(void *arg, uint32_t block) {
     const struct shared *shared = arg;
-    const size_t begin = (size_t)block * BLOCK;
-    shared->part(shared->arg, begin, end_of(begin, shared->n));
+    const size_t begin = (size_t)block * shared->size, left = shared->n - begin;
+    shared->part(shared->arg, begin, left < shared->size ? shared->n : begin + shared->size);
 }
 
 void cs_vector_share(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg) {
-    struct shared shared = {part, arg, n};
-    cs_pool_run((uint32_t)((n + BLOCK - 1) / BLOCK), do_part, &shared);
+    struct shared shared = {part, arg, n, cs_pool_threads() > 1 ? PART : BLOCK};
+    cs_pool_run((uint32_t)((n + shared.size - 1) / shared.size), do_part, &shared);
 }
 
 struct summed {

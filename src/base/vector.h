@@ -10,7 +10,7 @@ extern const struct cs_vector_kernels cs_vector_kernels;
 double cs_vector_dot(size_t n, const double *x, const double *y);
 
 /* Calls part(arg, begin, end) for every block of 0..n-1, several at the same time: a part may
- * write only what belongs to its items. */
+ * write only what belongs to its items, and blocks are smaller where threads share them. */
 void cs_vector_share(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg);
 
 /* The sum of part(arg, begin, end) over the blocks, one after the other; parts are made at the
