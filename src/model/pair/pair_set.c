@@ -18,6 +18,7 @@ static void finish(void *object) {
     struct cs_pair_set *set = object;
     for (uint32_t l = 0; l < set->n_lots; l++)
         free(set->lots[l].pairs), free(set->lots[l].full);
+    free(set->corners);
     free(set->ends);
 }
 
@@ -49,6 +50,7 @@ struct cs_pair *cs_pair_lot_next(struct cs_pair_lot *lot) {
 void cs_pair_set_count(struct cs_pair_set *set) {
     set->n = 0;
     for (uint32_t l = 0; l < set->n_lots; l++) {
+        set->lots[l].first = set->n;
         set->n += set->lots[l].n;
         set->failed = set->failed || set->lots[l].failed;
     }
@@ -57,41 +59,62 @@ void cs_pair_set_count(struct cs_pair_set *set) {
         set->n = 0;
 }
 
-/* counts the corners at each particle, or puts them into their places; lots in their order */
-static void visit_ends(struct cs_pair_set *set, bool put) {
-    for (uint32_t l = 0; l < set->n_lots; l++)
-        for (size_t p = 0; p < set->lots[l].n; p++) {
-            const struct cs_pair *pair = set->lots[l].pairs + p;
-            for (uint32_t k = 0; k < pair->n; k++) {
-                if (!is_particle(set, pair->at[k]))
-                    continue;
-                uint32_t *start = set->starts + pair->at[k] + 1;
-                if (put)
-                    set->ends[*start] = (struct cs_pair_end){pair, k, l};
-                ++*start;
-            }
-        }
+/* beside each other, for what is one thread's */
+static void copy_corners(void *arg, uint32_t number) {
+    const struct cs_pair_set *set = arg;
+    const struct cs_pair_lot *lot = set->lots + number;
+    uint32_t *corners = set->corners + 4 * lot->first;
+    for (size_t p = 0; p < lot->n; p++)
+        for (uint32_t k = 0; k < 4; k++)
+            corners[4 * p + k] = k < lot->pairs[p].n ? lot->pairs[p].at[k] : UINT32_MAX;
+}
+
+static void count_ends(struct cs_pair_set *set) {
+    for (size_t e = 0; e < 4 * set->n; e++)
+        if (is_particle(set, set->corners[e]))
+            set->starts[set->corners[e] + 1]++;
+}
+
+/* into their places; lots in their order */
+static void put_ends(struct cs_pair_set *set) {
+    for (uint32_t l = 0; l < set->n_lots; l++) {
+        const struct cs_pair_lot *lot = set->lots + l;
+        const uint32_t *corners = set->corners + 4 * lot->first;
+        for (size_t e = 0; e < 4 * lot->n; e++)
+            if (is_particle(set, corners[e]))
+                set->ends[set->starts[corners[e] + 1]++] =
+                    (struct cs_pair_end){lot->pairs + e / 4, (uint32_t)(e % 4), l};
+    }
+}
+
+/* false: no memory */
+static bool take_ends(struct cs_pair_set *set) {
+    struct cs_pair_end *ends =
+        cs_arena_grow(set->ends, &set->ends_room, 4 * set->n, sizeof *ends);
+    set->ends = ends ? ends : set->ends;
+    uint32_t *corners =
+        cs_arena_grow(set->corners, &set->corners_room, 4 * set->n, sizeof *corners);
+    set->corners = corners ? corners : set->corners;
+    return ends && corners;
 }
 
 /* The corners of each particle one behind the other: counted two places on, so that filling
  * moves the starts to where they belong. */
 void cs_pair_set_gather(struct cs_pair_set *set) {
-    struct cs_pair_end *ends =
-        cs_arena_grow(set->ends, &set->ends_room, 4 * set->n, sizeof *ends);
-    if (!ends && set->n) {
+    if (set->n && !take_ends(set)) {
         set->failed = true;
         set->n = 0;
     }
     if (!set->n)
         return;
-    set->ends = ends;
+    cs_pool_run(set->n_lots, copy_corners, set);
     memset(set->starts, 0, (set->n_particles + (size_t)2) * sizeof *set->starts);
     set->starts++;
-    visit_ends(set, false);
+    count_ends(set);
     for (uint32_t i = 0; i < set->n_particles; i++)
         set->starts[i + 1] += set->starts[i];
     set->starts--;
-    visit_ends(set, true);
+    put_ends(set);
 }
 
 double cs_pair_set_energy(const struct cs_pair_set *set) {

@@ -29,6 +29,7 @@ struct cs_pair_turn {
 struct cs_pair_lot {
     struct cs_pair *pairs;
     size_t n, room;
+    size_t first;              /* pairs of the lots before it */
     struct cs_pair_turn *full; /* (n) of a matrix whose set is exact */
     size_t full_room;
     double energy; /* J */
@@ -50,8 +51,9 @@ struct cs_pair_set {
     bool exact;               /* of a matrix: lots have `full` */
     bool points;              /* of a matrix: no pair has a gradient, `along` and `to` are 0 */
     bool failed;              /* there was no memory: pairs lack, and the run must end */
+    uint32_t *corners;        /* (4 n) points of all pairs; UINT32_MAX: it has fewer */
     struct cs_pair_end *ends; /* (4 n) those of particle i: ends[starts[i]..starts[i + 1]) */
-    size_t ends_room;
+    size_t corners_room, ends_room;
     uint32_t *starts; /* (n_particles + 2) */
 };
 

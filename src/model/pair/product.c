@@ -69,7 +69,7 @@ static void place_ends(void *arg, uint32_t piece) {
     for (uint32_t e = set->starts[begin]; e < set->starts[end_of(set, begin)]; e++) {
         const struct cs_pair_end *at = set->ends + e;
         const size_t pair = (size_t)(at->pair - set->lots[at->lot].pairs);
-        product->places[e] = (uint32_t)(4 * (product->lots[at->lot].first + pair) + at->corner);
+        product->places[e] = (uint32_t)(4 * (set->lots[at->lot].first + pair) + at->corner);
     }
 }
 
@@ -86,18 +86,14 @@ static bool take_places(struct cs_product *product) {
 
 bool cs_product_set(struct cs_product *product) {
     const struct cs_pair_set *set = product->set;
-    size_t first = 0;
     if (!set->n)
         return true;
     if (!take_places(product))
         return false;
     cs_pool_run(set->n_lots, put_lot, product);
     bool failed = false;
-    for (uint32_t l = 0; l < set->n_lots; l++) {
+    for (uint32_t l = 0; l < set->n_lots; l++)
         failed = failed || product->lots[l].failed;
-        product->lots[l].first = first;
-        first += set->lots[l].n;
-    }
     cs_pool_run(pieces_of(set), place_ends, product);
     return !failed;
 }
@@ -132,11 +128,11 @@ static void write_lanes(vectors by, size_t count, double (*products)[3]) {
 
 /* step by step for several blocks: what was just written number by number is not at once read
  * as vectors */
-static void multiply_lanes(const struct job *job, const struct cs_product_lot *lot, size_t n,
-                           size_t first) {
+static void multiply_lanes(const struct job *job, uint32_t number, size_t first) {
+    const struct cs_pair_lot *from = job->product->set->lots + number;
     vectors by[TOGETHER];
-    struct cs_pair_factors *factors = lot->factors + first;
-    const size_t left = n - first * CS_PAIR_LANES;
+    struct cs_pair_factors *factors = job->product->lots[number].factors + first;
+    const size_t left = from->n - first * CS_PAIR_LANES;
     const size_t blocks =
         left > TOGETHER * CS_PAIR_LANES ? TOGETHER : (left + CS_PAIR_LANES - 1) / CS_PAIR_LANES;
     for (size_t b = 0; b < blocks; b++)
@@ -145,7 +141,7 @@ static void multiply_lanes(const struct job *job, const struct cs_product_lot *l
         cs_pair_lanes_multiply(factors + b, by[b]);
     for (size_t b = 0; b < blocks; b++) {
         const size_t rest = left - b * CS_PAIR_LANES;
-        const size_t pair = lot->first + (first + b) * CS_PAIR_LANES;
+        const size_t pair = from->first + (first + b) * CS_PAIR_LANES;
         write_lanes(by[b], rest < CS_PAIR_LANES ? rest : CS_PAIR_LANES,
                     job->product->products + 4 * pair);
     }
@@ -155,7 +151,7 @@ static void multiply_lot(void *arg, uint32_t number) {
     const struct job *job = arg;
     const size_t n = job->product->set->lots[number].n;
     for (size_t b = 0; b * CS_PAIR_LANES < n; b += TOGETHER)
-        multiply_lanes(job, job->product->lots + number, n, b);
+        multiply_lanes(job, number, b);
 }
 
 static void gather(void *arg, uint32_t piece) {

@@ -8,8 +8,7 @@
 struct cs_product_lot {
     struct cs_pair_factors *factors; /* CS_PAIR_LANES pairs each */
     size_t factors_room;
-    size_t first; /* pairs of the lots before it */
-    bool failed;  /* there was no memory */
+    bool failed; /* there was no memory */
 };
 
 struct cs_product {
