@@ -9,6 +9,7 @@
 
 #include "model/cross/crossings.h"
 #include "model/force/terms.h"
+#include "model/pair/close.h"
 #include "model/pair/seen.h"
 #include "study/perturb.h"
 
@@ -60,8 +61,7 @@ static void build(void *object) {
 static void candidates(void *object) {
     struct bed *bed = object;
     bed->session.system.pairs->search.closed = false;
-    const struct cs_eval at = here(bed, CS_PART_ALL);
-    bed->out[0] = cs_pairs_energy(bed->session.system.pairs, &at);
+    cs_close_find(&bed->session.system.pairs->search, bed->at);
 }
 
 static void pairs(void *object) {

@@ -7,46 +7,56 @@
 
 #include <string.h>
 
+/* eights that are measured together: what was just written number by number is not at once read
+ * as vectors */
+enum { TOGETHER = 4, WAITING = TOGETHER * CS_PAIR_LANES };
+
 /* One lot at work. */
 struct work {
     const struct cs_search *search;
     struct cs_search_lot *lot;
-    struct cs_pair_lanes lanes;
-    uint32_t pairs[CS_PAIR_LANES][2];
+    struct cs_pair_lanes lanes[TOGETHER];
+    uint32_t pairs[WAITING][2], waiting;
 };
 
 static void measure(struct work *work) {
     struct cs_search_lot *lot = work->lot;
-    struct cs_pair_lanes *lanes = &work->lanes;
-    if (lanes->n)
-        cs_pair_lanes_measure(lot->kind, lanes);
-    for (uint32_t l = 0; l < lanes->n; l++)
-        if (lanes->d[l] < lanes->range[l])
-            memcpy(lot->close + 2 * lot->n_close++, work->pairs[l], sizeof work->pairs[l]);
-    lanes->n = 0;
+    for (uint32_t k = 0; k < work->waiting; k += CS_PAIR_LANES)
+        cs_pair_lanes_measure(lot->kind, work->lanes + k / CS_PAIR_LANES);
+    for (uint32_t k = 0; k < work->waiting; k++) {
+        const struct cs_pair_lanes *lanes = work->lanes + k / CS_PAIR_LANES;
+        const uint32_t l = k % CS_PAIR_LANES;
+        // one that is out of range is written over
+        memcpy(lot->close + 2 * lot->n_close, work->pairs[k], sizeof work->pairs[k]);
+        lot->n_close += lanes->d[l] < lanes->range[l];
+    }
+    work->waiting = 0;
 }
 
 static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_search *search = work->search;
     const size_t n = search->system->surfaces->n_points;
-    struct cs_pair_lanes *lanes = &work->lanes;
-    const uint32_t l = lanes->n++;
+    const uint32_t k = work->waiting++, l = k % CS_PAIR_LANES;
+    struct cs_pair_lanes *lanes = work->lanes + k / CS_PAIR_LANES;
     uint32_t at[4];
     cs_search_corners(search->system->surfaces, work->lot->kind, pair, at);
-    memcpy(work->pairs[l], pair, sizeof work->pairs[l]);
+    memcpy(work->pairs[k], pair, sizeof work->pairs[k]);
     lanes->range[l] =
         cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range;
-    for (size_t k = 0; k < 4; k++)
+    for (size_t j = 0; j < 4; j++)
         for (size_t c = 0; c < 3; c++)
-            lanes->p[k][c][l] = search->close_at[c * n + at[k]];
-    if (lanes->n == CS_PAIR_LANES)
+            lanes->p[j][c][l] = search->close_at[c * n + at[j]];
+    if (work->waiting == WAITING)
         measure(work);
 }
 
 static void find_lot(void *arg, uint32_t number) {
     const struct cs_search *search = arg;
     struct cs_search_lot *lot = search->lots + number;
-    struct work work = {.search = search, .lot = lot};
+    struct work work;
+    work.search = search;
+    work.lot = lot;
+    work.waiting = 0;
     uint32_t *close =
         cs_arena_grow(lot->close, &lot->close_room, lot->n, 2 * sizeof *lot->close);
     lot->n_close = 0;

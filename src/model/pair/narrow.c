@@ -8,12 +8,17 @@
 
 #include <string.h>
 
+/* eights that wait for each other: what was just written number by number is not at once read
+ * as vectors */
+enum { TOGETHER = 4 };
+
 /* One lot at work. */
 struct work {
     const struct cs_narrow *narrow;
     enum cs_stencil_kind kind;
     struct cs_pair_lot *lot;
-    struct cs_pair_lanes lanes;
+    struct cs_pair_lanes lanes[TOGETHER];
+    uint32_t filling; /* of them */
 };
 
 /* what an obstacle has no place in is 0 for it */
@@ -66,10 +71,10 @@ static void answer(const struct work *work, const struct cs_reaction *reaction,
     add_turn(work, reaction);
 }
 
-static void add_alone(struct work *work, uint32_t lane) {
+static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
+                      uint32_t lane) {
     const struct cs_narrow *narrow = work->narrow;
     const struct cs_system *system = narrow->search->system;
-    const struct cs_pair_lanes *from = &work->lanes;
     const struct cs_meeting meeting = {from->range[lane], from->k[lane], from->mu[lane]};
     struct cs_reaction reaction;
     double p[4][3], v[4][3];
@@ -87,18 +92,16 @@ static void add_alone(struct work *work, uint32_t lane) {
 
 /* --- in lanes --- */
 
-static void add_energy(struct work *work) {
-    struct cs_pair_lanes *lanes = &work->lanes;
+static void add_energy(const struct work *work, struct cs_pair_lanes *lanes) {
     cs_pair_lanes_measure(work->kind, lanes);
     for (uint32_t l = 0; l < lanes->n; l++)
         work->lot->energy += cs_law_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
 }
 
-static void push(struct work *work) {
+static void push(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow *narrow = work->narrow;
     const struct cs_pair_law law = {narrow->search->system->scene->contact,
                                     cs_near_parts(narrow->at.parts)};
-    struct cs_pair_lanes *lanes = &work->lanes;
     if (narrow->ask == CS_PAIR_CHANGE)
         cs_pair_lanes_change(work->kind, lanes, &law);
     else
@@ -127,35 +130,45 @@ static void read_factors(const struct cs_pair_factors *factors, uint32_t lane,
         pair->of[e] = factors->of[e][lane];
 }
 
-static void share(struct work *work) {
+static void share(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow *narrow = work->narrow;
     struct cs_pair_factors factors;
-    cs_pair_lanes_matrix(work->kind, &work->lanes, &narrow->search->system->scene->contact,
+    cs_pair_lanes_matrix(work->kind, lanes, &narrow->search->system->scene->contact,
                          narrow->matrix, &factors);
-    for (uint32_t l = 0; l < work->lanes.n; l++) {
+    for (uint32_t l = 0; l < lanes->n; l++) {
         struct cs_pair *pair = cs_pair_lot_next(work->lot);
         if (!pair)
             break;
         pair->n = 4;
-        memcpy(pair->at, work->lanes.at[l], sizeof pair->at);
+        memcpy(pair->at, lanes->at[l], sizeof pair->at);
         read_factors(&factors, l, pair);
     }
 }
 
-static void act(struct work *work) {
+static void act(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow *narrow = work->narrow;
-    if (!work->lanes.n)
-        return;
     if (narrow->ask == CS_PAIR_ENERGY)
-        add_energy(work);
+        add_energy(work, lanes);
     else if (narrow->ask == CS_PAIR_FORCE || narrow->ask == CS_PAIR_CHANGE)
-        push(work);
+        push(work, lanes);
     else if (narrow->ask == CS_PAIR_MATRIX && !narrow->set->exact)
-        share(work);
+        share(work, lanes);
     else
-        for (uint32_t l = 0; l < work->lanes.n; l++)
-            add_alone(work, l);
-    work->lanes.n = 0;
+        for (uint32_t l = 0; l < lanes->n; l++)
+            add_alone(work, lanes, l);
+}
+
+static void empty(struct work *work) {
+    for (uint32_t k = 0; k < TOGETHER; k++)
+        work->lanes[k].n = 0;
+    work->filling = 0;
+}
+
+static void act_on_all(struct work *work) {
+    for (uint32_t k = 0; k < TOGETHER; k++)
+        if (work->lanes[k].n)
+            act(work, work->lanes + k);
+    empty(work);
 }
 
 static void take(struct work *work, const uint32_t pair[2]) {
@@ -163,7 +176,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_search *search = narrow->search;
     const struct cs_system *system = search->system;
     const size_t n = system->view.n, n_points = system->surfaces->n_points;
-    struct cs_pair_lanes *lanes = &work->lanes;
+    struct cs_pair_lanes *lanes = work->lanes + work->filling;
     const uint32_t l = lanes->n;
     uint32_t *at = lanes->at[l];
     cs_search_corners(system->surfaces, work->kind, pair, at);
@@ -181,19 +194,22 @@ static void take(struct work *work, const uint32_t pair[2]) {
         read_lane(narrow->at.dx, n, at, l, lanes->dp);
         read_lane(narrow->at.dv, n, at, l, lanes->dv);
     }
-    if (++lanes->n == CS_PAIR_LANES)
-        act(work);
+    if (++lanes->n == CS_PAIR_LANES && ++work->filling == TOGETHER)
+        act_on_all(work);
 }
 
 static void do_lot(void *arg, uint32_t number) {
     const struct cs_narrow *narrow = arg;
     const struct cs_search_lot *from = narrow->search->lots + number;
-    struct work work = {
-        .narrow = narrow, .kind = from->kind, .lot = narrow->set->lots + number};
+    struct work work;
+    work.narrow = narrow;
+    work.kind = from->kind;
+    work.lot = narrow->set->lots + number;
+    empty(&work);
     cs_pair_lot_clear(work.lot);
     for (size_t k = 0; k < from->n_close; k++)
         take(&work, from->close + 2 * k);
-    act(&work);
+    act_on_all(&work);
 }
 
 void cs_narrow_run(struct cs_narrow *narrow) {
