@@ -2,12 +2,20 @@
 #ifndef CS_HASH_H
 #define CS_HASH_H
 
+#include "base/status.h"
+
 #include <stddef.h>
+#include <stdint.h>
 
 enum { CS_HASH_DIGITS = 33 };
 
 /* Hash of n doubles as little-endian bytes, whatever the machine's order, in canonical form. */
 void cs_hash_doubles(const double *values, size_t n, char digits[CS_HASH_DIGITS]);
 void cs_hash_bytes(const void *bytes, size_t length, char digits[CS_HASH_DIGITS]);
+
+/* Hash and size of a regular file, read block by block: what `xxh128sum` prints of it.
+ * CS_ERR_FILE; digits are then empty. */
+enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HASH_DIGITS],
+                            struct cs_error *error);
 
 #endif

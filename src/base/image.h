@@ -2,6 +2,7 @@
 #ifndef CS_IMAGE_H
 #define CS_IMAGE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* width 0: no image. rgb holds 3 * width * height bytes, owned by whoever made it (malloc). */
@@ -9,5 +10,9 @@ struct cs_image {
     uint32_t width, height;
     uint8_t *rgb;
 };
+
+static inline size_t cs_image_bytes(const struct cs_image *image) {
+    return 3 * (size_t)image->width * image->height;
+}
 
 #endif

@@ -43,7 +43,12 @@ static inline enum cs_status cs_png_write(const char *path, const struct cs_imag
  * widened). The caller frees image->rgb. On failure CS_ERR_FILE and *image is empty. */
 enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error);
 
-/* The same from memory; name is for messages. */
+/* The same, with the values of text chunks: (n) malloc'd, NULL where there is no such key. On
+ * failure all of them are NULL. */
+enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
+                                 char **values, struct cs_image *image, struct cs_error *error);
+
+/* The pixels from memory; name is for messages. */
 enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t length,
                                  struct cs_image *image, struct cs_error *error);
 

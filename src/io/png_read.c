@@ -24,6 +24,9 @@ struct reader {
     png_infop info;
     struct cs_image image;
     char message[128];
+    const char *const *keys; /* (n) of the texts that are wanted */
+    char **values;           /* (n) of the caller */
+    uint32_t n;
 };
 
 static void on_error(png_structp png, png_const_charp message) {
@@ -69,6 +72,18 @@ static void take_image(struct reader *reader) {
     image->height = height;
 }
 
+/* those of before the pixels and of behind them */
+static void copy_texts(struct reader *reader) {
+    png_textp texts;
+    int n_texts = 0;
+    png_get_text(reader->png, reader->info, &texts, &n_texts);
+    for (uint32_t k = 0; k < reader->n; k++)
+        for (int i = 0; i < n_texts && !reader->values[k]; i++)
+            if (!strcmp(texts[i].key, reader->keys[k]) &&
+                !(reader->values[k] = strdup(texts[i].text ? texts[i].text : "")))
+                png_error(reader->png, "out of memory");
+}
+
 /* the part that libpng may leave by longjmp; false if it did */
 static bool decode(struct reader *reader) {
     const png_structp png = reader->png;
@@ -79,6 +94,9 @@ static bool decode(struct reader *reader) {
     png_set_user_limits(png, SIDE_MAX, SIDE_MAX);
     png_set_chunk_malloc_max(png, CHUNK_BYTES_MAX);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    if (reader->n)
+        png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, (png_const_bytep) "tEXt",
+                                    1);
     png_read_info(png, reader->info);
     /* before any conversion, since it judges the size of the rows as they are stored */
     take_image(reader);
@@ -92,40 +110,68 @@ static bool decode(struct reader *reader) {
     for (int pass = 0; pass < passes; pass++)
         for (size_t y = 0; y < reader->image.height; y++)
             png_read_row(png, reader->image.rgb + y * row_bytes, NULL);
-    png_read_end(png, NULL);
+    png_read_end(png, reader->info);
+    copy_texts(reader);
     return true;
+}
+
+static void forget_texts(const struct reader *reader) {
+    for (uint32_t k = 0; k < reader->n; k++) {
+        free(reader->values[k]);
+        reader->values[k] = NULL;
+    }
+}
+
+static enum cs_status read_bytes(struct reader *reader, const char *name,
+                                 struct cs_image *image, struct cs_error *error) {
+    enum cs_status status = CS_OK;
+    *image = (struct cs_image){0};
+    if (reader->length < 8 || png_sig_cmp(reader->bytes, 0, 8))
+        return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": it is not a PNG file", name);
+    reader->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning);
+    reader->info = reader->png ? png_create_info_struct(reader->png) : NULL;
+    if (!reader->info)
+        status = cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", name);
+    else if (!decode(reader))
+        status =
+            cs_fail(error, CS_ERR_FILE, "cannot read \"%s\" as PNG: %s", name, reader->message);
+    png_destroy_read_struct(&reader->png, &reader->info, NULL);
+    if (!status) {
+        *image = reader->image;
+        return CS_OK;
+    }
+    /* *image is filled only if every row was decoded */
+    free(reader->image.rgb);
+    forget_texts(reader);
+    return status;
 }
 
 enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t length,
                                  struct cs_image *image, struct cs_error *error) {
     struct reader reader = {.bytes = bytes, .length = length};
-    enum cs_status status = CS_OK;
-    *image = (struct cs_image){0};
-    if (length < 8 || png_sig_cmp(bytes, 0, 8))
-        return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": it is not a PNG file", name);
-    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
-    reader.info = reader.png ? png_create_info_struct(reader.png) : NULL;
-    if (!reader.info)
-        status = cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", name);
-    else if (!decode(&reader))
-        status =
-            cs_fail(error, CS_ERR_FILE, "cannot read \"%s\" as PNG: %s", name, reader.message);
-    png_destroy_read_struct(&reader.png, &reader.info, NULL);
-    /* *image is filled only if every row was decoded */
-    if (status)
-        free(reader.image.rgb);
-    else
-        *image = reader.image;
-    return status;
+    return read_bytes(&reader, name, image, error);
 }
 
-enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error) {
+enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
+                                 char **values, struct cs_image *image,
+                                 struct cs_error *error) {
     char *bytes;
     size_t length;
     *image = (struct cs_image){0};
-    enum cs_status status = cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, error);
-    if (!status)
-        status = cs_png_read_bytes(path, bytes, length, image, error);
+    for (uint32_t k = 0; k < n; k++)
+        values[k] = NULL;
+    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, error))
+        return error->status;
+    struct reader reader = {.bytes = (const unsigned char *)bytes,
+                            .length = length,
+                            .keys = keys,
+                            .values = values,
+                            .n = n};
+    read_bytes(&reader, path, image, error);
     free(bytes);
-    return status;
+    return error->status;
+}
+
+enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error) {
+    return cs_png_read_texts(path, NULL, 0, NULL, image, error);
 }

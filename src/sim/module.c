@@ -1,7 +1,6 @@
 /* Opens an integrator module and checks it against the contract before it is called. */
 #include "sim/module.h"
 
-#include "base/file.h"
 #include "sim/crash.h"
 #include "sim/guard.h"
 
@@ -9,11 +8,8 @@
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-enum { MODULE_BYTES_MAX = 256 << 20 };
 
 static bool is_name(const char *name, const char *letters) {
     return name && *name && strlen(name) < 64 && !name[strspn(name, letters)];
@@ -181,11 +177,7 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
 }
 
 void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]) {
-    char *bytes = NULL;
-    size_t length;
+    uint64_t size;
     struct cs_error unread = {0};
-    digits[0] = 0;
-    if (!cs_file_read(file, MODULE_BYTES_MAX, &bytes, &length, &unread))
-        cs_hash_bytes(bytes, length, digits);
-    free(bytes);
+    cs_hash_file(file, &size, digits, &unread);
 }

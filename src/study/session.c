@@ -36,7 +36,7 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
                           CS_ERR_SCENE, error))
             return error->status;
     // what the command line gives may make an option of the scene idle: that is no mistake
-    if (pairs)
+    if (pairs || session->settings.resolved)
         session->method.given = 0;
     return cs_method_check(&session->method, place, CS_ERR_SCENE, error);
 }

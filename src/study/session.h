@@ -22,6 +22,7 @@ struct cs_session_settings {
     bool smooth;     /* leaves out what acts after steps: contact by projection, strain limit,
                         velocity loss */
     bool only_count; /* crossings that the scene says nothing about: no step is cut for them */
+    bool resolved;   /* the scene was printed with every value: those without effect too */
     double fps;      /* frames a second; 0: the scene's */
 
     const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */

@@ -1,4 +1,5 @@
 /* The hash is the published XXH3-128, and the same for the same doubles everywhere. */
+#include "base/file.h"
 #include "base/hash.h"
 #include "unit.h"
 
@@ -21,6 +22,27 @@ START_TEST(no_doubles_hash_like_no_bytes) {
     char digits[CS_HASH_DIGITS];
     cs_hash_doubles(NULL, 0, digits);
     ck_assert_str_eq(digits, "99aa06d3014798d86001c324468d497f");
+}
+END_TEST
+
+/* a file of several blocks, and what is none */
+START_TEST(files_hash_as_their_bytes) {
+    enum { LENGTH = 150000 };
+    char *bytes = malloc(LENGTH), of_file[CS_HASH_DIGITS], of_bytes[CS_HASH_DIGITS];
+    struct cs_error error = {0};
+    uint64_t size;
+    ck_assert_ptr_nonnull(bytes);
+    for (size_t i = 0; i < LENGTH; i++)
+        bytes[i] = (char)(i * i / 7);
+    cs_file_write("h", bytes, LENGTH, &error);
+    cs_hash_file("h", &size, of_file, &error);
+    UNIT_ASSERT_OK(&error);
+    cs_hash_bytes(bytes, LENGTH, of_bytes);
+    ck_assert_str_eq(of_file, of_bytes);
+    ck_assert_uint_eq(size, LENGTH);
+    ck_assert_int_eq(cs_hash_file(".", &size, of_file, &error), CS_ERR_FILE);
+    ck_assert_str_eq(of_file, "");
+    free(bytes);
 }
 END_TEST
 
@@ -70,8 +92,11 @@ START_TEST(one_bit_changes_the_hash) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {bytes_match_known_digests, no_doubles_hash_like_no_bytes,
-                                  doubles_hash_as_little_endian_bytes, pieces_do_not_show,
+    const TTest *const tests[] = {bytes_match_known_digests,
+                                  files_hash_as_their_bytes,
+                                  no_doubles_hash_like_no_bytes,
+                                  doubles_hash_as_little_endian_bytes,
+                                  pieces_do_not_show,
                                   one_bit_changes_the_hash};
     return unit_run("hash", tests, sizeof tests / sizeof *tests);
 }

@@ -77,6 +77,27 @@ START_TEST(texts_are_in_the_file_and_no_time) {
 }
 END_TEST
 
+START_TEST(texts_come_back) {
+    static const char *const keys[] = {"state-hash", "none", "e"};
+    struct cs_error error = {0};
+    struct cs_image image = make_picture(20, 10), back;
+    const struct cs_png_text texts[] = {
+        {"Software", "clothsim"}, {"state-hash", "00ff"}, {"e", ""}};
+    char *values[3];
+    cs_png_write("t.png", &image, 1, texts, 3, &error);
+    cs_png_read_texts("t.png", keys, 3, values, &back, &error);
+    UNIT_ASSERT_OK(&error);
+    ck_assert_str_eq(values[0], "00ff");
+    ck_assert_ptr_null(values[1]);
+    ck_assert_str_eq(values[2], "");
+    ck_assert_mem_eq(back.rgb, image.rgb, cs_image_bytes(&image));
+    free(back.rgb);
+    free(values[0]);
+    free(values[2]);
+    free(image.rgb);
+}
+END_TEST
+
 /* larger, smaller and larger again than the memory that is there */
 START_TEST(pictures_share_work_memory) {
     static const uint32_t sizes[][2] = {{7, 3}, {64, 48}, {1, 1}, {300, 200}};
@@ -284,14 +305,10 @@ START_TEST(failure_leaves_no_file) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {pixels_come_back,
-                                  texts_are_in_the_file_and_no_time,
-                                  same_picture_same_bytes,
-                                  pictures_share_work_memory,
-                                  every_kind_becomes_rgb,
-                                  huge_claims_are_refused,
-                                  truncated_anywhere_is_refused,
-                                  flipped_bits_do_not_pass,
-                                  failure_leaves_no_file};
+    const TTest *const tests[] = {
+        pixels_come_back,        texts_are_in_the_file_and_no_time, texts_come_back,
+        same_picture_same_bytes, pictures_share_work_memory,        every_kind_becomes_rgb,
+        huge_claims_are_refused, truncated_anywhere_is_refused,     flipped_bits_do_not_pass,
+        failure_leaves_no_file};
     return unit_run("png", tests, sizeof tests / sizeof *tests);
 }

@@ -3,28 +3,18 @@
 
 #include "cli/run_output.h"
 #include "io/claims.h"
+#include "study/origin.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_BYTES = 4096 };
-
-static void claim_beside(struct cs_claims *claims, const struct cs_scene *scene,
-                         const char *file, const char *what) {
-    char path[PATH_BYTES];
-    if (*file && snprintf(path, sizeof path, "%s/%s", scene->folder, file) < PATH_BYTES)
-        cs_claims_input(claims, path, what);
+static void claim_input(void *ctx, const char *path, const char *what) {
+    cs_claims_input(ctx, path, what);
 }
 
 static void claim_inputs(const struct cs_session *session, struct cs_claims *claims) {
-    const struct cs_scene *scene = &session->scene;
-    cs_claims_input(claims, scene->path, "the scene");
-    for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const struct cs_body *body = cs_scene_bodies(scene) + b;
-        claim_beside(claims, scene, body->mesh.file, "a mesh");
-        claim_beside(claims, scene, body->material.texture, "a texture");
-    }
+    cs_origin_each_file(&session->scene, claim_input, claims);
     for (uint32_t k = 0; k < session->settings.n_plugins; k++)
         cs_claims_input(claims, session->settings.plugins[k], "a module");
 }

@@ -11,45 +11,35 @@
 #include "io/scene_write.h"
 #include "study/coarse.h"
 #include "study/company.h"
+#include "study/origin.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The scene with every value, its hash, and the method. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
-    const struct cs_session *session = &job->session;
+    struct cs_session *session = &job->session;
     cs_scene_print(&session->scene, &session->method.table, session->method.options, 2,
                    &job->scene);
     cs_method_describe(&session->method, &job->method);
     if (job->scene.failed || job->method.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
-    return cs_scene_hash(&session->scene, &session->method.table, session->method.options,
-                         job->scene_hash, error);
-}
-
-uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene) {
-    const double second = floor(scene->time.fps + 0.5);
-    return settings->frames ? settings->frames : second < 1 ? 1 : (uint32_t)second;
-}
-
-static bool makes_checkpoints(const struct cs_job_settings *settings) {
-    return settings->checkpoint.frames || settings->checkpoint.seconds > 0 || settings->resume;
-}
-
-/* pictures, checkpoints and exports go into the folder */
-static bool uses_folder(const struct cs_job_settings *settings) {
-    return settings->session.render || makes_checkpoints(settings) || settings->export.formats;
+    if (cs_scene_hash(&session->scene, &session->method.table, session->method.options,
+                      job->scene_hash, error) ||
+        !cs_job_wants_json(job->settings))
+        return error->status;
+    return cs_origin_print(session, job->scene_hash, cs_text_get(&job->method), &job->origin,
+                           error);
 }
 
 static enum cs_status check_outputs(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const struct cs_run_outputs outputs = {.json = settings->json,
-                                           .watch = settings->watch,
-                                           .ledger = settings->ledger,
-                                           .states = settings->states,
-                                           .folder =
-                                               uses_folder(settings) ? settings->folder : NULL};
+    const struct cs_run_outputs outputs = {
+        .json = settings->json,
+        .watch = settings->watch,
+        .ledger = settings->ledger,
+        .states = settings->states,
+        .folder = cs_job_uses_folder(settings) ? settings->folder : NULL};
     return cs_run_check_claims(&job->session, &outputs, error) || settings->overwrite ||
                    settings->resume
                ? error->status
@@ -85,8 +75,9 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
     if (settings->states &&
         cs_output_own(&job->states, NULL, settings->states, cs_output_is_state, earlier, error))
         return error->status;
-    if (uses_folder(settings) && cs_output_own(&job->folder, &job->states, settings->folder,
-                                               cs_output_is_result, earlier, error))
+    if (cs_job_uses_folder(settings) &&
+        cs_output_own(&job->folder, &job->states, settings->folder, cs_output_is_result,
+                      earlier, error))
         return error->status;
     if (!settings->session.render)
         return CS_OK;
@@ -121,9 +112,9 @@ static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
     const double start = cs_clock_wall();
     if (!job->begun.number)
         return CS_OK;
-    const struct cs_picture_origin origin = {&job->session.scene, job->scene_hash,
-                                             cs_text_get(&job->method),
-                                             cs_text_get(&job->renderer)};
+    const struct cs_picture_origin origin = {
+        &job->session.scene, job->scene_hash, cs_text_get(&job->method),
+        cs_text_get(&job->renderer), cs_text_get(&job->recipe)};
     const enum cs_status status = cs_picture_end(&job->picture, error);
     job->wait_seconds += cs_clock_wall() - start;
     if (!status && !cs_job_picture_give(&job->begun, &origin, job->writer, error))
@@ -142,8 +133,10 @@ static enum cs_status begin_picture(struct cs_job *job, struct cs_job_frame *fra
     struct cs_image *image = cs_frames_take(job->writer);
     job->wait_seconds += cs_clock_wall() - start;
     cs_picture_begin(&job->picture, run, image);
-    job->begun = (struct cs_job_picture){
-        .number = run->frame / job->settings->every, .frame = run->frame, .time = run->t};
+    job->begun = (struct cs_job_picture){.number = run->frame / job->settings->every,
+                                         .frame = run->frame,
+                                         .time = run->t,
+                                         .image = image};
     memcpy(job->begun.hash, job->hash, sizeof job->hash);
     memcpy(job->begun.range, job->picture.range, sizeof job->begun.range);
     memcpy(frame->range, job->picture.range, sizeof frame->range);
@@ -240,22 +233,9 @@ static void record_job(void *ctx, struct cs_record *record) {
         cs_record_bytes(record, job->kept, n * sizeof *job->kept);
 }
 
-static const char *yes(bool fact) {
-    return fact ? "yes" : "no";
-}
-
-/* Checkpoints are of use only where the files of a run would be the same ones. */
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    cs_text_add(&job->outputs,
-                "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
-                "%s\nwatch: %s\nledger: %s\nJSON: %s\nexport:",
-                settings->session.render ? cs_text_get(&job->renderer) : "none",
-                settings->every, settings->level, yes(settings->fast),
-                yes(settings->states != NULL), yes(settings->watch != NULL),
-                yes(settings->ledger != NULL), yes(cs_job_wants_json(settings)));
-    cs_run_export_print(&settings->export, &job->outputs);
-    cs_text_add(&job->outputs, "\n");
+    cs_job_print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
     if (job->outputs.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for checkpoints");
     const struct cs_resume_of of = {.scene = cs_text_get(&job->scene),
@@ -266,6 +246,22 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
                                     .ctx = job};
     return cs_resume_begin(&job->checkpoints, &job->session, &of, settings->folder,
                            &settings->checkpoint, error);
+}
+
+/* Known once a run has begun, or goes on at its pace of checkpoints. */
+static enum cs_status make_recipe(struct cs_job *job, struct cs_error *error) {
+    if (!job->writer)
+        return CS_OK;
+    const struct cs_recipe recipe = {.origin = cs_text_get(&job->origin),
+                                     .scene = cs_text_get(&job->scene),
+                                     .renderer = job->picture.renderer->name,
+                                     .drawn_by = cs_text_get(&job->renderer),
+                                     .fast = job->settings->fast,
+                                     .restarts = cs_job_restarts(job)};
+    cs_origin_print_recipe(&recipe, &job->recipe);
+    return job->recipe.failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of pictures")
+               : CS_OK;
 }
 
 static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
@@ -299,7 +295,7 @@ static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
     if (settle_pictures(job, &later) == CS_OK)
         cs_resume_write(&job->checkpoints, &later);
-    cs_export_finish(&job->export, makes_checkpoints(job->settings), &later);
+    cs_export_finish(&job->export, cs_job_makes_checkpoints(job->settings), &later);
     if (!error->status)
         *error = later;
 }
@@ -348,10 +344,11 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     if (!job->warning.length)
         cs_coarse_print(&job->session.system, &job->warning);
 
-    if (makes_checkpoints(settings) && begin_checkpoints(job, error))
+    if (cs_job_makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
     /* a checkpoint that is refused leaves the rows of the run that it is of */
-    if ((settings->resume ? go_on(job, error) : begin(job, error)) || begin_exports(job, error))
+    if ((settings->resume ? go_on(job, error) : begin(job, error)) ||
+        begin_exports(job, error) || make_recipe(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
     /* also after a failure: rows and frames that were finished are kept */
@@ -373,6 +370,8 @@ void cs_job_finish(struct cs_job *job) {
     cs_text_finish(&job->scene);
     cs_text_finish(&job->warning);
     cs_text_finish(&job->method);
+    cs_text_finish(&job->origin);
+    cs_text_finish(&job->recipe);
     cs_text_finish(&job->renderer);
     cs_text_finish(&job->watch_rows);
     cs_text_finish(&job->ledger_rows);

@@ -4,33 +4,16 @@
 
 #include "base/hash.h"
 #include "base/text.h"
-#include "cli/run/run_export.h"
 #include "cli/run/run_picture.h"
 #include "cli/run/run_resume.h"
+#include "cli/run/run_settings.h"
 #include "cli/run_output.h"
 #include "sim/account.h"
+#include "sim/run_record.h"
 #include "study/picture.h"
 #include "study/session.h"
 #include "study/tally.h"
 #include "study/watch.h"
-
-struct cs_job_settings {
-    struct cs_session_settings session;
-    uint32_t frames;                    /* 0: one second of them */
-    uint32_t every;                     /* draw every n-th frame */
-    const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
-    const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
-    const char *ledger;                 /* CSV of where energy went; NULL: none */
-    int renderer;                       /* enum cs_renderer_kind */
-    uint32_t level;                     /* zlib */
-    struct cs_resume_pace checkpoint;   /* zeroed: none */
-    bool resume;                        /* go on from the checkpoint in the folder */
-    struct cs_export_settings export;   /* into the folder, as often as pictures */
-    bool fast, hash, overwrite, quiet;
-};
-
-/* How many frames are simulated. */
-uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene);
 
 /* What is kept of a frame for the report. */
 struct cs_job_frame {
@@ -57,6 +40,8 @@ struct cs_job {
     struct cs_text scene;            /* the resolved scene, indented by two */
     struct cs_text warning;          /* about bodies that nothing keeps apart; mostly empty */
     struct cs_text method;           /* "NAME:key=value,..." with every option */
+    struct cs_text origin;           /* see study/origin.h */
+    struct cs_text recipe;           /* what each picture carries */
     struct cs_text renderer;         /* description; empty unless pictures are drawn */
     char scene_hash[CS_HASH_DIGITS]; /* see io/scene_hash.h */
     char hash[CS_HASH_DIGITS];       /* of the last frame's state */
@@ -78,9 +63,11 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
                           struct cs_error *error);
 void cs_job_finish(struct cs_job *job);
 
-/* true where the run is written as JSON somewhere. */
-static inline bool cs_job_wants_json(const struct cs_job_settings *settings) {
-    return settings->session.render || settings->json;
+/* Frames between two checkpoints at which the method is started anew; 0: it goes on. */
+static inline uint32_t cs_job_restarts(const struct cs_job *job) {
+    const struct cs_run *run = &job->session.run;
+    return run->integrator && cs_run_remembers(run->integrator) ? 0
+                                                                : job->checkpoints.pace.frames;
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "base/arithmetic.h"
 #include "base/pool.h"
 #include "cli/run/run_report.h"
+#include "study/origin.h"
 
 #include <cjson/cJSON.h>
 #include <png.h>
@@ -179,10 +180,8 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "{\n  \"schema\": %d,\n", SCHEMA_VERSION);
     add_versions(job, out);
     add_arithmetic(out);
-    cs_text_add(out, "  \"scene_file\": ");
-    cs_text_add_json(out, job->session.scene.path);
-    cs_text_add(out, ",\n  \"scene_hash\": \"%s\",\n  \"method\": ", job->scene_hash);
-    cs_text_add_json(out, cs_text_get(&job->method));
+    cs_origin_add_restarts(cs_job_restarts(job), out);
+    cs_text_add(out, "%s", cs_text_get(&job->origin));
     cs_text_add(out, ",\n  \"particles\": %u,\n  \"springs\": %u,\n", run->system->view.n,
                 run->system->springs.n);
     add_outcome(job, out);

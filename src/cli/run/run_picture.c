@@ -19,9 +19,10 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
 enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
                                    const struct cs_picture_origin *origin,
                                    struct cs_frames *frames, struct cs_error *error) {
-    char frame[16];
+    char frame[16], pixels[CS_HASH_DIGITS];
     struct cs_text time = {0}, range = {0};
     snprintf(frame, sizeof frame, "%u", picture->frame);
+    cs_hash_bytes(picture->image->rgb, cs_image_bytes(picture->image), pixels);
     cs_text_add_real(&time, picture->time);
     print_range(picture, origin->scene, &range);
     const struct cs_png_text texts[] = {
@@ -32,6 +33,8 @@ enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
         {"clothsim:integrator", origin->method},
         {"clothsim:state-hash", picture->hash},
         {"clothsim:renderer", origin->renderer},
+        {"clothsim:pixel-hash", pixels},
+        {"clothsim:run", origin->recipe},
         {"clothsim:range", cs_text_get(&range)},
     };
     /* the range comes last, so that it can be left out where nothing is coloured */

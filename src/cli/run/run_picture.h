@@ -11,6 +11,7 @@
 struct cs_picture_origin {
     const struct cs_scene *scene;
     const char *scene_hash, *method, *renderer;
+    const char *recipe; /* see study/origin.h */
 };
 
 /* The frame whose picture is being drawn while the run goes on. */
@@ -20,6 +21,7 @@ struct cs_job_picture {
     double time; /* s */
     char hash[CS_HASH_DIGITS];
     double range[2];
+    const struct cs_image *image; /* of the writer */
 };
 
 /* Hands the image taken last over, as frame_NUMBER.png. CS_ERR_MEMORY, and as cs_frames_give.

@@ -4,7 +4,7 @@
 
 #include "draw/compare.h"
 #include "io/png.h"
-#include "study/picture.h"
+#include "study/still.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,28 +13,6 @@
 static void path_of(const struct cs_golden *golden, const struct cs_golden_row *row,
                     const char *ending, char path[1024]) {
     snprintf(path, 1024, "%.500s/image/%.400s%s", golden->folder, row->image, ending);
-}
-
-static size_t bytes_of(const struct cs_image *image) {
-    return 3 * (size_t)image->width * image->height;
-}
-
-static enum cs_status paint(struct cs_session *session, enum cs_renderer_kind kind,
-                            struct cs_image *image, struct cs_text *renderer,
-                            struct cs_error *error) {
-    struct cs_picture picture;
-    image->width = (uint32_t)session->scene.render.size[0];
-    image->height = (uint32_t)session->scene.render.size[1];
-    image->rgb = malloc(bytes_of(image));
-    if (!image->rgb)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    if (cs_picture_open(&picture, &session->system, kind, false, false, error))
-        return error->status;
-    cs_picture_begin(&picture, &session->run, image);
-    cs_picture_end(&picture, error);
-    cs_text_add(renderer, "%s", cs_picture_renderer(&picture));
-    cs_picture_close(&picture);
-    return error->status;
 }
 
 static enum cs_status write_image(const struct cs_golden *golden,
@@ -50,7 +28,7 @@ static enum cs_status write_evidence(const struct cs_golden *golden,
                                      const struct cs_golden_row *row,
                                      const struct cs_image *found,
                                      const struct cs_image *expected, struct cs_error *error) {
-    struct cs_image amplified = {found->width, found->height, malloc(bytes_of(found))};
+    struct cs_image amplified = {found->width, found->height, malloc(cs_image_bytes(found))};
     if (!amplified.rgb)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");
     cs_image_amplify(found, expected, &amplified);
@@ -113,8 +91,8 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
                                  struct cs_error *error) {
     struct cs_image found = {0};
     struct cs_text renderer = {0};
-    if (!paint(session, kind, &found, &renderer, error)) {
-        cs_hash_bytes(found.rgb, bytes_of(&found), row->found);
+    if (!cs_still_paint(session, kind, &found, &renderer, error)) {
+        cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->found);
         if (golden->accept)
             bless(golden, row, &found, &renderer, error);
         else

@@ -1,0 +1,50 @@
+/* carried.h - what a result carries of its own making, read back.
+ *
+ * run.json, the text clothsim:run of a picture and origin.json of a comparison hold the members
+ * that study/origin.h adds, and the scene itself.
+ */
+#ifndef CS_CARRIED_H
+#define CS_CARRIED_H
+
+#include "base/text.h"
+#include "io/json.h"
+#include "study/session.h"
+
+/* Zeroed: nothing. */
+struct cs_carried {
+    char *text, *scene;   /* owned: the whole, and the scene in it */
+    struct cs_json *root; /* owned: the whole */
+    const char *name;     /* borrowed: of the file */
+    /* borrowed from root; "" where nothing is said */
+    const char *version, *scene_file, *scene_hash, *method, *renderer, *renderer_name;
+    const char *module, *module_hash, *library;
+    uint32_t restarts; /* see cs_origin_add_restarts */
+    bool fast;
+    const char *folder; /* borrowed: where its files are now; NULL: where they were */
+    char path[4096];    /* of the scene, as it is to be read */
+};
+
+/* Reads a file. CS_ERR_FILE where it is no such JSON, or holds no scene. */
+enum cs_status cs_carried_read(struct cs_carried *carried, const char *file,
+                               struct cs_error *error);
+/* The same from a text, which is copied; name is for messages. */
+enum cs_status cs_carried_read_text(struct cs_carried *carried, const char *name,
+                                    const char *text, struct cs_error *error);
+void cs_carried_finish(struct cs_carried *carried);
+
+/* Member of an object as a text or a number; "" and NAN where it is none. */
+const char *cs_carried_text(const struct cs_json *object, const char *key);
+double cs_carried_number(const struct cs_json *object, const char *key);
+
+/* Makes settings of a session run the scene that is carried, by its own method. folder: where
+ * its meshes and textures are, NULL: where they were; modules that the settings name stand for
+ * the one that was loaded from a file. carried must outlive them. */
+enum cs_status cs_carried_ask(struct cs_carried *carried, const char *folder,
+                              struct cs_session_settings *settings, struct cs_error *error);
+
+/* Adds a line for each thing that is not what it was when the result was made: the program's
+ * version, the build of the module, a library, the files of the scene, what the scene means. */
+enum cs_status cs_carried_tell(const struct cs_carried *carried, struct cs_session *session,
+                               struct cs_text *out, struct cs_error *error);
+
+#endif
