@@ -5,7 +5,7 @@
 /* name, exit code, sentence for the man page */
 #define CS_STATUS_LIST(X)                                                                      \
     X(CS_OK, 0, "done; an unstable run is a result too")                                       \
-    X(CS_ERR_CHECK, 1, "a check failed: a golden hash or image, or a claim of an integrator")  \
+    X(CS_ERR_CHECK, 1, "a check failed: a golden state, a claim, or two results that differ")  \
     X(CS_ERR_USAGE, 2, "the command line is wrong")                                            \
     X(CS_ERR_SCENE, 3, "the scene is not valid")                                               \
     X(CS_ERR_FILE, 4, "a file cannot be read or written")                                      \

@@ -2,9 +2,13 @@
 #include "io/program.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stddef.h>
+#include <string.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 extern char **environ;
 
@@ -27,4 +31,56 @@ enum cs_status cs_program_run(const char *folder, const char *const *arguments, 
     end->done = end->found && ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
     posix_spawn_file_actions_destroy(&actions);
     return CS_OK;
+}
+
+/* its standard output is the end of the pipe; both ends are closed in it by themselves */
+static int spawn(struct cs_program *program, const char *const *arguments, bool quiet,
+                 int end) {
+    posix_spawn_file_actions_t actions;
+    pid_t child = 0;
+    int reason = posix_spawn_file_actions_init(&actions);
+    if (reason)
+        return reason;
+    reason = posix_spawn_file_actions_adddup2(&actions, end, 1);
+    if (!reason && quiet)
+        reason = posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", 1, 0);
+    if (!reason)
+        reason = posix_spawnp(&child, arguments[0], &actions, NULL, (char *const *)arguments,
+                              environ);
+    posix_spawn_file_actions_destroy(&actions);
+    program->id = reason ? 0 : child;
+    return reason;
+}
+
+enum cs_status cs_program_open(struct cs_program *program, const char *const *arguments,
+                               bool quiet, struct cs_error *error) {
+    int ends[2];
+    *program = (struct cs_program){0};
+    if (pipe(ends))
+        return cs_fail(error, CS_ERR_FILE, "cannot make a pipe: %s", strerror(errno));
+    fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+    fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+    const int reason = spawn(program, arguments, quiet, ends[1]);
+    close(ends[1]);
+    program->out = reason ? NULL : fdopen(ends[0], "r");
+    if (program->out)
+        return CS_OK;
+    close(ends[0]);
+    cs_program_close(program);
+    return cs_fail(error, CS_ERR_FILE, "cannot run %s: %s", arguments[0],
+                   strerror(reason ? reason : ENOMEM));
+}
+
+int cs_program_close(struct cs_program *program) {
+    int status = -1;
+    if (program->id <= 0)
+        return -1;
+    if (!program->out || !feof(program->out))
+        kill(program->id, SIGKILL);
+    if (program->out)
+        fclose(program->out);
+    while (waitpid(program->id, &status, 0) < 0 && errno == EINTR)
+        ;
+    *program = (struct cs_program){0};
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

@@ -6,6 +6,7 @@
 #include "model/pair/pairs.h"
 #include "sim/account.h"
 #include "sim/passage.h"
+#include "sim/trace.h"
 
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
@@ -89,10 +90,36 @@ static enum cs_step stop_crossings(struct cs_run_host *host, double t, const dou
     return step;
 }
 
-static void account_for(const struct cs_run_host *host, enum cs_work work, double t,
-                        const double *x, const double *v) {
+/* what a correction left, if there was one, and what energy it took */
+static void look(const struct cs_run_host *host, enum cs_work work, const char *phase, double t,
+                 const double *x, const double *v) {
+    if (phase)
+        cs_trace_state(host, phase, t, x, v);
     if (host->settings.account)
         cs_account_change(host->settings.account, work, t, x, v);
+}
+
+/* The limit may move particles into obstacles, so contact comes after it; last are the grabbed
+ * ones, which stay on their path whatever moved them. */
+static void correct(struct cs_run_host *host, double t, double dt, double *x, double *v,
+                    bool *changed) {
+    const struct cs_plan_row *rows = host->run->system->plan.rows;
+    const bool limit = rows[CS_FEATURE_STRAIN_LIMIT].built;
+    const bool contact = rows[CS_FEATURE_CONTACT].built;
+    const bool loss = rows[CS_FEATURE_VELOCITY_LOSS].built;
+    if (limit)
+        limit_strain(host, dt, x, v, changed);
+    look(host, CS_WORK_LIMIT, limit ? "strain limit" : NULL, t, x, v);
+    if (contact)
+        resolve_contact(host, t, dt, x, v, changed);
+    look(host, CS_WORK_PROJECTION, contact ? "contact" : NULL, t, x, v);
+    if (loss)
+        lose_velocity(host, v, changed);
+    look(host, CS_WORK_LOSS, loss ? "velocity loss" : NULL, t, x, v);
+    if (rows[CS_FEATURE_EVENTS].built) {
+        cs_events_place(host->run->system, t, x, v);
+        cs_trace_state(host, "paths", t, x, v);
+    }
 }
 
 enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
@@ -105,21 +132,10 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     host->left.committed = t;
     cs_move_values(host, t);
     cs_host_pin(host, false);
+    cs_trace_state(host, "step", t, x, v);
     if (settings->account)
         cs_account_step(settings->account, t, x, v);
-    // the limit may move particles into obstacles, so contact comes after it; last are the
-    // grabbed ones, which stay on their path whatever moved them
-    if (rows[CS_FEATURE_STRAIN_LIMIT].built)
-        limit_strain(host, dt, x, v, changed);
-    account_for(host, CS_WORK_LIMIT, t, x, v);
-    if (rows[CS_FEATURE_CONTACT].built)
-        resolve_contact(host, t, dt, x, v, changed);
-    account_for(host, CS_WORK_PROJECTION, t, x, v);
-    if (rows[CS_FEATURE_VELOCITY_LOSS].built)
-        lose_velocity(host, v, changed);
-    account_for(host, CS_WORK_LOSS, t, x, v);
-    if (rows[CS_FEATURE_EVENTS].built)
-        cs_events_place(host->run->system, t, x, v);
+    correct(host, t, dt, x, v, changed);
     if (cs_passage_has_failed(host->run->system))
         return host->calls.fail(ctx, "out of memory for the pairs of contact");
     enum cs_step step = judge(host, t, x, v);

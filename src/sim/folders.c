@@ -65,6 +65,11 @@ static const char *find(const char *in_build, const char *installed, char *out) 
     return out;
 }
 
+const char *cs_program_path(void) {
+    static char path[PATH_MAX];
+    return *path || find_program(path, sizeof path) ? path : "clothsim";
+}
+
 const char *cs_module_folder(void) {
     static char folder[FOLDER_MAX];
     return *folder ? folder : find("plugins", CS_MODULES_FROM_PROGRAM, folder);

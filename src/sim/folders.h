@@ -6,6 +6,9 @@
 
 enum { CS_DATA_PATH_MAX = 8192 };
 
+/* The file of this program; its name where the system does not say. */
+const char *cs_program_path(void);
+
 /* The folders of integrator and renderer modules: the build's when the program runs from the
  * build, else the installed ones, found from the program's own place so that an installed tree
  * can be moved. Absolute. */

@@ -9,6 +9,7 @@
 #include "sim/account.h"
 #include "sim/commit.h"
 #include "sim/passage.h"
+#include "sim/trace.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -68,6 +69,8 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
     cs_terms_force(host->run->system, &at, f);
     host->run->counts.forces++;
     cs_stage_end(host, CS_STAGE_FORCE, begin);
+    cs_trace_state(host, "force", t, x, v);
+    cs_trace_vector(host, "force", "f", t, f);
 }
 
 static double host_energy(void *ctx, double t, const double *x, const double *v) {
@@ -75,6 +78,8 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
     cs_move_values(host, t);
     host->run->counts.energies++;
     const struct cs_energy energy = cs_measure_energy(host->run->system, t, x, v);
+    cs_trace_state(host, "energy", t, x, v);
+    cs_trace_number(host, "energy", "E", t, cs_energy_whole(&energy));
     return cs_energy_whole(&energy);
 }
 
@@ -88,6 +93,9 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
     cs_terms_jvp(host->run->system, &at, df);
     host->run->counts.jvps++;
     cs_stage_end(host, CS_STAGE_FORCE, begin);
+    cs_trace_vector(host, "force derivative", "dx", t, dx);
+    cs_trace_vector(host, "force derivative", "dv", t, dv);
+    cs_trace_vector(host, "force derivative", "df", t, df);
 }
 
 static void host_diagonal(void *ctx, double t, const double *x, const double *v, double *kxx,
@@ -112,6 +120,8 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     host->run->counts.forces++;
     host->run->counts.diagonals++;
     cs_stage_end(host, CS_STAGE_FORCE, begin);
+    cs_trace_state(host, "force", t, x, v);
+    cs_trace_vector(host, "force", "f", t, f);
 }
 
 /* an exact matrix that is not positive definite is made so, and that is counted */
@@ -132,6 +142,7 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     if (!(cm > 0) || !(cd <= 0) || !(ck <= 0))
         return host_fail(ctx, "solve wants cm > 0, cd <= 0 and ck <= 0, found %g, %g, %g", cm,
                          cd, ck);
+    cs_trace_state(host, "solve set-up", t, x, v);
     const double begin = cs_stage_begin(host);
     host->run->counts.solve_setups++;
     host->clamped = flags & CS_SOLVE_PSD;
@@ -171,6 +182,8 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
         host->run->counts.solve_iterations += iterations;
     }
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
+    cs_trace_vector(host, "solve", "b", host->left.committed, b);
+    cs_trace_vector(host, "solve", "u", host->left.committed, u);
     if (end == CS_LINEAR_LIMIT)
         return host_fail(
             ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
@@ -205,6 +218,8 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
     const double share = cs_passage_share(host->run->system, t0, x0, t1, x1);
     host->run->counts.cut_steps += share < 1;
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
+    cs_trace_vector(host, "longest move", "x", t1, x1);
+    cs_trace_number(host, "longest move", "share", t1, share);
     return share;
 }
 
@@ -246,6 +261,8 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
     cs_obstacles_at(contact->system, t, contact->obstacles);
     const double step = cs_reach_step(contact->system, contact->obstacles, host->reach, x, v);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
+    cs_trace_state(host, "longest step", t, x, v);
+    cs_trace_number(host, "longest step", "h", t, step);
     return step;
 }
 
@@ -326,6 +343,8 @@ bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
         cs_bound_follow_events(&host->bound, system, t);
     if (changed && host->settings.account)
         cs_account_keep(host->settings.account, t, host->run->x, host->run->v);
+    if (changed)
+        cs_trace_state(host, "events", t, host->run->x, host->run->v);
     if (changed && system->plan.rows[CS_FEATURE_CONTACT].built)
         cs_contact_start(&host->contact, t, host->run->x, host->run->v);
     return changed;

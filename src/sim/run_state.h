@@ -2,6 +2,7 @@
 #ifndef CS_RUN_STATE_H
 #define CS_RUN_STATE_H
 
+#include "base/trail.h"
 #include "model/system/system.h"
 
 #include <clothsim/integrator.h>
@@ -71,6 +72,14 @@ struct cs_run {
     struct cs_run_host *host; /* owned */
 };
 
+/* Is told each array that a method and the host hand each other, and each state that a
+ * correction after a step leaves: see sim/trace.h. */
+struct cs_trace {
+    void (*take)(void *ctx, const struct cs_trail_point *point);
+    void *ctx;
+    bool on; /* may be set and cleared between frames */
+};
+
 /* How a run is begun. Zeroed: as the system stands, without clock, limit or observer. */
 struct cs_run_settings {
     bool timed; /* stage times too */
@@ -85,6 +94,7 @@ struct cs_run_settings {
     bool (*observe)(void *ctx, double t, double dt, double *x, double *v);
     void *ctx;                  /* of observe */
     struct cs_account *account; /* kept step by step, see account.h; NULL: none */
+    struct cs_trace *trace;     /* NULL: none */
 };
 
 #endif

@@ -50,6 +50,7 @@ enum plant {
     SINGLE_MASS,
     WRONG_STAGE_TIME, /* Heun's method, whose second stage asks for the forces of the first's */
     TIME_STANDS_STILL,
+    FLIPS_A_BIT,  /* the last one of y of particle 7, in its 21st step */
     FORGETS_STEPS /* saves nothing of what it remembers */
 };
 
@@ -178,6 +179,10 @@ static void heun(struct planted *self, double t, double h, double *x, double *v)
     }
 }
 
+static void flip_a_bit(double *value) {
+    *value = *value < 0 ? nextafter(*value, 0) : nextafter(*value, 1);
+}
+
 static void step(struct planted *self, double t, double h, double *x, double *v) {
     const struct cs_host *host = self->host;
     const uint32_t n = host->view->n;
@@ -198,6 +203,8 @@ static void step(struct planted *self, double t, double h, double *x, double *v)
         x[i] += host->view->inv_mass[i] > 0 ? 0 : 1e-12;
     if (PLANT == RETURNS_NAN)
         x[0] = (double)NAN;
+    if (PLANT == FLIPS_A_BIT && self->steps++ == 20)
+        flip_a_bit(x + n + 7);
     if (PLANT == COUNTS_RUNS)
         x[0] += 1e-12 * runs;
     if (PLANT == FORGETS_STEPS)

@@ -30,6 +30,7 @@ enum {
     RUN_JSON,
     RUN_WATCH,
     RUN_LEDGER,
+    RUN_TRACE,
     RUN_TIMING,
     RUN_THREADS,
     RUN_RENDERER,
@@ -92,6 +93,10 @@ static const struct cs_arg rows[RUN_ROWS] = {
         {"ledger", 0, "FILE",
          "write where the energy of each frame is and went to as CSV; -: to standard output",
          false},
+    [RUN_TRACE] = {"trace", 0, "FRAME",
+                   "write every array that this frame computes to standard output, or with "
+                   "\"frames\" the state of each frame: for clothsim bisect",
+                   false},
     [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a run, and tell its peak memory",
                     false},
     [RUN_THREADS] = {"threads", 0, "N",
@@ -154,7 +159,8 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
     } outputs[] = {{"--hash", settings->hash},
                    {"--json -", is_stdout(settings->json)},
                    {"--watch -", is_stdout(settings->watch)},
-                   {"--ledger -", is_stdout(settings->ledger)}};
+                   {"--ledger -", is_stdout(settings->ledger)},
+                   {"--trace", settings->trail.asked}};
     const char *first = NULL;
     for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
         if (outputs[k].asks && first)
@@ -188,7 +194,9 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
         cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
         cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))
         return error->status;
-    if (check_stream(settings, error) ||
+    const char *trace = cs_args_get(args, RUN_TRACE);
+    if ((trace && cs_run_trail_read(trace, &settings->trail, error)) ||
+        check_stream(settings, error) ||
         cs_run_export_read(cs_args_get(args, RUN_EXPORT), cs_args_get(args, RUN_VALUES),
                            &settings->export, error))
         return error->status;
@@ -218,7 +226,8 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const bool taken = settings->hash || is_stdout(settings->json) ||
-                       is_stdout(settings->watch) || is_stdout(settings->ledger);
+                       is_stdout(settings->watch) || is_stdout(settings->ledger) ||
+                       settings->trail.asked;
     struct cs_text table = {0};
     if (settings->quiet)
         return CS_OK;

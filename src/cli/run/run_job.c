@@ -268,14 +268,17 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
     struct cs_progress progress;
     cs_progress_begin(&progress, job->settings->quiet);
+    cs_run_trail_begin(&job->trail, run);
     while (run->frame < job->frames && !error->status) {
+        cs_run_trail_step(&job->trail, run);
         if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
             break;
-        if (!take_frame(job, error))
+        if (!cs_run_trail_frame(&job->trail, run, error) && !take_frame(job, error))
             make_checkpoint(job, error);
         cs_progress_show(&progress, run->frame, job->frames);
     }
     cs_progress_end(&progress);
+    cs_run_trail_end(&job->trail, run);
     return error->status;
 }
 
@@ -324,6 +327,8 @@ static enum cs_status open_session(struct cs_job *job, struct cs_error *error) {
     struct cs_session_settings settings = job->settings->session;
     const bool kept = job->settings->ledger != NULL;
     settings.run.account = kept ? &job->account : NULL;
+    job->trail = job->settings->trail;
+    settings.run.trace = job->trail.only ? &job->trail.trace : NULL;
     return cs_session_open(&job->session, &settings, error) || !kept
                ? error->status
                : cs_account_open(&job->account, &job->session.system, 0, error);

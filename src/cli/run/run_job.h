@@ -51,6 +51,7 @@ struct cs_job {
     struct cs_text outputs;          /* which there are, as far as checkpoints depend on it */
     struct cs_output folder, states; /* owned while the run lasts */
     struct cs_resume checkpoints;
+    struct cs_run_trail trail;
     const char *failure; /* why a step failed, in the caller's error; NULL: none did */
     double wall_seconds, encode_seconds;
     double wait_seconds; /* that the run stood still for its pictures */

@@ -4,6 +4,7 @@
 
 #include "cli/run/run_export.h"
 #include "cli/run/run_resume.h"
+#include "cli/run/run_trail.h"
 #include "study/session.h"
 
 struct cs_job_settings {
@@ -16,6 +17,7 @@ struct cs_job_settings {
     int renderer;                       /* enum cs_renderer_kind */
     uint32_t level;                     /* zlib */
     struct cs_resume_pace checkpoint;   /* zeroed: none */
+    struct cs_run_trail trail;          /* zeroed: none */
     bool resume;                        /* go on from the checkpoint in the folder */
     struct cs_export_settings export;   /* into the folder, as often as pictures */
     bool fast, hash, overwrite, quiet;

@@ -1,0 +1,212 @@
+/* clothsim bisect: where two runs of a scene first differ. */
+#include "cli/commands.h"
+#include "cli/line/interrupt.h"
+#include "cli/line/print.h"
+#include "sim/folders.h"
+#include "study/bisect.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    BISECT_A,
+    BISECT_B,
+    BISECT_FRAMES,
+    BISECT_INTEGRATOR,
+    BISECT_SET,
+    BISECT_PLUGIN,
+    BISECT_THREADS,
+    BISECT_TOLERANCE,
+    BISECT_QUIET,
+    BISECT_ROWS
+};
+enum { VALUE_COLUMN = 16 };
+
+static const struct cs_arg rows[BISECT_ROWS] = {
+    [BISECT_A] = {"a", 'a', "KEY=VALUE",
+                  "what is A's own: program=FILE, or an option of run with a value, as "
+                  "threads=4; may be repeated",
+                  true},
+    [BISECT_B] = {"b", 'b', "KEY=VALUE", "what is B's own; may be repeated", true},
+    [BISECT_FRAMES] = {"frames", 'n', "N",
+                       "compare frames 1 to N (default: one second of them)", false},
+    [BISECT_INTEGRATOR] = {"integrator", 'i', "NAME[:KEY=VALUE,...]",
+                           "method of both and its options, instead of the scene's", false},
+    [BISECT_SET] = {"set", 's', "PATH=VALUE",
+                    "another value for a key of the scene, of both; may be repeated", true},
+    [BISECT_PLUGIN] = {"plugin", 'p', "FILE",
+                       "load an integrator module in both; may be repeated", true},
+    [BISECT_THREADS] = {"threads", 0, "N", "threads of both, 1 to 64", false},
+    [BISECT_TOLERANCE] = {"tolerance", 't', "NUMBER",
+                          "what numbers may differ by, in their own unit (default: no bit)",
+                          false},
+    [BISECT_QUIET] = {"quiet", 'q', NULL, "print nothing where both are equal", false},
+};
+
+/* a command line that grows; its words live as long as the arguments */
+struct line {
+    struct cs_args *args;
+    const char **words; /* (n) and NULL behind them */
+    uint32_t n;
+};
+
+static void add(struct line *line, const char *word) {
+    line->words[line->n++] = word;
+}
+
+static enum cs_status add_named(struct line *line, const char *key, size_t length,
+                                const char *value, struct cs_error *error) {
+    char option[32];
+    snprintf(option, sizeof option, "--%.*s", (int)length, key);
+    const char *kept = cs_arena_take_text(&line->args->arena, option, error);
+    add(line, kept);
+    add(line, value);
+    return error->status;
+}
+
+/* "program=FILE" or "threads=4" */
+static enum cs_status add_own(struct line *line, const char *own, struct cs_error *error) {
+    static const char *const keys[] = {"program", "integrator", "set",
+                                       "plugin",  "threads",    NULL};
+    const size_t length = strcspn(own, "=");
+    for (int k = 0; own[length] && keys[k]; k++)
+        if (strlen(keys[k]) == length && !strncmp(own, keys[k], length)) {
+            if (k > 0)
+                return add_named(line, own, length, own + length + 1, error);
+            line->words[0] = own + length + 1;
+            return CS_OK;
+        }
+    return cs_fail(error, CS_ERR_USAGE,
+                   "found \"%.60s\", expected program=, integrator=, set=, plugin= or threads= "
+                   "and a value",
+                   own);
+}
+
+/* what one side has of its own */
+struct own {
+    const char *const *items; /* (n), "KEY=VALUE" */
+    uint32_t n;
+};
+
+static bool has_own(const struct own *own, const char *key) {
+    const size_t length = strlen(key);
+    for (uint32_t k = 0; k < own->n; k++)
+        if (!strncmp(own->items[k], key, length) && own->items[k][length] == '=')
+            return true;
+    return false;
+}
+
+/* A method or a number of threads of its own stands instead of that of both. */
+static enum cs_status add_common(struct line *line, const struct own *own,
+                                 struct cs_error *error) {
+    static const int options[] = {BISECT_FRAMES, BISECT_INTEGRATOR, BISECT_SET, BISECT_PLUGIN,
+                                  BISECT_THREADS};
+    for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
+        const char *const *values;
+        const struct cs_arg *row = rows + options[k];
+        uint32_t n;
+        if (cs_args_all(line->args, (uint32_t)options[k], &values, &n, error))
+            return error->status;
+        for (uint32_t i = 0; i < n && (row->many || !has_own(own, row->name)); i++)
+            add_named(line, row->name, strlen(row->name), values[i], error);
+    }
+    return error->status;
+}
+
+static enum cs_status make_line(struct line *line, int row, struct cs_error *error) {
+    struct own own;
+    if (cs_args_all(line->args, (uint32_t)row, &own.items, &own.n, error))
+        return error->status;
+    line->words = cs_arena_take_n(&line->args->arena, 8 + 2 * (size_t)line->args->n_given,
+                                  sizeof *line->words, error);
+    if (!line->words)
+        return error->status;
+    add(line, cs_program_path());
+    add(line, "run");
+    add(line, line->args->operands[0]);
+    add(line, "--no-render");
+    add(line, "--quiet");
+    add_common(line, &own, error);
+    for (uint32_t k = 0; k < own.n && !error->status; k++)
+        add_own(line, own.items[k], error);
+    return error->status;
+}
+
+static void add_lines(const char *left, const struct cs_bisect_difference *found,
+                      struct cs_text *out) {
+    struct cs_text text = {0};
+    cs_bisect_print(found, &text);
+    char *rest = text.bytes;
+    for (char *line; rest && (line = strsep(&rest, "\n")) && *line; left = "")
+        cs_print_hanging(left, line, VALUE_COLUMN, out);
+    cs_text_finish(&text);
+}
+
+/* The numbers of one frame tell more than the states at its end, where they differ too. */
+static void print(const struct cs_bisect *bisect, struct cs_text *out) {
+    const struct cs_bisect_difference *states = &bisect->states, *within = &bisect->within;
+    char left[24];
+    cs_text_add(out, "%-*s%u frame%s\n", VALUE_COLUMN, "equal", bisect->equal,
+                bisect->equal == 1 ? "" : "s");
+    if (!states->found)
+        return;
+    snprintf(left, sizeof left, states->frame ? "frame %u" : "start", states->frame);
+    add_lines(left, states, out);
+    if (!states->frame)
+        return;
+    if (!within->found) {
+        cs_print_hanging("again",
+                         "both came to the same when this frame was made again: one of "
+                         "them does not repeat itself",
+                         VALUE_COLUMN, out);
+        return;
+    }
+    cs_text_add(out, "%-*s%s, in step %llu, t = %.9g s\n", VALUE_COLUMN, "first in",
+                within->phase, (unsigned long long)within->step, within->t);
+    add_lines("", within, out);
+}
+
+static enum cs_status report(const struct cs_bisect *bisect, bool quiet,
+                             struct cs_error *error) {
+    const struct cs_bisect_difference *states = &bisect->states;
+    struct cs_text out = {0};
+    if (quiet && !states->found)
+        return CS_OK;
+    print(bisect, &out);
+    if (cs_print_out(stdout, &out, error) || !states->found)
+        return error->status;
+    return states->frame
+               ? cs_fail(error, CS_ERR_CHECK, "A and B differ from frame %u on", states->frame)
+               : cs_fail(error, CS_ERR_CHECK, "A and B differ at the start");
+}
+
+static enum cs_status bisect(struct cs_args *args, struct cs_error *error) {
+    struct line lines[2] = {{.args = args}, {.args = args}};
+    struct cs_bisect found;
+    double tolerance = 0;
+    if (!strcmp(args->operands[0], "-"))
+        return cs_fail(error, CS_ERR_USAGE, "the scene is read several times: not from -");
+    if (cs_args_real(args, BISECT_TOLERANCE, &tolerance, error) ||
+        make_line(&lines[0], BISECT_A, error) || make_line(&lines[1], BISECT_B, error))
+        return error->status;
+    const struct cs_bisect_settings settings = {
+        .sides = {{"A", lines[0].words, lines[0].n}, {"B", lines[1].words, lines[1].n}},
+        .tolerance = tolerance,
+        .stop = cs_interrupt_catch()};
+    return cs_bisect_run(&found, &settings, error)
+               ? error->status
+               : report(&found, cs_args_get(args, BISECT_QUIET), error);
+}
+
+const struct cs_command cs_command_bisect = {
+    .name = "bisect",
+    .operands = "SCENE",
+    .summary = "find the first number that two builds, methods or settings compute otherwise",
+    .notes = "A and B are this program on SCENE, but for what --a and --b say.\n\n"
+             "Example: clothsim bisect scenes/hang.json --b program=../old/build/clothsim\n",
+    .rows = rows,
+    .n_rows = BISECT_ROWS,
+    .least = 1,
+    .most = 1,
+    .main = bisect,
+};

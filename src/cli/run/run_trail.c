@@ -1,0 +1,72 @@
+/* Writes the trail of a run. */
+#include "cli/run/run_trail.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void take(void *ctx, const struct cs_trail_point *point) {
+    cs_trail_write(ctx, point);
+}
+
+enum cs_status cs_run_trail_read(const char *value, struct cs_run_trail *trail,
+                                 struct cs_error *error) {
+    const size_t length = strlen(value);
+    const bool number = strspn(value, "0123456789") == length && length > 0 && length < 9;
+    trail->only = number ? (uint32_t)strtoul(value, NULL, 10) : 0;
+    trail->asked = true;
+    trail->trace = (struct cs_trace){.take = take, .ctx = stdout};
+    return trail->only || !strcmp(value, "frames")
+               ? CS_OK
+               : cs_fail(error, CS_ERR_USAGE,
+                         "--trace: found \"%.60s\", expected \"frames\" or the number of a "
+                         "frame",
+                         value);
+}
+
+static void write_state(const struct cs_run *run) {
+    struct cs_trail_point point = {.frame = run->frame,
+                                   .step = run->counts.steps,
+                                   .t = run->t,
+                                   .phase = run->frame ? "frame" : "start",
+                                   .name = "x",
+                                   .values = run->x,
+                                   .n = 3 * (size_t)run->system->view.n};
+    cs_trail_write(stdout, &point);
+    point.name = "v";
+    point.values = run->v;
+    cs_trail_write(stdout, &point);
+}
+
+void cs_run_trail_begin(struct cs_run_trail *trail, const struct cs_run *run) {
+    if (!trail->asked)
+        return;
+    cs_trail_begin(stdout);
+    write_state(run);
+}
+
+void cs_run_trail_step(struct cs_run_trail *trail, const struct cs_run *run) {
+    trail->trace.on = trail->only == run->frame + 1;
+}
+
+enum cs_status cs_run_trail_frame(struct cs_run_trail *trail, const struct cs_run *run,
+                                  struct cs_error *error) {
+    if (trail->asked && (!trail->only || trail->only == run->frame))
+        write_state(run);
+    if (trail->asked && (fflush(stdout) || ferror(stdout)))
+        return cs_fail(error, CS_ERR_FILE, "cannot write to standard output");
+    return CS_OK;
+}
+
+void cs_run_trail_end(struct cs_run_trail *trail, const struct cs_run *run) {
+    const double where[] = {run->blow_up.particle, run->blow_up.energy};
+    const struct cs_trail_point point = {.frame = run->frame + 1,
+                                         .step = run->counts.steps,
+                                         .t = run->blow_up.time,
+                                         .phase = cs_outcome_text(run->outcome),
+                                         .name = "end",
+                                         .values = where,
+                                         .n = 2};
+    if (trail->asked && (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED))
+        cs_trail_write(stdout, &point);
+}

@@ -1,0 +1,197 @@
+/* Runs two programs side by side and finds the first number that differs. */
+#include "study/bisect.h"
+
+#include "io/program.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One program under way. */
+struct side {
+    const struct cs_bisect_side *asked;
+    struct cs_program program;
+    struct cs_trail trail;
+    bool there; /* the trail has a point */
+};
+
+static enum cs_status start(struct side *side, const struct cs_bisect_side *asked,
+                            const char *trace, struct cs_error *error) {
+    const char **arguments = calloc(asked->n_arguments + 3u, sizeof *arguments);
+    *side = (struct side){.asked = asked};
+    if (!arguments)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a command");
+    memcpy(arguments, asked->arguments, asked->n_arguments * sizeof *arguments);
+    arguments[asked->n_arguments] = "--trace";
+    arguments[asked->n_arguments + 1] = trace;
+    if (!cs_program_open(&side->program, arguments, false, error))
+        side->trail.file = side->program.out;
+    free(arguments);
+    return error->status;
+}
+
+/* Whether two numbers are the same: by their bits, or within the tolerance. */
+static bool is_same(double a, double b, double tolerance) {
+    return !memcmp(&a, &b, sizeof a) || fabs(a - b) <= tolerance ||
+           (tolerance > 0 && isnan(a) && isnan(b));
+}
+
+static void compare_values(struct cs_bisect_difference *found, const double *a, const double *b,
+                           double tolerance) {
+    /* most are equal: asked once */
+    if (!memcmp(a, b, found->n * sizeof *a))
+        return;
+    for (size_t k = found->n; k-- > 0;)
+        if (!is_same(a[k], b[k], tolerance)) {
+            found->first = k;
+            found->count++;
+            found->largest = fmax(found->largest, fabs(a[k] - b[k]));
+        }
+    found->found = found->numbers = found->count > 0;
+    if (found->found) {
+        found->values[0] = a[found->first];
+        found->values[1] = b[found->first];
+    }
+}
+
+static void tell_point(const struct side *side, char out[120]) {
+    const struct cs_trail_point *point = &side->trail.point;
+    if (!side->there)
+        snprintf(out, 120, "nothing more");
+    else if (!strcmp(point->phase, "start") || !strcmp(point->phase, "frame"))
+        snprintf(out, 120, "%s %" PRIu32 " at t = %.17g s, %zu numbers of %s", point->phase,
+                 point->frame, point->t, point->n, point->name);
+    else
+        snprintf(out, 120,
+                 "frame %" PRIu32 ", step %" PRIu64 ", %s %s at t = %.17g s, %zu numbers",
+                 point->frame, point->step, point->phase, point->name, point->t, point->n);
+}
+
+static bool is_same_point(const struct side sides[2], double tolerance) {
+    const struct cs_trail_point *a = &sides[0].trail.point, *b = &sides[1].trail.point;
+    return sides[0].there == sides[1].there && a->frame == b->frame && a->step == b->step &&
+           is_same(a->t, b->t, tolerance) && a->n == b->n && !strcmp(a->phase, b->phase) &&
+           !strcmp(a->name, b->name);
+}
+
+static void compare(const struct side sides[2], double tolerance,
+                    struct cs_bisect_difference *found) {
+    const struct side *side = sides + !sides[0].there;
+    const struct cs_trail_point *point = &side->trail.point;
+    *found = (struct cs_bisect_difference){
+        .frame = point->frame, .step = point->step, .t = point->t, .n = point->n};
+    snprintf(found->phase, sizeof found->phase, "%s", point->phase);
+    snprintf(found->name, sizeof found->name, "%.15s", point->name);
+    if (is_same_point(sides, tolerance)) {
+        compare_values(found, sides[0].trail.values, sides[1].trail.values, tolerance);
+        return;
+    }
+    found->found = true;
+    for (int k = 0; k < 2; k++)
+        tell_point(sides + k, found->other[k]);
+}
+
+/* The number of steps is a thing of the method: states of frames are compared without it. */
+static void take_point(struct side *side, bool states, struct cs_error *error) {
+    struct cs_error said = {0};
+    side->there = !error->status && cs_trail_next(&side->trail, &said);
+    if (said.status)
+        cs_fail(error, said.status, "%s: %s", side->asked->name, said.message);
+    if (states && side->there)
+        side->trail.point.step = 0;
+}
+
+/* A program that ended by itself has said why; one that never wrote a trail is no clothsim. */
+static void end(struct side *side, struct cs_bisect_difference *found, int k,
+                struct cs_error *error) {
+    const bool wrote = side->trail.values;
+    const bool ended = !side->there;
+    if (!side->program.id)
+        return;
+    const int code = cs_program_close(&side->program);
+    if (!wrote && !error->status)
+        cs_fail(error, CS_ERR_FILE, "%s: %s wrote no trail, exit code %d", side->asked->name,
+                side->asked->arguments[0], code);
+    else if (ended && code != 0 && !found->found)
+        cs_fail(error, CS_ERR_MODULE,
+                "%s ended with exit code %d behind frame %" PRIu32
+                ": up to there both are equal",
+                side->asked->name, code, side->trail.point.frame);
+    else if (found->found && !found->numbers && ended)
+        snprintf(found->other[k], sizeof found->other[k], "its end, with exit code %d", code);
+    cs_trail_finish(&side->trail);
+}
+
+/* Both, once: up to the first difference. */
+static enum cs_status pass(const struct cs_bisect_settings *settings, const char *trace,
+                           struct cs_bisect *bisect, struct cs_bisect_difference *found,
+                           struct cs_error *error) {
+    struct side sides[2] = {{0}};
+    const bool states = found == &bisect->states;
+    for (int k = 0; k < 2 && !error->status; k++)
+        start(sides + k, settings->sides + k, trace, error);
+    while (!error->status && !found->found) {
+        take_point(&sides[0], states, error);
+        take_point(&sides[1], states, error);
+        if (error->status || (!sides[0].there && !sides[1].there))
+            break;
+        compare(sides, settings->tolerance, found);
+        if (states && !found->found)
+            bisect->equal = found->frame;
+        if (settings->stop && *settings->stop)
+            cs_fail(error, CS_ERR_INTERRUPT, "interrupted; equal up to frame %" PRIu32,
+                    bisect->equal);
+    }
+    end(&sides[0], found, 0, error);
+    end(&sides[1], found, 1, error);
+    return error->status;
+}
+
+enum cs_status cs_bisect_run(struct cs_bisect *bisect,
+                             const struct cs_bisect_settings *settings,
+                             struct cs_error *error) {
+    char frame[16];
+    *bisect = (struct cs_bisect){0};
+    if (pass(settings, "frames", bisect, &bisect->states, error) || !bisect->states.found)
+        return error->status;
+    /* the start is not computed, and an end that came early lies in the frame behind */
+    if (!bisect->states.frame)
+        return CS_OK;
+    snprintf(frame, sizeof frame, "%" PRIu32, bisect->states.frame);
+    return pass(settings, frame, bisect, &bisect->within, error);
+}
+
+/* "0.1 and 0.2: 3 units in the last place apart" */
+static void print_values(const double values[2], struct cs_text *out) {
+    int64_t bits[2];
+    memcpy(bits, values, sizeof bits);
+    const uint64_t apart = bits[0] > bits[1] ? (uint64_t)bits[0] - (uint64_t)bits[1]
+                                             : (uint64_t)bits[1] - (uint64_t)bits[0];
+    cs_text_add(out, "A has %.17g, B has %.17g", values[0], values[1]);
+    if (signbit(values[0]) == signbit(values[1]) && apart < 1000000)
+        cs_text_add(out, ", %" PRIu64 " unit%s in the last place apart", apart,
+                    apart == 1 ? "" : "s");
+}
+
+static void print_place(const struct cs_bisect_difference *d, struct cs_text *out) {
+    const size_t particles = d->n / 3;
+    /* a single number, or weights, belong to no particle */
+    if (d->n % 3 || d->n <= 3) {
+        cs_text_add(out, "%s[%zu]: ", d->name, d->first);
+        return;
+    }
+    cs_text_add(out, "particle %zu, %s along %c: ", d->first % particles, d->name,
+                "xyz"[d->first / particles]);
+}
+
+void cs_bisect_print(const struct cs_bisect_difference *d, struct cs_text *out) {
+    if (!d->numbers) {
+        cs_text_add(out, "A comes to %s\nB comes to %s\n", d->other[0], d->other[1]);
+        return;
+    }
+    print_place(d, out);
+    print_values(d->values, out);
+    cs_text_add(out, "\n%zu of %zu numbers differ there, by at most %.3g\n", d->count, d->n,
+                d->largest);
+}

@@ -1,0 +1,55 @@
+/* bisect.h - the first number that two runs of a scene compute otherwise: its frame, step,
+ * phase and particle.
+ *
+ * Both run as programs of their own, side by side, and tell their states; then once more up to
+ * the first frame that differs, of which they tell everything (sim/trace.h).
+ */
+#ifndef CS_BISECT_H
+#define CS_BISECT_H
+
+#include "base/text.h"
+#include "base/trail.h"
+
+#include <signal.h>
+#include <stdbool.h>
+
+/* One of the two: its command, "PROGRAM run SCENE ...", closed by NULL. */
+struct cs_bisect_side {
+    const char *name;             /* "A" */
+    const char *const *arguments; /* (n_arguments) and NULL behind them */
+    uint32_t n_arguments;
+};
+
+struct cs_bisect_settings {
+    struct cs_bisect_side sides[2];
+    double tolerance; /* what numbers may differ by; 0: no bit */
+    const volatile sig_atomic_t *stop;
+};
+
+/* What differs between two records that should be the same. */
+struct cs_bisect_difference {
+    bool found, numbers; /* numbers: the values differ, and not only what is computed when */
+    uint32_t frame;
+    uint64_t step;
+    double t;
+    char phase[80], name[16];
+    size_t first, count, n; /* the first number that differs, of how many, of all */
+    double values[2];
+    double largest;     /* difference */
+    char other[2][120]; /* unless numbers: what each computed there instead, or how it ended */
+};
+
+struct cs_bisect {
+    uint32_t equal;                     /* frames */
+    struct cs_bisect_difference states; /* the first at the end of a frame, or at the start */
+    struct cs_bisect_difference within; /* the first of all, in that frame */
+};
+
+/* CS_ERR_FILE where a program cannot be run, or writes no trail; CS_ERR_INTERRUPT. */
+enum cs_status cs_bisect_run(struct cs_bisect *bisect,
+                             const struct cs_bisect_settings *settings, struct cs_error *error);
+
+/* Adds it as sentences, a line each. */
+void cs_bisect_print(const struct cs_bisect_difference *difference, struct cs_text *out);
+
+#endif
