@@ -34,6 +34,7 @@ enum {
     COMPARE_RENDERER,
     COMPARE_SHARD,
     COMPARE_REPORT,
+    COMPARE_LEDGER,
     COMPARE_STRICT,
     COMPARE_QUIET,
     COMPARE_ROWS
@@ -87,6 +88,11 @@ static const struct cs_arg rows[COMPARE_ROWS] = {
                         "write compare.html as well: one file with diagrams, tables, verdict, "
                         "machine and the command",
                         false},
+    [COMPARE_LEDGER] =
+        {"ledger", 0, NULL,
+         "run each cell once more, to say where its energy went: what the method "
+         "made or lost, and the work of each force",
+         false},
     [COMPARE_STRICT] = {"strict", 0, NULL, "exit with 8 where a cell blew up or failed", false},
     [COMPARE_QUIET] = {"quiet", 'q', NULL, "no progress and no rows, only the verdict", false},
 };
@@ -168,6 +174,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
         .runs = 40,
         .folder = folder ? folder : "compare",
         .fresh = cs_args_get(args, COMPARE_FRESH),
+        .ledger = cs_args_get(args, COMPARE_LEDGER),
     };
     settings->cache = cache ? cache : settings->folder;
     int rank = CS_NORM_END;
@@ -202,6 +209,9 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     cs_text_add(&text, "\n");
     cs_table_add_series(&screen->compare, &text);
     cs_text_add(&text, "\n");
+    cs_table_add_ledger(&screen->compare, &text);
+    if (screen->compare.settings->ledger)
+        cs_text_add(&text, "\n");
     cs_verdict_print(&ranking, "", &screen->compare, &text);
     cs_compare_warn(&screen->compare, "warning: ", &text);
     cs_ranking_finish(&ranking);

@@ -5,8 +5,10 @@
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "study/again.h"
+#include "study/compare/compare_again.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -27,21 +29,37 @@ static const struct cs_arg rows[REPRODUCE_ROWS] = {
     [REPRODUCE_QUIET] = {"quiet", 'q', NULL, "print only what differs", false},
 };
 
-typedef enum cs_status again_call(struct cs_again *again,
-                                  const struct cs_again_settings *settings,
-                                  struct cs_error *error);
-
 static bool ends_in(const char *text, const char *ending) {
     const size_t length = strlen(text), end = strlen(ending);
     return length > end && !strcmp(text + length - end, ending);
 }
 
-/* what a file is, by its name; a folder stands for the report in it */
-static again_call *choose(const char *operand, char path[PATH_BYTES]) {
+/* The number behind FILE.csv:, which is cut off; 0: none. */
+static uint32_t cut_row(char *path) {
+    char *colon = strrchr(path, ':');
+    const size_t digits = colon ? strspn(colon + 1, "0123456789") : 0;
+    if (!digits || digits > 9 || colon[1 + digits])
+        return 0;
+    *colon = 0;
+    if (ends_in(path, ".csv"))
+        return (uint32_t)strtoul(colon + 1, NULL, 10);
+    *colon = ':';
+    return 0;
+}
+
+/* What a file is, by its name; a folder stands for the report in it. */
+static enum cs_status make_again(struct cs_again *again, struct cs_again_settings *settings,
+                                 char path[PATH_BYTES], struct cs_error *error) {
     struct stat info;
-    const bool folder = !stat(operand, &info) && S_ISDIR(info.st_mode);
-    snprintf(path, PATH_BYTES, "%s%s", operand, folder ? "/run.json" : "");
-    return ends_in(path, ".png") ? cs_again_picture : cs_again_run;
+    const uint32_t row = cut_row(path);
+    if (!stat(path, &info) && S_ISDIR(info.st_mode))
+        strncat(path, "/run.json", PATH_BYTES - strlen(path) - 1);
+    settings->file = path;
+    return row ? cs_compare_again(again, settings, row, error)
+           : ends_in(path, ".csv")
+               ? cs_fail(error, CS_ERR_USAGE, "%s: expected a row, as in %s:1", path, path)
+           : ends_in(path, ".png") ? cs_again_picture(again, settings, error)
+                                   : cs_again_run(again, settings, error);
 }
 
 static void show(void *ctx, uint32_t done, uint32_t total) {
@@ -69,9 +87,8 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     struct cs_again again = {0};
     struct cs_progress progress;
     const bool quiet = cs_args_get(args, REPRODUCE_QUIET);
-    again_call *const call = choose(args->operands[0], path);
-    struct cs_again_settings settings = {.file = path,
-                                         .folder = cs_args_get(args, REPRODUCE_FOLDER),
+    snprintf(path, sizeof path, "%s", args->operands[0]);
+    struct cs_again_settings settings = {.folder = cs_args_get(args, REPRODUCE_FOLDER),
                                          .session = {.threads = CS_THREADS_AUTO},
                                          .progress = show,
                                          .ctx = &progress};
@@ -82,10 +99,11 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
                     &settings.session.n_plugins, error))
         return error->status;
     cs_progress_begin(&progress, quiet);
-    call(&again, &settings, error);
+    make_again(&again, &settings, path, error);
     cs_progress_end(&progress);
     if (!error->status && (quiet || !print(&again, error)) && again.difference.length)
-        cs_fail(error, CS_ERR_CHECK, "%s: %s", path, cs_text_get(&again.difference));
+        cs_fail(error, CS_ERR_CHECK, "%s: %s", args->operands[0],
+                cs_text_get(&again.difference));
     cs_again_finish(&again);
     return error->status;
 }
@@ -94,8 +112,10 @@ const struct cs_command cs_command_reproduce = {
     .name = "reproduce",
     .operands = "FILE",
     .summary = "make a result again from what it carries, and say what differs",
-    .notes = "FILE is the run.json or a picture of a run, or the folder of one.\n\n"
-             "Example: clothsim reproduce out/frame_00060.png\n",
+    .notes =
+        "FILE is the run.json or a picture of a run, the folder of one, or compare.csv:ROW of\n"
+        "a comparison, where row 1 is the first behind the names.\n\n"
+        "Example: clothsim reproduce out/frame_00060.png\n",
     .rows = rows,
     .n_rows = REPRODUCE_ROWS,
     .least = 1,

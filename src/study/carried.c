@@ -37,11 +37,9 @@ static enum cs_status take_scene(struct cs_carried *carried, struct cs_error *er
     const struct cs_json *scene = cs_json_find(carried->root, "scene");
     size_t begin;
     if (!scene || cs_json_kind_of(scene) != CS_JSON_OBJECT || !*carried->scene_file ||
-        !*carried->scene_hash || !*carried->method ||
         !cs_json_place(scene, carried->text, false, &begin))
         return cs_fail(error, CS_ERR_FILE,
-                       "%s: expected \"scene\", \"scene_file\", \"scene_hash\" and \"method\", "
-                       "as clothsim writes them",
+                       "%s: expected \"scene\" and \"scene_file\", as clothsim writes them",
                        carried->name);
     carried->scene =
         strndup(carried->text + begin, end_of_object(carried->text, begin) - begin);
@@ -123,8 +121,8 @@ enum cs_status cs_carried_ask(struct cs_carried *carried, const char *folder,
     return CS_OK;
 }
 
-static void tell_other(struct cs_text *out, const char *what, const char *then,
-                       const char *now) {
+void cs_carried_tell_other(const char *what, const char *then, const char *now,
+                           struct cs_text *out) {
     if (strcmp(then, now) != 0)
         cs_text_add(out, "%s was %s, is %s\n", what, *then ? then : "none",
                     *now ? now : "none");
@@ -134,7 +132,7 @@ static void tell_module(const struct cs_carried *carried, struct cs_session *ses
                         struct cs_text *out) {
     struct cs_origin_module module;
     cs_origin_find_module(session, &module);
-    tell_other(out, "the library", carried->library, module.library);
+    cs_carried_tell_other("the library", carried->library, module.library, out);
     if (strcmp(carried->module_hash, module.hash) != 0)
         cs_text_add(out, "the module %s is another build\n", carried->module);
 }
@@ -157,7 +155,7 @@ static const char *change_of(const struct cs_carried *carried, const char *path,
 }
 
 /* The scene's own file is not read again: what it held is carried. */
-static void tell_files(const struct cs_carried *carried, struct cs_text *out) {
+void cs_carried_tell_files(const struct cs_carried *carried, struct cs_text *out) {
     const struct cs_json *files = cs_json_find(carried->root, "files");
     const struct cs_json *file = files ? cs_json_first(files) : NULL;
     for (; file; file = cs_json_next(file)) {
@@ -177,10 +175,10 @@ enum cs_status cs_carried_tell(const struct cs_carried *carried, struct cs_sessi
     if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, hash,
                       error))
         return error->status;
-    tell_other(out, "the version of clothsim", carried->version, CS_VERSION);
+    cs_carried_tell_other("the version of clothsim", carried->version, CS_VERSION, out);
     tell_module(carried, session, out);
-    tell_files(carried, out);
-    if (strcmp(hash, carried->scene_hash) != 0)
+    cs_carried_tell_files(carried, out);
+    if (*carried->scene_hash && strcmp(hash, carried->scene_hash) != 0)
         cs_text_add(out, "the scene means something else (its hash was %s, is %s)\n",
                     carried->scene_hash, hash);
     if (*fault)

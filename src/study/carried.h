@@ -47,4 +47,9 @@ enum cs_status cs_carried_ask(struct cs_carried *carried, const char *folder,
 enum cs_status cs_carried_tell(const struct cs_carried *carried, struct cs_session *session,
                                struct cs_text *out, struct cs_error *error);
 
+/* Parts of it: the files alone, and one text that is not what it was. */
+void cs_carried_tell_files(const struct cs_carried *carried, struct cs_text *out);
+void cs_carried_tell_other(const char *what, const char *then, const char *now,
+                           struct cs_text *out);
+
 #endif

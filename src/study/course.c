@@ -141,6 +141,7 @@ enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_
         end->time = blew_up ? session->run.blow_up.time : session->run.t;
         end->counts = session->run.counts;
         keep_notes(end, &session->run);
+        cs_hash_doubles(session->run.x, 6 * (size_t)session->system.view.n, end->hash);
         cs_run_finish(&session->run);
     }
     if (renew(course, error))

@@ -7,6 +7,7 @@
 #ifndef CS_COURSE_H
 #define CS_COURSE_H
 
+#include "base/hash.h"
 #include "study/session.h"
 #include "study/tally.h"
 
@@ -40,6 +41,7 @@ struct cs_course_end {
     struct cs_counts counts;
     struct cs_tally crossings; /* of the frames of a track, where the scene counts them */
     char note[240];            /* the method's remarks, or why it failed */
+    char hash[CS_HASH_DIGITS]; /* of the last state */
 };
 
 /* Opens a scene for a method, "NAME:key=value,...", without what is no equation of motion. */

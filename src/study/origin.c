@@ -84,23 +84,33 @@ static void add_text(struct cs_text *out, const char *before, const char *value)
     cs_text_add_json(out, value);
 }
 
+enum cs_status cs_origin_print_scene(const struct cs_scene *scene, struct cs_text *out,
+                                     struct cs_error *error) {
+    struct list list = {.out = out, .error = error};
+    add_text(out, "  \"scene_file\": ", scene->path);
+    cs_text_add(out, ",\n  \"files\": [");
+    cs_origin_each_file(scene, add_file, &list);
+    cs_text_add(out, "%s]", list.any ? "\n  " : "");
+    if (!error->status && out->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on");
+    return error->status;
+}
+
 enum cs_status cs_origin_print(struct cs_session *session, const char *hash, const char *method,
                                struct cs_text *out, struct cs_error *error) {
-    struct list list = {.out = out, .error = error};
     struct cs_origin_module module;
+    if (cs_origin_print_scene(&session->scene, out, error))
+        return error->status;
     cs_origin_find_module(session, &module);
-    add_text(out, "  \"scene_file\": ", session->scene.path);
     cs_text_add(out, ",\n  \"scene_hash\": \"%s\"", hash);
     add_text(out, ",\n  \"method\": ", method);
     add_text(out, ",\n  \"module\": {\"file\": ", module.file);
     cs_text_add(out, ", \"hash\": \"%s\"", module.hash);
     add_text(out, ", \"library\": ", module.library);
-    cs_text_add(out, "},\n  \"files\": [");
-    cs_origin_each_file(&session->scene, add_file, &list);
-    cs_text_add(out, "%s]", list.any ? "\n  " : "");
-    if (!error->status && out->failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on");
-    return error->status;
+    cs_text_add(out, "}");
+    return out->failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on")
+               : CS_OK;
 }
 
 void cs_origin_add_restarts(uint32_t frames, struct cs_text *out) {

@@ -1,9 +1,9 @@
 /* origin.h - what a result hangs on: told beside it, so that it can be made again.
  *
- * As members of a JSON object:
- *   "scene_file"  as it was given          "scene_hash"  see io/scene_hash.h
- *   "method"      with every option        "module"      {"file", "hash", "library"}
- *   "files"       [{"path", "hash"}]: the scene's and those that it names
+ * As members of a JSON object, of the scene and of the method:
+ *   "scene_file"  as it was given     "files"   [{"path", "hash"}]: it and those that it names
+ *   "scene_hash"  see scene_hash.h    "method"  with every option
+ *   "module"      {"file", "hash", "library"}
  * The scene itself, with every value, stands beside them as "scene".
  */
 #ifndef CS_ORIGIN_H
@@ -18,8 +18,11 @@ void cs_origin_each_file(const struct cs_scene *scene,
                          void (*take)(void *ctx, const char *path, const char *what),
                          void *ctx);
 
-/* Adds the members of an open session, each line indented by two; hash and method are those of
- * the resolved scene. CS_ERR_FILE where a file is gone since, CS_ERR_MEMORY. */
+/* Adds the members of a scene, each line indented by two. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_origin_print_scene(const struct cs_scene *scene, struct cs_text *out,
+                                     struct cs_error *error);
+/* Adds those of an open session, scene and method; hash and method are those of
+ * the resolved scene. As above. */
 enum cs_status cs_origin_print(struct cs_session *session, const char *hash, const char *method,
                                struct cs_text *out, struct cs_error *error);
 

@@ -1,13 +1,16 @@
 /* Compares methods on a scene: reference, cells, measurements, and the rows of compare.csv. */
 #include "study/compare/compare.h"
 
+#include "base/file.h"
 #include "base/hash.h"
+#include "io/scene_write.h"
 #include "model/event/events.h"
 #include "scene/pairs.h"
 #include "study/compare/compare_ledger.h"
 #include "study/compare/compare_measure.h"
 #include "study/compare/compare_time.h"
 #include "study/compare/sweep_list.h"
+#include "study/origin.h"
 #include "study/reference/compare_reference.h"
 
 #include <math.h>
@@ -56,6 +59,34 @@ static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error 
     }
     cs_course_close(&course);
     return error->status;
+}
+
+/* The scene as it was given, with the options of its own method, and for how long. */
+static enum cs_status tell_origin(struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_course_settings *course = &compare->settings->course;
+    const struct cs_session_settings *asked = &course->session;
+    struct cs_text *out = &compare->origin;
+    struct cs_scene scene = {0};
+    char found[CS_DATA_PATH_MAX];
+    if (cs_scene_read(&scene, cs_data_find(asked->scene, found, sizeof found), asked->overrides,
+                      asked->n_overrides, error))
+        return error->status;
+    cs_text_add(out, "{\n  \"versions\": {\"clothsim\": \"%s\"},\n  \"frames\": %u,\n",
+                CS_VERSION, course->frames);
+    cs_origin_print_scene(&scene, out, error);
+    cs_text_add(out, ",\n  \"scene\": ");
+    cs_scene_print(&scene, NULL, NULL, 2, out);
+    cs_text_add(out, "\n}\n");
+    cs_scene_finish(&scene);
+    if (!error->status && out->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the scene");
+    return error->status;
+}
+
+static enum cs_status write_origin(const struct cs_compare *compare, struct cs_error *error) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s/origin.json", compare->settings->folder);
+    return cs_file_write(path, compare->origin.bytes, compare->origin.length, error);
 }
 
 static struct cs_compare_reference_settings ask_reference(const struct cs_compare *compare) {
@@ -194,8 +225,9 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
     cs_machine_name(compare->machine);
     const struct cs_compare_reference_settings reference = ask_reference(compare);
     // the folder is looked at before the reference, which may take long
-    if (!look_at_scene(compare, error) && !make_cells(compare, error) &&
-        !make_keys(compare, error) && !cs_ledger_open(&ledger, compare, error) &&
+    if (!look_at_scene(compare, error) && !tell_origin(compare, error) &&
+        !make_cells(compare, error) && !make_keys(compare, error) &&
+        !cs_ledger_open(&ledger, compare, error) && !write_origin(compare, error) &&
         !cs_compare_reference_get(&compare->reference, &reference, error)) {
         if (settings->begun)
             settings->begun(settings->ctx);
@@ -215,5 +247,6 @@ void cs_compare_finish(struct cs_compare *compare) {
     cs_sweep_finish(&compare->sweep);
     cs_rounds_finish(&compare->rounds);
     cs_text_finish(&compare->changes);
+    cs_text_finish(&compare->origin);
     *compare = (struct cs_compare){0};
 }

@@ -56,7 +56,14 @@ const struct cs_column cs_columns[] = {
     NUMBER(outliers, NULL),
     TEXT(note),
     TEXT(key),
-    TEXT(machine),
+    TEXT(state_hash),
+    TEXT(module),
+#define X(name, column)                                                                        \
+    {"ledger_" column, NULL, CS_CELL_NUMBER,                                                   \
+     offsetof(struct cs_cell, ledger) + CS_WORK_##name * sizeof(double), sizeof(double)},
+    CS_WORK_LIST(X)
+#undef X
+        TEXT(machine),
     TEXT(version),
 };
 const uint32_t cs_n_columns = sizeof cs_columns / sizeof *cs_columns;

@@ -2,8 +2,10 @@
 #ifndef CS_CELL_H
 #define CS_CELL_H
 
+#include "base/hash.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "sim/account.h"
 #include "sim/run.h"
 #include "sim/series.h"
 #include "study/machine.h"
@@ -21,6 +23,8 @@ struct cs_cell {
     char note[240];  /* the method's reason, or its remarks */
     char key[40];    /* hash of everything that the row depends on, but for the machine */
     char machine[CS_MACHINE_NAME], version[24]; /* that it was timed on and with */
+    char state_hash[CS_HASH_DIGITS];            /* at its end */
+    char module[CS_HASH_DIGITS];                /* of the method's file */
     char family[24];                            /* see cs_family_names */
     bool adaptive;
     double value;            /* of control */
@@ -41,6 +45,7 @@ struct cs_cell {
     double cpu, cpu_low, cpu_high; /* s: median and quartiles of rounds */
     double wall;                   /* s, of the first run */
     double runs, outliers;         /* timed ones; those far above the median */
+    double ledger[CS_WORKS];       /* J, where it was asked for: see sim/account.h */
 };
 
 enum cs_cell_type { CS_CELL_TEXT, CS_CELL_NUMBER, CS_CELL_FLAG };
@@ -72,6 +77,10 @@ void cs_cell_name_machine(struct cs_cell *cell, const char *here);
 /* Whether two cells stand on one curve. */
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
 bool cs_cell_is_finished(const struct cs_cell *cell);
+/* Whether it was said where its energy went. */
+static inline bool cs_cell_has_ledger(const struct cs_cell *cell) {
+    return cell->ledger[CS_WORK_INTEGRATOR] == cell->ledger[CS_WORK_INTEGRATOR];
+}
 /* Edges went through triangles in it; false where they were not counted. */
 static inline bool cs_cell_has_crossings(const struct cs_cell *cell) {
     return cell->crossings > 0;

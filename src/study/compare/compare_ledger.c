@@ -72,8 +72,11 @@ static bool is_over_budget(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
 }
 
-/* What was stopped is run again where there is more time now. */
+/* What was stopped is run again where there is more time now, and what has no ledger where one
+ * is asked for. */
 static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare) {
+    if (compare->settings->ledger && cs_cell_is_finished(old) && !cs_cell_has_ledger(old))
+        return false;
     return *old->outcome && (!is_over_budget(old) || old->cpu > 0.9 * compare->budget);
 }
 

@@ -2,6 +2,7 @@
  * step. */
 #include "study/compare/compare_measure.h"
 
+#include "study/origin.h"
 #include "study/reference/compare_reference.h"
 
 #include <math.h>
@@ -30,6 +31,7 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->work = cell->evals + cell->jvps + cell->iterations;
     cs_machine_name(cell->machine);
     snprintf(cell->version, sizeof cell->version, "%s", CS_VERSION);
+    memcpy(cell->state_hash, end->hash, sizeof cell->state_hash);
     cell->cpu = cell->cpu_low = cell->cpu_high = end->cpu;
     cell->wall = end->wall;
     cell->runs = 1;
@@ -65,6 +67,29 @@ static void take_errors(const struct cs_compare *compare, const struct cs_course
         cell->adaptive ? cell->error / (cell->value * reference->scale) : (double)NAN;
 }
 
+/* Where its energy went, in a run that is not timed. */
+static enum cs_status take_ledger(struct cs_course *course, struct cs_cell *cell,
+                                  struct cs_error *error) {
+    struct cs_system *system = &course->session.system;
+    struct cs_account account = {0};
+    struct cs_course_end end;
+    memcpy(system->state, course->start, 6 * (size_t)system->view.n * sizeof *course->start);
+    if (!cs_account_open(&account, system, 0, error)) {
+        course->session.settings.run.account = &account;
+        if (!cs_course_run(course, 0, NULL, &end, error))
+            memcpy(cell->ledger, account.work, sizeof cell->ledger);
+        course->session.settings.run.account = NULL;
+    }
+    cs_account_close(&account);
+    return error->status;
+}
+
+static void take_module(struct cs_session *session, struct cs_cell *cell) {
+    struct cs_origin_module module;
+    cs_origin_find_module(session, &module);
+    memcpy(cell->module, module.hash, sizeof cell->module);
+}
+
 enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
                                   struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
@@ -76,8 +101,12 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
         !cs_track_init(&track, &course, error) &&
         !cs_course_run(&course, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
-        if (cs_cell_is_finished(cell))
+        take_module(&course.session, cell);
+        if (cs_cell_is_finished(cell)) {
             take_errors(compare, &course, &track, cell);
+            if (compare->settings->ledger)
+                take_ledger(&course, cell, error);
+        }
     }
     cs_track_finish(&track);
     cs_course_close(&course);

@@ -212,7 +212,7 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
 
 static void print_markdown(const struct cs_compare *compare, const struct cs_ranking *ranking,
                            bool drawn, struct cs_text *out) {
-    struct cs_text verdict = {0}, warnings = {0}, methods = {0};
+    struct cs_text verdict = {0}, warnings = {0}, methods = {0}, ledger = {0};
     add_setting(compare, out);
     cs_verdict_print(ranking, "- ", compare, &verdict);
     add_lines("Verdict", &verdict, out);
@@ -227,6 +227,13 @@ static void print_markdown(const struct cs_compare *compare, const struct cs_ran
     cs_table_add_series(compare, &methods);
     cs_text_add(&methods, "```\n");
     add_lines("Methods", &methods, out);
+    cs_table_add_ledger(compare, &ledger);
+    if (ledger.length)
+        cs_text_add(out,
+                    "## Where energy went\n\nBy the end, what came in above 0; `integrator` is "
+                    "what the method itself made or lost.\n\n```\n%s```\n\n",
+                    cs_text_get(&ledger));
+    cs_text_finish(&ledger);
     add_table(compare, ranking, out);
 }
 

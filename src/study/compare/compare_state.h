@@ -28,6 +28,7 @@ struct cs_compare_settings {
     const char *folder;       /* for compare.csv */
     const char *command;      /* that repeats it, for the report; may be NULL */
     bool html;                /* one HTML file as well */
+    bool ledger;              /* each method is run once more, to say where energy went */
     struct cs_shard shard;    /* of the cells; zeroed: all */
     const char *cache;        /* folder of references */
     bool fresh;               /* an earlier compare.csv is written over */
@@ -48,6 +49,7 @@ struct cs_compare {
     char scene[256];         /* path as given */
     char machine[CS_MACHINE_NAME];
     struct cs_text changes;            /* what was switched off, "" nothing */
+    struct cs_text origin;             /* origin.json: what each row hangs on but its method */
     bool contact;                      /* by force: a part of the equation of motion */
     uint32_t particles, springs, cuts; /* cuts: times of events */
     double fps, omega, time, budget;

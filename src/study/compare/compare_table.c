@@ -130,3 +130,41 @@ void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out) 
             first = k;
         }
 }
+
+static const char *const works[] = {
+#define X(name, column) column,
+    CS_WORK_LIST(X)
+#undef X
+};
+
+/* what is 0 everywhere has no column, but for what the method makes */
+static bool is_shown(const struct cs_sweep *sweep, int work) {
+    bool shown = false, any = false;
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        any |= cs_cell_has_ledger(sweep->cells + k);
+        shown |= cs_cell_has_ledger(sweep->cells + k) && sweep->cells[k].ledger[work] != 0;
+    }
+    return shown || (any && work == CS_WORK_INTEGRATOR);
+}
+
+void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) {
+    const struct cs_sweep *sweep = &compare->sweep;
+    const int width = name_width(compare);
+    if (!is_shown(sweep, CS_WORK_INTEGRATOR))
+        return;
+    cs_text_add(out, "%-*s %-14s", width, "J since the start", "");
+    for (int w = 0; w < CS_WORKS; w++)
+        if (is_shown(sweep, w))
+            cs_text_add(out, " %10s", works[w]);
+    cs_text_add(out, "\n");
+    for (uint32_t k = 0; k < sweep->n; k++) {
+        const struct cs_cell *cell = sweep->cells + k;
+        if (!cs_cell_has_ledger(cell))
+            continue;
+        add_control(cell, width, out);
+        for (int w = 0; w < CS_WORKS; w++)
+            if (is_shown(sweep, w))
+                cs_text_add(out, " %10.2e", cell->ledger[w]);
+        cs_text_add(out, "\n");
+    }
+}

@@ -16,4 +16,7 @@ void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *ce
 /* Adds one line a series: its observed order, largest step that held, tolerance kept. */
 void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out);
 
+/* Adds where the energy of each cell went, as far as it is known; nothing where it is not. */
+void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out);
+
 #endif
