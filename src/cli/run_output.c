@@ -28,9 +28,9 @@ bool cs_output_is_result(const char *name) {
     static const char *const numbered[][2] = {{"frame_", ".png"},     {"bodies_", ".obj"},
                                               {"bodies_", ".vtp"},    {"colliders_", ".obj"},
                                               {"colliders_", ".vtp"}, {NULL, NULL}};
-    static const char *const alone[] = {
-        "run.json", "run.checkpoint", "run.npz",       "run.npz.part",
-        "run.pvd",  "bodies.pc2",     "colliders.pc2", NULL};
+    static const char *const alone[] = {"run.json",      "run.checkpoint", "run.npz",
+                                        "run.npz.part",  "run.pvd",        "bodies.pc2",
+                                        "colliders.pc2", "manifest.txt",   NULL};
     for (size_t k = 0; numbered[k][0]; k++)
         if (is_numbered(name, numbered[k][0], numbered[k][1]))
             return true;
@@ -41,7 +41,8 @@ bool cs_output_is_result(const char *name) {
 }
 
 bool cs_output_is_state(const char *name) {
-    return is_numbered(name, "x_", ".npy") || is_numbered(name, "v_", ".npy");
+    return is_numbered(name, "x_", ".npy") || is_numbered(name, "v_", ".npy") ||
+           !strcmp(name, "manifest.txt");
 }
 
 /* such a file before it was renamed: NAME.tmp.PID */
@@ -86,9 +87,10 @@ enum cs_status cs_output_check(const char *folder, cs_output_kind *is_ours,
     DIR *entries = folder ? open_folder(folder, error) : NULL;
     if (!entries)
         return error->status;
-    /* the first by name, since folders have no order */
+    /* the first by name, since folders have no order; a manifest alone is of no use */
     for (struct dirent *entry; (entry = readdir(entries));)
-        if (is_ours(entry->d_name) && (!*first || strcmp(entry->d_name, first) < 0))
+        if (is_ours(entry->d_name) && strcmp(entry->d_name, "manifest.txt") != 0 &&
+            (!*first || strcmp(entry->d_name, first) < 0))
             snprintf(first, sizeof first, "%s", entry->d_name);
     closedir(entries);
     if (!*first || join(folder, first, path, error))

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /* What may be in a folder: numbered frame_*.png, run.json, run.checkpoint and what --export
- * writes; or numbered x_*.npy and v_*.npy. */
+ * writes; or numbered x_*.npy and v_*.npy; and manifest.txt. */
 bool cs_output_is_result(const char *name);
 bool cs_output_is_state(const char *name);
 typedef bool cs_output_kind(const char *name);

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
+#include "cli/manifest.h"
 #include "cli/run/run_range.h"
 #include "cli/run/run_report.h"
 #include "model/force/measure.h"
@@ -223,6 +224,15 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
     return error->status;
 }
 
+/* Of each folder that the run owns, once all of its files are there. */
+static enum cs_status write_manifests(const struct cs_job *job, struct cs_error *error) {
+    if (job->folder.lock)
+        cs_manifest_write(job->settings->folder, error);
+    if (job->states.lock && !error->status)
+        cs_manifest_write(job->settings->states, error);
+    return error->status;
+}
+
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const bool taken = settings->hash || is_stdout(settings->json) ||
@@ -282,9 +292,10 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
     cs_job_run(&job, &settings, error);
     /* a failed step leaves the report of the frames before; its own message stands */
     struct cs_error later = {0};
-    if (job.failure)
-        write_json(&job, &later);
-    if (!error->status && !write_json(&job, error) && !print_table(&job, error))
+    if (job.failure && !write_json(&job, &later))
+        write_manifests(&job, &later);
+    if (!error->status && !write_json(&job, error) && !write_manifests(&job, error) &&
+        !print_table(&job, error))
         tell_outcome(&job, cs_args_get(args, RUN_STRICT), error);
     cs_job_finish(&job);
     cs_run_range_finish(&range);

@@ -1,0 +1,48 @@
+/* clothsim verify: are the files of a run as it left them. */
+#include "cli/commands.h"
+#include "cli/line/print.h"
+#include "cli/manifest.h"
+
+#include <stdio.h>
+
+enum { VERIFY_QUIET, VERIFY_ROWS };
+
+static const struct cs_arg rows[VERIFY_ROWS] = {
+    [VERIFY_QUIET] = {"quiet", 'q', NULL, "print only what differs", false},
+};
+
+static enum cs_status check(const char *folder, bool quiet, uint32_t *bad,
+                            struct cs_error *error) {
+    struct cs_text out = {0};
+    uint32_t n, differing;
+    if (cs_manifest_check(folder, &out, &n, &differing, error))
+        cs_text_finish(&out);
+    else {
+        *bad += differing;
+        if (!quiet || differing)
+            cs_text_add(&out, "%s: %u of %u files differ\n", folder, differing, n);
+        cs_print_out(stdout, &out, error);
+    }
+    return error->status;
+}
+
+static enum cs_status verify(struct cs_args *args, struct cs_error *error) {
+    uint32_t bad = 0;
+    for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
+        check(args->operands[k], cs_args_get(args, VERIFY_QUIET), &bad, error);
+    return error->status || !bad ? error->status
+                                 : cs_fail(error, CS_ERR_CHECK, "%u file%s not as written", bad,
+                                           bad == 1 ? " is" : "s are");
+}
+
+const struct cs_command cs_command_verify = {
+    .name = "verify",
+    .operands = "DIR...",
+    .summary = "check that the files of a run are as it left them",
+    .notes = "Example: clothsim verify out\n",
+    .rows = rows,
+    .n_rows = VERIFY_ROWS,
+    .least = 1,
+    .most = 10000,
+    .main = verify,
+};

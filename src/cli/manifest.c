@@ -1,0 +1,195 @@
+/* Writes and checks manifests. */
+#include "cli/manifest.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "cli/run_output.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_BYTES = 4096, NAME_BYTES = 256, FILE_BYTES_MAX = 1 << 30 };
+static const char head[] = "# clothsim manifest 1\n", tail[] = "# all of it ";
+
+/* One file. */
+struct entry {
+    char hash[CS_HASH_DIGITS];
+    uint64_t size;
+    char name[NAME_BYTES];
+};
+
+/* Zeroed: empty. */
+struct list {
+    struct entry *entries; /* (n) owned */
+    size_t n, capacity;
+};
+
+static bool is_listed(const char *name) {
+    return strcmp(name, CS_MANIFEST_NAME) != 0 &&
+           (cs_output_is_picture(name) || cs_output_is_state(name));
+}
+
+static enum cs_status add(struct list *list, const struct entry *entry,
+                          struct cs_error *error) {
+    if (list->n == list->capacity) {
+        const size_t capacity = 2 * list->n + 64;
+        void *larger = realloc(list->entries, capacity * sizeof *list->entries);
+        if (!larger)
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest");
+        list->entries = larger;
+        list->capacity = capacity;
+    }
+    list->entries[list->n++] = *entry;
+    return CS_OK;
+}
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(((const struct entry *)a)->name, ((const struct entry *)b)->name);
+}
+
+/* the names that are there */
+static enum cs_status look(const char *folder, struct list *list, struct cs_error *error) {
+    DIR *entries = opendir(folder);
+    if (!entries)
+        return cs_fail(error, CS_ERR_FILE, "cannot read the folder \"%s\": %s", folder,
+                       strerror(errno));
+    for (struct dirent *found; (found = readdir(entries)) && !error->status;) {
+        struct entry entry = {.size = 0};
+        if (is_listed(found->d_name)) {
+            snprintf(entry.name, sizeof entry.name, "%s", found->d_name);
+            add(list, &entry, error);
+        }
+    }
+    closedir(entries);
+    qsort(list->entries, list->n, sizeof *list->entries, by_name);
+    return error->status;
+}
+
+static enum cs_status hash(const char *folder, const char *name, struct entry *entry,
+                           struct cs_error *error) {
+    char path[PATH_BYTES];
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
+        return cs_fail(error, CS_ERR_FILE, "the path of \"%s\" is too long", name);
+    return cs_hash_file(path, &entry->size, entry->hash, error);
+}
+
+static enum cs_status write_text(const char *folder, struct cs_text *text,
+                                 struct cs_error *error) {
+    char path[PATH_BYTES], digits[CS_HASH_DIGITS];
+    snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
+    cs_hash_bytes(text->bytes, text->length, digits);
+    cs_text_add(text, "%s%s\n", tail, digits);
+    return text->failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest")
+                        : cs_file_write_lasting(path, text->bytes, text->length, error);
+}
+
+enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
+    struct list list = {0};
+    struct cs_text text = {0};
+    cs_text_add(&text, "%s", head);
+    look(folder, &list, error);
+    for (size_t k = 0; k < list.n && !error->status; k++) {
+        struct entry *entry = list.entries + k;
+        if (!hash(folder, entry->name, entry, error))
+            cs_text_add(&text, "%s %" PRIu64 " %s\n", entry->hash, entry->size, entry->name);
+    }
+    if (!error->status)
+        write_text(folder, &text, error);
+    cs_text_finish(&text);
+    free(list.entries);
+    return error->status;
+}
+
+/* whether the last line is the hash of all above; that line is then cut off */
+static bool is_whole(char *text) {
+    char digits[CS_HASH_DIGITS];
+    char *last = strstr(text, tail);
+    if (strncmp(text, head, sizeof head - 1) != 0 || !last)
+        return false;
+    cs_hash_bytes(text, (size_t)(last - text), digits);
+    const char *found = last + sizeof tail - 1;
+    const bool same = !strncmp(found, digits, CS_HASH_DIGITS - 1) &&
+                      !strcmp(found + CS_HASH_DIGITS - 1, "\n");
+    *last = 0;
+    return same;
+}
+
+/* Names are the program's own: without blanks, and nothing that leads out of the folder. */
+static bool read_line(const char *line, struct entry *entry) {
+    *entry = (struct entry){.size = 0};
+    return sscanf(line, "%32[0-9a-f] %" SCNu64 " %255[^\n]", entry->hash, &entry->size,
+                  entry->name) == 3 &&
+           is_listed(entry->name);
+}
+
+static enum cs_status read_list(const char *folder, struct list *list, struct cs_error *error) {
+    char path[PATH_BYTES];
+    char *text;
+    size_t length;
+    snprintf(path, sizeof path, "%s/" CS_MANIFEST_NAME, folder);
+    if (cs_file_read(path, FILE_BYTES_MAX, &text, &length, error))
+        return error->status;
+    bool good = strlen(text) == length && is_whole(text);
+    char *rest = text;
+    strsep(&rest, "\n");
+    for (char *line; good && !error->status && (line = strsep(&rest, "\n")) && *line;) {
+        struct entry entry;
+        good = read_line(line, &entry);
+        if (good)
+            add(list, &entry, error);
+    }
+    free(text);
+    return good ? error->status
+                : cs_fail(error, CS_ERR_FILE,
+                          "\"%s\": it is damaged, or no manifest of this form", path);
+}
+
+static void tell(struct cs_text *out, const char *name, const char *what, uint32_t *differing) {
+    cs_text_add(out, "%s %s\n", name, what);
+    ++*differing;
+}
+
+static void check_file(const char *folder, const struct entry *entry, struct cs_text *out,
+                       uint32_t *differing) {
+    struct entry now = {.size = 0};
+    struct cs_error unread = {0};
+    if (hash(folder, entry->name, &now, &unread))
+        tell(out, entry->name, "cannot be read", differing);
+    else if (now.size != entry->size || strcmp(now.hash, entry->hash) != 0)
+        tell(out, entry->name, "has changed", differing);
+}
+
+/* both lists are by name */
+static void check_lists(const char *folder, const struct list *written,
+                        const struct list *there, struct cs_text *out, uint32_t *differing) {
+    size_t w = 0, t = 0;
+    while (w < written->n || t < there->n) {
+        const int order = w == written->n ? 1
+                          : t == there->n ? -1
+                                          : by_name(written->entries + w, there->entries + t);
+        if (order == 0)
+            check_file(folder, written->entries + w, out, differing);
+        else
+            tell(out, (order < 0 ? written->entries + w : there->entries + t)->name,
+                 order < 0 ? "is not there" : "is not in the manifest", differing);
+        w += order <= 0;
+        t += order >= 0;
+    }
+}
+
+enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32_t *n,
+                                 uint32_t *differing, struct cs_error *error) {
+    struct list written = {0}, there = {0};
+    *n = *differing = 0;
+    if (!read_list(folder, &written, error) && !look(folder, &there, error)) {
+        check_lists(folder, &written, &there, out, differing);
+        *n = (uint32_t)written.n;
+    }
+    free(written.entries);
+    free(there.entries);
+    return error->status;
+}
