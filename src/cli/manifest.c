@@ -30,7 +30,7 @@ struct list {
 
 static bool is_listed(const char *name) {
     return strcmp(name, CS_MANIFEST_NAME) != 0 &&
-           (cs_output_is_picture(name) || cs_output_is_state(name));
+           (cs_output_is_result(name) || cs_output_is_state(name));
 }
 
 static enum cs_status add(struct list *list, const struct entry *entry,
