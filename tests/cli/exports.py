@@ -16,7 +16,6 @@ import tempfile
 import time
 import xml.etree.ElementTree
 import zipfile
-from collections import Counter
 
 import numpy as np
 
@@ -187,8 +186,9 @@ def volume_of(archive, number, sample=0):
     item = list(archive["colliders"]).index(number)
     first, end = archive["collider_face_offsets"][item:item + 2]
     faces, places = archive["collider_faces"][first:end], archive["collider_positions"][sample]
-    edges = Counter((f[k], f[(k + 1) % 3]) for f in faces.tolist() for k in range(3))
-    assert all(n == 1 and edges[b, a] == 1 for (a, b), n in edges.items())
+    from_, to = faces.ravel().astype(int), np.roll(faces, -1, axis=1).ravel().astype(int)
+    there, n = np.unique(from_ << 32 | to, return_counts=True)
+    assert (n == 1).all() and (there == np.unique(to << 32 | from_)).all(), "each edge once each way"
     a, b, c = (places[faces[:, k]] for k in range(3))
     first, end = archive["collider_offsets"][item:item + 2]
     return (a * np.cross(b, c)).sum() / 6, places[first:end]
@@ -263,7 +263,7 @@ def every(program):
 
 def survey(folder):
     return {f: open(f"{folder}/{f}", "rb").read() for f in os.listdir(folder)
-            if not f.endswith((".checkpoint", ".part"))}
+            if not f.endswith((".checkpoint", ".part")) and f != "manifest.txt"}
 
 
 def resumed(program):
