@@ -133,6 +133,14 @@ enum cs_status cs_export_take(struct cs_export *export, uint32_t frame, double t
     return CS_OK;
 }
 
+/* Numbered files and the list of samples can be missed, or are written anew. */
+enum cs_status cs_export_sync(const struct cs_export *export, struct cs_error *error) {
+    for (int k = 0; k < 2; k++)
+        if (cs_grown_sync(&export->pc2[k].file, error))
+            return error->status;
+    return cs_grown_sync(&export->npz.part, error);
+}
+
 enum cs_status cs_export_finish(struct cs_export *export, bool goes_on,
                                 struct cs_error *error) {
     const struct cs_skin *const skins[2] = {&export->bodies, &export->colliders};

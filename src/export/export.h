@@ -50,6 +50,9 @@ enum cs_status cs_export_open(struct cs_export *export,
 enum cs_status cs_export_take(struct cs_export *export, uint32_t frame, double t,
                               const double *x, const double *v, struct cs_error *error);
 
+/* Before a checkpoint: the disk has what a run that goes on from here takes up again. */
+enum cs_status cs_export_sync(const struct cs_export *export, struct cs_error *error);
+
 /* At the end of a run, however it ended. goes_on: it may be continued. */
 enum cs_status cs_export_finish(struct cs_export *export, bool goes_on, struct cs_error *error);
 

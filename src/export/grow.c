@@ -78,6 +78,10 @@ enum cs_status cs_grown_read(const struct cs_grown *grown, uint64_t at, void *by
     return CS_OK;
 }
 
+enum cs_status cs_grown_sync(const struct cs_grown *grown, struct cs_error *error) {
+    return grown->file && fsync(grown->file - 1) ? fail(grown, "write", error) : CS_OK;
+}
+
 void cs_grown_close(struct cs_grown *grown) {
     if (grown->file)
         close(grown->file - 1);

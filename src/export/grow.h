@@ -27,6 +27,9 @@ enum cs_status cs_grown_write(struct cs_grown *grown, uint64_t at, const void *b
 enum cs_status cs_grown_read(const struct cs_grown *grown, uint64_t at, void *bytes, size_t n,
                              struct cs_error *error);
 
+/* Returns when the disk has what was written. Closed: nothing. */
+enum cs_status cs_grown_sync(const struct cs_grown *grown, struct cs_error *error);
+
 void cs_grown_close(struct cs_grown *grown);
 
 #endif

@@ -207,12 +207,18 @@ static enum cs_status settle_pictures(struct cs_job *job, struct cs_error *error
     return error->status;
 }
 
-/* A checkpoint is written once the pictures up to it are there. */
+/* The last checkpoint kept, once the files that it goes on with are there. */
+static enum cs_status write_checkpoint(struct cs_job *job, struct cs_error *error) {
+    if (!cs_job_makes_checkpoints(job->settings) || cs_export_sync(&job->export, error))
+        return error->status;
+    return cs_resume_write(&job->checkpoints, error);
+}
+
 static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error) {
     bool due;
     if (cs_resume_keep(&job->checkpoints, &due, error) || !due || settle_pictures(job, error))
         return error->status;
-    return cs_resume_write(&job->checkpoints, error);
+    return write_checkpoint(job, error);
 }
 
 /* What the job keeps of the frames so far, for a checkpoint. */
@@ -297,7 +303,7 @@ static enum cs_status begin_exports(struct cs_job *job, struct cs_error *error) 
 static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
     if (settle_pictures(job, &later) == CS_OK)
-        cs_resume_write(&job->checkpoints, &later);
+        write_checkpoint(job, &later);
     cs_export_finish(&job->export, cs_job_makes_checkpoints(job->settings), &later);
     if (!error->status)
         *error = later;
