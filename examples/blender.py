@@ -25,6 +25,7 @@ def load(folder, name):
     bpy.ops.wm.obj_import(filepath=path + "_00000.obj")
     made = bpy.context.selected_objects[0]
     made.name = name
+    made.data.polygons.foreach_set("use_smooth", [name == "bodies"] * len(made.data.polygons))
     if not os.path.exists(path + ".pc2"):
         return made, 1
     cache = made.modifiers.new("run", "MESH_CACHE")
