@@ -9,6 +9,7 @@
 #include "io/png.h"
 #include "io/program.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +37,7 @@ struct film {
     const char *folder;
     double rate; /* pictures a second */
     bool webm;
+    bool has_gaps; /* between the pictures' numbers, of a run by an older version */
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
 
@@ -71,10 +73,6 @@ static void fill(const struct film *film, const char *rate, const char *out,
     static const char *const before[] = {"ffmpeg",   "-loglevel", "error",     "-xerror",
                                          "-nostdin", "-y",        "-framerate"};
     static const char *const between[] = {
-        "-pattern_type",
-        "glob",
-        "-i",
-        "frame_*.png",
         "-vf",
         "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
         "-pix_fmt",
@@ -85,12 +83,17 @@ static void fill(const struct film *film, const char *rate, const char *out,
         "bt709",
         "-color_trc",
         "bt709"};
+    /* by number, as names of more than five digits are not in order */
+    static const char *const numbered[] = {"-start_number", "1", "-i", "frame_%05d.png"};
+    static const char *const in_order[] = {"-pattern_type", "glob", "-i", "frame_*.png"};
     static const char *const mp4[] = {"-c:v", "libx264",   "-crf",
                                       "18",   "-movflags", "+faststart"};
     static const char *const webm[] = {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"};
     size_t n = sizeof before / sizeof *before;
     memcpy(arguments, before, sizeof before);
     arguments[n++] = rate;
+    memcpy(arguments + n, film->has_gaps ? in_order : numbered, sizeof numbered);
+    n += sizeof numbered / sizeof *numbered;
     memcpy(arguments + n, between, sizeof between);
     n += sizeof between / sizeof *between;
     memcpy(arguments + n, film->webm ? webm : mp4, sizeof mp4);
@@ -144,13 +147,27 @@ static enum cs_status make(const struct film *film, struct cs_error *error) {
                  : cs_fail(error, CS_ERR_FILE, "%s: ffmpeg could not make it", film->out);
 }
 
+/* ffmpeg would end a film where one is missing, and say nothing. */
+static enum cs_status check_pictures(struct film *film, const struct cs_film_report *report,
+                                     struct cs_error *error) {
+    char path[PATH_BYTES];
+    for (uint32_t k = 0; k < report->n; k++) {
+        snprintf(path, sizeof path, "%.4000s/frame_%05u.png", film->folder,
+                 report->pictures[k].number);
+        film->has_gaps = film->has_gaps || report->pictures[k].number != k + 1;
+        if (access(path, R_OK))
+            return cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": %s", path, strerror(errno));
+    }
+    return CS_OK;
+}
+
 static enum cs_status make_film(const struct cs_args *args, const struct cs_film_report *report,
                                 struct cs_text *told, struct cs_error *error) {
     struct film film = {.folder = args->operands[0], .rate = cs_film_rate(report)};
     if (cs_args_get(args, FILM_TILE))
         return cs_fail(error, CS_ERR_USAGE, "--tile is of a sheet: give --sheet too");
     if (cs_args_real(args, FILM_FPS, &film.rate, error) || place(args, &film, error) ||
-        make(&film, error))
+        check_pictures(&film, report, error) || make(&film, error))
         return error->status;
     cs_text_add(told, "%s: %g pictures a second\n", film.out, film.rate);
     return CS_OK;
