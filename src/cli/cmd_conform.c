@@ -35,16 +35,16 @@ struct output {
     struct cs_text json;
     struct cs_conform_cache cache; /* shared by all cards */
     uint32_t counts[CS_VERDICTS];  /* over all methods */
+    struct cs_error error;         /* of printing rows */
 };
 
 static bool is_bad(const struct cs_conform_row *row) {
     return row->verdict == CS_VERDICT_FAIL || row->verdict == CS_VERDICT_STALE;
 }
 
-static void print_row(const struct cs_conform_row *row) {
+static void print_row(const struct cs_conform_row *row, struct cs_error *error) {
     struct cs_text out = {0};
     char figure[32] = "", bound[32] = "", left[128];
-    struct cs_error ignored = {0};
     if (!isnan(row->bound)) {
         snprintf(figure, sizeof figure, "%.3g", row->figure);
         snprintf(bound, sizeof bound, "<= %.3g", row->bound);
@@ -55,7 +55,7 @@ static void print_row(const struct cs_conform_row *row) {
     cs_text_add(&out, "%-*s%s%s\n", NOTE_COLUMN, left, row->note,
                 row->verdict == CS_VERDICT_STALE ? " (it is named in fails, and does not fail)"
                                                  : "");
-    cs_print_out(stdout, &out, &ignored);
+    cs_print_out(stdout, &out, error);
 }
 
 static void add_number(struct cs_text *json, const char *key, double value) {
@@ -95,7 +95,7 @@ static void report(void *ctx, const struct cs_conform_row *row) {
     if (output->text && output->first)
         print_head(output);
     if (output->text && (!output->quiet || is_bad(row)))
-        print_row(row);
+        print_row(row, &output->error);
     add_json(output, row);
 }
 
@@ -194,6 +194,8 @@ static enum cs_status finish(struct output *output, struct cs_error *error) {
         cs_file_write(file, cs_text_get(&output->json), output->json.length, error);
     else if (file)
         fputs(cs_text_get(&output->json), stdout);
+    if (output->error.status)
+        cs_fail(error, output->error.status, "%s", output->error.message);
     const uint32_t bad = output->counts[CS_VERDICT_FAIL] + output->counts[CS_VERDICT_STALE];
     if (bad > 0)
         cs_fail(error, CS_ERR_CHECK, "%u claim%s failed", bad, bad == 1 ? "" : "s");

@@ -48,6 +48,7 @@ static enum cs_status print_overview(FILE *file, struct cs_error *error) {
         struct cs_text left = {0};
         cs_text_add(&left, "  %s", commands[i]->name);
         cs_print_hanging(cs_text_get(&left), commands[i]->summary, 16, &out);
+        out.failed |= left.failed;
         cs_text_finish(&left);
     }
     cs_print_hanging("  help", "this text, or the options of a command: clothsim help run", 16,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails the n-th allocation, write, rename, fsync, thread or opening of a file in eight command
+"""Fails the n-th allocation, write, rename, fsync, thread or opening of a file in ten command
 lines, and holds how they end to what is promised: an exit code of the kind and one line that says
 what failed, or the same output as ever (as TAP).
 
@@ -22,6 +22,7 @@ SCENE = {"bodies": [CLOTH], "colliders": [{"sphere": {"centre": [0.5, -1.6, 0.1]
 SPRINGS = {"bodies": [CLOTH], "time": {"fps": 100}}
 RUN = ["run", "s.json", "-n", "2", "-q", "--no-render", "--hash", "-i"]
 LINES = {
+    "help": ["run", "--help"],
     "scene": ["scene", "s.json", "--plan"],
     "integrators": ["integrators"],
     "files": [*RUN, "velocity-verlet", "--states", "st", "--watch", "w.csv", "--json", "r.json",
@@ -29,6 +30,7 @@ LINES = {
     "threads": [*RUN, "implicit-linearised", "--threads", "3"],
     "sundials": [*RUN, "cvode-bdf"],
     "cholmod": ["run", "p.json", *RUN[2:], "fast-mass-spring"],
+    "conform": ["conform", "--only", "pins", "velocity-verlet"],
     "cpu": ["run", "s.json", "-n", "2", "-q", "--hash", "-y", "--renderer", "cpu"],
     "osmesa": ["run", "s.json", "-n", "1", "-q", "--hash", "-y", "--renderer", "osmesa"],
 }

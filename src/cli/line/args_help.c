@@ -13,6 +13,7 @@ static void add_row(const struct cs_arg *row, struct cs_text *out) {
     if (row->value)
         cs_text_add(&left, " %s", row->value);
     cs_print_hanging(cs_text_get(&left), row->help, HELP_COLUMN, out);
+    out->failed |= left.failed;
     cs_text_finish(&left);
 }
 

@@ -39,6 +39,7 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
     const char *names[CHECKS + 1] = {NULL};
     bool found = false;
     memset(card->counts, 0, sizeof card->counts);
+    card->starved = error;
     for (uint32_t k = 0; k < CHECKS; k++) {
         /* all names, also those of checks not run: one of them may have been meant */
         names[k] = checks[k].name;
@@ -53,6 +54,8 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
             cs_row_skip(&row, "another model: it does not follow the motion of springs");
         else
             checks[k].run(card, &row);
+        if (error->status)
+            return error->status;
         weigh(card->method, &row);
         card->counts[row.verdict]++;
         if (card->report)

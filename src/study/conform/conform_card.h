@@ -39,6 +39,8 @@ struct cs_conform {
     const char *only; /* one check by its name; NULL: all */
     /* references that earlier cards have run, and where this one's go; NULL: none are kept */
     struct cs_conform_cache *cache;
+    /* lack of memory, which is no fault of the method's: it ends the card; set by check */
+    struct cs_error *starved;
     /* called after each check */
     void (*report)(void *ctx, const struct cs_conform_row *row);
     void *ctx;

@@ -108,7 +108,7 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
         .method = method,
         .options = method == card->method ? card->options : NULL,
         .run = {.unchecked = true, .budget = BUDGET, .observe = observe, .ctx = probe}};
-    *probe = (struct cs_probe){0};
+    *probe = (struct cs_probe){.starved = card->starved};
     probe->ended = cs_session_open_system(&probe->session, &settings, &probe->error);
     if (probe->ended)
         return false;
@@ -120,6 +120,8 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
 }
 
 void cs_probe_close(struct cs_probe *probe) {
+    if (probe->error.status == CS_ERR_MEMORY && probe->starved)
+        cs_fail(probe->starved, CS_ERR_MEMORY, "%s", probe->error.message);
     cs_session_close(&probe->session);
 }
 

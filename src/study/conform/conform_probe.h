@@ -15,6 +15,7 @@ struct cs_probe {
     double frame;              /* s */
     bool ended;                /* blew up or failed: error says how */
     struct cs_error error;
+    struct cs_error *starved; /* of the card */
 
     /* called within every commit once it has been done; may be NULL. Moves the state or only
      * looks; returns whether it moved. */
