@@ -1,5 +1,6 @@
 /* clothsim compare: measures error against run time for integrators on a scene. */
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
@@ -193,6 +194,10 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
         (settings->methods &&
          cs_sweep_add_modules(settings->methods, &args->arena, &session->plugins,
                               &session->n_plugins, error)))
+        return error->status;
+    static const char *const files[] = {"compare.csv",  "compare.json", "compare.md",
+                                        "compare.html", "origin.json",  NULL};
+    if (cs_inputs_keep(session, settings->folder, files, error))
         return error->status;
     settings->rank = (enum cs_norm)rank;
     /* last: the length of a frame may come from --set */

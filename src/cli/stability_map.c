@@ -2,6 +2,7 @@
 #include "cli/stability_map.h"
 
 #include "base/file.h"
+#include "cli/inputs.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "cli/run_output.h"
@@ -41,6 +42,21 @@ static bool draw(const char *folder, const char *name) {
     struct cs_error ignored = {0};
     snprintf(script, sizeof script, "%s.gp", name);
     return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
+}
+
+/* A scene that is called as a map is no place for one. */
+static enum cs_status keep_inputs(const struct cs_stability *map, const char *folder,
+                                  struct cs_error *error) {
+    static const char *const endings[] = {".csv", "_border.csv", ".json", ".gp"};
+    enum { FILES = sizeof endings / sizeof *endings };
+    char name[CS_SERIES_BYTES], files[FILES][CS_SERIES_BYTES + 16];
+    const char *list[FILES + 1] = {NULL};
+    cs_series_file_name(map->series, name);
+    for (int k = 0; k < FILES; k++) {
+        snprintf(files[k], sizeof files[k], "%s%s", name, endings[k]);
+        list[k] = files[k];
+    }
+    return cs_inputs_keep(&map->settings->session, folder, list, error);
 }
 
 static enum cs_status write_files(const struct cs_args *args, const struct cs_stability *map,
@@ -108,6 +124,7 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
     if (!error->status && !map.complete)
         tell_shard(&map, quiet);
     else if (!error->status && !cs_folder_make(folder, error) &&
+             !keep_inputs(&map, folder, error) &&
              !write_files(args, &map, folder, &drawn, error) && !quiet) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];
