@@ -1,6 +1,8 @@
 /* XXH3-128 of doubles and bytes, printed in canonical form. */
 #include "base/hash.h"
 
+#include "base/file.h"
+
 #include <endian.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -69,7 +71,7 @@ enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HAS
     if (file >= 0 && !fstat(file, &info) && !S_ISREG(info.st_mode))
         cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": it is not a regular file", path);
     else if (file < 0 || !add_all(file, &state, size))
-        cs_fail(error, CS_ERR_FILE, "cannot read \"%s\": %s", path, strerror(errno));
+        cs_fail(error, cs_file_status(errno), "cannot read \"%s\": %s", path, strerror(errno));
     else
         print_digits(XXH3_128bits_digest(&state), digits);
     if (file >= 0)

@@ -55,8 +55,8 @@ static int by_name(const void *a, const void *b) {
 static enum cs_status look(const char *folder, struct list *list, struct cs_error *error) {
     DIR *entries = opendir(folder);
     if (!entries)
-        return cs_fail(error, CS_ERR_FILE, "cannot read the folder \"%s\": %s", folder,
-                       strerror(errno));
+        return cs_fail(error, cs_file_status(errno), "cannot read the folder \"%s\": %s",
+                       folder, strerror(errno));
     for (struct dirent *found; (found = readdir(entries)) && !error->status;) {
         struct entry entry = {.size = 0};
         if (is_listed(found->d_name)) {

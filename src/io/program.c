@@ -1,6 +1,8 @@
 /* Runs another program and waits for it. */
 #include "io/program.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -57,7 +59,7 @@ enum cs_status cs_program_open(struct cs_program *program, const char *const *ar
     int ends[2];
     *program = (struct cs_program){0};
     if (pipe(ends))
-        return cs_fail(error, CS_ERR_FILE, "cannot make a pipe: %s", strerror(errno));
+        return cs_fail(error, cs_file_status(errno), "cannot make a pipe: %s", strerror(errno));
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
     const int reason = spawn(program, arguments, quiet, ends[1]);
@@ -67,8 +69,8 @@ enum cs_status cs_program_open(struct cs_program *program, const char *const *ar
         return CS_OK;
     close(ends[0]);
     cs_program_close(program);
-    return cs_fail(error, CS_ERR_FILE, "cannot run %s: %s", arguments[0],
-                   strerror(reason ? reason : ENOMEM));
+    return cs_fail(error, cs_file_status(reason ? reason : ENOMEM), "cannot run %s: %s",
+                   arguments[0], strerror(reason ? reason : ENOMEM));
 }
 
 int cs_program_close(struct cs_program *program) {
