@@ -21,7 +21,7 @@ static const struct cs_arg rows[REPRODUCE_ROWS] = {
                           "were)",
                           false},
     [REPRODUCE_PLUGIN] = {"plugin", 'p', "FILE",
-                          "load this module instead of the one that was loaded from a file; "
+                          "the module file that the method came from, if it came from one; "
                           "may be repeated",
                           true},
     [REPRODUCE_THREADS] = {"threads", 0, "N",

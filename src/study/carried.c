@@ -113,11 +113,11 @@ enum cs_status cs_carried_ask(struct cs_carried *carried, const char *folder,
     settings->scene = carried->path;
     settings->text = carried->scene;
     settings->resolved = true;
-    /* a module of the program's own folder is found by the method's name */
-    if (!settings->n_plugins && strchr(carried->module, '/')) {
-        settings->plugins = &carried->module;
-        settings->n_plugins = 1;
-    }
+    /* a module file is code: it is run where the user names it, and never by a result */
+    if (!settings->n_plugins && strchr(carried->module, '/'))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "%s: its method came from the module %.300s: give that with --plugin",
+                       carried->name, carried->module);
     return CS_OK;
 }
 

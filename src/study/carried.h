@@ -37,8 +37,8 @@ const char *cs_carried_text(const struct cs_json *object, const char *key);
 double cs_carried_number(const struct cs_json *object, const char *key);
 
 /* Makes settings of a session run the scene that is carried, by its own method. folder: where
- * its meshes and textures are, NULL: where they were; modules that the settings name stand for
- * the one that was loaded from a file. carried must outlive them. */
+ * its meshes and textures are, NULL: where they were. carried must outlive them. CS_ERR_USAGE
+ * where its method came from a module file, and the settings name none. */
 enum cs_status cs_carried_ask(struct cs_carried *carried, const char *folder,
                               struct cs_session_settings *settings, struct cs_error *error);
 
