@@ -54,7 +54,8 @@ static bool add_cell(struct cs_cluster_near *near, const struct cs_clusters *clu
     for (uint32_t s = cells->starts[cell]; s < cells->starts[cell + 1]; s++) {
         const uint32_t cluster = cells->items[s];
         const struct cs_cell_box *other = clusters->boxes + cluster;
-        if (cs_cell_boxes_meet(box, other) && is_first_cell(cells, other, first, at))
+        if (cluster >= near->least && cs_cell_boxes_meet(box, other) &&
+            is_first_cell(cells, other, first, at))
             there = there && add(near, cluster, other);
     }
     return there;

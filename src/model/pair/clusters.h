@@ -27,6 +27,7 @@ struct cs_cluster_near {
     struct cs_cluster *boxes; /* those of clusters, by sixteens */
     uint32_t *items;          /* what cs_cluster_near_items found */
     size_t n, clusters_room, boxes_room, items_room;
+    uint32_t least; /* clusters before it are passed over */
 };
 
 static inline uint32_t cs_clusters_count(uint32_t n_items) {
@@ -36,7 +37,7 @@ static inline uint32_t cs_clusters_count(uint32_t n_items) {
 /* Sets a lane; a box with high below low is empty, and met by none. */
 void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box);
 
-/* Sets near to the clusters that a box meets. false: no memory. */
+/* Sets near to the clusters from near->least on that a box meets. false: no memory. */
 bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
                           const struct cs_cell_box *box);
 

@@ -150,6 +150,8 @@ static void find_together(struct work *work, uint32_t begin, uint32_t end) {
         boxes[i - begin] = item_box(search, lot->kind, i);
         cs_cell_box_join(&all, boxes + i - begin);
     }
+    // an edge is listed with later ones alone
+    lot->near.least = edges ? begin / CS_CLUSTER : 0;
     if (!cs_cluster_near_find(&lot->near, clusters, &all)) {
         lot->failed = true;
         return;
