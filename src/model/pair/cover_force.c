@@ -18,55 +18,60 @@ struct job {
     const struct cs_matrix *matrix;
 };
 
-static void give(const double f[3], struct cs_pair *place) {
+static void give(const double f[3], const struct cs_cover_point *point, struct cs_pair *place) {
     for (uint32_t k = 0; k < place->n; k++)
         for (int c = 0; c < 3; c++)
-            place->to[k][c] = place->share[k] * f[c];
+            place->to[k][c] = point->w[k] * f[c];
 }
 
 /* The rows of a point's share have w_i w_j in front of the same block, and the weights add up
  * to 1. */
-static void bound(const struct cs_touch *touch, struct cs_pair *place) {
+static void bound(const struct cs_touch *touch, const struct cs_cover_point *point,
+                  struct cs_pair_part *part) {
     double stiffness, damping;
     cs_touch_bound(touch, &stiffness, &damping);
-    for (uint32_t k = 0; k < place->n; k++) {
-        place->of[k] = stiffness * place->share[k];
-        place->share[k] *= damping;
+    for (uint32_t k = 0; k < point->n; k++) {
+        part->of[k] = stiffness * point->w[k];
+        part->share[k] = point->w[k] * damping;
     }
 }
 
 static void fill_matrix(const struct cs_touch *touch, const struct cs_matrix *matrix,
-                        struct cs_pair *place) {
+                        const struct cs_cover_point *point, struct cs_pair *place,
+                        struct cs_pair_part *part) {
     memset(place->to, 0, sizeof place->to);
-    memset(place->of, 0, sizeof place->of);
-    place->along = 0;
-    cs_touch_add_block(touch, matrix, place->of);
+    memset(part->of, 0, sizeof part->of);
+    memcpy(part->share, point->w, sizeof point->w);
+    part->along = 0;
+    cs_touch_add_block(touch, matrix, part->of);
 }
 
-static void answer(const struct job *job, const struct cs_near *near,
-                   const struct cs_cover_point *point, const struct cs_touch *touch,
-                   struct cs_pair *place) {
+static void answer_part(const struct job *job, const struct cs_cover_point *point,
+                        const struct cs_touch *touch, struct cs_pair_lot *lot,
+                        struct cs_pair *place) {
+    struct cs_pair_part *part = cs_pair_lot_part(lot);
+    if (part && job->ask == ASK_MATRIX)
+        fill_matrix(touch, job->matrix, point, place, part);
+    else if (part)
+        bound(touch, point, part);
+}
+
+static void answer_force(const struct job *job, const struct cs_near *near,
+                         const struct cs_cover_point *point, const struct cs_touch *touch,
+                         struct cs_pair *place) {
     const size_t n = job->covers->system->view.n;
     const struct cs_touch_parts parts = cs_near_parts(job->at.parts);
     double f[3];
-    place->n = point->n;
-    memcpy(place->at, point->at, sizeof point->at);
-    memcpy(place->share, point->w, sizeof point->w);
-    if (job->ask == ASK_MATRIX) {
-        fill_matrix(touch, job->matrix, place);
-    } else if (job->ask == ASK_BOUND) {
-        bound(touch, place);
-    } else if (job->ask == ASK_CHANGE) {
+    if (job->ask == ASK_CHANGE) {
         double dp[3], dv[3];
         cs_cover_mix(point, n, job->at.dx, dp);
         cs_cover_mix(point, n, job->at.dv, dv);
         const struct cs_touch_move move = cs_near_move(near, dp, dv);
         cs_touch_jvp(touch, parts, &move, f);
-        give(f, place);
     } else {
         cs_touch_force(touch, parts, f);
-        give(f, place);
     }
+    give(f, point, place);
 }
 
 static void meet(const struct job *job, const struct cs_near *near,
@@ -83,8 +88,14 @@ static void meet(const struct job *job, const struct cs_near *near,
         return;
     }
     struct cs_pair *place = cs_pair_lot_next(lot);
-    if (place)
-        answer(job, near, point, &touch, place);
+    if (!place)
+        return;
+    place->n = point->n;
+    memcpy(place->at, point->at, sizeof point->at);
+    if (job->ask == ASK_MATRIX || job->ask == ASK_BOUND)
+        answer_part(job, point, &touch, lot, place);
+    else
+        answer_force(job, near, point, &touch, place);
 }
 
 /* middle of the box of particles [first, last], and half its diagonal */

@@ -57,17 +57,17 @@ static void add_turn(const struct work *work, const struct cs_reaction *reaction
 }
 
 static void answer(const struct work *work, const struct cs_reaction *reaction,
-                   struct cs_pair *pair) {
+                   struct cs_pair *pair, struct cs_pair_part *part) {
     const struct cs_narrow *narrow = work->narrow;
     struct cs_pair_share share;
     if (narrow->ask == CS_PAIR_BOUND) {
-        cs_reaction_bound(reaction, pair->of, pair->share);
+        cs_reaction_bound(reaction, part->of, part->share);
         return;
     }
     cs_reaction_matrix(reaction, narrow->matrix, pair->to, &share);
-    pair->along = share.along;
-    memcpy(pair->share, share.weight, sizeof share.weight);
-    memcpy(pair->of, share.of, sizeof share.of);
+    part->along = share.along;
+    memcpy(part->share, share.weight, sizeof share.weight);
+    memcpy(part->of, share.of, sizeof share.of);
     add_turn(work, reaction);
 }
 
@@ -79,7 +79,8 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     struct cs_reaction reaction;
     double p[4][3], v[4][3];
     struct cs_pair *pair = cs_pair_lot_next(work->lot);
-    if (!pair)
+    struct cs_pair_part *part = pair ? cs_pair_lot_part(work->lot) : NULL;
+    if (!part)
         return;
     pair->n = 4;
     memcpy(pair->at, from->at[lane], sizeof pair->at);
@@ -87,7 +88,7 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     read(narrow->v, system->surfaces->n_points, pair->at, v);
     cs_stencil_set(&reaction.stencil, work->kind, p);
     cs_reaction_set(&reaction, &meeting, &system->scene->contact, v);
-    answer(work, &reaction, pair);
+    answer(work, &reaction, pair, part);
 }
 
 /* --- in lanes --- */
@@ -119,15 +120,15 @@ static void push(const struct work *work, struct cs_pair_lanes *lanes) {
 }
 
 static void read_factors(const struct cs_pair_factors *factors, uint32_t lane,
-                         struct cs_pair *pair) {
-    pair->along = factors->along[lane];
+                         struct cs_pair *pair, struct cs_pair_part *part) {
+    part->along = factors->along[lane];
     for (int k = 0; k < 4; k++) {
-        pair->share[k] = factors->weight[k][lane];
+        part->share[k] = factors->weight[k][lane];
         for (int c = 0; c < 3; c++)
             pair->to[k][c] = factors->g[k][c][lane];
     }
     for (int e = 0; e < 6; e++)
-        pair->of[e] = factors->of[e][lane];
+        part->of[e] = factors->of[e][lane];
 }
 
 static void share(const struct work *work, struct cs_pair_lanes *lanes) {
@@ -137,11 +138,12 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes) {
                          narrow->matrix, &factors);
     for (uint32_t l = 0; l < lanes->n; l++) {
         struct cs_pair *pair = cs_pair_lot_next(work->lot);
-        if (!pair)
+        struct cs_pair_part *part = pair ? cs_pair_lot_part(work->lot) : NULL;
+        if (!part)
             break;
         pair->n = 4;
         memcpy(pair->at, lanes->at[l], sizeof pair->at);
-        read_factors(&factors, l, pair);
+        read_factors(&factors, l, pair, part);
     }
 }
 

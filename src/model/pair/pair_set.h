@@ -14,10 +14,15 @@
 struct cs_pair {
     uint32_t n, at[4]; /* particles, 2 to 4; from n_particles on: points of obstacles */
     double to[4][3];   /* force, its change, or the gradient g of a matrix */
-    double share[4];   /* of a matrix: the weights w; of bounds: N s/m */
-    double along;      /* of a matrix: along g g^T + (w w^T) x of, and cs_pair_lot.full */
-    double of[6];      /* xx, xy, xz, yy, yz, zz; of bounds: N/m of each particle */
-    double by[4][3];   /* of a matrix: what cs_pair_set_multiply makes of a vector */
+};
+
+/* What it has of a matrix or of bounds: apart, so that forces go over no more than they need.
+ */
+struct cs_pair_part {
+    double share[4]; /* the weights w; of bounds: N s/m */
+    double along;    /* along g g^T + (w w^T) x of, and cs_pair_lot.full */
+    double of[6];    /* xx, xy, xz, yy, yz, zz; of bounds: N/m of each particle */
+    double by[4][3]; /* what cs_pair_set_multiply makes of a vector */
 };
 
 /* how the gradient of a pair turns: 12 x 12, symmetric */
@@ -29,7 +34,9 @@ struct cs_pair_turn {
 struct cs_pair_lot {
     struct cs_pair *pairs;
     size_t n, room;
-    size_t first;              /* pairs of the lots before it */
+    size_t first;               /* pairs of the lots before it */
+    struct cs_pair_part *parts; /* (n) of a matrix or of bounds */
+    size_t parts_room;
     struct cs_pair_turn *full; /* (n) of a matrix whose set is exact */
     size_t full_room;
     double energy; /* J */
@@ -57,6 +64,11 @@ struct cs_pair_set {
     uint32_t *starts; /* (n_particles + 2) */
 };
 
+/* Points of obstacles feel nothing here, and do not move. */
+static inline bool cs_pair_set_has(const struct cs_pair_set *set, uint32_t point) {
+    return point < set->n_particles;
+}
+
 /* Fixed arrays from the arena, which then owns what grows too. CS_ERR_MEMORY. */
 enum cs_status cs_pair_set_init(struct cs_pair_set *set, uint32_t n_particles, uint32_t n_lots,
                                 struct cs_arena *arena, struct cs_error *error);
@@ -65,6 +77,8 @@ enum cs_status cs_pair_set_init(struct cs_pair_set *set, uint32_t n_particles, u
 void cs_pair_lot_clear(struct cs_pair_lot *lot);
 /* The next place of a lot; NULL: no memory. */
 struct cs_pair *cs_pair_lot_next(struct cs_pair_lot *lot);
+/* The part of the place that was given last; NULL: no memory. */
+struct cs_pair_part *cs_pair_lot_part(struct cs_pair_lot *lot);
 
 /* Counts what the lots hold, after they were filled; 0 where one failed. */
 void cs_pair_set_count(struct cs_pair_set *set);

@@ -26,18 +26,19 @@ enum cs_status cs_product_init(struct cs_product *product, const struct cs_pair_
     return error->status;
 }
 
-static void put_lane(const struct cs_pair *pair, size_t lane, struct cs_pair_factors *to) {
+static void put_lane(const struct cs_pair *pair, const struct cs_pair_part *part, size_t lane,
+                     struct cs_pair_factors *to) {
     if (!lane)
         *to = (struct cs_pair_factors){0};
     for (int k = 0; k < 4; k++) {
-        to->weight[k][lane] = pair->share[k];
+        to->weight[k][lane] = part->share[k];
         for (int c = 0; c < 3; c++)
             to->g[k][c][lane] = pair->to[k][c];
     }
-    to->along[lane] = pair->along;
+    to->along[lane] = part->along;
     memcpy(to->at[lane], pair->at, sizeof pair->at);
     for (int e = 0; e < 6; e++)
-        to->of[e][lane] = pair->of[e];
+        to->of[e][lane] = part->of[e];
 }
 
 static void put_lot(void *arg, uint32_t number) {
@@ -50,7 +51,8 @@ static void put_lot(void *arg, uint32_t number) {
     lot->factors = factors ? factors : lot->factors;
     lot->failed = from->n && !factors;
     for (size_t p = 0; p < from->n && !lot->failed; p++)
-        put_lane(from->pairs + p, p % CS_PAIR_LANES, factors + p / CS_PAIR_LANES);
+        put_lane(from->pairs + p, from->parts + p, p % CS_PAIR_LANES,
+                 factors + p / CS_PAIR_LANES);
 }
 
 static uint32_t pieces_of(const struct cs_pair_set *set) {
