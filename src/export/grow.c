@@ -1,6 +1,8 @@
 /* Files that grow in place, by writes at a place that is known. */
 #include "export/grow.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
@@ -9,7 +11,7 @@
 
 static enum cs_status fail(const struct cs_grown *grown, const char *verb,
                            struct cs_error *error) {
-    return cs_fail(error, CS_ERR_FILE, "cannot %s \"%s\": %s", verb, grown->path,
+    return cs_fail(error, cs_file_status(errno), "cannot %s \"%s\": %s", verb, grown->path,
                    strerror(errno));
 }
 

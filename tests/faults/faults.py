@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails the n-th allocation, write, rename, fsync, thread or opening of a file in ten command
+"""Fails the n-th allocation, write, rename, fsync, thread or opening of a file in eleven command
 lines, and holds how they end to what is promised: an exit code of the kind and one line that says
 what failed, or the same output as ever (as TAP).
 
@@ -27,6 +27,8 @@ LINES = {
     "integrators": ["integrators"],
     "files": [*RUN, "velocity-verlet", "--states", "st", "--watch", "w.csv", "--json", "r.json",
               "--ledger", "l.csv", "-o", "out", "--checkpoint", "1", "-y"],
+    "exports": [*RUN, "velocity-verlet", "--export", "obj,pc2,vtp,npz", "--export-values",
+                "force,strain", "-o", "ex", "--checkpoint", "1", "-y"],
     "threads": [*RUN, "implicit-linearised", "--threads", "3"],
     "sundials": [*RUN, "cvode-bdf"],
     "cholmod": ["run", "p.json", *RUN[2:], "fast-mass-spring"],
