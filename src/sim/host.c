@@ -124,12 +124,18 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     cs_trace_vector(host, "force", "f", t, f);
 }
 
-/* an exact matrix that is not positive definite is made so, and that is counted */
-static void clamp(struct cs_run_host *host) {
+/* A matrix that is not positive definite is made so, by and by, and that is counted; what is
+ * taken away from friction over bent surfaces goes last. false: there is nothing left to clamp.
+ */
+static bool clamp(struct cs_run_host *host) {
     struct cs_matrix matrix = host->linear.matrix;
+    if (matrix.psd && matrix.bound)
+        return false;
     host->run->counts.clamped++;
-    matrix.psd = host->clamped = true;
+    matrix.bound = matrix.psd;
+    matrix.psd = true;
     cs_linear_setup(&host->linear, &matrix);
+    return true;
 }
 
 static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const double *v,
@@ -145,7 +151,6 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     cs_trace_state(host, "solve set-up", t, x, v);
     const double begin = cs_stage_begin(host);
     host->run->counts.solve_setups++;
-    host->clamped = flags & CS_SOLVE_PSD;
     // kept, since a solve may have to set up again, and the method may have moved on by then
     memcpy(host->kept_x, x, bytes);
     if (host->kept_v)
@@ -156,9 +161,9 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
                                      .cm = cm,
                                      .cd = cd,
                                      .ck = ck,
-                                     .psd = host->clamped,
+                                     .psd = flags & CS_SOLVE_PSD,
                                      .bound = flags & CS_SOLVE_BOUND};
-    if (!cs_linear_setup(&host->linear, &matrix) && !host->clamped)
+    if (!cs_linear_setup(&host->linear, &matrix))
         clamp(host);
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
     return CS_STEP_OK;
@@ -175,8 +180,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     enum cs_linear_end end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
     host->run->counts.solve_iterations += iterations;
     // setup looks at diagonal blocks alone: that a matrix is indefinite may show only here
-    if (end == CS_LINEAR_INDEFINITE && !host->clamped) {
-        clamp(host);
+    while (end == CS_LINEAR_INDEFINITE && clamp(host)) {
         memset(u, 0, 3 * sizeof *u * host->run->system->view.n);
         end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
         host->run->counts.solve_iterations += iterations;

@@ -20,7 +20,6 @@ struct cs_run_host {
     double *kept_x; /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
     double *kept_v; /* (3,n) its velocity; NULL: no force's share of the matrix depends on it */
     double *rate_work;         /* (2n); NULL where no force has bounds at a state alone */
-    bool clamped;              /* the matrix in use is positive definite by construction */
     struct cs_contact contact; /* only with contact by projection */
     double reach;  /* m, to which a step may go behind a surface, of contact by projection */
     bool creating; /* the method may take memory */

@@ -34,7 +34,7 @@ enum cs_stage {
 /* Exact counts, the same on every machine. */
 struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
-    uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD */
+    uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD or CS_SOLVE_BOUND */
     uint64_t contacts;      /* particles pushed out */
     uint64_t cut_steps;     /* moves that were too long for contact or crossings */
     uint64_t contact_tests; /* particle-collider pairs tested */

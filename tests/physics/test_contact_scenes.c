@@ -150,9 +150,9 @@ static double turn_of(const struct cs_session *session) {
 
 /* the ball takes the sheet along, by an angle that the step does not decide */
 START_TEST(ball_winds_up_the_sheet) {
-    static const char *const methods[] = {"implicit-linearised:dt=0.008",
-                                          "implicit-linearised:dt=0.004",
-                                          "implicit-linearised:dt=0.002"};
+    static const char *const methods[] = {"implicit-linearised:dt=0.004",
+                                          "implicit-linearised:dt=0.002",
+                                          "implicit-linearised:dt=0.001"};
     const int n = all ? 3 : 2;
     double turn[3];
     for (int k = 0; k < n; k++) {

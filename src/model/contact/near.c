@@ -41,5 +41,6 @@ struct cs_touch_move cs_near_move(const struct cs_near *near, const double dp[3]
         move.dp[c] = dp[c];
         move.dv[c] = dv[c] - turned[c];
     }
+    move.more = 0;
     return move;
 }

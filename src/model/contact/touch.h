@@ -60,6 +60,7 @@ CS_INLINE void cs_touch_force(const struct cs_touch *touch, struct cs_touch_part
 /* A small move of the point: by dp, with dv the change of its velocity against the obstacle. */
 struct cs_touch_move {
     double dp[3], dv[3];
+    double more; /* m, by which d changes beyond g.dp */
 };
 
 /* df = change of the force, exact. */
@@ -70,7 +71,7 @@ CS_INLINE void cs_touch_jvp(const struct cs_touch *touch, struct cs_touch_parts 
     const double dg[3] = {h[0] * dp[0] + h[1] * dp[1] + h[2] * dp[2],
                           h[1] * dp[0] + h[3] * dp[1] + h[4] * dp[2],
                           h[2] * dp[0] + h[4] * dp[1] + h[5] * dp[2]};
-    const double dd = cs_touch_dot(g, dp);
+    const double dd = cs_touch_dot(g, dp) + move->more;
     const double square = cs_touch_dot(g, g), dsquare = 2 * cs_touch_dot(g, dg);
     const double approach = cs_touch_dot(g, v);
     const double dapproach = cs_touch_dot(dg, v) + cs_touch_dot(g, move->dv);

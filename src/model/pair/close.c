@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/pool.h"
 #include "model/pair/lanes.h"
+#include "model/pair/nearness.h"
 
 #include <string.h>
 
@@ -19,10 +20,24 @@ struct work {
     uint32_t pairs[WAITING][2], waiting;
 };
 
+/* smooth distances of edges; of points and triangles the true ones, which facets in range are
+ * not above */
+static void measure_lanes(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes) {
+    struct cs_nearness_lanes near;
+    if (kind == CS_STENCIL_EDGES) {
+        cs_pair_lanes_measure(kind, lanes);
+        return;
+    }
+    memcpy(near.p, lanes->p, sizeof near.p);
+    cs_nearness_measure(kind, &near);
+    for (int l = 0; l < CS_PAIR_LANES; l++)
+        lanes->d[l] = sqrt(near.squared[l]);
+}
+
 static void measure(struct work *work) {
     struct cs_search_lot *lot = work->lot;
     for (uint32_t k = 0; k < work->waiting; k += CS_PAIR_LANES)
-        cs_pair_lanes_measure(lot->kind, work->lanes + k / CS_PAIR_LANES);
+        measure_lanes(lot->kind, work->lanes + k / CS_PAIR_LANES);
     for (uint32_t k = 0; k < work->waiting; k++) {
         const struct cs_pair_lanes *lanes = work->lanes + k / CS_PAIR_LANES;
         const uint32_t l = k % CS_PAIR_LANES;
@@ -42,7 +57,8 @@ static void take(struct work *work, const uint32_t pair[2]) {
     cs_search_corners(search->system->surfaces, work->lot->kind, pair, at);
     memcpy(work->pairs[k], pair, sizeof work->pairs[k]);
     lanes->range[l] =
-        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range;
+        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range *
+        (work->lot->kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
     for (size_t j = 0; j < 4; j++)
         for (size_t c = 0; c < 3; c++)
             lanes->p[j][c][l] = search->close_at[c * n + at[j]];

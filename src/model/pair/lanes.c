@@ -46,7 +46,8 @@ CS_INLINE void react(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes, int
     const struct cs_meeting meeting = {lanes->range[lane], lanes->k[lane], lanes->mu[lane]};
     read_lane(lanes->p, lane, p);
     read_lane(lanes->v, lane, v);
-    cs_stencil_set(&reaction->stencil, kind, p);
+    const struct cs_facet_form form = {lanes->rim[lane], lanes->off[lane], lanes->bend[lane]};
+    cs_reaction_measure(reaction, kind, form, p);
     cs_reaction_set(reaction, &meeting, &law->keys, v);
 }
 

@@ -15,6 +15,8 @@ struct cs_pair_lanes {
     double d[CS_PAIR_LANES];                                 /* m, the smooth distance */
     double to[4][3][CS_PAIR_LANES];                          /* as in struct cs_pair */
     uint32_t at[CS_PAIR_LANES][4];
+    double rim[CS_PAIR_LANES], off[CS_PAIR_LANES], bend[CS_PAIR_LANES]; /* form of a facet */
+    double stiff[CS_PAIR_LANES]; /* share of the stiffness that a matrix has */
     uint32_t n;
 };
 
@@ -27,7 +29,7 @@ struct cs_pair_law {
     struct cs_touch_parts parts;
 };
 
-/* Sets `to` to the forces, or to their change. */
+/* Sets `to` to the forces, or to their change: of edges, or of facets of triangles. */
 void cs_pair_lanes_push(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
                         const struct cs_pair_law *law);
 void cs_pair_lanes_change(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,

@@ -15,6 +15,11 @@ struct cs_meeting {
     double mu;    /* friction */
 };
 
+/* Of the range, that of edges with edges: over surfaces that lie on each other their number
+ * changes, and so points alone hold these apart; edges are there so that nothing goes through.
+ */
+#define CS_MEETING_EDGES 0.5
+
 struct cs_meetings {
     uint32_t n_bodies;     /* as in surfaces.h: with obstacles */
     struct cs_meeting *of; /* (n_bodies, n_bodies), symmetric */

@@ -77,6 +77,7 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     const struct cs_system *system = narrow->search->system;
     const struct cs_meeting meeting = {from->range[lane], from->k[lane], from->mu[lane]};
     struct cs_reaction reaction;
+    const struct cs_facet_form form = {from->rim[lane], from->off[lane], from->bend[lane]};
     double p[4][3], v[4][3];
     struct cs_pair *pair = cs_pair_lot_next(work->lot);
     struct cs_pair_part *part = pair ? cs_pair_lot_part(work->lot) : NULL;
@@ -86,15 +87,17 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     memcpy(pair->at, from->at[lane], sizeof pair->at);
     read(narrow->x, system->surfaces->n_points, pair->at, p);
     read(narrow->v, system->surfaces->n_points, pair->at, v);
-    cs_stencil_set(&reaction.stencil, work->kind, p);
+    cs_reaction_measure(&reaction, work->kind, form, p);
     cs_reaction_set(&reaction, &meeting, &system->scene->contact, v);
     answer(work, &reaction, pair, part);
 }
 
 /* --- in lanes --- */
 
+/* distances of facets are known */
 static void add_energy(const struct work *work, struct cs_pair_lanes *lanes) {
-    cs_pair_lanes_measure(work->kind, lanes);
+    if (work->kind == CS_STENCIL_EDGES)
+        cs_pair_lanes_measure(work->kind, lanes);
     for (uint32_t l = 0; l < lanes->n; l++)
         work->lot->energy += cs_law_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
 }
@@ -144,6 +147,7 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes) {
         pair->n = 4;
         memcpy(pair->at, lanes->at[l], sizeof pair->at);
         read_factors(&factors, l, pair, part);
+        part->along *= lanes->stiff[l];
     }
 }
 
@@ -173,22 +177,29 @@ static void act_on_all(struct work *work) {
     empty(work);
 }
 
-static void take(struct work *work, const uint32_t pair[2]) {
+/* --- what is in range --- */
+
+static struct cs_meeting meeting_of(const struct cs_search *search, const uint32_t at[4]) {
+    return *cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]);
+}
+
+/* two edges, or a point and a facet */
+static void put(struct work *work, const uint32_t at[4], const struct cs_meeting *meeting,
+                const struct cs_facet_use *use) {
     const struct cs_narrow *narrow = work->narrow;
-    const struct cs_search *search = narrow->search;
-    const struct cs_system *system = search->system;
+    const struct cs_system *system = narrow->search->system;
     const size_t n = system->view.n, n_points = system->surfaces->n_points;
     struct cs_pair_lanes *lanes = work->lanes + work->filling;
     const uint32_t l = lanes->n;
-    uint32_t *at = lanes->at[l];
-    cs_search_corners(system->surfaces, work->kind, pair, at);
-    if (is_fixed(system, at))
-        return;
-    const struct cs_meeting *meeting =
-        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]);
+    memcpy(lanes->at[l], at, sizeof lanes->at[l]);
     lanes->range[l] = meeting->range;
     lanes->k[l] = meeting->k;
     lanes->mu[l] = meeting->mu;
+    lanes->d[l] = use->d;
+    lanes->rim[l] = use->form.rim;
+    lanes->off[l] = use->form.off;
+    lanes->bend[l] = use->form.e;
+    lanes->stiff[l] = use->alone;
     read_lane(narrow->x, n_points, at, l, lanes->p);
     if (narrow->ask != CS_PAIR_ENERGY)
         read_lane(narrow->v, n_points, at, l, lanes->v);
@@ -198,6 +209,56 @@ static void take(struct work *work, const uint32_t pair[2]) {
     }
     if (++lanes->n == CS_PAIR_LANES && ++work->filling == TOGETHER)
         act_on_all(work);
+}
+
+/* For a matrix that must not be negative: stiffness of the nearest facet alone; friction and
+ * damping of all, since methods that are linear in a step take their exact slope from the
+ * matrix, unless bounds are asked for. */
+static void make_positive(const struct cs_narrow *narrow, double mu, struct cs_facet_use *use) {
+    const double tau = narrow->search->system->scene->contact.damping;
+    const bool rubs = mu + tau > 0 && !narrow->matrix->bound;
+    use->alone /= rubs ? use->count : 1;
+    use->count = rubs ? use->count : use->alone;
+    use->alone = rubs ? use->alone : 1;
+}
+
+/* a point and a triangle: facet by facet */
+static void take_facets(struct work *work, const uint32_t at[4], uint32_t triangle) {
+    const struct cs_narrow *narrow = work->narrow;
+    const uint32_t *body = narrow->search->body;
+    const struct cs_meeting whole = meeting_of(narrow->search, at);
+    const bool positive = narrow->ask == CS_PAIR_MATRIX && narrow->matrix->psd;
+    const struct cs_facets_pair pair = {.at = {at[0], at[1], at[2], at[3]},
+                                        .triangle = triangle,
+                                        .own = body[at[0]] == body[at[1]],
+                                        .range = whole.range};
+    struct cs_facet_use uses[CS_FACETS];
+    const uint32_t n = cs_facets_find(narrow->facets, &pair, narrow->x, uses);
+    for (uint32_t k = 0; k < n; k++) {
+        if (positive)
+            make_positive(narrow, whole.mu, uses + k);
+        else
+            uses[k].alone = 1;
+        const struct cs_meeting meeting = {CS_FACET_WITHIN * whole.range,
+                                           uses[k].count * whole.k, whole.mu};
+        if (uses[k].count != 0)
+            put(work, uses[k].at, &meeting, uses + k);
+    }
+}
+
+static void take(struct work *work, const uint32_t pair[2]) {
+    const struct cs_search *search = work->narrow->search;
+    uint32_t at[4];
+    cs_search_corners(search->system->surfaces, work->kind, pair, at);
+    if (is_fixed(search->system, at))
+        return;
+    if (work->kind == CS_STENCIL_EDGES) {
+        struct cs_meeting meeting = meeting_of(search, at);
+        meeting.range *= CS_MEETING_EDGES;
+        put(work, at, &meeting, &(struct cs_facet_use){.alone = 1});
+    } else {
+        take_facets(work, at, pair[1]);
+    }
 }
 
 static void do_lot(void *arg, uint32_t number) {

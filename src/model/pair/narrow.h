@@ -2,6 +2,7 @@
 #ifndef CS_PAIR_NARROW_H
 #define CS_PAIR_NARROW_H
 
+#include "model/pair/facets.h"
 #include "model/pair/lanes.h"
 #include "model/pair/search.h"
 
@@ -16,7 +17,8 @@ enum cs_pair_ask {
 
 struct cs_narrow {
     const struct cs_search *search; /* its close pairs are those of x */
-    const double *x, *v;            /* (3, n_points) at the state; v NULL: at rest */
+    const struct cs_facets *facets;
+    const double *x, *v; /* (3, n_points) at the state; v NULL: at rest */
     struct cs_pair_set *set;
     enum cs_pair_ask ask;
     struct cs_eval at;

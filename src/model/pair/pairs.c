@@ -8,6 +8,7 @@
 static void run(struct cs_pairs *pairs, struct cs_narrow *narrow) {
     const struct cs_eval *at = &narrow->at;
     narrow->search = &pairs->search;
+    narrow->facets = &pairs->facets;
     narrow->x = cs_points_places(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
     narrow->v = cs_points_velocities(pairs->system, at->t, at->v);
     cs_meetings_rub(pairs->system, &pairs->meetings);

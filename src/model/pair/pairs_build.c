@@ -21,7 +21,9 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
                 for (size_t c = 0; c < 3; c++)
                     places[k][c] = pairs->system->start[c * n + at[k]];
             cs_stencil_set(&s, search->lots[l].kind, places);
-            const double range = cs_meeting_of(&pairs->meetings, body, body)->range;
+            const double range =
+                cs_meeting_of(&pairs->meetings, body, body)->range *
+                (search->lots[l].kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
             const uint32_t first = pairs->system->bodies[body].first;
             if (s.d < range)
                 return cs_fail(error, CS_ERR_SCENE,
@@ -38,7 +40,8 @@ enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) 
         return error->status;
     struct cs_pairs *pairs = cs_arena_take(&system->arena, sizeof *pairs, error);
     if (!pairs || cs_meetings_build(system, &pairs->meetings, error) ||
-        cs_search_init(&pairs->search, system, &pairs->meetings, error))
+        cs_search_init(&pairs->search, system, &pairs->meetings, error) ||
+        cs_facets_init(&pairs->facets, system->surfaces, &system->arena, error))
         return error->status;
     pairs->system = system;
     pairs->blocks = &pairs->now;

@@ -9,7 +9,7 @@ void cs_reaction_turn(const struct cs_reaction *reaction, const struct cs_matrix
     for (int j = 0; j < 12; j++) {
         double unit[4][3] = {{0}}, column[4][3], dw[4];
         unit[j / 3][j % 3] = 1;
-        cs_stencil_tangent(&reaction->stencil, unit, column, dw);
+        cs_reaction_tangent(reaction, unit, column, dw);
         for (int i = 0; i <= j; i++)
             turn->of[i][j] = turn->of[j][i] = push * column[i / 3][i % 3];
     }
@@ -18,7 +18,10 @@ void cs_reaction_turn(const struct cs_reaction *reaction, const struct cs_matrix
 void cs_reaction_bound(const struct cs_reaction *reaction, double stiffness[4],
                        double damping[4]) {
     double length[4], sum = 0, shares = 0, own, rub;
-    cs_touch_bound(&reaction->touch, &own, &rub);
+    // what is taken away bounds as what is there
+    struct cs_touch touch = reaction->touch;
+    touch.k = fabs(touch.k);
+    cs_touch_bound(&touch, &own, &rub);
     for (int k = 0; k < 4; k++) {
         const double w = reaction->weight[k];
         length[k] = sqrt(cs_vec3_dot(reaction->g[k], reaction->g[k]));

@@ -3,9 +3,9 @@
 #define CS_PAIR_REACTION_H
 
 #include "model/contact/touch.h"
+#include "model/pair/facet_tangent.h"
 #include "model/pair/meeting.h"
 #include "model/pair/pair_set.h"
-#include "model/pair/stencil_tangent.h"
 
 /* What a pair has in a matrix beside its gradient, as in struct cs_pair. */
 struct cs_pair_share {
@@ -14,30 +14,47 @@ struct cs_pair_share {
     double of[6]; /* xx, xy, xz, yy, yz, zz */
 };
 
-/* One pair at one state, found in range. */
+/* One pair at one state, found in range: of edges the stencil, of a point and a triangle one
+ * facet. */
 struct cs_reaction {
+    enum cs_stencil_kind kind;
     struct cs_stencil stencil;
+    struct cs_facet facet;
     struct cs_touch touch; /* of the contact points: g = n, v = V */
     double g[4][3], weight[4];
 };
 
-/* Sets everything of a reaction whose stencil is set. v (4) velocities of its particles. */
+/* The distance of edges, or of a facet. */
+CS_INLINE void cs_reaction_measure(struct cs_reaction *reaction, enum cs_stencil_kind kind,
+                                   struct cs_facet_form form, double p[4][3]) {
+    reaction->kind = kind;
+    if (kind == CS_STENCIL_EDGES) {
+        cs_stencil_set(&reaction->stencil, kind, p);
+        cs_stencil_gradient(&reaction->stencil, reaction->g);
+        cs_stencil_weights(&reaction->stencil, reaction->weight);
+    } else {
+        cs_facet_set(&reaction->facet, form, p);
+        cs_facet_spread(reaction->facet.g, reaction->g);
+        cs_facet_weights(&reaction->facet, reaction->weight);
+    }
+}
+
+/* Sets everything of a reaction that is measured. v (4) velocities of its particles. */
 CS_INLINE void cs_reaction_set(struct cs_reaction *reaction, const struct cs_meeting *meeting,
                                const struct cs_contact_keys *keys, double v[4][3]) {
-    const struct cs_stencil *s = &reaction->stencil;
-    const double *n = s->n;
-    cs_stencil_gradient(s, reaction->g);
-    cs_stencil_weights(s, reaction->weight);
-    reaction->touch = (struct cs_touch){.d = s->d,
-                                        .range = meeting->range,
-                                        .g = {n[0], n[1], n[2]},
-                                        .h = {(1 - n[0] * n[0]) / s->d, -n[0] * n[1] / s->d,
-                                              -n[0] * n[2] / s->d, (1 - n[1] * n[1]) / s->d,
-                                              -n[1] * n[2] / s->d, (1 - n[2] * n[2]) / s->d},
-                                        .k = meeting->k,
-                                        .mu = meeting->mu,
-                                        .ev = keys->friction_speed,
-                                        .tau = keys->damping};
+    const bool edges = reaction->kind == CS_STENCIL_EDGES;
+    const double *n = edges ? reaction->stencil.n : reaction->facet.n;
+    const double length = edges ? reaction->stencil.d : reaction->facet.length;
+    reaction->touch = (struct cs_touch){
+        .d = edges ? reaction->stencil.d : reaction->facet.d,
+        .range = meeting->range,
+        .g = {n[0], n[1], n[2]},
+        .h = {(1 - n[0] * n[0]) / length, -n[0] * n[1] / length, -n[0] * n[2] / length,
+              (1 - n[1] * n[1]) / length, -n[1] * n[2] / length, (1 - n[2] * n[2]) / length},
+        .k = meeting->k,
+        .mu = meeting->mu,
+        .ev = keys->friction_speed,
+        .tau = keys->damping};
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             reaction->touch.v[c] += reaction->weight[k] * v[k][c];
@@ -70,13 +87,21 @@ CS_INLINE void cs_reaction_force(const struct cs_reaction *reaction,
 struct cs_reaction_move {
     double p[4][3], v[4][3], dp[4][3], dv[4][3];
 };
+CS_INLINE void cs_reaction_tangent(const struct cs_reaction *reaction, double dp[4][3],
+                                   double dg[4][3], double dw[4]) {
+    if (reaction->kind == CS_STENCIL_EDGES)
+        cs_stencil_tangent(&reaction->stencil, dp, dg, dw);
+    else
+        cs_facet_tangent(&reaction->facet, dp, dg, dw);
+}
+
 CS_INLINE void cs_reaction_jvp(const struct cs_reaction *reaction, struct cs_touch_parts parts,
                                struct cs_reaction_move *move, double df[4][3]) {
     const struct cs_touch *touch = &reaction->touch;
     const double *w = reaction->weight;
     double dg[4][3], dw[4], along = 0, rub[3] = {0}, drub[3] = {0};
     struct cs_touch_move point = {0};
-    cs_stencil_tangent(&reaction->stencil, move->dp, dg, dw);
+    cs_reaction_tangent(reaction, move->dp, dg, dw);
     for (int k = 0; k < 4; k++) {
         along += cs_vec3_dot(reaction->g[k], move->dp[k]);
         for (int c = 0; c < 3; c++) {
@@ -84,6 +109,8 @@ CS_INLINE void cs_reaction_jvp(const struct cs_reaction *reaction, struct cs_tou
             point.dv[c] += dw[k] * move->v[k][c] + w[k] * move->dv[k][c];
         }
     }
+    // a bent distance changes otherwise than that of the contact points
+    point.more = along - cs_vec3_dot(touch->g, point.dp);
     if (cs_reaction_rubs(touch, parts)) {
         cs_touch_force(touch, cs_reaction_rubbing(parts), rub);
         cs_touch_jvp(touch, cs_reaction_rubbing(parts), &point, drub);

@@ -100,12 +100,14 @@ static void take(struct work *work, const uint32_t pair[2]) {
     cs_search_corners(job->pairs->system->surfaces, work->kind, pair, at);
     const struct cs_meeting *meeting =
         cs_meeting_of(&job->pairs->meetings, search->body[at[0]], search->body[at[2]]);
+    const double range =
+        meeting->range * (work->kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
             from[k][c] = job->x0[c * n + at[k]];
-    if (cs_nearness_is_apart(work->kind, from, meeting->range * (1 + job->moves)))
+    if (cs_nearness_is_apart(work->kind, from, range * (1 + job->moves)))
         return;
-    lanes->range[l] = meeting->range;
+    lanes->range[l] = range;
     lanes->k[l] = meeting->k;
     for (size_t k = 0; k < 4; k++) {
         lanes->inverse_mass[k][l] = cs_points_inverse_mass(job->pairs->system, at[k]);

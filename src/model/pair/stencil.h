@@ -97,8 +97,9 @@ CS_INLINE void cs_stencil_spread(enum cs_stencil_kind kind, double u, double v, 
     out[3] = v;
 }
 
-/* Distance and what the derivatives need. */
-CS_INLINE void cs_stencil_set(struct cs_stencil *s, enum cs_stencil_kind kind, double p[4][3]) {
+/* The differences and l. */
+CS_INLINE void cs_stencil_frame(struct cs_stencil *s, enum cs_stencil_kind kind,
+                                double p[4][3]) {
     s->kind = kind;
     s->q = kind == CS_STENCIL_EDGES ? CS_STENCIL_PARALLEL : CS_STENCIL_FLAT;
     cs_stencil_differences(kind, p, s->u, s->v, s->w);
@@ -110,6 +111,11 @@ CS_INLINE void cs_stencil_set(struct cs_stencil *s, enum cs_stencil_kind kind, d
     const double right[2] = {cs_vec3_dot(s->u, s->w) + 0.5 * s->q * s->a,
                              cs_vec3_dot(s->v, s->w) + 0.5 * s->q * s->c};
     cs_stencil_solve(s, right, s->l);
+}
+
+/* Distance and what the derivatives need. */
+CS_INLINE void cs_stencil_set(struct cs_stencil *s, enum cs_stencil_kind kind, double p[4][3]) {
+    cs_stencil_frame(s, kind, p);
     if (kind == CS_STENCIL_EDGES)
         cs_stencil_clamp_edges(s);
     else

@@ -1,0 +1,154 @@
+/* facet.h - how far a point is from the plane, a rim or a corner of a triangle, so that sums
+ * over all triangles of a mesh count nothing twice.
+ *
+ * A point over a mesh is near to several triangles that share a rim or a corner. With f the
+ * same growing function for all of them, psi the law's energy and h^2 the squared height over
+ * the plane of the triangle
+ *
+ *   E = sum of triangles psi(d) - sum of inner rims psi(d) + sum of inner corners psi(d),
+ *   d^2 = h^2 + f(m),   m = squared distance of the foot from triangle, rim or corner
+ *
+ * is psi(h) exactly over a flat mesh, wherever its rims and corners are: inclusion and
+ * exclusion of what is within a distance, of which any f changes the scale alone. A triangle
+ * whose foot is outside has the distance of its nearest rim, one whose foot is inside that of
+ * its plane: so plane, rims and corners are all there is to measure. An inner rim is measured
+ * half by either of its triangles, a corner in equal shares by all of its.
+ *
+ *   f(m) = m step((m - e^2/8) / (7 e^2/8)),   step(x) = x^4 (35 - 84x + 70x^2 - 20x^3)
+ *
+ * is flat where the foot comes to a rim, and true beyond e: the sum has three continuous
+ * derivatives over a bent mesh too. At m < e^2 a distance is below the true one, by at most
+ * 0.35 e^2 in its square. The foot on a rim is clamped smoothly, exactly outside its ends and
+ * bent by less than 0.3 e inside.
+ *
+ *   t = u.w/u.u   b = e / sqrt(u.u + 4 e^2)   zeta = t step(t/b), and 1 - (1-t) step((1-t)/b)
+ */
+#ifndef CS_PAIR_FACET_H
+#define CS_PAIR_FACET_H
+
+#include "model/pair/stencil.h"
+
+/* Of the range: e, and the range of the law within which no true distance is above the range.
+ */
+#define CS_FACET_BEND   0.2
+#define CS_FACET_WITHIN 0.992
+
+/* Which facet the first rim of a triangle stands for: the rim, its first end, or the plane. */
+struct cs_facet_form {
+    double rim, off; /* 1, 1; 0, 1; or 0, 0 */
+    double e;        /* m */
+};
+
+/* value and two derivatives of the step */
+CS_INLINE void cs_facet_step(double x, double out[3]) {
+    const double low = x > 0 ? x : 0, z = low < 1 ? low : 1, left = 1 - z;
+    const double square = z * z, both = z * left;
+    out[0] = square * square * (35 + z * (-84 + z * (70 - 20 * z)));
+    out[1] = 140 * both * both * both;
+    out[2] = 420 * both * both * (left - z);
+}
+
+/* A facet at one state. The point, the two ends of the rim, and the third corner. */
+struct cs_facet {
+    struct cs_stencil plane;      /* u, v, w and l; its distance is not set */
+    double d, g[3][3];            /* m; its gradient by u, v, w */
+    double length, n[3];          /* m; between the two contact points */
+    double share[2];              /* of u and v in what they are apart by */
+    double foot[3], leg[3];       /* m, to the point from its foot, and from the rim */
+    double t, y, b, narrow, zeta; /* narrow = b / 2 (u.u + 4 e^2) */
+    double by_t, by_b, by_tt;     /* zeta's derivatives */
+    double f1, f2;                /* f's */
+    double h[3][3], far[3][3];    /* gradients of h^2 and of leg^2 by u, v, w */
+    double pull;                  /* -2 leg.u: slope of leg^2 by zeta */
+    struct cs_facet_form form;
+};
+
+CS_INLINE void cs_facet_clamp(struct cs_facet *s) {
+    const double first = s->plane.a + DBL_MIN, wide = s->plane.a + 4 * s->form.e * s->form.e;
+    s->t = cs_vec3_dot(s->plane.u, s->plane.w) / first;
+    s->b = s->form.e / sqrt(wide);
+    s->narrow = 0.5 * s->b / wide;
+    const bool near = s->t < 0.5;
+    double step[3];
+    s->y = (near ? s->t : 1 - s->t) / s->b;
+    cs_facet_step(s->y, step);
+    const double z = s->b * (s->y * step[0]), slope = step[0] + s->y * step[1];
+    const double side = near ? s->form.rim : -s->form.rim;
+    s->zeta = s->form.rim * (near ? z : 1 - z);
+    s->by_t = s->form.rim * slope;
+    s->by_b = side * (s->y * step[0] - s->y * slope);
+    s->by_tt = side * (2 * step[1] + s->y * step[2]) / s->b;
+}
+
+/* gradients of the two squares */
+CS_INLINE void cs_facet_slopes(struct cs_facet *s) {
+    const double *u = s->plane.u, *w = s->plane.w, *l = s->plane.l;
+    const double first = s->plane.a + DBL_MIN;
+    s->pull = -2 * cs_vec3_dot(s->leg, u);
+    for (int c = 0; c < 3; c++) {
+        s->h[0][c] = -2 * l[0] * s->foot[c];
+        s->h[1][c] = -2 * l[1] * s->foot[c];
+        s->h[2][c] = 2 * s->foot[c];
+        s->far[0][c] =
+            -2 * s->zeta * s->leg[c] + s->pull * (s->by_t * (w[c] - 2 * s->t * u[c]) / first -
+                                                  2 * s->by_b * s->narrow * u[c]);
+        s->far[1][c] = 0;
+        s->far[2][c] = 2 * s->leg[c] + s->pull * s->by_t * u[c] / first;
+    }
+}
+
+/* f's derivatives; f itself */
+CS_INLINE double cs_facet_bend(struct cs_facet *s, double m) {
+    const double e2 = s->form.e * s->form.e, span = 1 / (0.875 * e2);
+    double step[3];
+    cs_facet_step((m - 0.125 * e2) * span, step);
+    s->f1 = s->form.off * (step[0] + m * step[1] * span);
+    s->f2 = s->form.off * (2 * step[1] + m * step[2] * span) * span;
+    return s->form.off * m * step[0];
+}
+
+/* Distance, gradient and contact points. */
+CS_INLINE void cs_facet_set(struct cs_facet *s, struct cs_facet_form form, double p[4][3]) {
+    const double least = CS_STENCIL_LEAST * CS_STENCIL_LEAST;
+    s->form = form;
+    cs_stencil_frame(&s->plane, CS_STENCIL_TRIANGLE, p);
+    const double *u = s->plane.u, *v = s->plane.v, *w = s->plane.w, *l = s->plane.l;
+    cs_facet_clamp(s);
+    for (int c = 0; c < 3; c++) {
+        s->foot[c] = w[c] - l[0] * u[c] - l[1] * v[c];
+        s->leg[c] = w[c] - s->zeta * u[c];
+    }
+    const double height = cs_vec3_dot(s->foot, s->foot);
+    const double bent = cs_facet_bend(s, cs_vec3_dot(s->leg, s->leg) - height);
+    s->d = sqrt(height + bent + least);
+    cs_facet_slopes(s);
+    const double in = 1 - s->f1, half = 0.5 / s->d;
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            s->g[k][c] = half * (in * s->h[k][c] + s->f1 * s->far[k][c]);
+    s->share[0] = -(in * l[0] + s->f1 * s->zeta);
+    s->share[1] = -in * l[1];
+    double r[3];
+    for (int c = 0; c < 3; c++)
+        r[c] = in * s->foot[c] + s->f1 * s->leg[c];
+    s->length = sqrt(cs_vec3_dot(r, r) + least);
+    for (int c = 0; c < 3; c++)
+        s->n[c] = r[c] / s->length;
+}
+
+/* by the three differences, to the four points */
+CS_INLINE void cs_facet_spread(double by[3][3], double out[4][3]) {
+    for (int c = 0; c < 3; c++) {
+        double four[4];
+        cs_stencil_spread(CS_STENCIL_TRIANGLE, by[0][c], by[1][c], by[2][c], four);
+        for (int k = 0; k < 4; k++)
+            out[k][c] = four[k];
+    }
+}
+
+/* Shares of the four points in the difference of the two contact points; their sum is 0. */
+CS_INLINE void cs_facet_weights(const struct cs_facet *s, double out[4]) {
+    cs_stencil_spread(CS_STENCIL_TRIANGLE, s->share[0], s->share[1], 1, out);
+}
+
+#endif

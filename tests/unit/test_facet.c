@@ -1,0 +1,363 @@
+/* What a point feels of a mesh, triangle by triangle: once over what is flat, never drawn to
+ * it, with exact derivatives, and as far as the true distance says. */
+#include "model/contact/law.h"
+#include "model/pair/facet_tangent.h"
+#include "model/pair/facets.h"
+#include "unit.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* a number in -1..1, always the same ones */
+static double draw(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+/* --- a facet --- */
+
+static const struct cs_facet_form forms[] = {{1, 1, 0.2}, {0, 1, 0.2}, {0, 0, 0.2}};
+
+/* over all of a triangle and beside it, near the rim and its ends above all */
+static void place(uint64_t *state, int k, double p[4][3]) {
+    for (int i = 1; i < 4; i++)
+        for (int c = 0; c < 3; c++)
+            p[i][c] = (i == 2 && c == 0) + (i == 3 && c == 1) + 0.2 * draw(state);
+    const double along = k % 3 ? 0.5 + 0.5 * draw(state) : 0.1 * draw(state),
+                 aside = (k % 2 ? 0.2 : 0.8) * draw(state), up = 0.1 + 0.4 * fabs(draw(state));
+    for (int c = 0; c < 3; c++)
+        p[0][c] =
+            p[1][c] + along * (p[2][c] - p[1][c]) + aside * (p[3][c] - p[1][c]) + up * (c == 2);
+}
+
+static double distance_at(struct cs_facet_form form, double p[4][3], double g[4][3]) {
+    struct cs_facet facet;
+    cs_facet_set(&facet, form, p);
+    cs_facet_spread(facet.g, g);
+    return facet.d;
+}
+
+/* value, weights and gradient by differences of fourth order along dp */
+struct slopes {
+    double d, weight[4], g[4][3], scale;
+};
+
+static void differ(struct cs_facet_form form, double p[4][3], double dp[4][3],
+                   struct slopes *by) {
+    static const double at[4] = {-2, -1, 1, 2},
+                        share[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+    const double step = 1e-5;
+    *by = (struct slopes){0};
+    for (int j = 0; j < 4; j++) {
+        double moved[4][3], g[4][3], weight[4];
+        struct cs_facet facet;
+        for (int k = 0; k < 12; k++)
+            moved[k / 3][k % 3] = p[k / 3][k % 3] + at[j] * step * dp[k / 3][k % 3];
+        cs_facet_set(&facet, form, moved);
+        cs_facet_spread(facet.g, g);
+        cs_facet_weights(&facet, weight);
+        by->d += share[j] / step * facet.d;
+        for (int k = 0; k < 4; k++) {
+            by->weight[k] += share[j] / step * weight[k];
+            for (int c = 0; c < 3; c++)
+                by->g[k][c] += share[j] / step * g[k][c];
+        }
+    }
+}
+
+START_TEST(derivatives_are_those_of_differences) {
+    uint64_t state = 1;
+    double worst[3] = {0};
+    for (int k = 0; k < 30000; k++) {
+        const struct cs_facet_form form = forms[k % 3];
+        double p[4][3], dp[4][3], g[4][3], dg[4][3], dw[4], along = 0;
+        struct cs_facet facet;
+        struct slopes by;
+        place(&state, k, p);
+        for (int i = 0; i < 12; i++)
+            dp[i / 3][i % 3] = draw(&state);
+        cs_facet_set(&facet, form, p);
+        cs_facet_spread(facet.g, g);
+        cs_facet_tangent(&facet, dp, dg, dw);
+        differ(form, p, dp, &by);
+        for (int i = 0; i < 4; i++) {
+            along += cs_vec3_dot(g[i], dp[i]);
+            worst[1] = fmax(worst[1], fabs(by.weight[i] - dw[i]) / 40);
+            for (int c = 0; c < 3; c++)
+                worst[2] = fmax(worst[2], fabs(by.g[i][c] - dg[i][c]) / 40);
+        }
+        worst[0] = fmax(worst[0], fabs(along - by.d));
+    }
+    ck_assert_msg(worst[0] < 1e-8 && worst[1] < 1e-6 && worst[2] < 1e-6, "%g %g %g", worst[0],
+                  worst[1], worst[2]);
+}
+END_TEST
+
+/* a force along the gradient moves and turns nothing as a whole */
+START_TEST(gradient_keeps_momentum) {
+    uint64_t state = 3;
+    double worst = 0;
+    for (int k = 0; k < 10000; k++) {
+        double p[4][3], g[4][3], sum[3] = {0}, torque[3] = {0};
+        place(&state, k, p);
+        distance_at(forms[k % 3], p, g);
+        for (int i = 0; i < 4; i++) {
+            double turn[3];
+            cs_vec3_cross(p[i], g[i], turn);
+            for (int c = 0; c < 3; c++) {
+                sum[c] += g[i][c];
+                torque[c] += turn[c];
+            }
+        }
+        worst = fmax(worst, sqrt(cs_vec3_dot(sum, sum) + cs_vec3_dot(torque, torque)));
+    }
+    ck_assert_msg(worst < 1e-11, "%g", worst);
+}
+END_TEST
+
+/* --- a mesh --- */
+
+enum { CELLS = 4, POINTS = (CELLS + 1) * (CELLS + 1) + 1, TRIANGLES = 2 * CELLS * CELLS };
+
+/* a point over a field of triangles, of which the point is number 0 */
+struct field {
+    struct cs_arena arena;
+    struct cs_surfaces surfaces;
+    struct cs_facets facets;
+    uint32_t triangles[3 * TRIANGLES], edges[6 * TRIANGLES], owners[6 * TRIANGLES];
+    double x[3 * POINTS];
+};
+
+static void add_edge(struct field *field, uint32_t a, uint32_t b, uint32_t triangle) {
+    struct cs_surfaces *s = &field->surfaces;
+    uint32_t e = 0;
+    while (e < s->n_edges && (s->edges[2 * e] != a || s->edges[2 * e + 1] != b))
+        e++;
+    if (e < s->n_edges) {
+        s->owners[2 * e + 1] = triangle;
+        return;
+    }
+    s->edges[2 * e] = a;
+    s->edges[2 * e + 1] = b;
+    s->owners[2 * e] = triangle;
+    s->owners[2 * e + 1] = CS_NO_TRIANGLE;
+    s->n_edges++;
+}
+
+static int by_ends(const void *a, const void *b) {
+    const uint32_t *first = a, *second = b;
+    for (int k = 0; k < 2; k++)
+        if (first[k] != second[k])
+            return first[k] < second[k] ? -1 : 1;
+    return 0;
+}
+
+/* edges by their first ends, owners along with them */
+static void sort_edges(struct cs_surfaces *s) {
+    static uint32_t rows[3 * TRIANGLES][4];
+    for (uint32_t e = 0; e < s->n_edges; e++) {
+        memcpy(rows[e], s->edges + 2 * e, 2 * sizeof(uint32_t));
+        memcpy(rows[e] + 2, s->owners + 2 * e, 2 * sizeof(uint32_t));
+    }
+    qsort(rows, s->n_edges, sizeof rows[0], by_ends);
+    for (uint32_t e = 0; e < s->n_edges; e++) {
+        memcpy(s->edges + 2 * e, rows[e], 2 * sizeof(uint32_t));
+        memcpy(s->owners + 2 * e, rows[e] + 2, 2 * sizeof(uint32_t));
+    }
+}
+
+static void open(struct field *field, double jitter, uint64_t *state) {
+    struct cs_error error = {0};
+    memset(field, 0, sizeof *field);
+    struct cs_surfaces *s = &field->surfaces;
+    *s = (struct cs_surfaces){.n_points = POINTS,
+                              .n_triangles = TRIANGLES,
+                              .triangles = field->triangles,
+                              .edges = field->edges,
+                              .owners = field->owners};
+    for (uint32_t i = 0; i < POINTS - 1; i++) {
+        field->x[1 + i] = i % (CELLS + 1) - CELLS / 2.0 + jitter * draw(state);
+        field->x[POINTS + 1 + i] = (i / (CELLS + 1)) - CELLS / 2.0 + jitter * draw(state);
+    }
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        const uint32_t cell = t / 2, a = 1 + cell / CELLS * (CELLS + 1) + cell % CELLS;
+        const uint32_t corners[2][3] = {{a, a + 1, a + CELLS + 1},
+                                        {a + 1, a + CELLS + 2, a + CELLS + 1}};
+        memcpy(s->triangles + 3 * t, corners[t % 2], sizeof corners[0]);
+        for (int k = 0; k < 3; k++) {
+            const uint32_t i = corners[t % 2][k], j = corners[t % 2][(k + 1) % 3];
+            add_edge(field, i < j ? i : j, i < j ? j : i, t);
+        }
+    }
+    sort_edges(s);
+    ck_assert_int_eq(cs_facets_init(&field->facets, s, &field->arena, &error), CS_OK);
+}
+
+/* energy of the point, k = 1, and the force on it */
+static double energy_at(struct field *field, double range, double force[3]) {
+    const struct cs_surfaces *s = &field->surfaces;
+    double energy = 0;
+    memset(force, 0, 3 * sizeof *force);
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        const uint32_t *c = s->triangles + 3 * t;
+        const struct cs_facets_pair pair = {
+            .at = {0, c[0], c[1], c[2]}, .triangle = t, .range = range};
+        struct cs_facet_use uses[CS_FACETS];
+        const uint32_t n = cs_facets_find(&field->facets, &pair, field->x, uses);
+        for (uint32_t k = 0; k < n; k++) {
+            double g[4][3];
+            const double d = distance_at(uses[k].form, uses[k].p, g);
+            const double within = CS_FACET_WITHIN * range;
+            energy += uses[k].count * cs_law_energy(d, within, 1);
+            for (int i = 0; i < 3; i++)
+                force[i] += uses[k].count * cs_law_at(d, within, 1).force * g[0][i];
+        }
+    }
+    return energy;
+}
+
+static void put(struct field *field, double x, double y, double z) {
+    field->x[0] = x;
+    field->x[POINTS] = y;
+    field->x[(size_t)2 * POINTS] = z;
+}
+
+/* over the inside of any flat mesh it is the law of the height, with no force along it */
+START_TEST(flat_meshes_are_felt_once) {
+    const double range = 0.4, y[] = {0.2, 0.5, 0.7, 0.9};
+    uint64_t state = 5;
+    double worst = 0;
+    struct field field;
+    for (int mesh = 0; mesh < 3; mesh++) {
+        open(&field, 0.12 * mesh, &state);
+        for (int k = 0; k < 4000; k++) {
+            double force[3];
+            put(&field, 1.2 * draw(&state), 1.2 * draw(&state), y[k % 4] * range);
+            const double energy = energy_at(&field, range, force);
+            const double within = CS_FACET_WITHIN * range;
+            const double right = cs_law_energy(y[k % 4] * range, within, 1);
+            const double push = cs_law_at(y[k % 4] * range, within, 1).force;
+            worst = fmax(worst, fabs(energy / right - 1));
+            worst = fmax(worst, fabs(force[2] / push - 1));
+            worst = fmax(worst, hypot(force[0], force[1]) / push);
+        }
+        cs_arena_finish(&field.arena);
+    }
+    ck_assert_msg(worst < 1e-9, "%g", worst);
+}
+END_TEST
+
+/* --- bent meshes --- */
+
+enum shape { RIDGE, VALLEY, TIP, PIT, SADDLE, CRUMPLED, SHAPES };
+
+static double height_of(enum shape shape, double bend, double x, double y, uint64_t *state) {
+    const double t = tan(bend / 2);
+    const double of[SHAPES] = {-t * fabs(x),
+                               t * fabs(x),
+                               -t * hypot(x, y),
+                               t * hypot(x, y),
+                               t * (fabs(x) - fabs(y)),
+                               0.5 * t * draw(state)};
+    return of[shape];
+}
+
+static void bend(struct field *field, enum shape shape, double by, uint64_t *state) {
+    double *x = field->x;
+    for (size_t i = 1; i < POINTS; i++)
+        x[2 * POINTS + i] = height_of(shape, by, x[i], x[POINTS + i], state);
+}
+
+/* m, from the point to a triangle; to = the nearest of its points */
+static double nearest_on(const struct field *field, const uint32_t *corners, double to[3]) {
+    double p[4][3], best = HUGE_VAL, share[2];
+    struct cs_stencil plane;
+    for (int k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            p[k][c] = field->x[c * POINTS + (k ? corners[k - 1] : 0)];
+    cs_stencil_frame(&plane, CS_STENCIL_TRIANGLE, p);
+    const double *l = plane.l;
+    for (int k = 0; k < 4; k++) { // the plane, and the three rims
+        const double *a = p[k ? k : 1], *b = p[k ? 1 + k % 3 : 1];
+        double along = 0, length = 0, at[3], squared = 0;
+        for (int c = 0; c < 3; c++) {
+            along += (p[0][c] - a[c]) * (b[c] - a[c]);
+            length += (b[c] - a[c]) * (b[c] - a[c]);
+        }
+        share[0] = k ? fmin(fmax(along / length, 0), 1) : l[0];
+        share[1] = k ? 0 : l[1];
+        for (int c = 0; c < 3; c++) {
+            at[c] = k ? a[c] + share[0] * (b[c] - a[c])
+                      : a[c] + share[0] * plane.u[c] + share[1] * plane.v[c];
+            squared += (p[0][c] - at[c]) * (p[0][c] - at[c]);
+        }
+        if ((k || (l[0] >= 0 && l[1] >= 0 && l[0] + l[1] <= 1)) && squared < best) {
+            best = squared;
+            memcpy(to, at, sizeof at);
+        }
+    }
+    return sqrt(best);
+}
+
+static double nearest(const struct field *field, double to[3]) {
+    double best = HUGE_VAL, at[3];
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        const double d = nearest_on(field, field->triangles + 3 * t, at);
+        if (d < best) {
+            best = d;
+            memcpy(to, at, sizeof at);
+        }
+    }
+    return best;
+}
+
+/* a facet in range is truly in range: of what the search leaves out nothing is felt */
+static void check_reach(struct field *field, double range) {
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        const uint32_t *c = field->triangles + 3 * t;
+        const struct cs_facets_pair pair = {
+            .at = {0, c[0], c[1], c[2]}, .triangle = t, .range = range};
+        struct cs_facet_use uses[CS_FACETS];
+        double to[3];
+        if (cs_facets_find(&field->facets, &pair, field->x, uses))
+            UNIT_ASSERT_OFTEN(nearest_on(field, c, to) < range);
+    }
+}
+
+/* whatever the mesh is like, a point is pushed away from the nearest of it, by an energy that
+ * is not small */
+START_TEST(bent_meshes_never_draw) {
+    const double range = 0.4;
+    uint64_t state = 7;
+    uint32_t tried = 0;
+    struct field field;
+    for (int k = 0; k < 3 * SHAPES; k++) {
+        open(&field, 0.1, &state);
+        bend(&field, k / 3, 0.2 + 0.8 * (k % 3), &state);
+        for (int probe = 0; probe < 400; probe++) {
+            double to[3] = {0}, force[3], out = 0;
+            put(&field, draw(&state), draw(&state), draw(&state));
+            const double d = nearest(&field, to);
+            if (!(d > 0.1 * range && d < 0.9 * range))
+                continue;
+            const double energy = energy_at(&field, range, force);
+            for (size_t c = 0; c < 3; c++)
+                out += force[c] * (field.x[c * POINTS] - to[c]) / d;
+            ck_assert_msg(out > 0 && energy > 0.3 * cs_law_energy(d, range, 1),
+                          "shape %d: push %g of %g, energy %g of %g", k / 3, out,
+                          cs_law_at(d, range, 1).force, energy, cs_law_energy(d, range, 1));
+            check_reach(&field, range);
+            tried++;
+        }
+        cs_arena_finish(&field.arena);
+    }
+    ck_assert_uint_gt(tried, 1000);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {derivatives_are_those_of_differences, gradient_keeps_momentum,
+                                  flat_meshes_are_felt_once, bent_meshes_never_draw};
+    return unit_run("facet", tests, sizeof tests / sizeof *tests);
+}
