@@ -32,7 +32,10 @@ static enum cs_step host_fail(void *ctx, const char *format, ...) {
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    cs_fail(&host->error, CS_ERR_MODULE, "%s", message);
+    struct cs_text where = {0};
+    cs_blocked_print(&host->blocked, host->run->system, &where);
+    cs_fail(&host->error, CS_ERR_MODULE, "%s%s", message, cs_text_get(&where));
+    cs_text_finish(&where);
     return CS_STEP_FAIL;
 }
 
@@ -221,6 +224,8 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
     const double begin = cs_stage_begin(host);
     const double share = cs_passage_share(host->run->system, t0, x0, t1, x1);
     host->run->counts.cut_steps += share < 1;
+    cs_blocked_keep(&host->blocked, host->run->system, (const double[2]){t0, t1},
+                    (const double *const[2]){x0, x1}, share);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     cs_trace_vector(host, "longest move", "x", t1, x1);
     cs_trace_number(host, "longest move", "share", t1, share);
@@ -246,6 +251,8 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     const bool judged = cs_passage_is_judged(system);
     if (judged)
         host->calls.max_share = host_max_share;
+    if (cs_blocked_init(&host->blocked, system, &host->arena, error))
+        return error->status;
     // who asks for one may ask for the other
     if (!judged && !cs_bounds_have_rate(system))
         return CS_OK;

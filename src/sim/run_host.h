@@ -7,6 +7,7 @@
 #include "model/commit/reach.h"
 #include "model/event/events.h"
 #include "model/solver/linear.h"
+#include "sim/blocked.h"
 #include "sim/bound.h"
 #include "sim/budget.h"
 #include "sim/guard.h"
@@ -30,6 +31,7 @@ struct cs_run_host {
     struct cs_stats before; /* counted before the checkpoint that the run goes on from */
     struct cs_error error;  /* the method's first message */
     struct cs_bound bound;
+    struct cs_blocked blocked;
     struct cs_left left;
     struct cs_arena arena; /* the method's memory and the solver's */
 };

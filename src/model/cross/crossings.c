@@ -195,25 +195,15 @@ struct cs_crossing_count cs_crossings_start(const struct cs_system *system) {
     return count(system, 0, system->state, system->scene, NULL);
 }
 
-static void print_point(const struct cs_system *system, uint32_t point, struct cs_text *out) {
-    const struct cs_surfaces *surfaces = system->surfaces;
-    const uint32_t body = cs_surfaces_body(surfaces->first_point, surfaces->n_bodies, point);
-    if (point < system->view.n)
-        cs_system_print_particle(system, point, out);
-    else
-        cs_text_add(out, "vertex %u of colliders[%u]", point - surfaces->first_point[body],
-                    body - system->scene->bodies.n);
-}
-
 void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
                         struct cs_text *out) {
     const struct cs_parts *parts = &system->crossings->parts;
     cs_text_add(out, "%llu edge%s through %s", (unsigned long long)count->n,
                 count->n == 1 ? " goes" : "s go", count->n == 1 ? "a triangle" : "triangles");
     cs_text_add(out, count->n == 1 ? ", from " : ", the first from ");
-    print_point(system, cs_parts_ends(parts, count->edge)[0], out);
+    cs_surfaces_print_point(system, cs_parts_ends(parts, count->edge)[0], out);
     cs_text_add(out, ", through the triangle at ");
-    print_point(system, cs_parts_corners(parts, count->triangle)[0], out);
+    cs_surfaces_print_point(system, cs_parts_corners(parts, count->triangle)[0], out);
 }
 
 /* --- the first of a move --- */

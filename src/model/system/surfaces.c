@@ -174,3 +174,14 @@ size_t cs_surfaces_bytes(const struct cs_scene *scene) {
     }
     return words * sizeof(uint32_t) + sizeof(struct cs_surfaces);
 }
+
+void cs_surfaces_print_point(const struct cs_system *system, uint32_t point,
+                             struct cs_text *out) {
+    const struct cs_surfaces *surfaces = system->surfaces;
+    const uint32_t body = cs_surfaces_body(surfaces->first_point, surfaces->n_bodies, point);
+    if (point < system->view.n)
+        cs_system_print_particle(system, point, out);
+    else
+        cs_text_add(out, "vertex %u of colliders[%u]", point - surfaces->first_point[body],
+                    body - system->scene->bodies.n);
+}

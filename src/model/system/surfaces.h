@@ -36,6 +36,10 @@ size_t cs_surfaces_points(const struct cs_scene *scene);
 /* Bytes that it takes, for a plan. */
 size_t cs_surfaces_bytes(const struct cs_scene *scene);
 
+/* Adds "particle 312 (body 0, column 24, row 4)", or "vertex 5 of colliders[1]". */
+void cs_surfaces_print_point(const struct cs_system *system, uint32_t point,
+                             struct cs_text *out);
+
 /* The body of a point, triangle or edge: `first` is first_point, first_triangle or first_edge.
  */
 static inline uint32_t cs_surfaces_body(const uint32_t *first, uint32_t n_bodies,
