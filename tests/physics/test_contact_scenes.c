@@ -172,8 +172,76 @@ START_TEST(ball_winds_up_the_sheet) {
 }
 END_TEST
 
+/* --- a funnel --- */
+
+/* The tetrahedron pushes all three sheets through, none through another. The small case begins
+ * to. */
+START_TEST(sheets_go_through_the_funnel) {
+    const struct run_of of = {"funnel", NULL, {{NULL, NULL}}, all ? 180 : 1, all};
+    struct cs_session session;
+    double highest = -HUGE_VAL;
+    open_run(&session, &of);
+    for (uint32_t frame = 0; frame < of.frames; frame++) {
+        next_frame(&session, &of);
+        const struct cs_run *run = &session.run;
+        ck_assert_uint_eq(cs_crossings_count(&session.system, run->t, run->x).n, 0);
+    }
+    const size_t n = session.system.view.n;
+    for (size_t i = 0; i < n; i++)
+        highest = fmax(highest, session.run.x[n + i]);
+    // its end is at -0.3 m
+    ck_assert_msg(!all || highest < -0.3, "%g m", highest);
+    cs_session_close(&session);
+}
+END_TEST
+
+/* --- curtain and ball --- */
+
+/* A ball of triangles on its way through a curtain (after Bridson et al. 2002); columns and
+ * rows, friction. */
+#define CURTAIN                                                                                \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [%u, %u], \"size\": [0.8, 0.8], \"place\": "         \
+    "{\"translate\": [0, 0, 0]}}, \"mass\": {\"areal_density\": 0.25}, \"springs\": "          \
+    "{\"stretch\": 150, \"shear\": 50, \"bend\": 1, \"damping\": 0.02}, \"pins\": [\"top\"], " \
+    "\"thickness\": 0.02}], \"colliders\": [{\"mesh\": {\"shape\": \"sphere\", \"detail\": "   \
+    "4, "                                                                                      \
+    "\"scale\": [0.4, 0.4, 0.4], \"place\": {\"translate\": [0.03, -0.1, -0.3]}}, "            \
+    "\"friction\": %g, \"thickness\": 0.02}], \"contact\": {\"law\": \"force\", "              \
+    "\"damping\": 0.001, \"friction_speed\": 0.05}, \"events\": [{\"from\": 0, \"to\": 1.2, "  \
+    "\"move\": {\"collider\": 0, \"path\": [{\"at\": 1.2, \"point\": [0, 0, 0.9]}]}}], "       \
+    "\"crossings\": \"limit\"}"
+
+/* Runs it, and gives the mean of the curtain's particles along the ball's way, in m. */
+static double carried(const char *method, uint32_t grid, double mu, uint32_t frames) {
+    struct fixture cloth;
+    double mean = 0;
+    fixture_open(&cloth, method, CURTAIN, grid, grid, mu);
+    fixture_start(&cloth);
+    for (uint32_t frame = 0; frame < frames; frame++) {
+        fixture_frames(&cloth, 1);
+        const struct cs_run *run = &cloth.session.run;
+        ck_assert_uint_eq(cs_crossings_count(cloth.system, run->t, run->x).n, 0);
+    }
+    for (size_t i = 0; i < cloth.n; i++)
+        mean += cloth.x[2 * cloth.n + i] / (double)cloth.n;
+    fixture_close(&cloth);
+    return mean;
+}
+
+START_TEST(ball_goes_through_the_curtain) {
+    const uint32_t grid = all ? 17 : 7, frames = all ? 120 : 24;
+    for (int rub = all ? 0 : 1; rub < 2; rub++) {
+        const double mu = rub ? 0.6 : 0;
+        const double coarse = carried("implicit-linearised:dt=0.004", grid, mu, frames);
+        const double fine = carried("implicit-linearised:dt=0.002", grid, mu, frames);
+        ck_assert_msg(fabs(coarse - fine) < 0.01, "rub %d: %.4g, %.4g m", rub, coarse, fine);
+    }
+}
+END_TEST
+
 int main(int argc, char **argv) {
     all = argc > 1 && !strcmp(argv[1], "all");
-    const TTest *const tests[] = {nothing_goes_through, knot_is_tight, ball_winds_up_the_sheet};
+    const TTest *const tests[] = {nothing_goes_through, knot_is_tight, ball_winds_up_the_sheet,
+                                  sheets_go_through_the_funnel, ball_goes_through_the_curtain};
     return fixture_run("contact scenes", tests, LENGTH(tests));
 }

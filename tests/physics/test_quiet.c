@@ -55,7 +55,7 @@ START_TEST(slope_takes_nothing) {
         double most;
     } methods[] = {{"implicit-linearised:dt=4e-3", 0.002}, {"rk4:dt=2e-3", 0.001}};
     for (size_t m = 0; m < (all ? LENGTH(methods) : 1); m++)
-        for (int k = 0; k < (all ? 4 : 2); k++) {
+        for (int k = all ? 0 : 1; k < (all ? 4 : 2); k++) {
             const double lost =
                 lost_on_slope(methods[m].method, 0.15 + 0.1 * k, k % 2 ? 18 : 6);
             ck_assert_msg(fabs(lost) < methods[m].most, "%s, turn %d: %.3g g",
@@ -97,7 +97,7 @@ static void push_flat(const struct fixture *cloth, size_t upper, double y, doubl
     struct cs_system alone = *cloth->system;
     alone.terms[0] = &cs_term_pairs;
     alone.n_terms = 1;
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < 100; k++) {
         const double shift[2] = {0.05 * draw(&state), 0.05 * draw(&state)};
         double sum[3] = {0};
         for (size_t i = 0; i < n; i++) {
@@ -110,13 +110,13 @@ static void push_flat(const struct fixture *cloth, size_t upper, double y, doubl
         for (size_t i = upper; i < n; i++)
             for (size_t c = 0; c < 3; c++)
                 sum[c] += f[c * n + i];
-        mean[0] += hypot(sum[0], sum[2]) / 200;
-        mean[1] += sum[1] / 200;
+        mean[0] += hypot(sum[0], sum[2]) / 100;
+        mean[1] += sum[1] / 100;
     }
 }
 
 START_TEST(sheets_push_straight) {
-    static const double heights[] = {0.5, 0.65, 0.8};
+    static const double heights[] = {0.5, 0.7};
     for (size_t k = 0; k < LENGTH(heights); k++) {
         struct fixture cloth;
         double mean[2] = {0};
@@ -145,7 +145,7 @@ static void speeds_of(const struct fixture *cloth, size_t begin, size_t end, dou
 
 START_TEST(sheets_lie_still) {
     const char *method = all ? "symplectic-euler:dt=2e-4" : "implicit-linearised:dt=4e-3";
-    const uint32_t frames = all ? 180 : 60;
+    const uint32_t frames = all ? 180 : 30;
     for (int rubs = 0; rubs < 2; rubs++) {
         struct fixture cloth;
         double rms, drift;
@@ -193,7 +193,7 @@ START_TEST(ten_sheets_come_to_rest) {
     write_heap(text, sizeof text);
     fixture_open(&cloth, "implicit-linearised:dt=4e-3", "%s", text);
     fixture_start(&cloth);
-    const uint32_t frames = all ? 180 : 4;
+    const uint32_t frames = all ? 180 : 1;
     for (uint32_t frame = 0; frame < frames; frame++) {
         fixture_frames(&cloth, 1);
         ck_assert_uint_eq(cs_crossings_count(cloth.system, cloth.session.run.t, cloth.x).n, 0);
