@@ -39,6 +39,20 @@ static enum cs_status append_file(const char *from, const char *to, struct cs_er
     return error->status;
 }
 
+/* Any part says which scene a comparison is of. */
+static enum cs_status copy_origin(const char *folder, const char *out, struct cs_error *error) {
+    char from[4096], to[4096];
+    char *bytes;
+    size_t length;
+    snprintf(from, sizeof from, "%s/origin.json", folder);
+    snprintf(to, sizeof to, "%s/origin.json", out);
+    if (access(from, F_OK) || cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
+        return error->status;
+    cs_file_write(to, bytes, length, error);
+    free(bytes);
+    return error->status;
+}
+
 static enum cs_status append_maps(const char *folder, const char *out, uint32_t *n,
                                   struct cs_error *error) {
     char from[4096], to[4096];
@@ -68,7 +82,8 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
         return error->status;
     cells += rows_of_sweep;
     for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
-        append_maps(args->operands[k], out, &maps, error);
+        if (!copy_origin(args->operands[k], out, error))
+            append_maps(args->operands[k], out, &maps, error);
     if (!error->status && cells + maps == 0)
         return cs_fail(error, CS_ERR_FILE,
                        "no folder holds a compare.csv, a sweep.csv or the .partial of a map");

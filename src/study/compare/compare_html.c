@@ -95,6 +95,7 @@ static void add_machine(struct cs_text *out) {
 void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ranking,
                    struct cs_text *out) {
     struct cs_text command = {0}, reference = {0}, verdict = {0}, warnings = {0}, series = {0};
+    struct cs_text ledger = {0};
     const char *typed = compare->settings->command;
     add_head(compare, out);
     cs_text_add(&command, "%s\n", typed ? typed : "");
@@ -102,6 +103,7 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
     cs_verdict_print(ranking, "", compare, &verdict);
     cs_compare_warn(compare, "", &warnings);
     cs_table_add_series(compare, &series);
+    cs_table_add_ledger(compare, &ledger);
     if (typed)
         add_pre("Command", &command, out);
     add_pre("Reference", &reference, out);
@@ -116,6 +118,8 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
         add_diagram(compare, ranking, "work", out);
     }
     add_pre("Series", &series, out);
+    if (ledger.length)
+        add_pre("Where energy went", &ledger, out);
     add_table(compare, ranking, out);
     add_machine(out);
     cs_text_add(out, "</body></html>\n");
