@@ -201,7 +201,7 @@ static enum cs_status bisect(struct cs_args *args, struct cs_error *error) {
 const struct cs_command cs_command_bisect = {
     .name = "bisect",
     .operands = "SCENE",
-    .summary = "find the first number that two builds, methods or settings compute otherwise",
+    .summary = "find the first number that two runs of a scene compute otherwise",
     .notes = "A and B are this program on SCENE, but for what --a and --b say.\n\n"
              "Example: clothsim bisect scenes/hang.json --b program=../old/build/clothsim\n",
     .rows = rows,
