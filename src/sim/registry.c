@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MODULE_BYTES_MAX = 256 << 20 };
 
@@ -133,9 +134,47 @@ static enum cs_status open_folder(struct cs_registry *registry, const char *fold
     return error->status;
 }
 
+/* Goes on to the next line "NAME WORDS" of a list that the build has left in its module folder:
+ * *words is what stands behind NAME, or behind any where name is NULL. false: none is left. */
+static bool next_words(char **rest, const char *name, const char **words) {
+    for (char *line; (line = strsep(rest, "\n"));) {
+        const char *found = strsep(&line, " ");
+        *words = line;
+        if (line && (!name || !strcmp(found, name)))
+            return true;
+    }
+    return false;
+}
+
+/* The text of such a list, to be freed; NULL: it is not there. */
+static char *read_list(const char *list) {
+    struct cs_error unread = {0};
+    char path[PATH_MAX], *text;
+    size_t length;
+    snprintf(path, sizeof path, "%.4000s/%s", cs_module_folder(), list);
+    return cs_file_read(path, 1 << 16, &text, &length, &unread) ? NULL : text;
+}
+
+/* Opens the build's own modules, or with a name the one that has it: without a look into the
+ * others. */
+static enum cs_status open_listed(struct cs_registry *registry, const char *name,
+                                  struct cs_error *error) {
+    char *text = read_list("modules.txt"), *rest = text;
+    const char *module;
+    while (!error->status && next_words(&rest, name, &module)) {
+        char file[PATH_MAX];
+        snprintf(file, sizeof file, "%.4000s/%.64s", cs_module_folder(), module);
+        if (!strchr(module, '/') && access(file, F_OK) == 0)
+            open_module(registry, file, error);
+    }
+    free(text);
+    return error->status;
+}
+
 static enum cs_status open_folders(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
-    if (open_folder(registry, cs_module_folder(), name, error))
+    if (open_listed(registry, name, error) || (name && find_entry(registry, name)) ||
+        open_folder(registry, cs_module_folder(), name, error))
         return error->status;
     const char *list = getenv("CLOTHSIM_PLUGIN_PATH");
     while (list && *list && !error->status) {
@@ -169,23 +208,14 @@ enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_erro
     return CS_OK;
 }
 
-/* The library of a method that this build was made without, or NULL: the build leaves lines
- * "method library" in its module folder. The text is the registry's. */
+/* The library of a method that this build was made without, or NULL. The text is the
+ * registry's. */
 static const char *find_left_out(struct cs_registry *registry, const char *name,
                                  struct cs_error *error) {
-    struct cs_error unread = {0};
-    char path[PATH_MAX], *text;
-    size_t length;
-    const char *library = NULL;
-    snprintf(path, sizeof path, "%.4000s/left-out.txt", cs_module_folder());
-    if (cs_file_read(path, 1 << 16, &text, &length, &unread))
-        return NULL;
-    char *rest = text;
-    for (char *line; !library && (line = strsep(&rest, "\n"));) {
-        const char *method = strsep(&line, " ");
-        if (line && !strcmp(method, name))
-            library = cs_arena_take_text(&registry->arena, line, error);
-    }
+    char *text = read_list("left-out.txt"), *rest = text;
+    const char *words, *library = NULL;
+    if (next_words(&rest, name, &words))
+        library = cs_arena_take_text(&registry->arena, words, error);
     free(text);
     return library;
 }

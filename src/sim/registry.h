@@ -28,8 +28,9 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
 
 /* Finds an integrator by name: files that were added first, then the modules in the folders
  * (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute folders only) by their
- * names. Only a module whose bytes hold the name is opened, and none after the one that has the
- * integrator: opening loads libraries. CS_ERR_USAGE with the nearest name where
+ * names. First comes the module that the build's own list, modules.txt, names. Else only a
+ * module whose bytes hold the name is opened, and none after the one that has the integrator:
+ * opening loads libraries. CS_ERR_USAGE with the nearest name where
  * there is none, or with the library that the build was made without; CS_ERR_MODULE with the
  * reason where it was refused. */
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,

@@ -69,3 +69,16 @@ grep -q 'golden/hash.tsv' ../refused
 echo 'made-up-bdf SUNDIALS (Debian: libsundials-dev)' >>"$modules/left-out.txt"
 if "$program" integrators made-up-bdf 2>../refused; then exit 1; fi
 grep -qx 'clothsim: integrator "made-up-bdf" needs SUNDIALS (Debian: libsundials-dev), which this clothsim was built without' ../refused
+
+# the build's list names every method and its module, which alone is opened then
+"$program" integrators | sed -n 's/^\([a-z0-9-]\{1,\}\)  *order .*/\1/p' | sort >../found
+cut -d ' ' -f 1 "$modules/modules.txt" | sort | cmp - ../found
+while read -r method module; do
+    grep -q "$method" "$modules/$module"
+done <"$modules/modules.txt"
+cp "$modules/explicit.so" "$modules/a-copy.so"
+"$program" integrators rk4 | grep -q '^module .*/explicit.so$'
+"$program" integrators | grep -q 'refused: .*/a-copy.so: integrator "[a-z0-9-]*" is already in .*/explicit.so'
+# and without it the modules are searched
+rm "$modules/modules.txt"
+"$program" integrators rk4 | grep -q '^module .*/a-copy.so$'
