@@ -9,9 +9,13 @@
 #include <clothsim/small.h>
 
 enum {
-    CELLS = 1024,    /* of one block of a loop at least: a whole number of lanes */
+    /* of one block of a loop at least, a whole number of lanes: so few that the blocks of all
+     * loops of a smoother stay in a processor's own cache, up to 256 cells a row */
+    CELLS = 512,
     CELLS_FEW = 128, /* where threads would else have no blocks to share */
-    LOOPS = 4        /* of a smoother and what follows it at most */
+    LOOPS = 4,       /* of a smoother and what follows it at most */
+    AHEAD = 256,     /* cells after which numbers are asked for */
+    BIG = 1 << 14    /* cells that are not all in that cache */
 };
 
 size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers) {
@@ -38,6 +42,7 @@ struct loop {
     const float *d;
     float *e; /* NULL: r alone changes */
     float a, b;
+    bool fetches; /* the first loop to look at a block's springs */
 };
 
 /* loops one after another, each of which looks at the cells around its own */
@@ -105,6 +110,15 @@ CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const
     return y;
 }
 
+/* Asks for the springs of cells to come: a row of a kind is a stream of its own, and so many
+ * streams at once are more than processors follow by themselves. */
+CS_INLINE void fetch_springs(const struct cs_level *level, size_t i) {
+    const size_t at = i + AHEAD < level->n ? i + AHEAD : i;
+    const size_t rows = level->n_steps * (cs_level_is_factored(level) ? 4 : 6);
+    for (size_t c = 0; c < rows; c++)
+        __builtin_prefetch(level->springs + c * level->n + at);
+}
+
 /* springs that begin here, and springs that end here */
 CS_INLINE struct vectors add_steps(const struct cs_level *level, const bool factored, size_t i,
                                    const float *p, struct vectors here, struct vectors y) {
@@ -144,7 +158,10 @@ CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form
                           size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;
+    const bool fetches = loop->fetches && form != CS_LEVEL_LISTS && n > BIG;
     for (size_t i = begin; i < end; i += CS_LANES) {
+        if (fetches)
+            fetch_springs(level, i);
         const struct vectors d = get3(loop->d + i, n);
         const struct vectors r =
             minus(get3(level->r + i, n), product(level, form, i, loop->d, d));
@@ -172,7 +189,7 @@ CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
 }
 
 void cs_level_take_product(struct cs_level *level) {
-    run_one((struct loop){.level = level, .task = sweep, .d = level->d});
+    run_one((struct loop){.level = level, .task = sweep, .d = level->d, .fetches = true});
 }
 
 /* x = e = b D^-1 r */
@@ -196,18 +213,18 @@ static const struct {
 
 void cs_level_smooth_down(struct cs_level *level) {
     float *d = level->d, *e = level->e;
-    run(&(struct loops){.loops = {{level, start, NULL, d, 0, first_gain},
-                                  {level, sweep, d, e, gains[0].a, gains[0].b},
-                                  {level, sweep, e, d, gains[1].a, gains[1].b},
-                                  {level, sweep, d, NULL, 0, 0}},
+    run(&(struct loops){.loops = {{level, start, NULL, d, 0, first_gain, false},
+                                  {level, sweep, d, e, gains[0].a, gains[0].b, true},
+                                  {level, sweep, e, d, gains[1].a, gains[1].b, false},
+                                  {level, sweep, d, NULL, 0, 0, false}},
                         .n = 4});
 }
 
 void cs_level_smooth_up(struct cs_level *level) {
     float *d = level->d, *e = level->e;
-    run(&(struct loops){.loops = {{level, sweep, d, e, 0, first_gain},
-                                  {level, sweep, e, d, gains[0].a, gains[0].b},
-                                  {level, sweep, d, e, gains[1].a, gains[1].b}},
+    run(&(struct loops){.loops = {{level, sweep, d, e, 0, first_gain, true},
+                                  {level, sweep, e, d, gains[0].a, gains[0].b, false},
+                                  {level, sweep, d, e, gains[1].a, gains[1].b, false}},
                         .n = 3});
 }
 
