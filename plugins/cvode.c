@@ -48,10 +48,11 @@ struct cvode_options {
 
 static const struct cs_option bdf_rows[] = {
     COMMON_ROWS(1e-14),
-    CS_OPTION(struct cvode_options, max_order, "", 0, 0, 5,
-              "highest order; 0: 5 where damping is strong and rtol below 1e-3, else 2, and 5 "
-              "while steps are below 1/omega; an order above 2 that is asked for, and strong "
-              "damping's, come with detection of the stability limit"),
+    CS_OPTION(
+        struct cvode_options, max_order, "", 0, 0, 5,
+        "highest order; 0: 5 where damping is strong and rtol below 1e-3, else 2, and 5 "
+        "while steps are well below 1/omega; an order above 2 that is asked for, and strong "
+        "damping's, come with detection of the stability limit"),
     CS_OPTION(struct cvode_options, linear_rtol, "", 1e-4, 1e-14, 0.5,
               "relative residual of the linear solves"),
 };
@@ -162,11 +163,12 @@ static const struct sundials_library library = {
 /* the highest order to begin with */
 static int choose_bdf_order(struct cvode *self) {
     const struct cs_host *host = self->base.host;
-    const bool weak = host->view->delta < WEAK_DAMPING * host->view->omega;
+    const double omega = host->view->omega, delta = host->view->delta;
+    const bool weak = delta < WEAK_DAMPING * omega;
     if (self->asked.max_order > 0)
         return (int)self->asked.max_order;
     if (weak || self->asked.rtol >= 1e-3)
-        cvode_order_begin(&self->order);
+        cvode_order_begin(&self->order, omega > 0 ? delta / omega : 0);
     host->note(host->ctx, "max_order automatic: %s (rtol %g, damping %s)",
                self->order.chosen ? "2, and 5 while steps are short" : "5", self->asked.rtol,
                weak ? "weak" : "strong");

@@ -4,16 +4,25 @@
 /* steps in a row that make one try the high order, and go back the first time */
 enum { LONG = 20, PATIENCE = 100 };
 
-/* Below the first the tolerance asks for steps that the high order can take as well: without
+/* Below SHORT the tolerance asks for steps that the high order can take as well: without
  * damping order 5 makes a motion grow by (h omega)^6 / 6 a step, its error term, which is 4e-5
- * there and would be 3e-3 at twice the step. From the second on the high order's steps may be
- * held by stability, and a step of the low order beyond the third shows that they were. */
-#define SHORT 0.25
-#define HELD  0.3
-#define FAR   1.0
+ * there. Damping takes (delta / omega) h omega away, and while that is the double of what grows
+ * steps may be longer, up to SHORT_DAMPED; stability holds order 5 at 0.53. A little beyond
+ * either the high order's steps may be held by it, and a step of the low order beyond FAR shows
+ * that they were. */
+#define SHORT        0.25
+#define SHORT_DAMPED 0.4
+#define BEYOND       1.2
+#define FAR          1.0
 
-void cvode_order_begin(struct cvode_order *self) {
-    *self = (struct cvode_order){.chosen = true, .patience = PATIENCE};
+void cvode_order_begin(struct cvode_order *self, double damping) {
+    *self = (struct cvode_order){.chosen = true, .patience = PATIENCE, .damping = damping};
+}
+
+static bool is_short(const struct cvode_order *self, double h_omega) {
+    const double square = h_omega * h_omega;
+    return h_omega < SHORT ||
+           (h_omega < SHORT_DAMPED && square * square * h_omega < 3 * self->damping);
 }
 
 void cvode_order_forget(struct cvode_order *self) {
@@ -22,7 +31,8 @@ void cvode_order_forget(struct cvode_order *self) {
 }
 
 bool cvode_order_watch(struct cvode_order *self, double h_omega) {
-    const bool speaks = self->high ? h_omega > HELD : h_omega < SHORT;
+    const bool speaks =
+        self->high ? !is_short(self, h_omega / BEYOND) : is_short(self, h_omega);
     self->row = speaks ? self->row + 1 : 0;
     /* the low order is of use: what comes after it may be tried as soon as at first */
     if (!self->high && h_omega > FAR)

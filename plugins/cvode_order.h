@@ -16,14 +16,15 @@
 enum { CVODE_ORDER_LOW = 2, CVODE_ORDER_HIGH = 5 };
 
 struct cvode_order {
-    bool chosen; /* here; else one order is asked for, and the rest of this is not used */
+    bool chosen;    /* here; else one order is asked for, and the rest of this is not used */
+    double damping; /* delta / omega of the scene */
     bool high;
     uint32_t row;      /* steps that speak for a change */
     uint32_t patience; /* so many make one go back */
 };
 
-/* The order to begin with. */
-void cvode_order_begin(struct cvode_order *self);
+/* The order to begin with. damping: the ratio of the fastest motions. */
+void cvode_order_begin(struct cvode_order *self, double damping);
 
 /* The library's history is gone. */
 void cvode_order_forget(struct cvode_order *self);

@@ -48,6 +48,20 @@ START_TEST(short_steps_take_order_5) {
 }
 END_TEST
 
+/* The sheet's damping outweighs what order 5 makes grow: steps of h omega = 0.3 may try it. */
+START_TEST(damping_lets_longer_steps_take_order_5) {
+    static struct outcome reference, low, found;
+    run("dopri5:rtol=1e-12", 1, "0", 10, &reference);
+    run("cvode-bdf:rtol=1e-4,atol=1e-7,max_order=2", 1, "0", 10, &low);
+    run("cvode-bdf:rtol=1e-4,atol=1e-7", 1, "0", 10, &found);
+    ck_assert_msg(2 * found.steps < low.steps, "%llu steps, %llu of order 2",
+                  (unsigned long long)found.steps, (unsigned long long)low.steps);
+    ck_assert_msg(4 * error_of(&found, &reference) < error_of(&low, &reference),
+                  "errors %.3g m, %.3g m of order 2", error_of(&found, &reference),
+                  error_of(&low, &reference));
+}
+END_TEST
+
 /* order 5 alone takes hundreds of times the steps there */
 START_TEST(a_stiff_sheet_keeps_order_2) {
     static struct outcome low, found;
@@ -69,7 +83,8 @@ START_TEST(slow_motion_goes_back_to_order_2) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {short_steps_take_order_5, a_stiff_sheet_keeps_order_2,
-                                  slow_motion_goes_back_to_order_2};
+    const TTest *const tests[] = {
+        short_steps_take_order_5, damping_lets_longer_steps_take_order_5,
+        a_stiff_sheet_keeps_order_2, slow_motion_goes_back_to_order_2};
     return fixture_run("bdf_order", tests, sizeof tests / sizeof *tests);
 }
