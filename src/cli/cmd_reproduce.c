@@ -4,6 +4,7 @@
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
+#include "cli/manifest.h"
 #include "study/again.h"
 #include "study/compare/compare_again.h"
 
@@ -47,13 +48,23 @@ static uint32_t cut_row(char *path) {
     return 0;
 }
 
+/* Which files of the folder are not as the run left them. */
+static void tell_manifest(const char *folder, struct cs_text *notes) {
+    struct cs_error unread = {0};
+    uint32_t n, differing;
+    if (cs_manifest_check(folder, notes, &n, &differing, &unread))
+        cs_text_add(notes, "%s\n", unread.message);
+}
+
 /* What a file is, by its name; a folder stands for the report in it. */
 static enum cs_status make_again(struct cs_again *again, struct cs_again_settings *settings,
                                  char path[PATH_BYTES], struct cs_error *error) {
     struct stat info;
     const uint32_t row = cut_row(path);
-    if (!stat(path, &info) && S_ISDIR(info.st_mode))
+    if (!stat(path, &info) && S_ISDIR(info.st_mode)) {
+        tell_manifest(path, &again->notes);
         strncat(path, "/run.json", PATH_BYTES - strlen(path) - 1);
+    }
     settings->file = path;
     return row ? cs_compare_again(again, settings, row, error)
            : ends_in(path, ".csv")
