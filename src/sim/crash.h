@@ -43,7 +43,8 @@ void cs_crash_forget(enum cs_crash_side side);
 
 /* Another module, or another object of it: what failed before does not matter any more. */
 void cs_crash_begin(enum cs_crash_side side);
-/* true: an allocation failed in a call since then. What goes on without may crash much later. */
+/* true: an allocation failed in a call since then. What goes on without may crash much later.
+ */
 bool cs_crash_was_starved(enum cs_crash_side side);
 
 /* Calls are noted there from now on, in memory that another process sees, and that one is left
