@@ -232,9 +232,14 @@ CS_CLONES static void prolong_rows(void *arg, uint32_t block) {
             const float *own = fine->own + at;
             float *restrict d = fine->d + c * fine->n + at;
             float *restrict x = fine->x + c * fine->n + at;
-            for (size_t j = 0; j < fine->columns; j++) {
-                d[j] = own[j] > 0 ? from[j / 2] : 0;
-                x[j] += d[j];
+            // an odd row's last pair ends in padding, which is dead
+            for (size_t j = 0; j < coarse->columns; j++) {
+                const float left = own[2 * j] > 0 ? from[j] : 0;
+                const float right = own[2 * j + 1] > 0 ? from[j] : 0;
+                d[2 * j] = left;
+                d[2 * j + 1] = right;
+                x[2 * j] += left;
+                x[2 * j + 1] += right;
             }
         }
 }
