@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "model/force/terms.h"
 
+#include <clothsim/clones.h>
 #include <clothsim/small.h>
 #include <math.h>
 #include <string.h>
@@ -114,11 +115,12 @@ struct product {
 };
 
 /* to += blocks times from, of symmetric blocks (6,n) */
-static void add_blocks(const struct product *product, const double *b, size_t begin,
-                       size_t end) {
+CS_INLINE void add_blocks(const struct product *product, const double *b, size_t begin,
+                          size_t end) {
     const size_t n = product->linear->system->view.n;
     const double *p = product->from;
     double *restrict y = product->to;
+    CS_INDEPENDENT
     for (size_t i = begin; i < end; i++) {
         const double px = p[i], py = p[n + i], pz = p[2 * n + i];
         y[i] += b[i] * px + b[n + i] * py + b[2 * n + i] * pz;
@@ -127,7 +129,7 @@ static void add_blocks(const struct product *product, const double *b, size_t be
     }
 }
 
-static void mul_mass(void *arg, size_t begin, size_t end) {
+CS_CLONES static void mul_mass(void *arg, size_t begin, size_t end) {
     const struct product *product = arg;
     const double *mass = product->linear->mass;
     const size_t n = product->linear->system->view.n;
@@ -148,11 +150,12 @@ void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
 }
 
 /* inverse blocks times what it comes from */
-static void mul_inverse(void *arg, size_t begin, size_t end) {
+CS_CLONES static void mul_inverse(void *arg, size_t begin, size_t end) {
     const struct product *product = arg;
     const size_t n = product->linear->system->view.n;
     const double *b = product->linear->inverse, *r = product->from;
     double *restrict z = product->to;
+    CS_INDEPENDENT
     for (size_t i = begin; i < end; i++) {
         const double x = r[i], y = r[n + i], w = r[2 * n + i];
         z[i] = b[i] * x + b[n + i] * y + b[2 * n + i] * w;
