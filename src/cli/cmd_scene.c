@@ -3,9 +3,11 @@
 #include "cli/line/print.h"
 #include "io/scene_write.h"
 #include "model/plan.h"
+#include "scene/pairs.h"
 #include "study/coarse.h"
 #include "study/company.h"
 #include "study/session.h"
+#include "study/within.h"
 
 #include <string.h>
 
@@ -56,6 +58,8 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     struct cs_text warning = {0};
     if (!cs_company_print(scene, 1, &warning, error) && !warning.length)
         cs_coarse_print(&session->system, &warning);
+    if (!error->status && !warning.length)
+        cs_within_print(&session->system, &warning);
     if (!error->status && warning.length)
         cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
     cs_text_finish(&warning);
@@ -103,10 +107,10 @@ static enum cs_status open_scene(struct cs_args *args, struct cs_error *error) {
     enum cs_status (*const open)(struct cs_session *, const struct cs_session_settings *,
                                  struct cs_error *) =
         cs_args_get(args, SCENE_PLAN) ? cs_session_open : cs_session_open_plan;
-    /* what starts inside a collider shows in a system alone */
+    /* what starts inside a collider, or through or inside a body, shows in a system alone */
     if (!open(&session, &settings, error) &&
-        (session.scene.colliders.n == 0 || session.system.arena.used ||
-         !cs_session_build(&session, error)))
+        ((session.scene.colliders.n == 0 && !cs_scene_any_meet(&session.scene)) ||
+         session.system.arena.used || !cs_session_build(&session, error)))
         print_scene(args, &session, error);
     cs_session_close(&session);
     return error->status;

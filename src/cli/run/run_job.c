@@ -12,6 +12,7 @@
 #include "study/coarse.h"
 #include "study/company.h"
 #include "study/origin.h"
+#include "study/within.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -354,6 +355,8 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
         return error->status;
     if (!job->warning.length)
         cs_coarse_print(&job->session.system, &job->warning);
+    if (!job->warning.length)
+        cs_within_print(&job->session.system, &job->warning);
 
     if (cs_job_makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
