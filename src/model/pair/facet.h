@@ -107,8 +107,8 @@ CS_INLINE double cs_facet_bend(struct cs_facet *s, double m) {
     return s->form.off * m * step[0];
 }
 
-/* Distance, gradient and contact points. */
-CS_INLINE void cs_facet_set(struct cs_facet *s, struct cs_facet_form form, double p[4][3]) {
+/* The distance, and what its derivatives need. */
+CS_INLINE void cs_facet_measure(struct cs_facet *s, struct cs_facet_form form, double p[4][3]) {
     const double least = CS_STENCIL_LEAST * CS_STENCIL_LEAST;
     s->form = form;
     cs_stencil_frame(&s->plane, CS_STENCIL_TRIANGLE, p);
@@ -121,6 +121,13 @@ CS_INLINE void cs_facet_set(struct cs_facet *s, struct cs_facet_form form, doubl
     const double height = cs_vec3_dot(s->foot, s->foot);
     const double bent = cs_facet_bend(s, cs_vec3_dot(s->leg, s->leg) - height);
     s->d = sqrt(height + bent + least);
+}
+
+/* Distance, gradient and contact points. */
+CS_INLINE void cs_facet_set(struct cs_facet *s, struct cs_facet_form form, double p[4][3]) {
+    const double least = CS_STENCIL_LEAST * CS_STENCIL_LEAST;
+    cs_facet_measure(s, form, p);
+    const double *l = s->plane.l;
     cs_facet_slopes(s);
     const double in = 1 - s->f1, half = 0.5 / s->d;
     for (int k = 0; k < 3; k++)

@@ -104,7 +104,7 @@ static struct cs_facet *put(struct finding *at, uint32_t first, struct cs_facet_
         use->at[1 + k] = at->corners[(first + k) % 3];
         memcpy(use->p[1 + k], at->p[1 + (first + k) % 3], sizeof use->p[0]);
     }
-    cs_facet_set(facet, form, use->p);
+    cs_facet_measure(facet, form, use->p);
     use->d = facet->d;
     if (!(use->d < at->range))
         return NULL;
