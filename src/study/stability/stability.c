@@ -62,7 +62,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
         return error->status;
     if (!column->reference.found)
         return cs_fail(error, CS_ERR_USAGE,
-                       "%s = %g: no run to judge by (%.200s); a shorter --seconds or a longer "
+                       "%s = %g: no run to judge by (%.400s); a shorter --seconds or a longer "
                        "--budget may help",
                        cs_axis_names[map->settings->axis], column->value,
                        column->reference.message);
