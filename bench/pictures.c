@@ -96,7 +96,7 @@ static enum cs_status prepare(struct drawing drawings[WAYS], struct cs_session *
     for (int way = 0; way < WAYS; way++) {
         struct drawing *drawing = drawings + way;
         drawing->session = session;
-        drawing->image = (struct cs_image){shot->width, shot->height, NULL};
+        drawing->image = (struct cs_image){shot->width, shot->height, NULL, NULL};
         drawing->image.rgb = calloc((size_t)shot->width * shot->height, 3);
         if (!drawing->image.rgb)
             return cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");

@@ -89,10 +89,11 @@ struct cs_table {
     /* Exactly one of the optional rows must be given, but for the first `uncounted` rows. */
     bool one_of;
     uint32_t uncounted;
-    /* The row that a plain text, or a plain number, in place of the object stands for; or
-     * NULL. */
+    /* The row that a plain text, a plain number, or a plain list in place of the object
+     * stands for; or NULL. */
     const char *shorthand_text;
     const char *shorthand_number;
+    const char *shorthand_list;
 };
 
 /* The rows that integrator modules use. The option's type follows from the C type of the field,

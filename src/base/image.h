@@ -1,4 +1,4 @@
-/* image.h - 8-bit RGB pixels, rows from the top. */
+/* image.h - 8-bit RGB pixels, rows from the top, and how much they cover. */
 #ifndef CS_IMAGE_H
 #define CS_IMAGE_H
 
@@ -9,6 +9,7 @@
 struct cs_image {
     uint32_t width, height;
     uint8_t *rgb;
+    uint8_t *alpha; /* (height, width), owned likewise: rgb is not times it; NULL: all cover */
 };
 
 static inline size_t cs_image_bytes(const struct cs_image *image) {

@@ -15,7 +15,7 @@ struct place {
 void cs_bar_init(struct cs_bar *bar, const struct cs_render *render) {
     bar->width = (double)render->size[0];
     bar->height = (double)render->size[1];
-    cs_colour_ink(render->background, bar->ink);
+    cs_colour_ink(render->background.colour, bar->ink);
 }
 
 // the smallest of 1, 2 and 5 times a power of ten of which `steps` span the width

@@ -27,7 +27,7 @@ void cs_ground_make(struct cs_ground *ground, const struct cs_scene *scene,
     ground->span[2] = (float)extent->centre[2];
     ground->span[3] = (float)(6 * extent->radius);
     ground->pitch = (float)power_of_ten(0.3 * extent->radius);
-    cs_colour_ink(scene->render.background, ground->ink);
+    cs_colour_ink(scene->render.background.colour, ground->ink);
     // a floor shows the shadow itself
     ground->shadow = has_floor(scene) ? 0.0f : 0.4f;
 }

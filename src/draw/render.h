@@ -48,7 +48,7 @@ struct cs_frame {
     const struct cs_obstacle *obstacles; /* (scene->colliders.n) where they are at t */
 };
 
-#define CS_RENDERER_ABI 6u
+#define CS_RENDERER_ABI 7u
 struct cs_renderer {
     unsigned abi;
     const char *name; /* as in the names of enum cs_renderer_kind */
@@ -56,7 +56,8 @@ struct cs_renderer {
      * NULL. */
     enum cs_status (*create)(const struct cs_canvas_settings *settings,
                              struct cs_canvas **canvas, struct cs_error *error);
-    /* Draws a frame into image->rgb, which has room for scene->render.size. */
+    /* Draws a frame into an image that has room for scene->render.size. Where that has no
+     * alpha, a background of nothing is white. */
     enum cs_status (*paint)(struct cs_canvas *canvas, const struct cs_frame *frame,
                             struct cs_image *image, struct cs_error *error);
     /* "GL_RENDERER | GL_VERSION | caps": pixels are equal where this text is. */

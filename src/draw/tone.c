@@ -32,3 +32,40 @@ void cs_tone_make(struct cs_tone *tone) {
         tone->start[i] = (uint8_t)byte;
     }
 }
+
+uint32_t cs_tone_lay(uint32_t under, uint32_t over, uint32_t share) {
+    // in 255 * 255: what of each is seen
+    const uint32_t above = 255 * share, below = (255 - (under >> 24)) * (255 - share);
+    const uint32_t whole = above + below;
+    uint32_t out = (255 - (whole + 127) / 255) << 24;
+    for (int k = 0; k < 24 && whole; k += 8)
+        out |= (((under >> k & 255) * below + (over >> k & 255) * above + whole / 2) / whole)
+               << k;
+    return out;
+}
+
+uint32_t cs_tone_mean_clear(const struct cs_tone *tone, const uint32_t samples[4]) {
+    float light[3] = {0, 0, 0};
+    uint32_t whole = 0;
+    for (int s = 0; s < 4; s++) {
+        const uint32_t cover = 255 - (samples[s] >> 24);
+        whole += cover;
+        for (int k = 0; k < 3; k++)
+            light[k] += (float)cover * tone->linear[samples[s] >> 8 * k & 255];
+    }
+    if (!whole)
+        return 0xff000000;
+    for (int k = 0; k < 3; k++) {
+        const float mean = light[k] / (float)whole;
+        light[k] = mean < 1 ? mean : 1;
+    }
+    return cs_tone_pack(tone, light[0], light[1], light[2]) | (255 - (whole + 2) / 4) << 24;
+}
+
+uint32_t cs_tone_on_white(const struct cs_tone *tone, uint32_t colour) {
+    const float clear = (float)(colour >> 24);
+    float light[3];
+    for (int k = 0; k < 3; k++)
+        light[k] = (clear + (255 - clear) * tone->linear[colour >> 8 * k & 255]) / 255;
+    return cs_tone_pack(tone, light[0], light[1], light[2]);
+}

@@ -2,8 +2,10 @@
 #ifndef CS_DRAW_TONE_H
 #define CS_DRAW_TONE_H
 
+#include "base/image.h"
+
 #include <clothsim/clones.h>
-#include <stdint.h>
+#include <stddef.h>
 
 /* Zero: not made. */
 struct cs_tone {
@@ -32,10 +34,17 @@ CS_INLINE uint32_t cs_tone_times(uint32_t a, uint32_t b) {
     return (product + (product >> 8) + 128) >> 8;
 }
 
-/* `over` laid on `under` with a share of 0..255; bytes of red, green, blue from the lowest on.
- * Both parts are rounded, as renderers of bytes do; 255 gives `over`. */
+/* cs_tone_blend on what does not cover: the rule `over` (Porter and Duff 1984), for colours
+ * that are not times how much they cover. */
+uint32_t cs_tone_lay(uint32_t under, uint32_t over, uint32_t share);
+
+/* `over` laid on `under` with a share of 0..255; bytes of red, green, blue from the lowest on,
+ * and in `under` how much it lets through. Both parts are rounded, as renderers of bytes do;
+ * 255 gives `over`. */
 CS_INLINE uint32_t cs_tone_blend(uint32_t under, uint32_t over, uint32_t share) {
     uint32_t out = 0;
+    if (under >> 24)
+        return cs_tone_lay(under, over, share);
     for (int k = 0; k < 24; k += 8) {
         const uint32_t sum = cs_tone_times(under >> k & 255, 255 - share) +
                              cs_tone_times(over >> k & 255, share);
@@ -44,14 +53,35 @@ CS_INLINE uint32_t cs_tone_blend(uint32_t under, uint32_t over, uint32_t share) 
     return out;
 }
 
+/* cs_tone_mean where samples let light through: each counts by what it covers. */
+uint32_t cs_tone_mean_clear(const struct cs_tone *tone, const uint32_t samples[4]);
+
 /* The mean of four samples' light, not of their bytes: what covers half of a pixel gives half
- * of its light. Colours are packed; four equal ones stay what they are. */
+ * of its light. Colours are packed, the highest byte how much they let through; four equal
+ * ones stay what they are. */
 CS_INLINE uint32_t cs_tone_mean(const struct cs_tone *tone, const uint32_t samples[4]) {
     float light[3] = {0, 0, 0};
+    if ((samples[0] | samples[1] | samples[2] | samples[3]) >> 24)
+        return cs_tone_mean_clear(tone, samples);
     for (int s = 0; s < 4; s++)
         for (int k = 0; k < 3; k++)
             light[k] += tone->linear[samples[s] >> 8 * k & 255];
     return cs_tone_pack(tone, light[0] * 0.25f, light[1] * 0.25f, light[2] * 0.25f);
+}
+
+/* A colour that lets light through, as it is on white paper. */
+uint32_t cs_tone_on_white(const struct cs_tone *tone, uint32_t colour);
+
+/* A packed colour becomes pixel i of an image; where that has no alpha, on white paper. */
+CS_INLINE void cs_tone_put(const struct cs_tone *tone, uint32_t colour,
+                           const struct cs_image *image, size_t i) {
+    if (image->alpha)
+        image->alpha[i] = (uint8_t)(255 - (colour >> 24));
+    else if (colour >> 24)
+        colour = cs_tone_on_white(tone, colour);
+    image->rgb[3 * i] = (uint8_t)colour;
+    image->rgb[3 * i + 1] = (uint8_t)(colour >> 8);
+    image->rgb[3 * i + 2] = (uint8_t)(colour >> 16);
 }
 
 #endif

@@ -54,11 +54,29 @@ static void set_light(struct cs_view_block *block, const struct cs_light *light)
     copy3(light->specular, 1, block->specular);
 }
 
+static void set_background(struct cs_view_block *block,
+                           const struct cs_background *background) {
+    double above[3] = {0, 0, 0}, below[3] = {0, 0, 0};
+    const bool slight = isnan(background->below[0]);
+    for (int i = 0; i < 3; i++) {
+        const double colour = background->colour[i];
+        if (background->kind == CS_BACKGROUND_FLAT)
+            above[i] = below[i] = colour;
+        if (background->kind == CS_BACKGROUND_GRADIENT) {
+            above[i] = slight ? 1.06 * colour + 0.04 : colour;
+            below[i] = slight ? 0.82 * colour : background->below[i];
+        }
+    }
+    copy3(background->colour, 1, block->sky);
+    copy3(above, background->kind != CS_BACKGROUND_NONE, block->above);
+    copy3(below, background->kind != CS_BACKGROUND_NONE, block->below);
+}
+
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent) {
     memset(view, 0, sizeof *view);
     set_camera(view, scene, extent);
     set_light(&view->block, &scene->light);
-    copy3(scene->render.background, 1, view->block.sky);
+    set_background(&view->block, &scene->render.background);
     cs_colour_stops(scene->render.look, view->block.stops);
 }

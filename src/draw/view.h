@@ -17,7 +17,8 @@ struct cs_view_block {
     float ambient[4], diffuse[4], specular[4];
     float size[4];  /* width, height in pixels; near plane in m */
     float shade[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a shadow */
-    float sky[4];
+    float sky[4];   /* what surfaces of some looks are tinted by */
+    float above[4], below[4]; /* background at the upper and the lower edge; 1: it covers */
     float stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
 };
 

@@ -82,35 +82,36 @@ static void *work(void *argument) {
     return NULL;
 }
 
-static bool take_image(struct cs_image *image, uint32_t width, uint32_t height) {
-    image->width = width;
-    image->height = height;
-    image->rgb = calloc((size_t)width * height, 3);
-    return image->rgb != NULL;
+static bool take_image(struct cs_image *image, const struct cs_frames_settings *settings) {
+    const size_t n = (size_t)settings->width * settings->height;
+    image->width = settings->width;
+    image->height = settings->height;
+    image->rgb = calloc(n, 3);
+    image->alpha = settings->alpha ? calloc(n, 1) : NULL;
+    return image->rgb && (image->alpha || !settings->alpha);
 }
 
-enum cs_status cs_frames_create(const char *folder, uint32_t width, uint32_t height, int level,
-                                bool threaded, struct cs_frames **frames,
-                                struct cs_error *error) {
-    CS_ASSERT(width && height);
+enum cs_status cs_frames_create(const char *folder, const struct cs_frames_settings *settings,
+                                struct cs_frames **frames, struct cs_error *error) {
+    CS_ASSERT(settings->width && settings->height);
     struct cs_frames *made = calloc(1, sizeof *made);
     *frames = NULL;
     if (!made)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for frames");
     pthread_mutex_init(&made->lock, NULL);
     pthread_cond_init(&made->changed, NULL);
-    made->work.level = level;
+    made->work.level = settings->level;
     bool enough = (made->folder = strdup(folder)) != NULL;
-    made->depth = threaded ? DEPTH : 1;
+    made->depth = settings->threaded ? DEPTH : 1;
     for (uint32_t i = 0; enough && i < made->depth; i++)
-        enough = take_image(&made->slots[i].image, width, height);
+        enough = take_image(&made->slots[i].image, settings);
     if (!enough) {
         cs_frames_destroy(made);
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for frames of %u x %u pixels",
-                       width, height);
+                       settings->width, settings->height);
     }
     /* without a thread the same frames come out, only later */
-    made->threaded = threaded && !cs_thread_start(&made->worker, work, made);
+    made->threaded = settings->threaded && !cs_thread_start(&made->worker, work, made);
     *frames = made;
     return CS_OK;
 }
@@ -185,8 +186,10 @@ void cs_frames_destroy(struct cs_frames *frames) {
     }
     pthread_cond_destroy(&frames->changed);
     pthread_mutex_destroy(&frames->lock);
-    for (uint32_t i = 0; i < DEPTH; i++)
+    for (uint32_t i = 0; i < DEPTH; i++) {
         free(frames->slots[i].image.rgb);
+        free(frames->slots[i].image.alpha);
+    }
     cs_png_work_finish(&frames->work);
     free(frames->folder);
     free(frames);

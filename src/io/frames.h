@@ -8,10 +8,17 @@
 
 struct cs_frames;
 
-/* folder exists. threaded: encode on a worker with a queue of two; else inline. level: zlib. */
-enum cs_status cs_frames_create(const char *folder, uint32_t width, uint32_t height, int level,
-                                bool threaded, struct cs_frames **frames,
-                                struct cs_error *error);
+/* What pictures they are, and how they are written. */
+struct cs_frames_settings {
+    uint32_t width, height;
+    bool alpha;
+    int level;     /* of packing */
+    bool threaded; /* on a worker with a queue of two; else inline */
+};
+
+/* folder exists. */
+enum cs_status cs_frames_create(const char *folder, const struct cs_frames_settings *settings,
+                                struct cs_frames **frames, struct cs_error *error);
 
 /* An image to draw the next frame into; waits while both are being written. Owned by *frames.
  */

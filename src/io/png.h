@@ -1,4 +1,5 @@
-/* png.h - RGB PNG files: read through libpng, written through libdeflate where it is there. */
+/* png.h - RGB and RGBA PNG files: read through libpng, written through libdeflate where it is
+ * there. */
 #ifndef CS_PNG_H
 #define CS_PNG_H
 
@@ -28,8 +29,22 @@ enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
 
 void cs_png_work_finish(struct cs_png_work *work);
 
-/* Writes beside and renames. RGB, packed at `level` of 0..9 (1: fast, 6: archive), filter SUB,
- * no time stamp. On failure CS_ERR_FILE and no file is left. */
+/* Bytes of a pixel in the file: 3, or 4 with alpha. */
+static inline size_t cs_png_channels(const struct cs_image *image) {
+    return image->alpha ? 4 : 3;
+}
+
+/* A row of an image with alpha as it is in the file: (width, 4). */
+static inline void cs_png_join(const struct cs_image *image, size_t y, uint8_t *out) {
+    for (size_t i = y * image->width; i < (y + 1) * image->width; i++, out += 4) {
+        for (size_t k = 0; k < 3; k++)
+            out[k] = image->rgb[3 * i + k];
+        out[3] = image->alpha[i];
+    }
+}
+
+/* Writes beside and renames. RGB, or RGBA of an image with alpha, packed at `level` of 0..9 (1:
+ * fast, 6: archive), filter SUB, no time stamp. On failure CS_ERR_FILE and no file is left. */
 static inline enum cs_status cs_png_write(const char *path, const struct cs_image *image,
                                           int level, const struct cs_png_text *texts,
                                           uint32_t n_texts, struct cs_error *error) {
@@ -48,7 +63,11 @@ enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_e
 enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
                                  char **values, struct cs_image *image, struct cs_error *error);
 
-/* The pixels from memory; name is for messages. */
+/* The same, laid on white where the file has alpha. */
+enum cs_status cs_png_read_on_white(const char *path, struct cs_image *image,
+                                    struct cs_error *error);
+
+/* cs_png_read from memory; name is for messages. */
 enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t length,
                                  struct cs_image *image, struct cs_error *error);
 

@@ -1,4 +1,4 @@
-/* Writes RGB images as PNG files through libdeflate, which packs a whole picture at once: a
+/* Writes images as PNG files through libdeflate, which packs a whole picture at once: a
  * sixth smaller than zlib in less time, or at level 6 in half of it. png_libpng.c does the same
  * through libpng where libdeflate is not.
  *
@@ -36,9 +36,23 @@ static void add_chunk(FILE *file, const char *kind, const void *first, size_t n_
     fwrite(tail, 1, sizeof tail, file);
 }
 
+static void filter_joined(const struct cs_image *image, uint8_t *out) {
+    const size_t row = 4 * (size_t)image->width;
+    for (size_t y = 0; y < image->height; y++, out += row) {
+        *out++ = 1;
+        cs_png_join(image, y, out);
+        for (size_t i = row; i-- > 4;)
+            out[i] = (uint8_t)(out[i] - out[i - 4]);
+    }
+}
+
 /* of each row the number of the filter, and what differs from the pixel on the left */
 static void filter(const struct cs_image *image, uint8_t *out) {
     const size_t row = 3 * (size_t)image->width;
+    if (image->alpha) {
+        filter_joined(image, out);
+        return;
+    }
     for (size_t y = 0; y < image->height; y++, out += row) {
         const uint8_t *in = image->rgb + y * row;
         *out++ = 1;
@@ -75,8 +89,8 @@ void cs_png_work_finish(struct cs_png_work *work) {
 
 static void add_all(FILE *file, const struct cs_image *image, const struct cs_png_text *texts,
                     uint32_t n_texts, const struct packed *packed) {
-    // 8 bits, RGB, the only packing and set of filters that there is, not interlaced
-    uint8_t head[13] = {[8] = 8, [9] = 2};
+    // 8 bits, RGB or RGBA, the only packing and set of filters that there is, not interlaced
+    uint8_t head[13] = {[8] = 8, [9] = image->alpha ? 6 : 2};
     put_number(image->width, head);
     put_number(image->height, head + 4);
     fwrite("\x89PNG\r\n\x1a\n", 1, 8, file);
@@ -92,7 +106,7 @@ enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
                                  const struct cs_image *image, const struct cs_png_text *texts,
                                  uint32_t n_texts, struct cs_error *error) {
     CS_ASSERT(image->width && image->height && image->rgb);
-    const size_t n = (3 * (size_t)image->width + 1) * image->height;
+    const size_t n = (cs_png_channels(image) * image->width + 1) * image->height;
     struct cs_file_out out;
     if (take(work, n, path, error) || cs_file_create(&out, path, error))
         return error->status;

@@ -1,10 +1,11 @@
-/* Writes RGB images as PNG files through libpng, beside the target and then renamed. */
+/* Writes images as PNG files through libpng, beside the target and then renamed. */
 #include "io/png.h"
 #include "base/file.h"
 
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* What one file needs, outside the frame that longjmp leaves. */
@@ -12,7 +13,8 @@ struct writer {
     struct cs_file_out out;
     png_structp png;
     png_infop info;
-    int reason; /* errno of a write that failed */
+    uint8_t *row; /* owned: of an image with alpha; else NULL */
+    int reason;   /* errno of a write that failed */
     char message[128];
 };
 
@@ -42,6 +44,15 @@ static void add_texts(const struct writer *writer, const struct cs_png_text *tex
     }
 }
 
+static void encode_rows(const struct writer *writer, const struct cs_image *image) {
+    for (size_t y = 0; y < image->height; y++) {
+        if (image->alpha)
+            cs_png_join(image, y, writer->row);
+        png_write_row(writer->png,
+                      image->alpha ? writer->row : image->rgb + 3 * y * image->width);
+    }
+}
+
 /* the part that libpng may leave by longjmp; false if it did */
 static bool encode(struct writer *writer, const struct cs_image *image, int level,
                    const struct cs_png_text *texts, uint32_t n_texts) {
@@ -49,14 +60,14 @@ static bool encode(struct writer *writer, const struct cs_image *image, int leve
         return false;
     png_init_io(writer->png, writer->out.file);
     png_set_user_limits(writer->png, 16384, 16384);
-    png_set_IHDR(writer->png, writer->info, image->width, image->height, 8, PNG_COLOR_TYPE_RGB,
+    png_set_IHDR(writer->png, writer->info, image->width, image->height, 8,
+                 image->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_level(writer->png, level);
     png_set_filter(writer->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     add_texts(writer, texts, n_texts);
     png_write_info(writer->png, writer->info);
-    for (size_t y = 0; y < image->height; y++)
-        png_write_row(writer->png, image->rgb + 3 * y * image->width);
+    encode_rows(writer, image);
     png_write_end(writer->png, NULL);
     return true;
 }
@@ -75,12 +86,14 @@ enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
         return status;
     writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
     writer.info = writer.png ? png_create_info_struct(writer.png) : NULL;
-    if (!writer.info)
+    writer.row = image->alpha ? malloc(4 * (size_t)image->width) : NULL;
+    if (!writer.info || (image->alpha && !writer.row))
         status = cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
     else if (!encode(&writer, image, work->level, texts, n_texts))
         status = cs_fail(error, CS_ERR_FILE, "cannot write \"%s\": %s", path,
                          writer.reason ? strerror(writer.reason) : writer.message);
     png_destroy_write_struct(&writer.png, &writer.info);
+    free(writer.row);
     if (!status)
         return cs_file_finish(&writer.out, error);
     cs_file_abandon(&writer.out);

@@ -23,6 +23,7 @@ struct reader {
     png_structp png;
     png_infop info;
     struct cs_image image;
+    bool on_white; /* what has alpha; else that is dropped */
     char message[128];
     const char *const *keys; /* (n) of the texts that are wanted */
     char **values;           /* (n) of the caller */
@@ -49,12 +50,19 @@ static void on_read(png_structp png, png_bytep out, size_t length) {
 }
 
 /* whatever the file holds becomes 8-bit RGB */
-static void ask_for_rgb(png_structp png) {
+static void ask_for_rgb(png_structp png, bool on_white) {
+    const png_color_16 white = {.red = 255, .green = 255, .blue = 255, .gray = 255};
     png_set_palette_to_rgb(png);
     png_set_expand_gray_1_2_4_to_8(png);
     png_set_scale_16(png);
     png_set_gray_to_rgb(png);
-    png_set_strip_alpha(png);
+    if (on_white) {
+        // by light, which needs to know the curve of the bytes
+        png_set_gamma(png, PNG_DEFAULT_sRGB, PNG_DEFAULT_sRGB);
+        png_set_background(png, &white, PNG_BACKGROUND_GAMMA_SCREEN, 0, 1);
+    } else {
+        png_set_strip_alpha(png);
+    }
 }
 
 /* zeroed memory for the pixels */
@@ -100,7 +108,7 @@ static bool decode(struct reader *reader) {
     png_read_info(png, reader->info);
     /* before any conversion, since it judges the size of the rows as they are stored */
     take_image(reader);
-    ask_for_rgb(png);
+    ask_for_rgb(png, reader->on_white);
     const int passes = png_set_interlace_handling(png);
     png_read_update_info(png, reader->info);
     /* rows of another size would be written past the image */
@@ -152,26 +160,33 @@ enum cs_status cs_png_read_bytes(const char *name, const void *bytes, size_t len
     return read_bytes(&reader, name, image, error);
 }
 
-enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
-                                 char **values, struct cs_image *image,
-                                 struct cs_error *error) {
+static enum cs_status read_file(struct reader *reader, const char *path, struct cs_image *image,
+                                struct cs_error *error) {
     char *bytes;
-    size_t length;
     *image = (struct cs_image){0};
-    for (uint32_t k = 0; k < n; k++)
-        values[k] = NULL;
-    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, error))
+    if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &reader->length, error))
         return error->status;
-    struct reader reader = {.bytes = (const unsigned char *)bytes,
-                            .length = length,
-                            .keys = keys,
-                            .values = values,
-                            .n = n};
-    read_bytes(&reader, path, image, error);
+    reader->bytes = (const unsigned char *)bytes;
+    read_bytes(reader, path, image, error);
     free(bytes);
     return error->status;
 }
 
+enum cs_status cs_png_read_texts(const char *path, const char *const *keys, uint32_t n,
+                                 char **values, struct cs_image *image,
+                                 struct cs_error *error) {
+    struct reader reader = {.keys = keys, .values = values, .n = n};
+    for (uint32_t k = 0; k < n; k++)
+        values[k] = NULL;
+    return read_file(&reader, path, image, error);
+}
+
 enum cs_status cs_png_read(const char *path, struct cs_image *image, struct cs_error *error) {
     return cs_png_read_texts(path, NULL, 0, NULL, image, error);
+}
+
+enum cs_status cs_png_read_on_white(const char *path, struct cs_image *image,
+                                    struct cs_error *error) {
+    struct reader reader = {.on_white = true};
+    return read_file(&reader, path, image, error);
 }

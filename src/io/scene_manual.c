@@ -58,6 +58,9 @@ static void add_rules(const struct cs_table *table, struct cs_text *out) {
     if (table->shorthand_number)
         cs_text_add(out, "A plain number stands for an object with *%s* alone.\n\n",
                     table->shorthand_number);
+    if (table->shorthand_list)
+        cs_text_add(out, "A plain list stands for an object with *%s* alone.\n\n",
+                    table->shorthand_list);
 }
 
 /* the rows of a table, then those of the tables in it, each under its JSON path */

@@ -157,8 +157,9 @@ static void add_object(const struct cs_table *table, int indent, struct cs_text 
 
 /* the members of a table's schema, each on a line, without the braces */
 static void add_table(const struct cs_table *table, int indent, struct cs_text *out) {
-    const char *shorthands[] = {table->shorthand_text, table->shorthand_number};
-    if (!shorthands[0] && !shorthands[1]) {
+    const char *shorthands[] = {table->shorthand_text, table->shorthand_number,
+                                table->shorthand_list};
+    if (!shorthands[0] && !shorthands[1] && !shorthands[2]) {
         add_object(table, indent, out);
         return;
     }
@@ -166,7 +167,7 @@ static void add_table(const struct cs_table *table, int indent, struct cs_text *
     cs_text_add(out, "\"anyOf\": [{");
     add_object(table, indent + STEP, out);
     cs_text_add(out, "\n%*s}", indent, "");
-    for (uint32_t i = 0; i < 2; i++)
+    for (uint32_t i = 0; i < 3; i++)
         if (shorthands[i]) {
             cs_text_add(out, ", { ");
             add_plain(cs_option_find(table, shorthands[i]), out);

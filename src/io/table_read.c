@@ -140,7 +140,7 @@ static enum cs_status read_row(struct cs_reader *reader, const struct cs_json *v
     return CS_OK;
 }
 
-/* the row that a plain text or number stands for, or NULL */
+/* the row that a plain text, number or list stands for, or NULL */
 static const struct cs_option *shorthand_of(const struct cs_table *table,
                                             const struct cs_json *value) {
     const enum cs_json_kind kind = cs_json_kind_of(value);
@@ -148,6 +148,8 @@ static const struct cs_option *shorthand_of(const struct cs_table *table,
         return cs_option_find(table, table->shorthand_text);
     if (kind == CS_JSON_NUMBER && table->shorthand_number)
         return cs_option_find(table, table->shorthand_number);
+    if (kind == CS_JSON_LIST && table->shorthand_list)
+        return cs_option_find(table, table->shorthand_list);
     return NULL;
 }
 
@@ -206,10 +208,10 @@ enum cs_status cs_table_read(struct cs_reader *reader, const struct cs_json *val
         return read_row(reader, value, shorthand, object);
     if (cs_json_kind_of(value) != CS_JSON_OBJECT)
         return cs_reader_fail_type(reader, value,
-                                   !table->shorthand_text ? "an object"
-                                   : !table->shorthand_number
-                                       ? "an object or a text"
-                                       : "an object, a text or a number");
+                                   table->shorthand_number ? "an object, a text or a number"
+                                   : table->shorthand_list ? "an object, a text or a list"
+                                   : table->shorthand_text ? "an object or a text"
+                                                           : "an object");
     for (const struct cs_json *m = cs_json_first(value); m; m = cs_json_next(m))
         if (read_member(reader, m, table, object))
             return reader->error->status;

@@ -311,12 +311,20 @@ enum cs_look {
     CS_LOOK_GOALS,
     CS_LOOK_CROSSINGS
 };
+enum cs_background_kind { CS_BACKGROUND_GRADIENT, CS_BACKGROUND_FLAT, CS_BACKGROUND_NONE };
+/* what is behind everything; colours are linear RGB */
+struct cs_background {
+    int32_t kind; /* enum cs_background_kind */
+    double colour[3];
+    double below[3]; /* at the lower edge of a gradient; first component NAN: a darker colour */
+};
+
 struct cs_render {
     int64_t size[2]; /* pixels: width, height */
     int64_t samples; /* of multisampling: 1 or 4 */
     int32_t look;    /* enum cs_look */
     double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
-    double background[3];  /* linear RGB */
+    struct cs_background background;
     bool viewpoint_forces; /* show what viewpoint forces see, and from where */
     bool ground;           /* draw a grid on the plane y = ground_height */
     double ground_height;  /* m */

@@ -287,6 +287,9 @@ static enum cs_status check_render(const struct place *at, const struct cs_rende
     if (!isnan(render->range[0]) && !(render->range[0] < render->range[1]))
         return refuse(at, "render.range", "found %.9g, %.9g, expected the smaller value first",
                       render->range[0], render->range[1]);
+    if (!isnan(render->background.below[0]) &&
+        render->background.kind != CS_BACKGROUND_GRADIENT)
+        return refuse(at, "render.background.below", "only a gradient has a colour below");
     return CS_OK;
 }
 

@@ -347,6 +347,19 @@ const char *const cs_look_names[] = {"lit",    "wireframe", "springs",   "force"
                                      "strain", "goals",     "crossings", NULL};
 static const double vga[2] = {640, 480};
 static const double paper[3] = {0.82, 0.86, 0.91};
+static const char *const background_names[] = {"gradient", "flat", "none", NULL};
+static const struct cs_option background_rows[] = {
+    CHOICE(struct cs_background, kind, background_names, CS_BACKGROUND_GRADIENT,
+           "gradient: brighter above; flat: one colour; none: nothing, in pictures with alpha"),
+    VECTOR(struct cs_background, colour, 3, "", paper, 0, 1,
+           "linear RGB; of none that of a paper for which lines and figures are inked"),
+    VECTOR(struct cs_background, below, 3, "", absent9, 0, 1,
+           "of a gradient at the lower edge, where colour is at the upper one; absent: colour "
+           "is in the middle of a slight one"),
+};
+static const struct cs_table background_table = {
+    ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
+    .shorthand_list = "colour"};
 static const struct cs_option render_rows[] = {
     COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
     INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
@@ -355,7 +368,7 @@ static const struct cs_option render_rows[] = {
            "force or strain at the ends of the colours; absent: of each frame, from 0 or about "
            "it, "
            "but for the hundredth of the particles that is farthest from 0"),
-    VECTOR(struct cs_render, background, 3, "", paper, 0, 1, "linear RGB"),
+    TABLE(struct cs_render, background, background_table, "what is behind everything"),
     BOOL(struct cs_render, viewpoint_forces, 0,
          "draw what the viewpoint forces under way see, and their rectangles from their eyes"),
     BOOL(struct cs_render, ground, 0, "draw a grid of lines on the ground"),

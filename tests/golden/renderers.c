@@ -37,7 +37,7 @@ static bool same_with_threads(struct cs_session *session, const struct cs_image 
                               struct cs_error *error) {
     bool same = true;
     for (uint32_t threads = 2; threads <= 3 && !error->status; threads++) {
-        struct cs_image image;
+        struct cs_image image = {0};
         cs_pool_start(threads, error);
         draw(session, CS_RENDERER_CPU, &image, error);
         cs_pool_stop();
@@ -50,7 +50,7 @@ static bool same_with_threads(struct cs_session *session, const struct cs_image 
 
 static void compare(struct cs_session *session, enum cs_renderer_kind kind, const char *name,
                     struct cs_error *error) {
-    struct cs_image one, other;
+    struct cs_image one = {0}, other = {0};
     draw(session, CS_RENDERER_CPU, &one, error);
     if (!error->status) {
         const bool same = same_with_threads(session, &one, error);

@@ -3,6 +3,7 @@
 
 #include "study/picture.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +30,7 @@ static uint8_t *draw_frames(const char *look, bool beside) {
     cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, beside, &error);
     ck_assert_int_eq(picture.hand != NULL, beside);
     for (size_t k = 0; k < FRAMES && !error.status; k++) {
-        struct cs_image image = {WIDTH, HEIGHT, all + k * bytes};
+        struct cs_image image = {WIDTH, HEIGHT, all + k * bytes, NULL};
         cs_picture_begin(&picture, &cloth.session.run, &image);
         fixture_frames(&cloth, 1);
         cs_picture_end(&picture, &error);
@@ -70,7 +71,7 @@ static uint8_t *draw_moved(const char *collider, const char *events) {
     struct cs_picture picture;
     struct cs_error error = {0};
     uint8_t *pixels = calloc((size_t)WIDTH * HEIGHT, 3);
-    struct cs_image image = {WIDTH, HEIGHT, pixels};
+    struct cs_image image = {WIDTH, HEIGHT, pixels, NULL};
     ck_assert_ptr_nonnull(pixels);
     fixture_open(&cloth, "symplectic-euler", STILL, collider, events);
     fixture_start(&cloth);
@@ -133,6 +134,74 @@ START_TEST(what_viewpoint_forces_see_is_drawn_at_once) {
 }
 END_TEST
 
+/* a cloth before a box, so that one covers the other; %s: the background */
+#define BACKED                                                                                 \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}, \"pins\": "     \
+    "[\"edges\"]}], \"colliders\": [{\"box\": {\"centre\": [0.4, 0.3, -0.5], \"size\": "       \
+    "[0.3, 0.2, 0.1]}}], \"render\": {\"size\": [160, 120], \"background\": %s}}"
+
+static void draw_backed(const char *background, struct cs_image *image) {
+    struct fixture cloth;
+    struct cs_picture picture;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "symplectic-euler", BACKED, background);
+    fixture_start(&cloth);
+    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, false, &error);
+    cs_picture_begin(&picture, &cloth.session.run, image);
+    cs_picture_end(&picture, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_picture_close(&picture);
+    fixture_close(&cloth);
+}
+
+/* byte of sRGB from light that is laid on white */
+static double on_white(double byte, double alpha) {
+    const double c = byte / 255;
+    const double light = c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+    const double laid = 1 + alpha / 255 * (light - 1);
+    return 255 * (laid <= 0.0031308 ? 12.92 * laid : 1.055 * pow(laid, 1 / 2.4) - 0.055);
+}
+
+/* What has no background is, on white, what was drawn before white, but for roundings; an image
+ * without alpha has it there already. */
+START_TEST(nothing_behind_is_white_on_white) {
+    static uint8_t rgb[3][3 * WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
+    struct cs_image white = {WIDTH, HEIGHT, rgb[0], NULL};
+    struct cs_image clear = {WIDTH, HEIGHT, rgb[1], alpha};
+    struct cs_image laid = {WIDTH, HEIGHT, rgb[2], NULL};
+    size_t edges = 0;
+    double most = 0;
+    draw_backed("{\"kind\": \"flat\", \"colour\": [1, 1, 1]}", &white);
+    draw_backed("{\"kind\": \"none\", \"colour\": [1, 1, 1]}", &clear);
+    draw_backed("{\"kind\": \"none\", \"colour\": [1, 1, 1]}", &laid);
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        edges += alpha[i] > 0 && alpha[i] < 255;
+        for (size_t k = 3 * i; k < 3 * i + 3; k++) {
+            most = fmax(most, fabs(on_white(rgb[1][k], alpha[i]) - rgb[0][k]));
+            most = fmax(most, fabs((double)rgb[2][k] - rgb[0][k]));
+        }
+    }
+    ck_assert_double_le(most, 1.5);
+    ck_assert_uint_gt(edges, 100);
+    ck_assert_uint_eq(alpha[0], 0);
+}
+END_TEST
+
+/* from one colour above to the other below, and nothing in between but light */
+START_TEST(a_gradient_runs_from_edge_to_edge) {
+    static uint8_t rgb[3 * WIDTH * HEIGHT];
+    struct cs_image image = {WIDTH, HEIGHT, rgb, NULL};
+    draw_backed("{\"colour\": [1, 0, 0.5], \"below\": [0, 1, 0.5]}", &image);
+    for (size_t y = 0; y < HEIGHT; y++) {
+        const double down = ((double)y + 0.5) / HEIGHT;
+        const uint8_t *pixel = rgb + 3 * y * WIDTH;
+        ck_assert_double_le(fabs(pixel[0] - on_white(0, 255 * down)), 1);
+        ck_assert_double_le(fabs(pixel[1] - on_white(0, 255 * (1 - down))), 1);
+        ck_assert_int_eq(pixel[2], 188);
+    }
+}
+END_TEST
+
 static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                                     struct cs_image *image, struct cs_error *error) {
     (void)canvas, (void)image;
@@ -142,7 +211,7 @@ static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_fr
 /* told by the end of that picture and of all later ones, and closed without a wait for more */
 START_TEST(a_renderer_that_fails_is_told) {
     static uint8_t pixels[(size_t)WIDTH * HEIGHT * 3];
-    struct cs_image image = {WIDTH, HEIGHT, pixels};
+    struct cs_image image = {WIDTH, HEIGHT, pixels, NULL};
     for (int beside = 0; beside < 2; beside++) {
         struct fixture cloth;
         struct cs_picture picture;
@@ -171,7 +240,8 @@ END_TEST
 
 int main(void) {
     const TTest *const tests[] = {
-        pictures_beside_the_run_are_those_at_once, moved_colliders_are_drawn_where_they_are,
-        what_viewpoint_forces_see_is_drawn_at_once, a_renderer_that_fails_is_told};
+        pictures_beside_the_run_are_those_at_once,  moved_colliders_are_drawn_where_they_are,
+        what_viewpoint_forces_see_is_drawn_at_once, nothing_behind_is_white_on_white,
+        a_gradient_runs_from_edge_to_edge,          a_renderer_that_fails_is_told};
     return fixture_run("pictures", tests, sizeof tests / sizeof *tests);
 }

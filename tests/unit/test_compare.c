@@ -9,7 +9,7 @@ enum { SIDE = 100 };
 
 /* A grey ramp; every test changes its own copy. */
 static struct cs_image make_ramp(void) {
-    struct cs_image image = {SIDE, SIDE, malloc(3 * SIDE * SIDE)};
+    struct cs_image image = {SIDE, SIDE, malloc(3 * SIDE * SIDE), NULL};
     ck_assert_ptr_nonnull(image.rgb);
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
         image.rgb[i] = (uint8_t)(40 + i / 300);
@@ -38,7 +38,7 @@ END_TEST
 START_TEST(figures_of_a_small_image) {
     uint8_t left[12] = {10, 20, 30, 0, 0, 0, 255, 255, 255, 7, 7, 7};
     uint8_t right[12] = {13, 19, 30, 0, 0, 0, 255, 255, 253, 7, 7, 7};
-    const struct cs_image a = {2, 2, left}, b = {2, 2, right};
+    const struct cs_image a = {2, 2, left, NULL}, b = {2, 2, right, NULL};
     const struct cs_image_difference difference = cs_image_compare(&a, &b);
     ck_assert_double_eq_tol(difference.rmse, sqrt(14.0 / 12.0), 1e-15);
     ck_assert_double_eq(difference.share, 0.25);
@@ -105,8 +105,8 @@ END_TEST
 START_TEST(amplified_difference_is_clamped) {
     uint8_t left[6] = {10, 10, 10, 0, 255, 9}, right[6] = {10, 11, 9, 255, 0, 17}, pixels[6];
     static const uint8_t expected[6] = {128, 144, 112, 255, 0, 255};
-    const struct cs_image a = {2, 1, left}, b = {2, 1, right};
-    struct cs_image out = {0, 0, pixels};
+    const struct cs_image a = {2, 1, left, NULL}, b = {2, 1, right, NULL};
+    struct cs_image out = {0, 0, pixels, NULL};
     cs_image_amplify(&a, &b, &out);
     ck_assert_uint_eq(out.width, 2);
     ck_assert_uint_eq(out.height, 1);
@@ -115,7 +115,7 @@ START_TEST(amplified_difference_is_clamped) {
 END_TEST
 
 START_TEST(empty_images_are_equal) {
-    const struct cs_image none = {0, 0, NULL};
+    const struct cs_image none = {0, 0, NULL, NULL};
     ck_assert(passes(&none, &none));
 }
 END_TEST

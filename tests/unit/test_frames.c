@@ -41,7 +41,8 @@ static void write_and_compare(const char *folder, bool threaded) {
     struct cs_frames *frames;
     double seconds = -1;
     ck_assert_int_eq(mkdir(folder, 0777), 0);
-    cs_frames_create(folder, WIDTH, HEIGHT, 1, threaded, &frames, &error);
+    cs_frames_create(folder, &(struct cs_frames_settings){WIDTH, HEIGHT, false, 1, threaded},
+                     &frames, &error);
     ck_assert_uint_eq(give(frames, 1, 20, &error), 0);
     ck_assert_int_eq(cs_frames_finish(frames, &seconds, &error), CS_OK);
     ck_assert_double_gt(seconds, 0);
@@ -68,7 +69,8 @@ START_TEST(destroy_writes_what_is_queued) {
     struct cs_error error = {0};
     struct cs_frames *frames;
     ck_assert_int_eq(mkdir("queued", 0777), 0);
-    cs_frames_create("queued", WIDTH, HEIGHT, 1, true, &frames, &error);
+    cs_frames_create("queued", &(struct cs_frames_settings){WIDTH, HEIGHT, false, 1, true},
+                     &frames, &error);
     ck_assert_uint_eq(give(frames, 99998, 100001, &error), 0);
     cs_frames_destroy(frames);
     ck_assert_int_eq(unit_count_files("queued"), 4);
@@ -87,7 +89,8 @@ static void fail_at_third(const char *folder, bool threaded) {
     ck_assert_int_eq(mkdir(folder, 0777), 0);
     snprintf(path, sizeof path, "%s/frame_00003.png", folder);
     ck_assert_int_eq(mkdir(path, 0777), 0);
-    cs_frames_create(folder, WIDTH, HEIGHT, 1, threaded, &frames, &given);
+    cs_frames_create(folder, &(struct cs_frames_settings){WIDTH, HEIGHT, false, 1, threaded},
+                     &frames, &given);
     const uint32_t failed = give(frames, 1, 50, &given);
     /* the worker is at most two frames behind */
     ck_assert_uint_ge(failed, 3);
@@ -110,7 +113,9 @@ START_TEST(finish_tells_of_the_last_frame) {
     struct cs_error error = {0};
     struct cs_frames *frames;
     double seconds;
-    cs_frames_create("no-such-folder", WIDTH, HEIGHT, 1, true, &frames, &error);
+    cs_frames_create("no-such-folder",
+                     &(struct cs_frames_settings){WIDTH, HEIGHT, false, 1, true}, &frames,
+                     &error);
     give(frames, 1, 1, &error);
     error = (struct cs_error){0};
     cs_frames_finish(frames, &seconds, &error);

@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 
 static struct cs_image make_picture(uint32_t width, uint32_t height) {
-    struct cs_image image = {width, height, malloc(3 * (size_t)width * height)};
+    struct cs_image image = {width, height, malloc(3 * (size_t)width * height), NULL};
     ck_assert_ptr_nonnull(image.rgb);
     for (uint32_t i = 0; i < 3 * width * height; i++)
         image.rgb[i] = (uint8_t)(i * i / 7 + i);
@@ -95,6 +95,39 @@ START_TEST(texts_come_back) {
     free(values[0]);
     free(values[2]);
     free(image.rgb);
+}
+END_TEST
+
+/* colours stay what they are behind what covers nothing, and the file says that there are four
+ * channels */
+START_TEST(pictures_may_have_alpha) {
+    struct cs_error error = {0};
+    struct cs_image image = make_picture(33, 7), back;
+    uint8_t alpha[33 * 7];
+    unsigned char *bytes;
+    size_t length;
+    uint32_t size;
+    for (uint32_t i = 0; i < sizeof alpha; i++)
+        alpha[i] = (uint8_t)(i * 37);
+    image.alpha = alpha;
+    cs_png_write("alpha.png", &image, 1, NULL, 0, &error);
+    cs_png_read("alpha.png", &back, &error);
+    UNIT_ASSERT_OK(&error);
+    ck_assert_mem_eq(back.rgb, image.rgb, 3 * sizeof alpha);
+    ck_assert_ptr_null(back.alpha);
+    free(back.rgb);
+    cs_png_read_on_white("alpha.png", &back, &error);
+    UNIT_ASSERT_OK(&error);
+    for (uint32_t i = 0; i < sizeof alpha; i++)
+        for (uint32_t k = 3 * i; k < 3 * i + 3; k++)
+            UNIT_ASSERT_OFTEN(alpha[i] == 255 ? back.rgb[k] == image.rgb[k]
+                              : alpha[i] == 0 ? back.rgb[k] == 255
+                                              : back.rgb[k] >= image.rgb[k]);
+    read_file("alpha.png", &bytes, &length);
+    ck_assert_mem_eq(find_chunk(bytes, length, "IHDR", 0, &size) + 8, "\x08\x06\0\0\0", 5);
+    free(bytes);
+    free(image.rgb);
+    free(back.rgb);
 }
 END_TEST
 
@@ -305,10 +338,16 @@ START_TEST(failure_leaves_no_file) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {
-        pixels_come_back,        texts_are_in_the_file_and_no_time, texts_come_back,
-        same_picture_same_bytes, pictures_share_work_memory,        every_kind_becomes_rgb,
-        huge_claims_are_refused, truncated_anywhere_is_refused,     flipped_bits_do_not_pass,
-        failure_leaves_no_file};
+    const TTest *const tests[] = {pixels_come_back,
+                                  texts_are_in_the_file_and_no_time,
+                                  texts_come_back,
+                                  pictures_may_have_alpha,
+                                  same_picture_same_bytes,
+                                  pictures_share_work_memory,
+                                  every_kind_becomes_rgb,
+                                  huge_claims_are_refused,
+                                  truncated_anywhere_is_refused,
+                                  flipped_bits_do_not_pass,
+                                  failure_leaves_no_file};
     return unit_run("png", tests, sizeof tests / sizeof *tests);
 }

@@ -248,6 +248,8 @@ START_TEST(overrides_are_put_in) {
                                                    {"source", "\"quoted\""},
                                                    {"render.look", "strain"},
                                                    {"render.ground", "true"},
+                                                   {"render.background.kind", "none"},
+                                                   {"render.background.colour", "[1, 0.5, 0]"},
                                                    {"integrator", "cvode-bdf"},
                                                    {"integrator.rtol", "1e-3"},
                                                    {"integrator.rtol", "1e-5"},
@@ -271,6 +273,8 @@ START_TEST(overrides_are_put_in) {
     ck_assert_str_eq(scene.source, "quoted");
     ck_assert_int_eq(scene.render.look, CS_LOOK_STRAIN);
     ck_assert(scene.render.ground);
+    ck_assert_int_eq(scene.render.background.kind, CS_BACKGROUND_NONE);
+    ck_assert_double_eq(scene.render.background.colour[1], 0.5);
     const struct cs_setting *settings = scene.integrator_settings.items;
     ck_assert_str_eq(scene.integrator, "cvode-bdf");
     ck_assert_uint_eq(scene.integrator_settings.n, 1);

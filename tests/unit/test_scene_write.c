@@ -27,7 +27,8 @@ static const char *const scenes[] = {
     " \"forces\": {\"wind\": {\"direction\": [1, 2, 3], \"strength\": 19.5}, \"drag\": 0.01},"
     " \"integrator\": {\"name\": \"cvode-bdf\", \"rtol\": 1e-4, \"fast\": true, \"k\": "
     "\"newton\"},"
-    " \"light\": {\"direction\": [0, -1, 0]}, \"render\": {\"range\": [0, 2.5], \"ground\": "
+    " \"light\": {\"direction\": [0, -1, 0]}, \"render\": {\"range\": [0, 2.5], "
+    "\"background\": [0.5, 0.25, 1], \"ground\": "
     "true}}"};
 
 static void read_text(struct cs_scene *scene, const char *text) {
@@ -227,6 +228,7 @@ START_TEST(manual_has_every_key) {
     static const char *const parts[] = {
         "\n## bodies[].cloth.place\n", "must be given\n\tcolumns and rows.\n",
         "A plain text stands for an object with *at* alone.",
+        "A plain list stands for an object with *colour* alone.",
         "Exactly one must be given of: *particle*, *areal_density*, *total*, *degree*.",
         /* a star of the text is no markup */
         "row \\* columns + column", "; default lit\n"};

@@ -5,6 +5,7 @@
 #include "draw/tone.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static struct cs_tone tone;
 
@@ -80,6 +81,42 @@ START_TEST(samples_give_the_mean_of_their_light) {
 }
 END_TEST
 
+/* A colour laid on nothing stays what it is and covers by its share; laid on what covers by
+ * half, the two count as Porter and Duff have it. */
+START_TEST(colours_lie_on_nothing) {
+    const uint32_t nothing = 0xff000000, colour = 0x102030;
+    for (uint32_t share = 1; share < 256; share++)
+        ck_assert_uint_eq(cs_tone_blend(nothing, colour, share), colour | (255 - share) << 24);
+    ck_assert_uint_eq(cs_tone_blend(nothing, colour, 0), nothing);
+    // 100 covers by 102 of 255; 200 over it by 51: they are seen by 51 and by 81.6
+    ck_assert_uint_eq(cs_tone_blend(0x99000064, 200, 51), (255u - 133) << 24 | 138);
+    ck_assert_uint_eq(cs_tone_blend(0x99000064, 200, 255), 200);
+}
+END_TEST
+
+/* What three of four samples show is the pixel's colour, and they cover three quarters; on
+ * white it is the mean of the light. */
+START_TEST(samples_of_nothing_leave_the_colour) {
+    const uint32_t nothing = 0xff000000, colour = 0x4080c0, white = 0xffffff;
+    const uint32_t none[4] = {nothing, nothing, nothing, nothing};
+    uint32_t some[4] = {colour, nothing, colour, colour}, on_white[4];
+    cs_tone_make(&tone);
+    ck_assert_uint_eq(cs_tone_mean(&tone, some), colour | (255u - 191) << 24);
+    ck_assert_uint_eq(cs_tone_mean(&tone, none), nothing);
+    ck_assert_uint_eq(cs_tone_on_white(&tone, nothing), white);
+    for (uint32_t covered = 0; covered <= 4; covered++) {
+        for (uint32_t s = 0; s < 4; s++) {
+            some[s] = s < covered ? colour : nothing;
+            on_white[s] = s < covered ? colour : white;
+        }
+        const uint32_t found = cs_tone_on_white(&tone, cs_tone_mean(&tone, some));
+        const uint32_t expected = cs_tone_mean(&tone, on_white);
+        for (int k = 0; k < 24; k += 8)
+            ck_assert_int_le(abs((int)(found >> k & 255) - (int)(expected >> k & 255)), 1);
+    }
+}
+END_TEST
+
 static void near(float found, float expected, double by) {
     ck_assert_double_le(fabs((double)found - (double)expected), by);
 }
@@ -89,7 +126,7 @@ enum { WIDE = 12, HIGH = 8 };
 static void make(struct cs_mips *mips, struct cs_arena *arena, int (*value)(int x, int y)) {
     struct cs_error error = {0};
     uint8_t rgb[3 * WIDE * HIGH];
-    const struct cs_image image = {WIDE, HIGH, rgb};
+    const struct cs_image image = {WIDE, HIGH, rgb, NULL};
     for (int i = 0; i < WIDE * HIGH; i++)
         for (int k = 0; k < 3; k++)
             rgb[3 * i + k] = (uint8_t)value(i % WIDE, i / WIDE);
@@ -148,6 +185,8 @@ int main(void) {
                                   bytes_come_back,
                                   blending_is_a_mean,
                                   samples_give_the_mean_of_their_light,
+                                  colours_lie_on_nothing,
+                                  samples_of_nothing_leave_the_colour,
                                   copies_are_means,
                                   a_texture_repeats_and_is_blended};
     return unit_run("tone", tests, sizeof tests / sizeof *tests);

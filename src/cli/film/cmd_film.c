@@ -38,6 +38,7 @@ struct film {
     double rate; /* pictures a second */
     bool webm;
     bool has_gaps; /* between the pictures' numbers, of a run by an older version */
+    bool clear;    /* the pictures have alpha */
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
 
@@ -65,6 +66,11 @@ static enum cs_status place(const struct cs_args *args, struct film *film,
 
 enum { ARGUMENTS = 48 };
 
+/* Filters. Films have no alpha: what is dark counts by it, and the rest is white. ffmpeg 5.1
+ * breaks down where pictures are laid on others by `overlay`. Sizes are even. */
+#define EVEN  "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv"
+#define WHITE "format=gbrap,negate,premultiply=inplace=1,negate," EVEN
+
 /* The line for ffmpeg, closed by NULL. A damaged picture is an error. The colours are told as
  * those of ITU-R BT.709, which players take for them; an odd size is padded by a pixel, as
  * 4:2:0 asks for. */
@@ -74,27 +80,24 @@ static void fill(const struct film *film, const char *rate, const char *out,
                                          "-nostdin", "-y",        "-framerate"};
     static const char *const between[] = {
         "-vf",
-        "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
-        "-pix_fmt",
-        "yuv420p",
-        "-colorspace",
-        "bt709",
-        "-color_primaries",
-        "bt709",
-        "-color_trc",
-        "bt709"};
+        NULL, // the filter
+        "-pix_fmt", "yuv420p",    "-colorspace", "bt709", "-color_primaries",
+        "bt709",    "-color_trc", "bt709"};
     /* by number, as names of more than five digits are not in order */
     static const char *const numbered[] = {"-start_number", "1", "-i", "frame_%05d.png"};
     static const char *const in_order[] = {"-pattern_type", "glob", "-i", "frame_*.png"};
     static const char *const mp4[] = {"-c:v", "libx264",   "-crf",
                                       "18",   "-movflags", "+faststart"};
     static const char *const webm[] = {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"};
-    size_t n = sizeof before / sizeof *before;
+    size_t n = sizeof before / sizeof *before, filter = 0;
     memcpy(arguments, before, sizeof before);
     arguments[n++] = rate;
     memcpy(arguments + n, film->has_gaps ? in_order : numbered, sizeof numbered);
     n += sizeof numbered / sizeof *numbered;
     memcpy(arguments + n, between, sizeof between);
+    while (between[filter])
+        filter++;
+    arguments[n + filter] = film->clear ? WHITE : EVEN;
     n += sizeof between / sizeof *between;
     memcpy(arguments + n, film->webm ? webm : mp4, sizeof mp4);
     n += sizeof mp4 / sizeof *mp4;
@@ -166,6 +169,7 @@ static enum cs_status make_film(const struct cs_args *args, const struct cs_film
     struct film film = {.folder = args->operands[0], .rate = cs_film_rate(report)};
     if (cs_args_get(args, FILM_TILE))
         return cs_fail(error, CS_ERR_USAGE, "--tile is of a sheet: give --sheet too");
+    film.clear = report->clear;
     if (cs_args_real(args, FILM_FPS, &film.rate, error) || place(args, &film, error) ||
         check_pictures(&film, report, error) || make(&film, error))
         return error->status;

@@ -30,6 +30,12 @@ static int32_t look_of(const struct cs_json *render) {
     return CS_LOOK_LIT;
 }
 
+static bool is_clear(const struct cs_json *render) {
+    const struct cs_json *kind =
+        member(member(render, "background", CS_JSON_OBJECT), "kind", CS_JSON_TEXT);
+    return kind && !strcmp(cs_json_text(kind), "none");
+}
+
 /* false: it was not drawn. Runs of older versions gave a picture the number of its frame. */
 static bool read_picture(const struct cs_json *frame, struct cs_film_picture *picture) {
     const struct cs_json *drawn = member(frame, "drawn", CS_JSON_BOOL);
@@ -54,7 +60,9 @@ static enum cs_status read_pictures(const struct cs_json *root, struct cs_film_r
     const struct cs_json *scene = member(root, "scene", CS_JSON_OBJECT),
                          *frames = member(root, "frames", CS_JSON_LIST);
     report->fps = number_of(member(scene, "time", CS_JSON_OBJECT), "fps");
-    report->look = look_of(member(scene, "render", CS_JSON_OBJECT));
+    const struct cs_json *render = member(scene, "render", CS_JSON_OBJECT);
+    report->look = look_of(render);
+    report->clear = is_clear(render);
     if (!frames || !(report->fps > 0))
         return CS_OK;
     report->pictures = calloc((size_t)cs_json_count(frames) + 1, sizeof *report->pictures);

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct cs_film_picture {
@@ -15,6 +16,7 @@ struct cs_film_picture {
 struct cs_film_report {
     double fps;                       /* of the scene */
     int32_t look;                     /* enum cs_look */
+    bool clear;                       /* the pictures have alpha */
     uint32_t n;                       /* at least one */
     struct cs_film_picture *pictures; /* (n), owned */
 };

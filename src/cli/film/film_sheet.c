@@ -71,7 +71,7 @@ static enum cs_status read_picture(const struct layout *layout, const char *fold
     char path[PATH_BYTES];
     snprintf(path, sizeof path, "%.4000s/frame_%05u.png", folder,
              picture_of(layout, tile)->number);
-    return cs_png_read(path, picture, error);
+    return cs_png_read_on_white(path, picture, error);
 }
 
 /* Takes the paper, for pictures of the first one's size. */
@@ -163,7 +163,7 @@ static void put_bar(struct layout *layout) {
     const int32_t look = layout->report->look;
     const double *range = layout->report->pictures->range;
     const struct cs_render paper = {.size = {BAR_WIDTH, (int64_t)height},
-                                    .background = {1, 1, 1}};
+                                    .background = {.colour = {1, 1, 1}}};
     const struct cs_frame frame = {.range = {range[0], range[1]},
                                    .title = cs_picture_title(look),
                                    .factor = cs_picture_factor(look)};

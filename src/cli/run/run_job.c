@@ -67,7 +67,7 @@ static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) 
 /* Opens the renderer, which may be missing, before it touches any file on disk. */
 static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const int64_t *size = job->session.scene.render.size;
+    const struct cs_render *render = &job->session.scene.render;
     if (settings->session.render && open_pictures(job, error))
         return error->status;
     const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_KEEP
@@ -82,8 +82,13 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (!settings->session.render)
         return CS_OK;
-    return cs_frames_create(settings->folder, (uint32_t)size[0], (uint32_t)size[1],
-                            (int)settings->level, has_processors(), &job->writer, error);
+    const struct cs_frames_settings frames = {.width = (uint32_t)render->size[0],
+                                              .height = (uint32_t)render->size[1],
+                                              .alpha =
+                                                  render->background.kind == CS_BACKGROUND_NONE,
+                                              .level = (int)settings->level,
+                                              .threaded = has_processors()};
+    return cs_frames_create(settings->folder, &frames, &job->writer, error);
 }
 
 static bool has_room(struct cs_job *job, size_t frames) {

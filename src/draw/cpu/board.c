@@ -49,8 +49,8 @@ void cs_board_clear(struct cs_board *board, int top, int rows) {
 void cs_board_resolve(const struct cs_board *board, const struct cs_tone *tone,
                       struct cs_image *image) {
     const size_t n = (size_t)board->samples.width * (size_t)board->samples.rows;
-    uint8_t *out = image->rgb + 3 * (size_t)board->samples.top * (size_t)board->samples.width;
-    for (size_t i = 0; i < n; i++, out += 3) {
+    const size_t first = (size_t)board->samples.top * (size_t)board->samples.width;
+    for (size_t i = 0; i < n; i++) {
         const uint32_t *colours = board->colours + board->base[i], code = board->codes[i];
         uint32_t c = *colours;
         if (code) {
@@ -58,8 +58,6 @@ void cs_board_resolve(const struct cs_board *board, const struct cs_tone *tone,
                                          colours[code >> 4 & 3], colours[code >> 6]};
             c = cs_tone_mean(tone, samples);
         }
-        out[0] = (uint8_t)c;
-        out[1] = (uint8_t)(c >> 8);
-        out[2] = (uint8_t)(c >> 16);
+        cs_tone_put(tone, c, image, first + i);
     }
 }

@@ -20,7 +20,7 @@ enum cs_status cs_body_picture_init(struct cs_body_picture *body,
                                     const struct cs_canvas_settings *settings, uint32_t b,
                                     struct cs_coat *coat, struct cs_arena *arena,
                                     struct cs_error *error) {
-    static const struct cs_image none = {0, 0, NULL};
+    static const struct cs_image none = {0, 0, NULL, NULL};
     const struct cs_image *image = settings->textures ? settings->textures + b : &none;
     const struct cs_material *material = &cs_scene_bodies(settings->scene)[b].material;
     const bool textured = image->width > 0;

@@ -151,14 +151,15 @@ static void add_pixel(const struct cs_drawing *drawing, cs_i4 shown, const struc
         add_shown(drawing, id, spot, 0, board->base[spot->pixel], board);
 }
 
-// of a row: brighter above
+// of a row
 static uint32_t sky_colour(const struct cs_drawing *drawing, int y) {
-    const float height = 1 - ((float)y + 0.5f) * (2 / (float)drawing->easel.height);
+    const struct cs_view_block *view = drawing->easel.view;
+    const float down = ((float)y + 0.5f) / (float)drawing->easel.height;
     float c[3];
+    if (view->above[3] < 1)
+        return 0xff000000;
     for (int i = 0; i < 3; i++)
-        c[i] = cs_clamp(drawing->easel.view->sky[i] * (0.94f + 0.12f * height) +
-                            0.02f * (1 + height),
-                        0, 1);
+        c[i] = cs_clamp(view->above[i] + down * (view->below[i] - view->above[i]), 0, 1);
     return cs_tone_pack(drawing->easel.tone, c[0], c[1], c[2]);
 }
 
@@ -183,7 +184,8 @@ static void show(const struct cs_drawing *drawing, uint32_t band, struct cs_boar
     // what is behind came first
     for (uint32_t i = 0; i < board->n_glazes; i++) {
         uint32_t *over = board->colours + board->glazes[i].over;
-        *over = cs_tone_blend(board->colours[board->glazes[i].under], *over, *over >> 24);
+        *over =
+            cs_tone_blend(board->colours[board->glazes[i].under], *over, 255 - (*over >> 24));
     }
 }
 

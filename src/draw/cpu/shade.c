@@ -245,7 +245,7 @@ void cs_shade(const struct cs_easel *easel, struct cs_fragments *f, uint32_t *co
         const uint32_t cover = (uint32_t)(w.cover[i] * 255 + 0.5f);
         colours[f->out[i]] =
             cs_tone_pack(easel->tone, w.colour[0][i], w.colour[1][i], w.colour[2][i]) |
-            cover << 24;
+            (255 - cover) << 24;
     }
     f->n = 0;
 }

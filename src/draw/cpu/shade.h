@@ -43,8 +43,8 @@ struct cs_fragments {
     uint32_t out[CS_FRAGMENTS];                    /* where their colour goes */
 };
 
-/* Colours: bytes of sRGB from red on; the highest is how much covers what is behind. Forgets
- * the fragments. */
+/* Colours: bytes of sRGB from red on; the highest is how much they let through. Forgets the
+ * fragments. */
 void cs_shade(const struct cs_easel *easel, struct cs_fragments *fragments, uint32_t *colours);
 
 /* The ray through the middle of a pixel: 1 m along it is 1 m along the view. */

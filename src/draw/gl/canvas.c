@@ -64,7 +64,7 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
 
 static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_image *textures,
                                   struct cs_error *error) {
-    static const struct cs_image none = {0, 0, NULL};
+    static const struct cs_image none = {0, 0, NULL, NULL};
     const uint32_t n = canvas->scene->bodies.n;
     canvas->cloths = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->cloths, error);
     for (uint32_t b = 0; b < n && error->status == CS_OK; b++)
@@ -87,8 +87,7 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
     const struct cs_ball extent =
         cs_extent_solid(canvas->system, canvas->system->view.start, settings->obstacles);
     cs_view_init(&canvas->view, canvas->scene, &extent);
-    if (cs_target_init(&canvas->target, (int)render->size[0], (int)render->size[1],
-                       (int)render->samples, &canvas->arena, error) != CS_OK ||
+    if (cs_target_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
         cs_backdrop_init(&canvas->backdrop, canvas->scene, &extent, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
         cs_shadow_init(&canvas->shadow, error) != CS_OK ||
@@ -100,7 +99,7 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
                         &canvas->lines.lines, &canvas->arena, error) != CS_OK)
         return error->status;
     gl.DepthFunc(GL_LEQUAL);
-    gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     return cs_gl_check("preparing the scene", error);
 }
 

@@ -12,7 +12,7 @@
     X(ACTIVETEXTURE, ActiveTexture) X(ATTACHSHADER, AttachShader) X(BINDBUFFER, BindBuffer)        \
     X(BINDBUFFERBASE, BindBufferBase) X(BINDFRAMEBUFFER, BindFramebuffer)                          \
     X(BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture)                              \
-    X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc)                                    \
+    X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNCSEPARATE, BlendFuncSeparate)                                 \
     X(BUFFERDATA, BufferData)                                                                     \
     X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear)                              \
     X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)  \

@@ -25,6 +25,8 @@ static const char common[] = GLSL(
         vec4 size;
         vec4 shade;
         vec4 sky;
+        vec4 above;
+        vec4 below;
         vec4 stops[6];
     };
     vec3 encode(vec3 c) {

@@ -6,19 +6,19 @@
 
 // one triangle that covers the picture
 static const char sky_vertex[] = GLSL(
-    out float height;
+    out float up;
     void main() {
         vec2 p = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-        height = p.y;
+        up = 0.5 + 0.5 * p.y;
         gl_Position = vec4(p, 0.0, 1.0);
     }
 );
 static const char sky_fragment[] = GLSL(
-    in float height;
+    in float up;
     out vec4 colour;
     void main() {
-        vec3 c = sky.rgb * (0.94 + 0.12 * height) + 0.02 * (1.0 + height);
-        colour = vec4(encode(clamp(c, 0.0, 1.0)), 1.0);
+        vec4 c = clamp(mix(below, above, up), 0.0, 1.0);
+        colour = vec4(encode(c.rgb), c.a);
     }
 );
 

@@ -49,13 +49,9 @@ static enum cs_status make_drawn(struct cs_target *target, struct cs_error *erro
 }
 
 // OpenGL reads no multisampled pixels: one sample at a time is copied into a plain buffer
-static enum cs_status make_read(struct cs_target *target, struct cs_arena *arena,
-                                struct cs_error *error) {
-    struct cs_tone *tone = cs_arena_take(arena, sizeof *tone, error);
-    if (!tone || cs_shader_make(&cs_shader_sample, &target->program, error))
+static enum cs_status make_read(struct cs_target *target, struct cs_error *error) {
+    if (cs_shader_make(&cs_shader_sample, &target->program, error))
         return error->status;
-    cs_tone_make(tone);
-    target->tone = tone;
     target->number = gl.GetUniformLocation(target->program, "number");
     gl.GenVertexArrays(1, &target->object);
     gl.GenFramebuffers(1, &target->read);
@@ -64,8 +60,21 @@ static enum cs_status make_read(struct cs_target *target, struct cs_arena *arena
     return check_frame(target, error);
 }
 
-enum cs_status cs_target_init(struct cs_target *target, int width, int height, int samples,
+static enum cs_status take(struct cs_target *target, struct cs_arena *arena,
+                           struct cs_error *error) {
+    const size_t n = (size_t)target->width * (size_t)target->height;
+    struct cs_tone *tone = cs_arena_take(arena, sizeof *tone, error);
+    if (tone)
+        cs_tone_make(tone);
+    target->tone = tone;
+    for (uint32_t s = 0; s < target->n_samples && !error->status; s++)
+        target->rgba[s] = cs_arena_take_n(arena, n, sizeof *target->rgba[s], error);
+    return error->status;
+}
+
+enum cs_status cs_target_init(struct cs_target *target, const struct cs_render *render,
                               struct cs_arena *arena, struct cs_error *error) {
+    const int width = (int)render->size[0], height = (int)render->size[1];
     GLint limit = 0;
     gl.GetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &limit);
     if (width > limit || height > limit)
@@ -74,14 +83,12 @@ enum cs_status cs_target_init(struct cs_target *target, int width, int height, i
                        width, height);
     target->width = width;
     target->height = height;
-    target->n_samples = samples > 1 ? 4 : 1;
-    for (uint32_t s = 0; s < target->n_samples && !error->status; s++)
-        target->rgba[s] = cs_arena_take_n(arena, (size_t)width * (size_t)height,
-                                          sizeof *target->rgba[s], error);
-    if (error->status || make_drawn(target, error))
+    target->n_samples = render->samples > 1 ? 4 : 1;
+    target->clear = render->background.kind == CS_BACKGROUND_NONE;
+    if (take(target, arena, error) || make_drawn(target, error))
         return error->status;
     target->read = target->drawn;
-    return samples > 1 ? make_read(target, arena, error) : CS_OK;
+    return target->n_samples > 1 ? make_read(target, error) : CS_OK;
 }
 
 void cs_target_begin(const struct cs_target *target) {
@@ -102,11 +109,28 @@ static void copy_sample(const struct cs_target *target, uint32_t sample) {
     gl.Enable(GL_DEPTH_TEST);
 }
 
+/* Blending on nothing leaves colours times how much they cover; they come back apart, the
+ * highest byte what is let through. */
+static uint32_t apart(uint32_t rgba) {
+    const uint32_t cover = rgba >> 24;
+    uint32_t out = (255 - cover) << 24;
+    for (int k = 0; k < 24 && cover; k += 8) {
+        const uint32_t byte = (255 * (rgba >> k & 255) + cover / 2) / cover;
+        out |= (byte < 255 ? byte : 255) << k;
+    }
+    return out;
+}
+
+static uint32_t sample_of(const struct cs_target *target, uint32_t s, size_t i) {
+    const uint32_t rgba = target->rgba[s][i];
+    return target->clear ? apart(rgba) : rgba & 0xffffff;
+}
+
 // of pixel i of the rows from the bottom
 static uint32_t colour_of(const struct cs_target *target, size_t i) {
-    uint32_t samples[4] = {target->rgba[0][i]}, differ = 0;
+    uint32_t samples[4] = {sample_of(target, 0, i)}, differ = 0;
     for (uint32_t s = 1; s < target->n_samples; s++) {
-        samples[s] = target->rgba[s][i];
+        samples[s] = sample_of(target, s, i);
         differ |= samples[s] ^ samples[0];
     }
     return differ ? cs_tone_mean(target->tone, samples) : samples[0];
@@ -123,13 +147,10 @@ void cs_target_read(const struct cs_target *target, struct cs_image *image) {
     }
     image->width = (uint32_t)w;
     image->height = (uint32_t)h;
-    uint8_t *out = image->rgb;
+    size_t out = 0;
     // OpenGL counts rows from the bottom, a picture from the top
     for (int row = h - 1; row >= 0; row--)
-        for (int x = 0; x < w; x++, out += 3) {
-            const uint32_t c = colour_of(target, (size_t)row * (size_t)w + (size_t)x);
-            out[0] = (uint8_t)c;
-            out[1] = (uint8_t)(c >> 8);
-            out[2] = (uint8_t)(c >> 16);
-        }
+        for (int x = 0; x < w; x++)
+            cs_tone_put(target->tone, colour_of(target, (size_t)row * (size_t)w + (size_t)x),
+                        image, out++);
 }

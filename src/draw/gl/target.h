@@ -3,13 +3,14 @@
 #define CS_DRAW_TARGET_H
 
 #include "base/arena.h"
-#include "base/image.h"
 #include "draw/tone.h"
+#include "scene/scene.h"
 
 struct cs_target {
     unsigned drawn, read; /* frame buffers; the same where a pixel has one sample */
     int width, height;
     uint32_t n_samples; /* a pixel */
+    bool clear;         /* what is behind everything lets light through */
     unsigned samples, program,
         object;                 /* texture of the samples, and what copies one of each pixel */
     int number;                 /* which one: a uniform of the program */
@@ -17,8 +18,8 @@ struct cs_target {
     const struct cs_tone *tone; /* owned by the arena */
 };
 
-/* samples: 1 or 4. */
-enum cs_status cs_target_init(struct cs_target *target, int width, int height, int samples,
+/* As the scene has it. */
+enum cs_status cs_target_init(struct cs_target *target, const struct cs_render *render,
                               struct cs_arena *arena, struct cs_error *error);
 void cs_target_begin(const struct cs_target *target);
 

@@ -86,7 +86,8 @@ static enum cs_status paint(struct cs_course *course, const struct cs_frame *fra
     struct cs_scene *scene = &course->session.scene;
     const struct cs_renderer *renderer = NULL;
     struct cs_canvas *canvas = NULL;
-    struct cs_image image = {TILE_WIDTH, TILE_HEIGHT, malloc(3 * TILE_WIDTH * TILE_HEIGHT)};
+    struct cs_image image = {TILE_WIDTH, TILE_HEIGHT, malloc(3 * TILE_WIDTH * TILE_HEIGHT),
+                             NULL};
     struct cs_image *textures = calloc(scene->bodies.n, sizeof *textures);
     const struct cs_canvas_settings settings = {.scene = scene,
                                                 .system = &course->session.system,

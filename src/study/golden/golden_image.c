@@ -28,7 +28,8 @@ static enum cs_status write_evidence(const struct cs_golden *golden,
                                      const struct cs_golden_row *row,
                                      const struct cs_image *found,
                                      const struct cs_image *expected, struct cs_error *error) {
-    struct cs_image amplified = {found->width, found->height, malloc(cs_image_bytes(found))};
+    struct cs_image amplified = {found->width, found->height, malloc(cs_image_bytes(found)),
+                                 NULL};
     if (!amplified.rgb)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");
     cs_image_amplify(found, expected, &amplified);
