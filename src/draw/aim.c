@@ -6,7 +6,7 @@
 /* A ball around `solid` whose size and place change by steps: edges of the shadow keep still
  * from frame to frame, and yet a frame does not depend on those before it. */
 static struct cs_ball coarse(const struct cs_ball *solid) {
-    struct cs_ball ball = {{0}, 1};
+    struct cs_ball ball = {.radius = 1};
     while (ball.radius > 1.1 * solid->radius)
         ball.radius /= 1.25;
     while (ball.radius < 1.1 * solid->radius)

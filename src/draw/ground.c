@@ -1,7 +1,10 @@
-/* Chooses position, spacing and colour of the grid on the ground. */
+/* Chooses position, spacing and colour of the ground. */
 #include "draw/ground.h"
 
 #include "draw/colour.h"
+#include "draw/reach.h"
+
+#include <math.h>
 
 // the power of ten at or below length
 static double power_of_ten(double length) {
@@ -13,21 +16,91 @@ static double power_of_ten(double length) {
     return power;
 }
 
-static bool has_floor(const struct cs_scene *scene) {
+/* the visible floor, or plane that serves as one; NULL: there is none */
+static const struct cs_obstacle *floor_of(const struct cs_scene *scene,
+                                          const struct cs_obstacle *obstacles) {
     for (uint32_t i = 0; i < scene->colliders.n; i++)
-        if (cs_scene_colliders(scene)[i].visible && cs_scene_colliders(scene)[i].floor.present)
-            return true;
-    return false;
+        if (obstacles[i].collider->visible && obstacles[i].kind == CS_OBSTACLE_PLANE &&
+            obstacles[i].axes[1][1] > 0.5)
+            return obstacles + i;
+    return NULL;
 }
 
-void cs_ground_make(struct cs_ground *ground, const struct cs_scene *scene,
-                    const struct cs_ball *extent) {
+static double height_of(const struct cs_system *system, const struct cs_obstacle *obstacles,
+                        const struct cs_ball *extent) {
+    const struct cs_obstacle *floor = floor_of(system->scene, obstacles);
+    if (!isnan(system->scene->render.ground_height))
+        return system->scene->render.ground_height;
+    // a little below what hangs, so that it does not touch
+    return floor ? floor->centre[1]
+                 : cs_reach_lowest(system, obstacles) - 0.05 * extent->radius;
+}
+
+void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
+                    const struct cs_obstacle *obstacles, const struct cs_ball *extent) {
+    const struct cs_render *render = &system->scene->render;
+    const bool has_floor = floor_of(system->scene, obstacles);
+    if (render->ground == CS_GROUND_NONE || (render->ground == CS_GROUND_AUTO && has_floor))
+        return;
+    ground->height = height_of(system, obstacles, extent);
+    ground->sinks = isnan(render->ground_height) && !has_floor;
+    ground->present = render->ground != CS_GROUND_AUTO || !isnan(ground->height);
+    // what falls without end is followed by it
+    if (isnan(ground->height))
+        ground->height = extent->lowest;
     ground->span[0] = (float)extent->centre[0];
-    ground->span[1] = (float)scene->render.ground_height;
     ground->span[2] = (float)extent->centre[2];
     ground->span[3] = (float)(6 * extent->radius);
-    ground->pitch = (float)power_of_ten(0.3 * extent->radius);
-    cs_colour_ink(scene->render.background.colour, ground->ink);
+    if (render->ground == CS_GROUND_GRID)
+        ground->pitch = (float)power_of_ten(0.3 * extent->radius);
+    cs_colour_ink(render->background.colour, ground->ink);
     // a floor shows the shadow itself
-    ground->shadow = has_floor(scene) ? 0.0f : 0.4f;
+    ground->shadow = has_floor ? 0.0f : 0.4f;
+}
+
+static void grow(float box[4], const double place[2]) {
+    for (int c = 0; c < 2; c++) {
+        box[c] = fminf(box[c], (float)place[c]);
+        box[c + 2] = fmaxf(box[c + 2], (float)place[c]);
+    }
+}
+
+/* Where light carries the corners of a cube around `solid`; false where one is above a lamp, so
+ * that there is no end to its shadow. */
+static bool cast(const struct cs_ball *solid, const float light[4], double height,
+                 float box[4]) {
+    const bool is_lamp = light[3] > 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3], down[3];
+        for (int c = 0; c < 3; c++) {
+            p[c] = solid->centre[c] + (corner >> c & 1 ? 1 : -1) * solid->radius;
+            down[c] = is_lamp ? p[c] - (double)light[c] : -(double)light[c];
+        }
+        if (!(down[1] < 0))
+            return false;
+        const double way = fmax((height - p[1]) / down[1], 0);
+        grow(box, (double[2]){p[0] + way * down[0], p[2] + way * down[2]});
+    }
+    return true;
+}
+
+void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
+                   const struct cs_ball *solid) {
+    const float *span = ground->span;
+    const double below = solid->lowest - 0.02 * solid->radius;
+    const double height = ground->sinks ? fmin(ground->height, below) : ground->height;
+    const float whole[4] = {span[0] - span[3], span[2] - span[3], span[0] + span[3],
+                            span[2] + span[3]};
+    float box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    ground->span[1] = (float)height;
+    const bool bounded = ground->pitch <= 0 && cast(solid, block->light, height, box);
+    for (int c = 0; c < 4; c++) {
+        const float inside = c < 2 ? fmaxf(box[c], whole[c]) : fminf(box[c], whole[c]);
+        ground->box[c] = bounded ? inside : whole[c];
+    }
+    // shadows are not seen from below, nor made by light from there
+    const bool seen = (double)block->eye[1] > height &&
+                      (double)block->light[1] > (block->light[3] > 0 ? height : 0.0);
+    if (ground->pitch <= 0 && !seen)
+        ground->box[2] = ground->box[0];
 }

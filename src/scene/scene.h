@@ -319,6 +319,8 @@ struct cs_background {
     double below[3]; /* at the lower edge of a gradient; first component NAN: a darker colour */
 };
 
+enum cs_ground_kind { CS_GROUND_AUTO, CS_GROUND_NONE, CS_GROUND_SHADOW, CS_GROUND_GRID };
+
 struct cs_render {
     int64_t size[2]; /* pixels: width, height */
     int64_t samples; /* of multisampling: 1 or 4 */
@@ -326,8 +328,8 @@ struct cs_render {
     double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
     struct cs_background background;
     bool viewpoint_forces; /* show what viewpoint forces see, and from where */
-    bool ground;           /* draw a grid on the plane y = ground_height */
-    double ground_height;  /* m */
+    int32_t ground;        /* enum cs_ground_kind: what is drawn on a plane y = ground_height */
+    double ground_height;  /* m; NAN: below all that moves */
 };
 
 /* one integrator option as text, checked when the integrator is known */

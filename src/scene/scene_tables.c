@@ -360,6 +360,7 @@ static const struct cs_option background_rows[] = {
 static const struct cs_table background_table = {
     ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
     .shorthand_list = "colour"};
+static const char *const ground_names[] = {"auto", "none", "shadow", "grid", NULL};
 static const struct cs_option render_rows[] = {
     COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
     INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
@@ -371,8 +372,11 @@ static const struct cs_option render_rows[] = {
     TABLE(struct cs_render, background, background_table, "what is behind everything"),
     BOOL(struct cs_render, viewpoint_forces, 0,
          "draw what the viewpoint forces under way see, and their rectangles from their eyes"),
-    BOOL(struct cs_render, ground, 0, "draw a grid of lines on the ground"),
-    REAL(struct cs_render, ground_height, "m", 0, -BIG, BIG, "the grid lies at y = this"),
+    CHOICE(struct cs_render, ground, ground_names, CS_GROUND_AUTO,
+           "shadow: shadows lie on a ground; grid: with lines on it; auto: shadow where the "
+           "scene has no visible floor and nothing can fall without end, else none"),
+    REAL(struct cs_render, ground_height, "m", ABSENT, -BIG, BIG,
+         "the ground is at y = this; absent: the floor's, or below all that moves"),
 };
 static const struct cs_table render_table = {ROWS(render_rows),
                                              .size = sizeof(struct cs_render)};

@@ -138,7 +138,8 @@ END_TEST
 #define BACKED                                                                                 \
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"total\": 0.2}, \"pins\": "     \
     "[\"edges\"]}], \"colliders\": [{\"box\": {\"centre\": [0.4, 0.3, -0.5], \"size\": "       \
-    "[0.3, 0.2, 0.1]}}], \"render\": {\"size\": [160, 120], \"background\": %s}}"
+    "[0.3, 0.2, 0.1]}}], \"render\": {\"size\": [160, 120], \"ground\": \"none\", "            \
+    "\"background\": %s}}"
 
 static void draw_backed(const char *background, struct cs_image *image) {
     struct fixture cloth;
@@ -202,6 +203,60 @@ START_TEST(a_gradient_runs_from_edge_to_edge) {
 }
 END_TEST
 
+/* a cloth that hangs or falls, without a background; %s: pins, collider, keys of the picture */
+#define GROUNDED                                                                               \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"size\": [0.5, 0.5]}, \"mass\": "           \
+    "{\"total\": 0.2}, \"springs\": {\"stretch\": 400}, \"pins\": "                            \
+    "[%s]}], \"colliders\": [%s], \"light\": {\"point\": [0.5, 3, 1]}, \"camera\": {\"eye\": " \
+    "[0, 0.6, 3]}, \"render\": {\"size\": [160, 120], \"background\": \"none\"%s}}"
+
+static void draw_grounded(const char *pins, const char *collider, const char *keys,
+                          uint32_t frames, struct cs_image *image) {
+    struct fixture cloth;
+    struct cs_picture picture;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "symplectic-euler", GROUNDED, pins, collider, keys);
+    fixture_start(&cloth);
+    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, false, &error);
+    fixture_frames(&cloth, frames);
+    cs_picture_begin(&picture, &cloth.session.run, image);
+    cs_picture_end(&picture, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_picture_close(&picture);
+    fixture_close(&cloth);
+}
+
+/* Where a cloth hangs and there is no floor, its shadow lies below it in every frame: beside
+ * the cloth, which looks as it does without. It is asked for where a cloth falls, and not
+ * wanted where there is a floor. */
+START_TEST(shadows_lie_below_what_has_no_floor) {
+    static const char *const scenes[][3] = {
+        {"\"top-left\", \"top-right\"", "", ""},
+        {"\"top\"", "", ""},
+        {"", "", ", \"ground\": \"shadow\""},
+        {"", "", ", \"ground\": \"shadow\", \"ground_height\": -0.9"},
+        {"", "", ""},
+        {"\"top\"", "{\"floor\": {\"height\": -0.7}}", ""}};
+    static uint8_t rgb[2][3 * WIDTH * HEIGHT], alpha[2][WIDTH * HEIGHT];
+    struct cs_image with = {WIDTH, HEIGHT, rgb[0], alpha[0]};
+    struct cs_image without = {WIDTH, HEIGHT, rgb[1], alpha[1]};
+    for (size_t k = 0; k < 6; k++)
+        for (uint32_t frames = 1; frames < 20; frames += 9) {
+            size_t hidden = 0, shaded = 0;
+            draw_grounded(scenes[k][0], scenes[k][1], scenes[k][2], frames, &with);
+            draw_grounded(scenes[k][0], scenes[k][1], ", \"ground\": \"none\"", frames,
+                          &without);
+            for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+                hidden += alpha[1][i] == 255 && memcmp(rgb[0] + 3 * i, rgb[1] + 3 * i, 3);
+                shaded += alpha[1][i] == 0 && alpha[0][i] > 40;
+            }
+            ck_assert_msg(!hidden, "scene %zu, frame %u: %zu pixels", k, frames, hidden);
+            ck_assert_msg(k < 4 ? shaded > (k == 2 ? 0 : 50) : !shaded,
+                          "scene %zu, frame %u: %zu pixels", k, frames, shaded);
+        }
+}
+END_TEST
+
 static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                                     struct cs_image *image, struct cs_error *error) {
     (void)canvas, (void)image;
@@ -239,9 +294,12 @@ START_TEST(a_renderer_that_fails_is_told) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {
-        pictures_beside_the_run_are_those_at_once,  moved_colliders_are_drawn_where_they_are,
-        what_viewpoint_forces_see_is_drawn_at_once, nothing_behind_is_white_on_white,
-        a_gradient_runs_from_edge_to_edge,          a_renderer_that_fails_is_told};
+    const TTest *const tests[] = {pictures_beside_the_run_are_those_at_once,
+                                  moved_colliders_are_drawn_where_they_are,
+                                  what_viewpoint_forces_see_is_drawn_at_once,
+                                  nothing_behind_is_white_on_white,
+                                  shadows_lie_below_what_has_no_floor,
+                                  a_gradient_runs_from_edge_to_edge,
+                                  a_renderer_that_fails_is_told};
     return fixture_run("pictures", tests, sizeof tests / sizeof *tests);
 }

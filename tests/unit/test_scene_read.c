@@ -165,7 +165,9 @@ START_TEST(messages_name_the_place) {
          "s.json:1:21: render.look: found 3, expected one of lit, "
          "wireframe, springs, force, strain, goals, crossings"},
         {"{\"render\": {\"ground\": 1}}",
-         "s.json:1:23: render.ground: found 1, expected true or false"},
+         "s.json:1:23: render.ground: found 1, expected one of auto, none, shadow, grid"},
+        {"{\"render\": {\"viewpoint_forces\": 1}}",
+         "s.json:1:33: render.viewpoint_forces: found 1, expected true or false"},
         {"{\"bodies\": {}}", "s.json:1:12: bodies: found an object, expected a list"},
         {"{\"about\": true}", "s.json:1:11: about: found true, expected a text"},
         {"{\"bodies\": [{\"pins\": [[1]]}]}",
@@ -247,7 +249,7 @@ START_TEST(overrides_are_put_in) {
                                                    {"about", "two words"},
                                                    {"source", "\"quoted\""},
                                                    {"render.look", "strain"},
-                                                   {"render.ground", "true"},
+                                                   {"render.ground", "grid"},
                                                    {"render.background.kind", "none"},
                                                    {"render.background.colour", "[1, 0.5, 0]"},
                                                    {"integrator", "cvode-bdf"},
@@ -272,7 +274,7 @@ START_TEST(overrides_are_put_in) {
     ck_assert_str_eq(scene.about, "two words");
     ck_assert_str_eq(scene.source, "quoted");
     ck_assert_int_eq(scene.render.look, CS_LOOK_STRAIN);
-    ck_assert(scene.render.ground);
+    ck_assert_int_eq(scene.render.ground, CS_GROUND_GRID);
     ck_assert_int_eq(scene.render.background.kind, CS_BACKGROUND_NONE);
     ck_assert_double_eq(scene.render.background.colour[1], 0.5);
     const struct cs_setting *settings = scene.integrator_settings.items;

@@ -28,8 +28,8 @@ static const char *const scenes[] = {
     " \"integrator\": {\"name\": \"cvode-bdf\", \"rtol\": 1e-4, \"fast\": true, \"k\": "
     "\"newton\"},"
     " \"light\": {\"direction\": [0, -1, 0]}, \"render\": {\"range\": [0, 2.5], "
-    "\"background\": [0.5, 0.25, 1], \"ground\": "
-    "true}}"};
+    "\"background\": [0.5, 0.25, 1], "
+    "\"viewpoint_forces\": true, \"ground\": \"grid\"}}"};
 
 static void read_text(struct cs_scene *scene, const char *text) {
     struct cs_error error = {0};
@@ -117,7 +117,8 @@ START_TEST(every_value_is_printed) {
                                         "\"fps\": 6",
                                         "\"specular\": [1, 0.97, 0.92]",
                                         "\"look\": \"lit\"",
-                                        "\"ground\": false",
+                                        "\"ground\": \"auto\"",
+                                        "\"viewpoint_forces\": false",
                                         "\"name\": \"" CS_INTEGRATOR_DEFAULT
                                         "\"\n      }\n    }"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)

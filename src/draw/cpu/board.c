@@ -41,9 +41,11 @@ static void clear(struct cs_samples *samples, int top, int rows) {
 
 void cs_board_clear(struct cs_board *board, int top, int rows) {
     clear(&board->samples, top, rows);
-    if (board->ground.depth)
-        clear(&board->ground, top, rows);
     board->n_colours = board->n_glazes = board->n_behind = 0;
+}
+
+void cs_board_clear_ground(struct cs_board *board) {
+    clear(&board->ground, board->samples.top, board->samples.rows);
 }
 
 void cs_board_resolve(const struct cs_board *board, const struct cs_tone *tone,

@@ -39,6 +39,8 @@ enum cs_status cs_board_init(struct cs_board *board, int width, bool fades, bool
 
 /* Begins with a band: nothing shows. */
 void cs_board_clear(struct cs_board *board, int top, int rows);
+/* Of the ground too. */
+void cs_board_clear_ground(struct cs_board *board);
 
 /* The four colours of a pixel, apart. */
 CS_INLINE uint32_t *cs_board_apart(struct cs_board *board, size_t pixel) {

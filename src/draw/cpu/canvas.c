@@ -47,13 +47,8 @@ static void init_rays(struct cs_rays *rays, const struct cs_scene *scene) {
 
 static void init_ground(struct cs_canvas *canvas, const struct cs_ball *extent) {
     struct cs_grid *grid = &canvas->drawing.grid;
-    const struct cs_scene *scene = canvas->settings.scene;
-    grid->present = scene->render.ground;
-    if (!grid->present)
-        return;
+    cs_ground_make(&grid->ground, canvas->settings.system, canvas->settings.obstacles, extent);
     grid->easel = &canvas->drawing.easel;
-    cs_ground_make(&grid->ground, scene, extent);
-    cs_ground_add(&grid->ground, &canvas->lens, &grid->square);
     const float *ink = grid->ground.ink;
     grid->ink = cs_tone_pack(&canvas->tone, ink[0], ink[1], ink[2]);
 }
@@ -119,7 +114,7 @@ static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *err
     canvas->boards = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->boards, error);
     for (uint32_t i = 0; i < n && error->status == CS_OK; i++)
         cs_board_init(canvas->boards + i, canvas->drawing.easel.width, has_fading(canvas),
-                      canvas->drawing.grid.present, &canvas->arena, error);
+                      canvas->drawing.grid.ground.present, &canvas->arena, error);
     return error->status;
 }
 
@@ -177,10 +172,20 @@ static void draw_stripe(void *arg, uint32_t stripe) {
     cs_lightmap_draw(&canvas->lightmap, stripe, &canvas->light_fixed, &canvas->light_moving);
 }
 
+static void lay_ground(struct cs_canvas *canvas, const struct cs_ball *solid) {
+    struct cs_grid *grid = &canvas->drawing.grid;
+    grid->square.n = 0;
+    if (!grid->ground.present)
+        return;
+    cs_ground_aim(&grid->ground, &canvas->view.block, solid);
+    cs_ground_add(&grid->ground, &canvas->lens, &grid->square);
+}
+
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame, bool moved) {
     const struct cs_triangle_kind kind = {.attributes = 0};
     const struct cs_ball solid =
         cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
+    lay_ground(canvas, &solid);
     cs_shadow_aim(&solid, &canvas->view.block);
     const bool changed = cs_lightmap_aim(&canvas->lightmap, &canvas->view.block);
     if (!canvas->lightmap.present)

@@ -193,7 +193,7 @@ void cs_drawing_band(const struct cs_drawing *drawing, uint32_t band, struct cs_
     const int top = (int)band * CS_ROWS;
     cs_board_clear(board, top, cs_least(CS_ROWS, drawing->easel.height - top));
     show(drawing, band, board);
-    if (drawing->grid.present)
+    if (drawing->grid.square.n)
         cs_grid_draw(&drawing->grid, (int32_t)drawing->n_fixed, drawing->pattern, board);
     cs_strokes_draw(&drawing->strokes, band, drawing->pattern, board);
     cs_board_resolve(board, drawing->easel.tone, drawing->image);

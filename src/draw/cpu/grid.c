@@ -86,34 +86,66 @@ static void lay(const struct cs_grid *grid, struct cells *cells, struct cs_board
         const float dark = grid->ground.shadow * (1 - shares[i]);
         if (!seen[i] || !(near > 0))
             continue;
-        const float lines = lines_at(grid, cells->x[i], cells->y[i], p);
+        const float lines =
+            grid->ground.pitch > 0 ? lines_at(grid, cells->x[i], cells->y[i], p) : 0;
         const float share = near * near * (dark + (1 - dark) * 0.55f * lines);
-        cs_board_lay(board, cells->pixels[i], cells->masks[i], grid->ink,
-                     (uint32_t)(share * 255 + 0.5f));
+        const uint32_t byte = (uint32_t)(share * 255 + 0.5f);
+        if (byte)
+            cs_board_lay(board, cells->pixels[i], cells->masks[i], grid->ink, byte);
     }
     cells->n = 0;
 }
 
+// samples of a pixel where the ground shows: before the sky or what never moves
+static unsigned mask_of(const struct cs_board *board, size_t at, int32_t moving) {
+    const struct cs_samples *on = &board->samples, *ground = &board->ground;
+    const cs_i4 lies = (ground->shown[at] >= 0) & (on->shown[at] < moving) &
+                       (ground->depth[at] >= on->depth[at]);
+    return (unsigned)(lies[0] & 1) | (unsigned)(lies[1] & 2) | (unsigned)(lies[2] & 4) |
+           (unsigned)(lies[3] & 8);
+}
+
+// the part of a band that holds the rectangle
+struct window {
+    int left, right, top, bottom;
+};
+
+static struct window fill(const struct cs_grid *grid, const struct cs_pattern *pattern,
+                          struct cs_board *board) {
+    const int last = board->samples.top + board->samples.rows - 1;
+    struct window in = {board->samples.width, -1, last + 1, -1};
+    for (size_t i = 0; i < grid->square.n; i++) {
+        const struct cs_triangle *t = grid->square.items + i;
+        in.left = cs_least(in.left, t->left);
+        in.right = cs_most(in.right, t->right);
+        in.top = cs_least(in.top, t->top);
+        in.bottom = cs_most(in.bottom, t->bottom);
+    }
+    in.top = cs_most(in.top, board->samples.top);
+    in.bottom = cs_least(in.bottom, last);
+    if (in.top > in.bottom)
+        return in;
+    cs_board_clear_ground(board);
+    for (size_t i = 0; i < grid->square.n; i++)
+        cs_raster_fill(grid->square.items + i, (int32_t)i, pattern, &board->ground);
+    return in;
+}
+
 void cs_grid_draw(const struct cs_grid *grid, int32_t moving, const struct cs_pattern *pattern,
                   struct cs_board *board) {
-    const struct cs_samples *on = &board->samples, *ground = &board->ground;
+    const struct window in = fill(grid, pattern, board);
     struct cells cells = {.n = 0};
-    for (size_t i = 0; i < grid->square.n; i++)
-        cs_raster_fill(grid->square.items + i, (int32_t)i, pattern, ground);
-    for (int row = 0; row < on->rows; row++)
-        for (int x = 0; x < on->width; x++) {
-            const size_t at = (size_t)row * (size_t)on->width + (size_t)x;
-            // samples where the square shows: before the sky or what never moves
-            const cs_i4 lies = (ground->shown[at] >= 0) & (on->shown[at] < moving) &
-                               (ground->depth[at] >= on->depth[at]);
-            const unsigned mask = (unsigned)(lies[0] & 1) | (unsigned)(lies[1] & 2) |
-                                  (unsigned)(lies[2] & 4) | (unsigned)(lies[3] & 8);
+    for (int y = in.top; y <= in.bottom; y++)
+        for (int x = in.left; x <= in.right; x++) {
+            const size_t at =
+                (size_t)(y - board->samples.top) * (size_t)board->samples.width + (size_t)x;
+            const unsigned mask = mask_of(board, at, moving);
             if (!mask)
                 continue;
             cells.pixels[cells.n] = (uint32_t)at;
             cells.masks[cells.n] = (uint8_t)mask;
             cells.x[cells.n] = (float)x;
-            cells.y[cells.n++] = (float)(on->top + row);
+            cells.y[cells.n++] = (float)y;
             if (cells.n == N)
                 lay(grid, &cells, board);
         }

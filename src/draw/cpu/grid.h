@@ -1,4 +1,4 @@
-/* grid.h - the grid on the ground, laid over a band. */
+/* grid.h - the ground, laid over a band. */
 #ifndef CS_DRAW_GRID_H
 #define CS_DRAW_GRID_H
 
@@ -6,10 +6,9 @@
 #include "draw/ground.h"
 
 struct cs_grid {
-    bool present; /* else the scene has none: the rest is not set */
     struct cs_ground ground;
     uint32_t ink;                 /* as the picture's colours */
-    struct cs_triangles square;   /* where it may show */
+    struct cs_triangles square;   /* where it may show in this picture */
     const struct cs_easel *easel; /* borrowed */
 };
 

@@ -1,4 +1,4 @@
-/* solids.c - colliders and the ground's square become triangles. */
+/* solids.c - colliders and the ground's rectangle become triangles. */
 #include "draw/cpu/solids.h"
 
 #include "draw/extent.h"
@@ -123,17 +123,18 @@ void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *
 
 void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,
                    struct cs_triangles *triangles) {
-    static const signed char signs[6][2] = {{-1, -1}, {1, -1}, {-1, 1},
-                                            {1, -1},  {1, 1},  {-1, 1}};
+    static const unsigned char sides[6][2] = {{0, 0}, {2, 0}, {0, 2}, {2, 0}, {2, 2}, {0, 2}};
     const struct cs_triangle_kind kind = {.attributes = 0};
     const struct projection projection = {lens, NULL, false, triangles};
-    const float *span = ground->span;
+    const float *box = ground->box;
     const struct cs_surface_style style = {.sink = 0};
     struct cs_vertex square[6] = {{.value = 0}};
+    if (!(box[0] < box[2] && box[1] < box[3]))
+        return;
     for (int i = 0; i < 6; i++) {
-        square[i].place[0] = span[0] + span[3] * signs[i][0];
-        square[i].place[1] = span[1];
-        square[i].place[2] = span[2] + span[3] * signs[i][1];
+        square[i].place[0] = box[sides[i][0]];
+        square[i].place[1] = ground->span[1];
+        square[i].place[2] = box[sides[i][1] + 1];
     }
     add_vertices(square, 6, &style, &kind, &projection);
 }

@@ -1,4 +1,4 @@
-/* solids.h - colliders and the ground's square as triangles. */
+/* solids.h - colliders and the ground's rectangle as triangles. */
 #ifndef CS_DRAW_SOLIDS_H
 #define CS_DRAW_SOLIDS_H
 
@@ -31,7 +31,7 @@ void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
 void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *lens,
                           const float light[4], struct cs_triangles *triangles);
 
-/* Adds the ground's square. */
+/* Adds the ground's rectangle, where it has one. */
 void cs_ground_add(const struct cs_ground *ground, const struct cs_lens *lens,
                    struct cs_triangles *triangles);
 

@@ -3,31 +3,29 @@
 
 #include "draw/gl/gl.h"
 #include "draw/gl/shader.h"
-#include "draw/ground.h"
 
-static enum cs_status init_ground(struct cs_backdrop *backdrop, const struct cs_scene *scene,
-                                  const struct cs_ball *extent, struct cs_error *error) {
-    struct cs_ground ground;
-    if (cs_shader_make(&cs_shader_ground, &backdrop->ground, error) != CS_OK)
+static enum cs_status init_ground(struct cs_backdrop *backdrop, struct cs_error *error) {
+    const struct cs_ground *ground = &backdrop->ground;
+    if (cs_shader_make(&cs_shader_ground, &backdrop->program, error) != CS_OK)
         return error->status;
-    cs_ground_make(&ground, scene, extent);
-    const GLuint program = backdrop->ground;
+    const GLuint program = backdrop->program;
+    backdrop->span = gl.GetUniformLocation(program, "span");
+    backdrop->box = gl.GetUniformLocation(program, "box");
     gl.UseProgram(program);
-    gl.Uniform4f(gl.GetUniformLocation(program, "span"), ground.span[0], ground.span[1],
-                 ground.span[2], ground.span[3]);
-    gl.Uniform1f(gl.GetUniformLocation(program, "pitch"), ground.pitch);
-    gl.Uniform3f(gl.GetUniformLocation(program, "ink"), ground.ink[0], ground.ink[1],
-                 ground.ink[2]);
-    gl.Uniform1f(gl.GetUniformLocation(program, "shadow_ink"), ground.shadow);
+    gl.Uniform1f(gl.GetUniformLocation(program, "pitch"), ground->pitch);
+    gl.Uniform3f(gl.GetUniformLocation(program, "ink"), ground->ink[0], ground->ink[1],
+                 ground->ink[2]);
+    gl.Uniform1f(gl.GetUniformLocation(program, "shadow_ink"), ground->shadow);
     return CS_OK;
 }
 
-enum cs_status cs_backdrop_init(struct cs_backdrop *backdrop, const struct cs_scene *scene,
-                                const struct cs_ball *extent, struct cs_error *error) {
+enum cs_status cs_backdrop_init(struct cs_backdrop *backdrop, const struct cs_ground *ground,
+                                struct cs_error *error) {
+    backdrop->ground = *ground;
     gl.GenVertexArrays(1, &backdrop->object);
     if (cs_shader_make(&cs_shader_sky, &backdrop->sky, error) != CS_OK)
         return error->status;
-    return scene->render.ground ? init_ground(backdrop, scene, extent, error) : CS_OK;
+    return ground->present ? init_ground(backdrop, error) : CS_OK;
 }
 
 void cs_backdrop_draw_sky(const struct cs_backdrop *backdrop) {
@@ -39,7 +37,12 @@ void cs_backdrop_draw_sky(const struct cs_backdrop *backdrop) {
 }
 
 void cs_backdrop_draw_ground(const struct cs_backdrop *backdrop) {
-    gl.UseProgram(backdrop->ground);
+    const float *span = backdrop->ground.span, *box = backdrop->ground.box;
+    if (!(box[0] < box[2] && box[1] < box[3]))
+        return;
+    gl.UseProgram(backdrop->program);
+    gl.Uniform4f(backdrop->span, span[0], span[1], span[2], span[3]);
+    gl.Uniform4f(backdrop->box, box[0], box[1], box[2], box[3]);
     gl.BindVertexArray(backdrop->object);
     gl.Enable(GL_BLEND);
     gl.DepthMask(GL_FALSE);

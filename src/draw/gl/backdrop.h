@@ -2,17 +2,20 @@
 #ifndef CS_DRAW_BACKDROP_H
 #define CS_DRAW_BACKDROP_H
 
-#include "draw/view.h"
+#include "draw/ground.h"
 
 struct cs_backdrop {
-    unsigned object, sky, ground;
+    unsigned object, sky, program;
+    int span, box; /* uniforms of the ground's program */
+    struct cs_ground ground;
 };
 
-enum cs_status cs_backdrop_init(struct cs_backdrop *backdrop, const struct cs_scene *scene,
-                                const struct cs_ball *extent, struct cs_error *error);
+/* As the scene of a ground has it (cs_ground_make). */
+enum cs_status cs_backdrop_init(struct cs_backdrop *backdrop, const struct cs_ground *ground,
+                                struct cs_error *error);
 /* Covers every pixel; depth is left alone. */
 void cs_backdrop_draw_sky(const struct cs_backdrop *backdrop);
-/* Lines with a distance of 1 m times a power of ten, every tenth one stronger. */
+/* Where it has been aimed at (cs_ground_aim). */
 void cs_backdrop_draw_ground(const struct cs_backdrop *backdrop);
 
 #endif

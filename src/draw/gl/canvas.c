@@ -86,9 +86,11 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
     /* by the start alone, so that the view is the same in every frame */
     const struct cs_ball extent =
         cs_extent_solid(canvas->system, canvas->system->view.start, settings->obstacles);
+    struct cs_ground ground = {.present = false};
     cs_view_init(&canvas->view, canvas->scene, &extent);
+    cs_ground_make(&ground, canvas->system, settings->obstacles, &extent);
     if (cs_target_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
-        cs_backdrop_init(&canvas->backdrop, canvas->scene, &extent, error) != CS_OK ||
+        cs_backdrop_init(&canvas->backdrop, &ground, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
         cs_shadow_init(&canvas->shadow, error) != CS_OK ||
         cs_gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view.block,
@@ -127,6 +129,8 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
 
 static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame) {
     const struct cs_ball solid = cs_extent_solid(canvas->system, frame->x, frame->obstacles);
+    if (canvas->backdrop.ground.present)
+        cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, &solid);
     const bool has_shadow = cs_shadow_aim(&solid, &canvas->view.block);
     cs_view_upload(&canvas->view);
     if (!has_shadow)
@@ -142,7 +146,7 @@ static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_target_begin(&canvas->target);
     cs_backdrop_draw_sky(&canvas->backdrop);
     cs_gl_colliders_draw(&canvas->colliders, &canvas->program);
-    if (canvas->scene->render.ground)
+    if (canvas->backdrop.ground.present)
         cs_backdrop_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
         if (cs_overlay_hides(canvas->scene, b))

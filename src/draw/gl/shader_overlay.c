@@ -32,13 +32,15 @@ static const char sample_fragment[] = GLSL(
     }
 );
 
-// span: centre x, height, centre z, half side; a line every `pitch` m, every tenth one stronger
+/* span: centre x, height, centre z, half side; box: least and greatest x and z; a line every
+ * `pitch` m, every tenth one stronger, 0: none */
 static const char ground_vertex[] = GLSL(
     uniform vec4 span;
+    uniform vec4 box;
     out vec3 place;
     void main() {
-        vec2 corner = vec2(gl_VertexID % 2, gl_VertexID / 2) * 2.0 - 1.0;
-        place = vec3(span.x + span.w * corner.x, span.y, span.z + span.w * corner.y);
+        place = vec3(gl_VertexID % 2 == 0 ? box.x : box.z, span.y,
+                     gl_VertexID / 2 == 0 ? box.y : box.w);
         gl_Position = world_to_clip * vec4(place, 1.0);
     }
 );
@@ -62,7 +64,9 @@ static const char ground_fragment[] = GLSL(
         float far = length(place.xz - span.xz) / span.w;
         float fade = clamp(1.0 - far, 0.0, 1.0);
         fade = fade * fade;
-        float cover = max(0.5 * lines(pitch, 0.45), lines(10.0 * pitch, 0.7));
+        float cover = 0.0;
+        if (pitch > 0.0)
+            cover = max(0.5 * lines(pitch, 0.45), lines(10.0 * pitch, 0.7));
         // what lies in shadow is inked too, so that things stand on the ground
         float dark = shadow_ink * (1.0 - lit_share(place, vec3(0.0, 1.0, 0.0), 1.0));
         colour = vec4(encode(ink), fade * (dark + (1.0 - dark) * 0.55 * cover));

@@ -1,0 +1,13 @@
+/* reach.h - how low the bodies of a scene can come. */
+#ifndef CS_DRAW_REACH_H
+#define CS_DRAW_REACH_H
+
+#include "model/contact/obstacle.h"
+#include "model/system/system.h"
+
+/* The height in m that nothing of a scene goes below as long as its springs are at most a tenth
+ * longer than at rest; obstacles (scene->colliders.n) at the start. NAN where something may
+ * fall without end: a body that no pin holds, or that a release may set free. */
+double cs_reach_lowest(const struct cs_system *system, const struct cs_obstacle *obstacles);
+
+#endif
