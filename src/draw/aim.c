@@ -39,7 +39,7 @@ bool cs_shadow_aim(const struct cs_ball *solid, struct cs_view_block *block) {
     if (is_lamp)
         cs_matrix_perspective(slope, 1, distance - r, distance + r, lens);
     else
-        cs_matrix_parallel(r, distance - r, distance + r, lens);
+        cs_matrix_parallel(r, 1, distance - r, distance + r, lens);
     cs_matrix_multiply(lens, look, both);
     cs_matrix_to_float(both, block->world_to_light);
     block->shade[0] = 1.0f / CS_SHADOW_SIDE;

@@ -99,7 +99,7 @@ void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
         ground->box[c] = bounded ? inside : whole[c];
     }
     // shadows are not seen from below, nor made by light from there
-    const bool seen = (double)block->eye[1] > height &&
+    const bool seen = (double)block->eye[1] > (block->eye[3] > 0 ? height : 0.0) &&
                       (double)block->light[1] > (block->light[3] > 0 ? height : 0.0);
     if (ground->pitch <= 0 && !seen)
         ground->box[2] = ground->box[0];

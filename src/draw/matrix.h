@@ -97,9 +97,12 @@ static inline void cs_matrix_perspective(double slope, double aspect, double nea
     out[14] = 2 * far * near / (near - far);
 }
 
-static inline void cs_matrix_parallel(double half, double near, double far, double out[16]) {
+/* half: m from the middle of the picture to its upper edge. */
+static inline void cs_matrix_parallel(double half, double aspect, double near, double far,
+                                      double out[16]) {
     memset(out, 0, 16 * sizeof *out);
-    out[0] = out[5] = 1 / half;
+    out[0] = 1 / (half * aspect);
+    out[5] = 1 / half;
     out[10] = 2 / (near - far);
     out[14] = (far + near) / (near - far);
     out[15] = 1;

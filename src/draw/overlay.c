@@ -16,10 +16,14 @@ enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_syste
     overlay->lines = lines;
     overlay->net = (struct cs_net){.system = system,
                                    .unit = fmax((double)render->size[1] / 480, 0.5),
-                                   .cell = cell * pixels_per_m,
                                    .lift = 0.12 * cell};
+    cs_overlay_aim(overlay, pixels_per_m);
     cs_bar_init(&overlay->bar, render);
     return cs_lines_init(lines, most > CS_BAR_LINES ? most : CS_BAR_LINES, arena, error);
+}
+
+void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m) {
+    overlay->net.cell = cs_extent_cell(overlay->net.system) * pixels_per_m;
 }
 
 bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {

@@ -17,6 +17,9 @@ enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_syste
                                double pixels_per_m, struct cs_lines *lines,
                                struct cs_arena *arena, struct cs_error *error);
 
+/* Once the camera has moved. */
+void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m);
+
 /* Draws them in the order in which they lie over each other. */
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame);
 

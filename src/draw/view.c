@@ -1,7 +1,9 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
+#include "draw/camera.h"
 #include "draw/colour.h"
+#include "draw/fit.h"
 #include "draw/matrix.h"
 
 static void copy3(const double from[3], double last, float to[4]) {
@@ -10,30 +12,54 @@ static void copy3(const double from[3], double last, float to[4]) {
     to[3] = (float)last;
 }
 
-static void set_camera(struct cs_view_state *view, const struct cs_scene *scene,
-                       const struct cs_ball *extent) {
-    const struct cs_camera *camera = &scene->camera;
-    const double width = (double)scene->render.size[0], height = (double)scene->render.size[1];
+/* bodies may fall or be blown away: four times as far as anything is now */
+static void set_depth(struct cs_view_state *view, const struct cs_ball *extent) {
+    const struct cs_camera *camera = &view->camera;
     double to_target[3], to_centre[3];
     cs_subtract(camera->target, camera->eye, to_target);
     cs_subtract(extent->centre, camera->eye, to_centre);
     const double distance = cs_length(to_target);
-
-    // bodies may fall or be blown away: four times as far as anything is now
     const double far = 4 * fmax(distance, cs_length(to_centre) + extent->radius);
-    const double near = fmin(far / 1000, distance / 20);
-    const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
+    const bool parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
+    view->depth[0] = parallel ? -far : fmin(far / 1000, distance / 20);
+    view->depth[1] = far;
+}
 
-    double look[16], lens[16], both[16];
+static void set_camera(struct cs_view_state *view, const struct cs_render *render,
+                       const struct cs_ball *extent) {
+    const struct cs_camera *camera = &view->camera;
+    const double width = (double)render->size[0], height = (double)render->size[1];
+    const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
+    const bool parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
+    double back[3], look[16], lens[16], both[16];
+    cs_subtract(camera->eye, camera->target, back);
+    const double distance = cs_length(back);
+    set_depth(view, extent);
     cs_matrix_look(camera->eye, camera->target, camera->up, look);
-    cs_matrix_perspective(slope, width / height, near, far, lens);
+    if (parallel)
+        cs_matrix_parallel(slope * distance, width / height, view->depth[0], view->depth[1],
+                           lens);
+    else
+        cs_matrix_perspective(slope, width / height, view->depth[0], view->depth[1], lens);
     cs_matrix_multiply(lens, look, both);
     cs_matrix_to_float(both, view->block.world_to_clip);
-    copy3(camera->eye, 1, view->block.eye);
+    cs_normalise(back);
+    copy3(parallel ? back : camera->eye, !parallel, view->block.eye);
     view->block.size[0] = (float)width;
     view->block.size[1] = (float)height;
-    view->block.size[2] = (float)near;
+    view->block.size[2] = parallel ? 0 : (float)view->depth[0];
     view->pixels_per_m = height / (2 * slope * distance);
+}
+
+void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
+                  const struct cs_ball *extent, double t, size_t n, const double *x) {
+    struct cs_fit fit = {.slope = 0};
+    view->camera = cs_camera_at(&scene->camera, t);
+    if (scene->camera.frame == CS_FRAME_AUTO) {
+        cs_fit_begin(&fit, &scene->camera, scene->render.size);
+        cs_fit_camera(&fit, n, x, 0.62, &view->camera);
+    }
+    set_camera(view, &scene->render, extent);
 }
 
 static void set_light(struct cs_view_block *block, const struct cs_light *light) {
@@ -75,7 +101,8 @@ static void set_background(struct cs_view_block *block,
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent) {
     memset(view, 0, sizeof *view);
-    set_camera(view, scene, extent);
+    view->camera = cs_camera_at(&scene->camera, 0);
+    set_camera(view, &scene->render, extent);
     set_light(&view->block, &scene->light);
     set_background(&view->block, &scene->render.background);
     cs_colour_stops(scene->render.look, view->block.stops);

@@ -12,7 +12,7 @@ enum { CS_VIEW_BINDING = 0, CS_VIEW_STOPS = 6 };
 struct cs_view_block {
     float world_to_clip[16];
     float world_to_light[16];
-    float eye[4];
+    float eye[4];   /* w 1: where it stands; w 0: the direction to an orthographic one */
     float light[4]; /* w 1: position of a lamp; w 0: direction to the sun */
     float ambient[4], diffuse[4], specular[4];
     float size[4];  /* width, height in pixels; near plane in m */
@@ -24,8 +24,10 @@ struct cs_view_block {
 
 struct cs_view_state {
     struct cs_view_block block;
-    unsigned buffer;     /* of OpenGL, made by the first upload */
-    double pixels_per_m; /* at the camera's target */
+    unsigned buffer;         /* of OpenGL, made by the first upload */
+    double pixels_per_m;     /* at the camera's target */
+    struct cs_camera camera; /* as it stands */
+    double depth[2];         /* m along the view of the near and the far plane */
 };
 
 /* A ball around what is drawn. */
@@ -37,6 +39,11 @@ struct cs_ball {
 /* Fills the block from the scene; everything in `extent` lies between near and far plane. */
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent);
+
+/* Moves a camera that varies to where it is at time t, or frames the places x (3,n) of the
+ * bodies. */
+void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
+                  const struct cs_ball *extent, double t, size_t n, const double *x);
 
 /* Hands the block to the shaders. */
 void cs_view_upload(struct cs_view_state *view);

@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "mesh/network.h"
 #include "scene/pair_keys.h"
+#include "scene/picture_keys.h"
 
 #include <clothsim/option.h>
 
@@ -290,48 +291,6 @@ struct cs_time {
     double fps; /* frame k shows t = k / fps */
 };
 
-struct cs_camera {
-    double eye[3], target[3], up[3]; /* m */
-    double fov;                      /* degrees, vertical */
-};
-
-/* one of point and direction */
-struct cs_light {
-    double point[3];     /* m; first component NAN: absent */
-    double direction[3]; /* from which the light travels; first component NAN: absent */
-    double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
-};
-
-enum cs_look {
-    CS_LOOK_LIT,
-    CS_LOOK_WIREFRAME,
-    CS_LOOK_SPRINGS,
-    CS_LOOK_FORCE,
-    CS_LOOK_STRAIN,
-    CS_LOOK_GOALS,
-    CS_LOOK_CROSSINGS
-};
-enum cs_background_kind { CS_BACKGROUND_GRADIENT, CS_BACKGROUND_FLAT, CS_BACKGROUND_NONE };
-/* what is behind everything; colours are linear RGB */
-struct cs_background {
-    int32_t kind; /* enum cs_background_kind */
-    double colour[3];
-    double below[3]; /* at the lower edge of a gradient; first component NAN: a darker colour */
-};
-
-enum cs_ground_kind { CS_GROUND_AUTO, CS_GROUND_NONE, CS_GROUND_SHADOW, CS_GROUND_GRID };
-
-struct cs_render {
-    int64_t size[2]; /* pixels: width, height */
-    int64_t samples; /* of multisampling: 1 or 4 */
-    int32_t look;    /* enum cs_look */
-    double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
-    struct cs_background background;
-    bool viewpoint_forces; /* show what viewpoint forces see, and from where */
-    int32_t ground;        /* enum cs_ground_kind: what is drawn on a plane y = ground_height */
-    double ground_height;  /* m; NAN: below all that moves */
-};
-
 /* one integrator option as text, checked when the integrator is known */
 struct cs_setting {
     const char *name, *value; /* borrowed from the scene's arena */
@@ -364,7 +323,6 @@ struct cs_scene {
 /* The root of the scene's tables, and names of its choices. */
 extern const struct cs_table cs_scene_table, cs_pin_table, cs_event_table;
 extern const char *const cs_pin_names[];
-extern const char *const cs_look_names[];
 extern const char *const cs_mesh_shape_names[];
 #define CS_INTEGRATOR_DEFAULT "implicit-linearised"
 /* Lists of a scene with their type. */

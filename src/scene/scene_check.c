@@ -266,11 +266,35 @@ static enum cs_status check_meetings(const struct place *at, const struct cs_sce
                   "expected contact.law force");
 }
 
+static enum cs_status check_camera_path(const struct place *at,
+                                        const struct cs_camera *camera) {
+    const struct cs_camera_key *keys = camera->path.items;
+    char path[64];
+    for (uint32_t k = 0; k < camera->path.n; k++) {
+        const char *key,
+            *fault = cs_viewpoint_fault(keys[k].eye, keys[k].target, camera->up, &key);
+        const bool is_up = fault && !strcmp(key, "up");
+        snprintf(path, sizeof path, "camera.path[%u]%s", k, fault && !is_up ? ".target" : "");
+        if (isnan(keys[k].at))
+            return refuse(at, path, "found no time, expected at");
+        if (k > 0 && !(keys[k].at > keys[k - 1].at))
+            return refuse(at, path, "at = %.9g s is not after %.9g s", keys[k].at,
+                          keys[k - 1].at);
+        if (fault)
+            return refuse(at, path, is_up ? "camera.up %s" : "%s", fault);
+    }
+    return CS_OK;
+}
+
 static enum cs_status check_camera(const struct place *at, const struct cs_camera *camera) {
     char path[64];
     const char *key, *fault = cs_viewpoint_fault(camera->eye, camera->target, camera->up, &key);
     snprintf(path, sizeof path, "camera.%s", fault ? key : "");
-    return fault ? refuse(at, path, "%s", fault) : CS_OK;
+    if (fault)
+        return refuse(at, path, "%s", fault);
+    if (camera->path.n && camera->frame == CS_FRAME_AUTO)
+        return refuse(at, "camera.path", "frame auto finds the way itself, expected no path");
+    return check_camera_path(at, camera);
 }
 
 static enum cs_status check_light(const struct place *at, struct cs_light *light) {

@@ -321,66 +321,6 @@ static const struct cs_option time_rows[] = {
 };
 static const struct cs_table time_table = {ROWS(time_rows), .size = sizeof(struct cs_time)};
 
-static const double eye[3] = {1.2, 0.7, 2.2};
-static const struct cs_option camera_rows[] = {
-    VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "where it stands"),
-    VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG, "what it looks at"),
-    VECTOR(struct cs_camera, up, 3, "", up3, -BIG, BIG, "direction that is up in the picture"),
-    REAL(struct cs_camera, fov, "degrees", 40, 1, 170, "vertical field of view"),
-};
-static const struct cs_table camera_table = {ROWS(camera_rows),
-                                             .size = sizeof(struct cs_camera)};
-
-static const double dim[3] = {0.16, 0.17, 0.19};
-static const double bright[3] = {1, 0.97, 0.92};
-static const struct cs_option light_rows[] = {
-    VECTOR(struct cs_light, point, 3, "m", absent9, -BIG, BIG, "where a lamp hangs"),
-    VECTOR(struct cs_light, direction, 3, "", absent9, -BIG, BIG,
-           "in which sunlight travels, instead of point"),
-    VECTOR(struct cs_light, ambient, 3, "", dim, 0, 10, "intensity ia, linear RGB"),
-    VECTOR(struct cs_light, diffuse, 3, "", bright, 0, 10, "intensity id, linear RGB"),
-    VECTOR(struct cs_light, specular, 3, "", bright, 0, 10, "intensity is, linear RGB"),
-};
-static const struct cs_table light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
-
-const char *const cs_look_names[] = {"lit",    "wireframe", "springs",   "force",
-                                     "strain", "goals",     "crossings", NULL};
-static const double vga[2] = {640, 480};
-static const double paper[3] = {0.82, 0.86, 0.91};
-static const char *const background_names[] = {"gradient", "flat", "none", NULL};
-static const struct cs_option background_rows[] = {
-    CHOICE(struct cs_background, kind, background_names, CS_BACKGROUND_GRADIENT,
-           "gradient: brighter above; flat: one colour; none: nothing, in pictures with alpha"),
-    VECTOR(struct cs_background, colour, 3, "", paper, 0, 1,
-           "linear RGB; of none that of a paper for which lines and figures are inked"),
-    VECTOR(struct cs_background, below, 3, "", absent9, 0, 1,
-           "of a gradient at the lower edge, where colour is at the upper one; absent: colour "
-           "is in the middle of a slight one"),
-};
-static const struct cs_table background_table = {
-    ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
-    .shorthand_list = "colour"};
-static const char *const ground_names[] = {"auto", "none", "shadow", "grid", NULL};
-static const struct cs_option render_rows[] = {
-    COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
-    INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
-    CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "what the picture shows"),
-    VECTOR(struct cs_render, range, 2, "N or 1", absent9, -BIG, BIG,
-           "force or strain at the ends of the colours; absent: of each frame, from 0 or about "
-           "it, "
-           "but for the hundredth of the particles that is farthest from 0"),
-    TABLE(struct cs_render, background, background_table, "what is behind everything"),
-    BOOL(struct cs_render, viewpoint_forces, 0,
-         "draw what the viewpoint forces under way see, and their rectangles from their eyes"),
-    CHOICE(struct cs_render, ground, ground_names, CS_GROUND_AUTO,
-           "shadow: shadows lie on a ground; grid: with lines on it; auto: shadow where the "
-           "scene has no visible floor and nothing can fall without end, else none"),
-    REAL(struct cs_render, ground_height, "m", ABSENT, -BIG, BIG,
-         "the ground is at y = this; absent: the floor's, or below all that moves"),
-};
-static const struct cs_table render_table = {ROWS(render_rows),
-                                             .size = sizeof(struct cs_render)};
-
 static const struct cs_option scene_rows[] = {
     TEXT(struct cs_scene, about, "what the scene shows"),
     TEXT(struct cs_scene, source, "where it comes from"),
@@ -396,8 +336,8 @@ static const struct cs_option scene_rows[] = {
     TABLE(struct cs_scene, forces, force_table, "from outside, on every particle"),
     LIST(struct cs_scene, events, cs_event_table, "what happens at a time or over an interval"),
     TABLE(struct cs_scene, time, time_table, "frames"),
-    TABLE(struct cs_scene, camera, camera_table, "look-at camera with perspective"),
-    TABLE(struct cs_scene, light, light_table, "one light, at a point or from a direction"),
-    TABLE(struct cs_scene, render, render_table, "picture"),
+    TABLE(struct cs_scene, camera, cs_camera_table, "look-at camera"),
+    TABLE(struct cs_scene, light, cs_light_table, "one light, at a point or from a direction"),
+    TABLE(struct cs_scene, render, cs_render_table, "picture"),
 };
 const struct cs_table cs_scene_table = {ROWS(scene_rows), .size = sizeof(struct cs_scene)};

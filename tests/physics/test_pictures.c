@@ -4,6 +4,7 @@
 #include "study/picture.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -257,6 +258,79 @@ START_TEST(shadows_lie_below_what_has_no_floor) {
 }
 END_TEST
 
+/* two balls, one in front; %s: the camera */
+#define SEEN                                                                                   \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.01, 0.01]}, \"mass\": "         \
+    "{\"total\": 0.2}, \"pins\": "                                                             \
+    "[\"edges\"]}], \"colliders\": [{\"sphere\": {\"centre\": [-0.5, 0, 0.5], \"radius\": "    \
+    "0.25}}, "                                                                                 \
+    "{\"sphere\": {\"centre\": [0.5, 0, -1], \"radius\": 0.25}}], "                            \
+    "\"camera\": %s, \"render\": {\"size\": [160, 120], \"ground\": \"none\", "                \
+    "\"background\": \"none\"}}"
+
+static void draw_seen(const char *camera, uint32_t frames, struct cs_image *image) {
+    struct fixture cloth;
+    struct cs_picture picture;
+    struct cs_error error = {0};
+    fixture_open(&cloth, "symplectic-euler", SEEN, camera);
+    fixture_start(&cloth);
+    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, false, &error);
+    fixture_frames(&cloth, frames);
+    cs_picture_begin(&picture, &cloth.session.run, image);
+    cs_picture_end(&picture, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_picture_close(&picture);
+    fixture_close(&cloth);
+}
+
+/* pixels that are covered in the left and in the right half */
+static void count_covered(const uint8_t *alpha, double covered[2]) {
+    covered[0] = covered[1] = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+        covered[i % WIDTH >= WIDTH / 2] += alpha[i] / 255.0;
+}
+
+/* A ball of radius r covers pi r^2 of an orthographic picture, however far it is: there 2 m are
+ * 120 pixels. In a perspective the nearer one is larger, by the square of the distances. */
+START_TEST(an_orthographic_picture_has_no_distance) {
+    static uint8_t rgb[3 * WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
+    struct cs_image image = {WIDTH, HEIGHT, rgb, alpha};
+    const double expected = 3.14159265358979 * 15 * 15;
+    double covered[2];
+    draw_seen("{\"eye\": [0, 0, 2.41421356], \"fov\": 45, \"projection\": \"orthographic\"}", 1,
+              &image);
+    count_covered(alpha, covered);
+    ck_assert_double_eq_tol(covered[0], expected, 0.01 * expected);
+    ck_assert_double_eq_tol(covered[1], expected, 0.01 * expected);
+    draw_seen("{\"eye\": [0, 0, 2.41421356], \"fov\": 45}", 1, &image);
+    count_covered(alpha, covered);
+    ck_assert_double_eq_tol(covered[0] / covered[1], 3.1813, 0.2);
+}
+END_TEST
+
+/* at its keys and between them a camera on a path draws what one draws that stands there */
+START_TEST(a_camera_follows_its_path) {
+    static const char *const there[] = {"{\"eye\": [1, 0.5, 2], \"target\": [0, 0, 0]}",
+                                        "{\"eye\": [0, 0.5, 2], \"target\": [0.25, 0, 0]}",
+                                        "{\"eye\": [-1, 0.5, 2], \"target\": [0.5, 0, 0]}"};
+    static uint8_t rgb[2][3 * WIDTH * HEIGHT], alpha[2][WIDTH * HEIGHT];
+    struct cs_image moving = {WIDTH, HEIGHT, rgb[0], alpha[0]};
+    struct cs_image still = {WIDTH, HEIGHT, rgb[1], alpha[1]};
+    for (uint32_t k = 0; k < 6; k++) {
+        char camera[400];
+        snprintf(camera, sizeof camera,
+                 "{\"motion\": \"%s\", \"path\": [{\"at\": 0.0166666666666666667, \"eye\": [1, "
+                 "0.5, 2], \"target\": [0, 0, 0]}, {\"at\": 0.05, \"eye\": [-1, 0.5, 2], "
+                 "\"target\": [0.5, 0, 0]}]}",
+                 k < 3 ? "linear" : "smooth");
+        draw_seen(camera, 2 * (k % 3) + (k % 3 == 0) - (k % 3 == 2), &moving);
+        draw_seen(there[k % 3], 1, &still);
+        for (size_t i = 0; i < sizeof rgb[0]; i++)
+            ck_assert_int_le(abs(rgb[0][i] - rgb[1][i]) * (alpha[1][i / 3] > 127), 3);
+    }
+}
+END_TEST
+
 static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                                     struct cs_image *image, struct cs_error *error) {
     (void)canvas, (void)image;
@@ -299,6 +373,8 @@ int main(void) {
                                   what_viewpoint_forces_see_is_drawn_at_once,
                                   nothing_behind_is_white_on_white,
                                   shadows_lie_below_what_has_no_floor,
+                                  an_orthographic_picture_has_no_distance,
+                                  a_camera_follows_its_path,
                                   a_gradient_runs_from_edge_to_edge,
                                   a_renderer_that_fails_is_told};
     return fixture_run("pictures", tests, sizeof tests / sizeof *tests);

@@ -32,7 +32,7 @@ static struct cs_lens parallel(void) {
     double matrix[16];
     float as_float[16];
     struct cs_lens lens;
-    cs_matrix_parallel(1, -1, 1, matrix);
+    cs_matrix_parallel(1, 1, -1, 1, matrix);
     cs_matrix_to_float(matrix, as_float);
     cs_lens_make(&lens, as_float, 0, SIZE, SIZE);
     return lens;

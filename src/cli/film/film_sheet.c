@@ -89,7 +89,7 @@ static enum cs_status take_paper(struct layout *layout, const struct cs_image *f
                        "a sheet of %llu x %llu pixels is too large, expected at most %d x %d",
                        (unsigned long long)width, (unsigned long long)height, MOST, MOST);
     *layout->image = (struct cs_image){(uint32_t)width, (uint32_t)height,
-                                       malloc(3 * (size_t)width * (size_t)height)};
+                                       malloc(3 * (size_t)width * (size_t)height), NULL};
     if (!layout->image->rgb)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a sheet");
     memset(layout->image->rgb, 255, 3 * (size_t)width * (size_t)height);

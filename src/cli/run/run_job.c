@@ -82,12 +82,9 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (!settings->session.render)
         return CS_OK;
-    const struct cs_frames_settings frames = {.width = (uint32_t)render->size[0],
-                                              .height = (uint32_t)render->size[1],
-                                              .alpha =
-                                                  render->background.kind == CS_BACKGROUND_NONE,
-                                              .level = (int)settings->level,
-                                              .threaded = has_processors()};
+    const struct cs_frames_settings frames = {
+        (uint32_t)render->size[0], (uint32_t)render->size[1],
+        render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
     return cs_frames_create(settings->folder, &frames, &job->writer, error);
 }
 
@@ -341,9 +338,12 @@ static enum cs_status open_session(struct cs_job *job, struct cs_error *error) {
     settings.run.account = kept ? &job->account : NULL;
     job->trail = job->settings->trail;
     settings.run.trace = job->trail.only ? &job->trail.trace : NULL;
-    return cs_session_open(&job->session, &settings, error) || !kept
-               ? error->status
-               : cs_account_open(&job->account, &job->session.system, 0, error);
+    job->camera.settings = job->settings;
+    settings.change = settings.render ? cs_run_camera_find : NULL;
+    settings.ctx = &job->camera;
+    if (cs_session_open(&job->session, &settings, error) || job->camera.error.status)
+        return cs_fail(error, job->camera.error.status, "%s", job->camera.error.message);
+    return !kept ? CS_OK : cs_account_open(&job->account, &job->session.system, 0, error);
 }
 
 enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,

@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "cli/run/run_camera.h"
 #include "cli/run/run_picture.h"
 #include "cli/run/run_resume.h"
 #include "cli/run/run_settings.h"
@@ -52,6 +53,7 @@ struct cs_job {
     struct cs_output folder, states; /* owned while the run lasts */
     struct cs_resume checkpoints;
     struct cs_run_trail trail;
+    struct cs_run_camera camera;
     const char *failure; /* why a step failed, in the caller's error; NULL: none did */
     double wall_seconds, encode_seconds;
     double wait_seconds; /* that the run stood still for its pictures */

@@ -3,6 +3,7 @@
  * Colliders are made ready anew only where one has moved. Of a frame, the cloths become
  * triangles on one thread; then stripes of the light's picture and bands of the picture are
  * shared out. */
+#include "draw/camera.h"
 #include "draw/cpu/bodies.h"
 #include "draw/cpu/drawing.h"
 #include "draw/cpu/solids.h"
@@ -29,10 +30,10 @@ struct cs_canvas {
     atomic_uint next_band;
 };
 
-static void init_rays(struct cs_rays *rays, const struct cs_scene *scene) {
-    const struct cs_camera *camera = &scene->camera;
-    const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
-    double look[16];
+static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
+                     const struct cs_render *render) {
+    const struct cs_camera *camera = &view->camera;
+    double look[16], back[3], slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
     cs_matrix_look(camera->eye, camera->target, camera->up, look);
     for (int i = 0; i < 3; i++) {
         rays->eye[i] = (float)camera->eye[i];
@@ -40,9 +41,22 @@ static void init_rays(struct cs_rays *rays, const struct cs_scene *scene) {
         rays->up[i] = (float)look[4 * i + 1];
         rays->back[i] = (float)look[4 * i + 2];
     }
-    const double aspect = (double)scene->render.size[0] / (double)scene->render.size[1];
-    rays->slope_x = (float)(slope * aspect);
+    rays->parallel = camera->projection == CS_PROJECTION_ORTHOGRAPHIC;
+    cs_subtract(camera->eye, camera->target, back);
+    if (rays->parallel)
+        slope *= cs_length(back);
+    rays->depth[0] = (float)view->depth[0];
+    rays->depth[1] = (float)view->depth[1];
+    rays->slope_x = (float)(slope * ((double)render->size[0] / (double)render->size[1]));
     rays->slope_y = (float)slope;
+}
+
+/* What follows from where the camera stands. */
+static void aim_camera(struct cs_canvas *canvas) {
+    const struct cs_render *render = &canvas->settings.scene->render;
+    cs_lens_make(&canvas->lens, canvas->view.block.world_to_clip, canvas->view.block.size[2],
+                 (int)render->size[0], (int)render->size[1]);
+    aim_rays(&canvas->drawing.easel.rays, &canvas->view, render);
 }
 
 static void init_ground(struct cs_canvas *canvas, const struct cs_ball *extent) {
@@ -61,10 +75,8 @@ static void init_view(struct cs_canvas *canvas) {
         cs_extent_solid(system, system->view.start, canvas->settings.obstacles);
     struct cs_drawing *drawing = &canvas->drawing;
     cs_view_init(&canvas->view, scene, &extent);
-    cs_lens_make(&canvas->lens, canvas->view.block.world_to_clip, canvas->view.block.size[2],
-                 width, height);
+    aim_camera(canvas);
     cs_tone_make(&canvas->tone);
-    init_rays(&drawing->easel.rays, scene);
     drawing->easel.width = width;
     drawing->easel.height = height;
     drawing->easel.view = &canvas->view.block;
@@ -181,12 +193,18 @@ static void lay_ground(struct cs_canvas *canvas, const struct cs_ball *solid) {
     cs_ground_add(&grid->ground, &canvas->lens, &grid->square);
 }
 
-static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame, bool moved) {
+static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
+                        const struct cs_ball *solid) {
+    const struct cs_system *system = canvas->settings.system;
+    cs_view_move(&canvas->view, canvas->settings.scene, solid, frame->t, system->view.n,
+                 frame->x);
+    cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
+    aim_camera(canvas);
+}
+
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_ball *solid, bool moved) {
     const struct cs_triangle_kind kind = {.attributes = 0};
-    const struct cs_ball solid =
-        cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
-    lay_ground(canvas, &solid);
-    cs_shadow_aim(&solid, &canvas->view.block);
+    cs_shadow_aim(solid, &canvas->view.block);
     const bool changed = cs_lightmap_aim(&canvas->lightmap, &canvas->view.block);
     if (!canvas->lightmap.present)
         return;
@@ -245,10 +263,16 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     drawing->image = image;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
         cs_body_picture_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
+    const struct cs_ball solid =
+        cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
+    const bool varies = cs_camera_varies(&canvas->settings.scene->camera);
     const bool moved = cs_solids_move(&canvas->solids, frame->obstacles);
-    if (moved)
+    if (varies)
+        move_camera(canvas, frame, &solid);
+    if (moved || varies)
         add_solids(canvas);
-    draw_shadow(canvas, frame, moved);
+    lay_ground(canvas, &solid);
+    draw_shadow(canvas, &solid, moved);
     add_bodies(canvas);
     drawing->strokes.n = 0;
     cs_overlay_draw(&canvas->overlay, frame);

@@ -49,6 +49,15 @@ static struct cs_fragments *slot_of(const struct cs_drawing *drawing,
     return slot;
 }
 
+// m along the view, as the depth of a pixel's middle has it, but not sunk
+static float along_of(const struct cs_drawing *drawing, const struct cs_triangle *t,
+                      const struct cs_coat *coat, int x, int y) {
+    const float *depth = drawing->easel.rays.depth;
+    const float up = (float)(drawing->easel.height - 1 - y) + 0.5f;
+    const float z = t->depth.at + t->depth.x * ((float)x + 0.5f) + t->depth.y * up;
+    return depth[0] + z * (depth[1] - depth[0]) - coat->sink;
+}
+
 // what a triangle shows at a pixel: its colour comes later
 static void add_fragment(const struct cs_drawing *drawing, const struct cs_triangle *t, int x,
                          int y, uint32_t out, struct cs_board *board) {
@@ -64,6 +73,8 @@ static void add_fragment(const struct cs_drawing *drawing, const struct cs_trian
         f->attributes[k][i] = value_at(t->attributes + k, across, down);
     for (int k = 3; k < CS_ATTRIBUTES && f->coat->mode != CS_SURFACE_PLAIN; k++)
         f->attributes[k][i] = value_at(t->attributes + k, across, down);
+    if (drawing->easel.rays.parallel)
+        f->along[i] = along_of(drawing, t, f->coat, x, y);
     if (f->coat->mode == CS_SURFACE_TEXTURED)
         f->texels[i] = texels_of(drawing, t, f->coat->mips, x, y);
     f->out[i] = out;

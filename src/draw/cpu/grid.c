@@ -17,14 +17,16 @@ struct cells {
 
 // where on the ground a pixel looks; false above the horizon
 static bool find_place(const struct cs_grid *grid, float x, float y, float place[3]) {
-    const float *eye = grid->easel->rays.eye, height = grid->ground.span[1];
+    const struct cs_rays *rays = &grid->easel->rays;
+    const float height = grid->ground.span[1], above = height - rays->eye[1];
     float d[3];
     cs_rays_through(grid->easel, x, y, d);
-    const float t = d[1] < 0 || d[1] > 0 ? (height - eye[1]) / d[1] : -1;
-    for (int i = 0; i < 3; i++)
-        place[i] = eye[i] + t * d[i];
+    const float fall = rays->parallel ? -rays->back[1] : d[1];
+    const float way = rays->parallel ? above - d[1] : above;
+    const float t = fall < 0 || fall > 0 ? way / fall : -1;
+    cs_rays_place(grid->easel, x, y, t, place);
     place[1] = height;
-    return t > 0;
+    return rays->parallel ? fall < 0 : t > 0;
 }
 
 static float away(float a) {

@@ -10,6 +10,7 @@
 #include "draw/view.h"
 
 #include <clothsim/clones.h>
+#include <stdbool.h>
 
 enum { CS_ATTRIBUTES = 5 }; /* normal, then a value, or texture coordinates */
 
@@ -60,6 +61,8 @@ int cs_lens_clip(const struct cs_lens *lens, const struct cs_corner *const corne
 struct cs_rays {
     float eye[3], right[3], up[3], back[3]; /* m; unit vectors */
     float slope_x, slope_y;                 /* of the rays at the edges */
+    bool parallel;  /* rays start side by side, slope_x and slope_y in m from the middle */
+    float depth[2]; /* m along them at the near and the far plane; of parallel ones */
 };
 
 #endif

@@ -29,6 +29,19 @@ void cs_coat_make(struct cs_coat *coat, const struct cs_surface_style *style) {
     coat->shine = parts / 256;
     coat->shine_part = parts % 256;
     coat->fade = (float)style->fade;
+    coat->sink = (float)style->sink;
+}
+
+static void find_parallel_places(const struct cs_easel *easel, const struct cs_fragments *f,
+                                 struct work *w) {
+    for (int i = 0; i < N; i++) {
+        float place[3];
+        cs_rays_place(easel, f->x[i], f->y[i], f->along[i], place);
+        for (int k = 0; k < 3; k++) {
+            w->place[k][i] = place[k];
+            w->view[k][i] = easel->rays.back[k];
+        }
+    }
 }
 
 CS_INLINE void find_places(const struct cs_easel *easel, const struct cs_fragments *f,
@@ -214,10 +227,14 @@ CS_CLONES static void shade(const struct cs_easel *easel, struct cs_fragments *f
     for (int i = f->n; i < N; i++) {
         f->x[i] = f->y[i] = 0;
         f->inverse[i] = 1;
+        f->along[i] = 1;
         for (int k = 0; k < CS_ATTRIBUTES; k++)
             f->attributes[k][i] = 1;
     }
-    find_places(easel, f, w);
+    if (easel->rays.parallel)
+        find_parallel_places(easel, f, w);
+    else
+        find_places(easel, f, w);
     find_normals(f, w);
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++)

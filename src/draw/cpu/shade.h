@@ -17,6 +17,7 @@ struct cs_coat {
     int shine;      /* whole part of the exponent of highlights */
     int shine_part; /* the rest of it in 1/256 */
     float fade;     /* m about the origin where it has melted; 0: none */
+    float sink;     /* m by which the depth is moved away */
     struct cs_mips *mips;
 };
 
@@ -36,8 +37,9 @@ struct cs_fragments {
     const struct cs_coat *coat;
     uint32_t key;
     int n, side;
-    float x[CS_FRAGMENTS], y[CS_FRAGMENTS];        /* pixels from the top left */
-    float inverse[CS_FRAGMENTS];                   /* 1/w */
+    float x[CS_FRAGMENTS], y[CS_FRAGMENTS]; /* pixels from the top left */
+    float inverse[CS_FRAGMENTS];            /* 1/w */
+    float along[CS_FRAGMENTS]; /* m along the view, of parallel rays: they have no w */
     float attributes[CS_ATTRIBUTES][CS_FRAGMENTS]; /* over w */
     float texels[CS_FRAGMENTS];                    /* a pixel, squared, of textured ones */
     uint32_t out[CS_FRAGMENTS];                    /* where their colour goes */
@@ -47,13 +49,24 @@ struct cs_fragments {
  * fragments. */
 void cs_shade(const struct cs_easel *easel, struct cs_fragments *fragments, uint32_t *colours);
 
-/* The ray through the middle of a pixel: 1 m along it is 1 m along the view. */
+/* The ray through the middle of a pixel: 1 m along it is 1 m along the view. Of parallel rays
+ * where it starts, from the eye on. */
 CS_INLINE void cs_rays_through(const struct cs_easel *easel, float x, float y, float d[3]) {
     const struct cs_rays *r = &easel->rays;
     const float right = ((x + 0.5f) * (2 / (float)easel->width) - 1) * r->slope_x;
     const float up = (1 - (y + 0.5f) * (2 / (float)easel->height)) * r->slope_y;
     for (int i = 0; i < 3; i++)
-        d[i] = right * r->right[i] + up * r->up[i] - r->back[i];
+        d[i] = right * r->right[i] + up * r->up[i] - (r->parallel ? 0 : r->back[i]);
+}
+
+/* The place t m along the ray through the middle of a pixel. */
+CS_INLINE void cs_rays_place(const struct cs_easel *easel, float x, float y, float t,
+                             float place[3]) {
+    const struct cs_rays *r = &easel->rays;
+    float d[3];
+    cs_rays_through(easel, x, y, d);
+    for (int i = 0; i < 3; i++)
+        place[i] = r->parallel ? r->eye[i] + d[i] - t * r->back[i] : r->eye[i] + t * d[i];
 }
 
 #endif

@@ -37,11 +37,11 @@ bool cs_solids_move(struct cs_solids *solids, const struct cs_obstacle *obstacle
 
 /* `sink` moves only the depth away from the eye: between its particles a cloth is a chord that
  * cuts into the ball it lies on, and would show specks of it */
-static void sink(const struct cs_lens *lens, const float place[3], const float eye[3], float by,
+static void sink(const struct cs_lens *lens, const float place[3], const float eye[4], float by,
                  struct cs_corner *corner) {
     float d[3], square = 0, moved[3];
     for (int i = 0; i < 3; i++) {
-        d[i] = place[i] - eye[i];
+        d[i] = eye[3] * place[i] - eye[i];
         square += d[i] * d[i];
     }
     const float share = square > 0 ? by / sqrtf(square) : 0;

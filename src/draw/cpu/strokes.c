@@ -39,10 +39,10 @@ static bool set_box(const struct cs_easel *easel, const float ends[4], float rea
 // a corner takes the depth of its place moved towards the eye
 static void lift_up(const struct cs_strokes *strokes, const float place[3], float lift,
                     struct cs_corner *corner) {
-    const float *eye = strokes->easel->rays.eye;
+    const float *eye = strokes->easel->view->eye;
     float d[3], moved[3];
     for (int i = 0; i < 3; i++)
-        d[i] = eye[i] - place[i];
+        d[i] = eye[i] - eye[3] * place[i];
     const float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     const float share = square > 0 ? 1 / sqrtf(square) : 0;
     for (int i = 0; i < 3; i++)

@@ -1,5 +1,6 @@
 /* Prepares a scene for drawing through OpenGL, and exports the renderer's table of calls. */
 #include "draw/aim.h"
+#include "draw/camera.h"
 #include "draw/extent.h"
 #include "draw/gl/backdrop.h"
 #include "draw/gl/collider.h"
@@ -127,11 +128,17 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
     return error->status;
 }
 
-static void draw_shadow(struct cs_canvas *canvas, const struct cs_frame *frame) {
-    const struct cs_ball solid = cs_extent_solid(canvas->system, frame->x, frame->obstacles);
+static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
+                        const struct cs_ball *solid) {
+    cs_view_move(&canvas->view, canvas->scene, solid, frame->t, canvas->system->view.n,
+                 frame->x);
+    cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
+}
+
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_ball *solid) {
     if (canvas->backdrop.ground.present)
-        cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, &solid);
-    const bool has_shadow = cs_shadow_aim(&solid, &canvas->view.block);
+        cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, solid);
+    const bool has_shadow = cs_shadow_aim(solid, &canvas->view.block);
     cs_view_upload(&canvas->view);
     if (!has_shadow)
         return;
@@ -166,8 +173,12 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         cs_mesh_update(&cloth->mesh, canvas->system->view.n, frame);
         cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
     }
-    cs_gl_colliders_move(&canvas->colliders, frame->obstacles);
-    draw_shadow(canvas, frame);
+    const struct cs_ball solid = cs_extent_solid(canvas->system, frame->x, frame->obstacles);
+    const bool varies = cs_camera_varies(&canvas->scene->camera);
+    if (varies)
+        move_camera(canvas, frame, &solid);
+    cs_gl_colliders_move(&canvas->colliders, frame->obstacles, varies);
+    draw_shadow(canvas, &solid);
     draw_scene(canvas, frame);
     cs_target_read(&canvas->target, image);
     return cs_gl_check("drawing a frame", error);

@@ -57,13 +57,13 @@ enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
 }
 
 void cs_gl_colliders_move(struct cs_gl_colliders *colliders,
-                          const struct cs_obstacle *obstacles) {
+                          const struct cs_obstacle *obstacles, bool seen_anew) {
     for (uint32_t i = 0; i < colliders->n; i++) {
         struct cs_obstacle *now = colliders->obstacles + i;
         const bool moved = memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
                            memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
         *now = obstacles[i];
-        if (moved)
+        if (moved || seen_anew)
             upload(colliders, i);
     }
 }

@@ -17,16 +17,16 @@ struct cs_gl_colliders {
 };
 
 /* obstacles (scene->colliders.n): where they are at the start; view is borrowed, for camera and
- * light, which stay */
+ * light */
 enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
                                     const struct cs_system *system,
                                     const struct cs_view_block *view,
                                     const struct cs_obstacle *obstacles, struct cs_arena *arena,
                                     struct cs_error *error);
 
-/* Puts those that are elsewhere now where they are. */
+/* Puts those that are elsewhere now where they are; seen_anew: the camera has moved. */
 void cs_gl_colliders_move(struct cs_gl_colliders *colliders,
-                          const struct cs_obstacle *obstacles);
+                          const struct cs_obstacle *obstacles, bool seen_anew);
 
 void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
                           const struct cs_surface_program *program);

@@ -89,7 +89,7 @@ static const char line_vertex[] = GLSL(
         return world_to_clip * vec4(p, 1.0);
     }
     float lifted(vec3 p, vec4 clip) {
-        vec4 near = project(p + lift * normalize(eye.xyz - p));
+        vec4 near = project(p + lift * normalize(eye.xyz - eye.w * p));
         return near.w > 0.0 ? near.z / near.w * clip.w : clip.z;
     }
     void main() {

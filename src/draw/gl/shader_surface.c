@@ -24,7 +24,7 @@ static const char surface_vertex[] = GLSL(
         uv = in_uv;
         value = in_value;
         gl_Position = world_to_clip * vec4(place, 1.0);
-        vec4 behind = world_to_clip * vec4(place + sink * normalize(place - eye.xyz), 1.0);
+        vec4 behind = world_to_clip * vec4(place + sink * normalize(eye.w * place - eye.xyz), 1.0);
         if (sink > 0.0 && gl_Position.w > 0.0 && behind.w > 0.0)
             gl_Position.z = behind.z / behind.w * gl_Position.w;
     }
@@ -62,7 +62,7 @@ static const char surface_fragment[] = GLSL(
 
     void main() {
         vec3 n = normalize(gl_FrontFacing ? normal : -normal);
-        vec3 v = normalize(eye.xyz - place);
+        vec3 v = normalize(eye.xyz - eye.w * place);
         vec3 base = gl_FrontFacing ? front : back;
         float towards = abs(dot(n, v));
         if (mode == 1)

@@ -1,0 +1,63 @@
+/* picture_keys.h - what a scene says of its pictures: camera, light, look, what is around. */
+#ifndef CS_PICTURE_KEYS_H
+#define CS_PICTURE_KEYS_H
+
+#include <clothsim/option.h>
+
+enum cs_frame_kind { CS_FRAME_GIVEN, CS_FRAME_AUTO };
+enum cs_projection { CS_PROJECTION_PERSPECTIVE, CS_PROJECTION_ORTHOGRAPHIC };
+struct cs_camera_key {
+    double at;                /* s; NAN: not given, refused */
+    double eye[3], target[3]; /* m */
+};
+struct cs_camera {
+    int32_t frame;                   /* enum cs_frame_kind */
+    double eye[3], target[3], up[3]; /* m */
+    double fov;                      /* degrees, vertical; orthographic: as wide at target */
+    int32_t projection;              /* enum cs_projection */
+    struct cs_list path;             /* struct cs_camera_key: instead of eye and target */
+    int32_t motion;                  /* enum cs_motion, from key to key */
+};
+
+/* one of point and direction */
+struct cs_light {
+    double point[3];     /* m; first component NAN: absent */
+    double direction[3]; /* from which the light travels; first component NAN: absent */
+    double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
+};
+
+enum cs_look {
+    CS_LOOK_LIT,
+    CS_LOOK_WIREFRAME,
+    CS_LOOK_SPRINGS,
+    CS_LOOK_FORCE,
+    CS_LOOK_STRAIN,
+    CS_LOOK_GOALS,
+    CS_LOOK_CROSSINGS
+};
+enum cs_background_kind { CS_BACKGROUND_GRADIENT, CS_BACKGROUND_FLAT, CS_BACKGROUND_NONE };
+/* what is behind everything; colours are linear RGB */
+struct cs_background {
+    int32_t kind; /* enum cs_background_kind */
+    double colour[3];
+    double below[3]; /* at the lower edge of a gradient; first component NAN: a darker colour */
+};
+
+enum cs_ground_kind { CS_GROUND_AUTO, CS_GROUND_NONE, CS_GROUND_SHADOW, CS_GROUND_GRID };
+
+struct cs_render {
+    int64_t size[2]; /* pixels: width, height */
+    int64_t samples; /* of multisampling: 1 or 4 */
+    int32_t look;    /* enum cs_look */
+    double range[2]; /* of the colours of looks force [N] and strain; NAN: from the frame */
+    struct cs_background background;
+    bool viewpoint_forces; /* show what viewpoint forces see, and from where */
+    int32_t ground;        /* enum cs_ground_kind: what is drawn on a plane y = ground_height */
+    double ground_height;  /* m; NAN: below all that moves */
+};
+
+/* Of the camera, the light and the rest. */
+extern const struct cs_table cs_camera_table, cs_light_table, cs_render_table;
+extern const char *const cs_look_names[];
+
+#endif

@@ -1,0 +1,84 @@
+/* The rows of what a scene says of its pictures. */
+#include "scene/scene.h"
+#include "scene/table_rows.h"
+
+static const double zero3[3] = {0, 0, 0};
+static const double up3[3] = {0, 1, 0};
+static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
+
+static const double eye[3] = {1.2, 0.7, 2.2};
+static const char *const frame_names[] = {"given", "auto", NULL};
+static const char *const projection_names[] = {"perspective", "orthographic", NULL};
+static const char *const camera_motions[] = {"linear", "smooth", NULL};
+static const struct cs_option key_rows[] = {
+    REAL(struct cs_camera_key, at, "s", ABSENT, 0, BIG, "later than the key before"),
+    VECTOR(struct cs_camera_key, eye, 3, "m", NULL, -BIG, BIG, "where it stands then"),
+    VECTOR(struct cs_camera_key, target, 3, "m", NULL, -BIG, BIG, "what it looks at then"),
+};
+static const struct cs_table key_table = {ROWS(key_rows), .size = sizeof(struct cs_camera_key)};
+static const struct cs_option camera_rows[] = {
+    CHOICE(struct cs_camera, frame, frame_names, CS_FRAME_GIVEN,
+           "given: it stands where eye says; auto: it looks as from there, from where the "
+           "bodies fill the picture"),
+    VECTOR(struct cs_camera, eye, 3, "m", eye, -BIG, BIG, "where it stands"),
+    VECTOR(struct cs_camera, target, 3, "m", zero3, -BIG, BIG, "what it looks at"),
+    VECTOR(struct cs_camera, up, 3, "", up3, -BIG, BIG, "direction that is up in the picture"),
+    REAL(struct cs_camera, fov, "degrees", 40, 1, 170, "vertical field of view"),
+    CHOICE(struct cs_camera, projection, projection_names, CS_PROJECTION_PERSPECTIVE,
+           "orthographic: things are as large as a perspective shows them at the target"),
+    LIST(struct cs_camera, path, key_table,
+         "where it stands and looks at times, instead of eye and target"),
+    CHOICE(struct cs_camera, motion, camera_motions, CS_MOTION_LINEAR,
+           "linear: from key to key at one speed; smooth: it comes to rest at each"),
+};
+const struct cs_table cs_camera_table = {ROWS(camera_rows), .size = sizeof(struct cs_camera),
+                                         .shorthand_text = "frame"};
+
+static const double dim[3] = {0.16, 0.17, 0.19};
+static const double bright[3] = {1, 0.97, 0.92};
+static const struct cs_option light_rows[] = {
+    VECTOR(struct cs_light, point, 3, "m", absent3, -BIG, BIG, "where a lamp hangs"),
+    VECTOR(struct cs_light, direction, 3, "", absent3, -BIG, BIG,
+           "in which sunlight travels, instead of point"),
+    VECTOR(struct cs_light, ambient, 3, "", dim, 0, 10, "intensity ia, linear RGB"),
+    VECTOR(struct cs_light, diffuse, 3, "", bright, 0, 10, "intensity id, linear RGB"),
+    VECTOR(struct cs_light, specular, 3, "", bright, 0, 10, "intensity is, linear RGB"),
+};
+const struct cs_table cs_light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
+
+const char *const cs_look_names[] = {"lit",    "wireframe", "springs",   "force",
+                                     "strain", "goals",     "crossings", NULL};
+static const double vga[2] = {640, 480};
+static const double paper[3] = {0.82, 0.86, 0.91};
+static const char *const background_names[] = {"gradient", "flat", "none", NULL};
+static const struct cs_option background_rows[] = {
+    CHOICE(struct cs_background, kind, background_names, CS_BACKGROUND_GRADIENT,
+           "gradient: brighter above; flat: one colour; none: nothing, in pictures with alpha"),
+    VECTOR(struct cs_background, colour, 3, "", paper, 0, 1,
+           "linear RGB; of none that of a paper for which lines and figures are inked"),
+    VECTOR(struct cs_background, below, 3, "", absent3, 0, 1,
+           "of a gradient at the lower edge, where colour is at the upper one; absent: colour "
+           "is in the middle of a slight one"),
+};
+static const struct cs_table background_table = {
+    ROWS(background_rows), .size = sizeof(struct cs_background), .shorthand_text = "kind",
+    .shorthand_list = "colour"};
+static const char *const ground_names[] = {"auto", "none", "shadow", "grid", NULL};
+static const struct cs_option render_rows[] = {
+    COUNTS(struct cs_render, size, 2, "pixels", vga, 16, 8192, "width and height"),
+    INT(struct cs_render, samples, "", 4, 1, 4, "of multisampling, 1 or 4"),
+    CHOICE(struct cs_render, look, cs_look_names, CS_LOOK_LIT, "what the picture shows"),
+    VECTOR(struct cs_render, range, 2, "N or 1", absent3, -BIG, BIG,
+           "force or strain at the ends of the colours; absent: of each frame, from 0 or about "
+           "it, "
+           "but for the hundredth of the particles that is farthest from 0"),
+    TABLE(struct cs_render, background, background_table, "what is behind everything"),
+    BOOL(struct cs_render, viewpoint_forces, 0,
+         "draw what the viewpoint forces under way see, and their rectangles from their eyes"),
+    CHOICE(struct cs_render, ground, ground_names, CS_GROUND_AUTO,
+           "shadow: shadows lie on a ground; grid: with lines on it; auto: shadow where the "
+           "scene has no visible floor and nothing can fall without end, else none"),
+    REAL(struct cs_render, ground_height, "m", ABSENT, -BIG, BIG,
+         "the ground is at y = this; absent: the floor's, or below all that moves"),
+};
+const struct cs_table cs_render_table = {ROWS(render_rows), .size = sizeof(struct cs_render)};
