@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Writes the textures of the scenes: scenes/weave.png and scenes/flag.png. Needs only Python."""
+import math
 import struct
 import sys
 import zlib
@@ -24,11 +25,24 @@ def weave(x, y):
     return (min(255, int(255 * round_off * dive)),) * 3
 
 
+def light(byte):
+    c = byte / 255
+    return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+
+
+def byte(light):
+    c = 12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055
+    return int(255 * c + 0.5)
+
+
 def flag(x, y):
-    """A ring on a field between two stripes, in our own colours."""
-    ring = 44 ** 2 < (x - 192) ** 2 + (y - 128) ** 2 < 62 ** 2
-    stripe = 24 <= y < 40 or 216 <= y < 232
-    return (246, 226, 178) if ring or stripe else (22, 104, 118)
+    """A ring on a field between two stripes, in our own colours: at the edges of the ring a
+    pixel has as much of both in linear light as it covers."""
+    away = math.hypot(x - 191.5, y - 127.5)
+    ring = min(max(away - 43.5, 0), max(62.5 - away, 0), 1)
+    share = 1 if 24 <= y < 40 or 216 <= y < 232 else ring
+    return tuple(byte(share * light(a) + (1 - share) * light(b))
+                 for a, b in zip((246, 226, 178), (22, 104, 118)))
 
 
 folder = sys.argv[1] if len(sys.argv) > 1 else "scenes"

@@ -1,7 +1,6 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
-#include "draw/camera.h"
 #include "draw/colour.h"
 #include "draw/fit.h"
 #include "draw/matrix.h"
@@ -10,6 +9,29 @@ static void copy3(const double from[3], double last, float to[4]) {
     for (int i = 0; i < 3; i++)
         to[i] = (float)from[i];
     to[3] = (float)last;
+}
+
+// at time t in s: that of its path, if there is one
+static struct cs_camera camera_at(const struct cs_camera *camera, double t) {
+    const struct cs_camera_key *keys = camera->path.items;
+    const uint32_t n = camera->path.n;
+    struct cs_camera now = *camera;
+    uint32_t next = 0;
+    while (next < n && keys[next].at <= t)
+        next++;
+    if (n == 0)
+        return now;
+    const struct cs_camera_key *a = keys + (next ? next - 1 : 0),
+                               *b = keys + (next < n ? next : n - 1);
+    const double width = b->at - a->at;
+    double share = width > 0 ? (t - a->at) / width : 0;
+    if (camera->motion == CS_MOTION_SMOOTH)
+        share = share * share * (3 - 2 * share);
+    for (int i = 0; i < 3; i++) {
+        now.eye[i] = a->eye[i] + share * (b->eye[i] - a->eye[i]);
+        now.target[i] = a->target[i] + share * (b->target[i] - a->target[i]);
+    }
+    return now;
 }
 
 /* bodies may fall or be blown away: four times as far as anything is now */
@@ -54,7 +76,7 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent, double t, size_t n, const double *x) {
     struct cs_fit fit = {.slope = 0};
-    view->camera = cs_camera_at(&scene->camera, t);
+    view->camera = camera_at(&scene->camera, t);
     if (scene->camera.frame == CS_FRAME_AUTO) {
         cs_fit_begin(&fit, &scene->camera, scene->render.size);
         cs_fit_camera(&fit, n, x, 0.62, &view->camera);
@@ -101,7 +123,7 @@ static void set_background(struct cs_view_block *block,
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent) {
     memset(view, 0, sizeof *view);
-    view->camera = cs_camera_at(&scene->camera, 0);
+    view->camera = camera_at(&scene->camera, 0);
     set_camera(view, &scene->render, extent);
     set_light(&view->block, &scene->light);
     set_background(&view->block, &scene->render.background);

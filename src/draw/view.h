@@ -40,6 +40,11 @@ struct cs_ball {
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_ball *extent);
 
+/* The camera moves, or frames what a picture shows: it may be another one in each frame. */
+static inline bool cs_view_varies(const struct cs_scene *scene) {
+    return scene->camera.path.n > 0 || scene->camera.frame == CS_FRAME_AUTO;
+}
+
 /* Moves a camera that varies to where it is at time t, or frames the places x (3,n) of the
  * bodies. */
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,

@@ -1,7 +1,7 @@
 /* Bytes of sRGB against the standard's formula, blending, and copies of textures. */
 #include "unit.h"
 
-#include "draw/cpu/mips.h"
+#include "draw/mips.h"
 #include "draw/tone.h"
 
 #include <math.h>
@@ -127,10 +127,11 @@ static void make(struct cs_mips *mips, struct cs_arena *arena, int (*value)(int 
     struct cs_error error = {0};
     uint8_t rgb[3 * WIDE * HIGH];
     const struct cs_image image = {WIDE, HIGH, rgb, NULL};
+    cs_tone_make(&tone);
     for (int i = 0; i < WIDE * HIGH; i++)
         for (int k = 0; k < 3; k++)
             rgb[3 * i + k] = (uint8_t)value(i % WIDE, i / WIDE);
-    ck_assert_int_eq(cs_mips_make(mips, &image, arena, &error), CS_OK);
+    ck_assert_int_eq(cs_mips_make(mips, &image, &tone, arena, &error), CS_OK);
 }
 
 static int columns(int x, int y) {
@@ -141,22 +142,28 @@ static int slope(int x, int y) {
     return 10 * x + 5 * y;
 }
 
-/* 12 x 8, 6 x 4, 3 x 2, 1 x 1: each the mean of what it replaces */
+/* 12 x 8, 6 x 4, 3 x 2, 1 x 1: each the mean of the light of what it replaces */
 START_TEST(copies_are_means) {
     struct cs_arena arena = {0};
     struct cs_mips mips;
+    const double expected = 65535 * (decode(100 / 255.0) + decode(200 / 255.0)) / 2;
     make(&mips, &arena, columns);
     ck_assert_int_eq(mips.n, 4);
     ck_assert_int_eq(mips.copies[2].width, 3);
     ck_assert_int_eq(mips.copies[2].height, 2);
     for (int copy = 1; copy < mips.n; copy++)
         for (int i = 0; i < 3 * mips.copies[copy].width * mips.copies[copy].height; i++)
-            ck_assert_int_eq(mips.copies[copy].rgb[i], 150);
+            near(mips.copies[copy].light[i], (float)expected, 1.5);
     cs_arena_finish(&arena);
 }
 END_TEST
 
-/* in the middle of a texel its own colour, between two their mean, and the same a repeat on */
+// light of a byte
+static float light(double byte) {
+    return (float)decode(byte / 255);
+}
+
+/* in the middle of a texel its own light, between two their mean, and the same a repeat on */
 START_TEST(a_texture_repeats_and_is_blended) {
     struct cs_arena arena = {0};
     struct cs_mips mips;
@@ -164,19 +171,40 @@ START_TEST(a_texture_repeats_and_is_blended) {
     make(&mips, &arena, slope);
     for (int turn = -2; turn <= 2; turn++) {
         cs_mips_look(&mips, (4.5f / WIDE) + (float)turn, 2.5f / HIGH, 0.5f, rgb);
-        near(rgb[0], 50, 0.01);
+        near(rgb[0], light(50), 2e-5);
         cs_mips_look(&mips, 5.0f / WIDE, 3.0f / HIGH + (float)turn, 1, rgb);
-        near(rgb[1], 45 + 12.5f, 0.01);
+        near(rgb[1], (light(50) + light(55) + light(60) + light(65)) / 4, 2e-5);
         // across the seam: between the last column and the first
         cs_mips_look(&mips, (float)turn, 0.5f / HIGH, 1, rgb);
-        near(rgb[2], 55, 0.01);
+        near(rgb[2], (light(0) + light(110)) / 2, 2e-5);
     }
     // from afar: the mean of all, and nothing beyond the smallest copy
+    float sum = 0;
+    for (int i = 0; i < WIDE * HIGH; i++)
+        sum += light(slope(i % WIDE, i / WIDE)) / (WIDE * HIGH);
     cs_mips_look(&mips, 0.3f, 0.4f, 1e6f, rgb);
-    near(rgb[0], 55 + 17.5f, 2);
+    near(rgb[0], sum, 1e-4);
     cs_mips_look(&mips, 0.3f, 0.4f, NAN, rgb);
-    near(rgb[0], 128, 128);
+    near(rgb[0], 0.5f, 0.5);
     cs_arena_finish(&arena);
+}
+END_TEST
+
+/* rows of an odd length lose nothing: of three texels each counts by a third */
+START_TEST(odd_copies_are_means_too) {
+    struct cs_error error = {0};
+    for (int lit = 0; lit < 9; lit++) {
+        struct cs_arena arena = {0};
+        struct cs_mips mips;
+        uint8_t rgb[27] = {0};
+        const struct cs_image image = {3, 3, rgb, NULL};
+        rgb[3 * lit] = 255;
+        cs_tone_make(&tone);
+        ck_assert_int_eq(cs_mips_make(&mips, &image, &tone, &arena, &error), CS_OK);
+        ck_assert_int_eq(mips.n, 2);
+        near(mips.copies[1].light[0], 65535.0f / 9, 0.6);
+        cs_arena_finish(&arena);
+    }
 }
 END_TEST
 
@@ -188,6 +216,7 @@ int main(void) {
                                   colours_lie_on_nothing,
                                   samples_of_nothing_leave_the_colour,
                                   copies_are_means,
+                                  odd_copies_are_means_too,
                                   a_texture_repeats_and_is_blended};
     return unit_run("tone", tests, sizeof tests / sizeof *tests);
 }

@@ -10,7 +10,7 @@ static enum cs_status init_texture(struct cs_body_picture *body, const struct cs
                                    struct cs_error *error) {
     body->coat->mips = cs_arena_take(arena, sizeof *body->coat->mips, error);
     body->uv = cs_arena_take_n(arena, body->mesh.n_vertices, 2 * sizeof *body->uv, error);
-    if (error->status || cs_mips_make(body->coat->mips, image, arena, error))
+    if (error->status || cs_mips_make(body->coat->mips, image, body->tone, arena, error))
         return error->status;
     cs_mesh_uv(&body->mesh, repeat, body->uv);
     return CS_OK;

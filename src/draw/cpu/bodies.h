@@ -7,6 +7,7 @@
 #include "draw/render.h"
 
 struct cs_body_picture {
+    const struct cs_tone *tone; /* borrowed: set before init */
     struct cs_mesh mesh;
     struct cs_coat *coat;
     float *uv;                 /* (n_vertices, 2), or NULL */

@@ -3,7 +3,6 @@
  * Colliders are made ready anew only where one has moved. Of a frame, the cloths become
  * triangles on one thread; then stripes of the light's picture and bands of the picture are
  * shared out. */
-#include "draw/camera.h"
 #include "draw/cpu/bodies.h"
 #include "draw/cpu/drawing.h"
 #include "draw/cpu/solids.h"
@@ -104,9 +103,11 @@ static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *e
                        n + solids);
     drawing->coats = cs_arena_take_n(&canvas->arena, n + solids, sizeof *drawing->coats, error);
     canvas->bodies = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->bodies, error);
-    for (uint32_t b = 0; b < n && error->status == CS_OK; b++)
+    for (uint32_t b = 0; b < n && error->status == CS_OK; b++) {
+        canvas->bodies[b].tone = &canvas->tone;
         cs_body_picture_init(canvas->bodies + b, settings, b, drawing->coats + solids + b,
                              &canvas->arena, error);
+    }
     if (error->status || cs_solids_init(&canvas->solids, settings->system, settings->obstacles,
                                         &canvas->arena, error))
         return error->status;
@@ -265,7 +266,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         cs_body_picture_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
     const struct cs_ball solid =
         cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
-    const bool varies = cs_camera_varies(&canvas->settings.scene->camera);
+    const bool varies = cs_view_varies(canvas->settings.scene);
     const bool moved = cs_solids_move(&canvas->solids, frame->obstacles);
     if (varies)
         move_camera(canvas, frame, &solid);

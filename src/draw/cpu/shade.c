@@ -126,20 +126,15 @@ CS_INLINE void find_shine(const struct cs_coat *coat, struct work *w) {
     }
 }
 
-// what a texture makes of the base: its colour in sRGB becomes linear
-static void paint_base(const struct cs_easel *easel, const struct cs_fragments *f,
-                       struct work *w) {
+// what a texture makes of the base
+static void paint_base(const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < f->n; i++) {
         const float t = 1 / f->inverse[i];
         float rgb[3];
         cs_mips_look(f->coat->mips, f->attributes[3][i] * t, f->attributes[4][i] * t,
                      f->texels[i], rgb);
-        for (int k = 0; k < 3; k++) {
-            const int byte = (int)rgb[k];
-            const float *linear = easel->tone->linear + byte;
-            const float next = byte < 255 ? linear[1] : linear[0];
-            w->base[k][i] *= linear[0] + (rgb[k] - (float)byte) * (next - linear[0]);
-        }
+        for (int k = 0; k < 3; k++)
+            w->base[k][i] *= rgb[k];
     }
 }
 
@@ -240,7 +235,7 @@ CS_CLONES static void shade(const struct cs_easel *easel, struct cs_fragments *f
         for (int i = 0; i < N; i++)
             w->base[k][i] = f->coat->base[f->side][k];
     if (f->coat->mode == CS_SURFACE_TEXTURED)
-        paint_base(easel, f, w);
+        paint_base(f, w);
     if (f->coat->mode <= CS_SURFACE_TEXTURED)
         shade_lit(easel, f, w);
     else if (f->coat->mode == CS_SURFACE_VALUE)

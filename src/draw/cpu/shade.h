@@ -3,7 +3,7 @@
 #define CS_DRAW_SHADE_H
 
 #include "draw/cpu/lightmap.h"
-#include "draw/cpu/mips.h"
+#include "draw/mips.h"
 #include "draw/style.h"
 #include "draw/tone.h"
 

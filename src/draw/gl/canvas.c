@@ -1,6 +1,5 @@
 /* Prepares a scene for drawing through OpenGL, and exports the renderer's table of calls. */
 #include "draw/aim.h"
-#include "draw/camera.h"
 #include "draw/extent.h"
 #include "draw/gl/backdrop.h"
 #include "draw/gl/collider.h"
@@ -41,6 +40,16 @@ struct cs_canvas {
     char description[256];
 };
 
+static enum cs_status init_texture(struct cs_canvas *canvas, const struct cs_image *image,
+                                   unsigned *texture, struct cs_error *error) {
+    struct cs_arena arena = {0}; // OpenGL has its own copy
+    struct cs_mips mips;
+    if (cs_mips_make(&mips, image, canvas->target.tone, &arena, error) == CS_OK)
+        *texture = cs_texture_make(&mips);
+    cs_arena_finish(&arena);
+    return error->status;
+}
+
 static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                                  const struct cs_image *texture, struct cs_error *error) {
     struct cs_cloth_picture *cloth = canvas->cloths + b;
@@ -54,7 +63,8 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
     cs_style_cloth(&cloth->style, material, texture->width > 0, canvas->scene->render.look);
     if (cloth->style.mode != CS_SURFACE_TEXTURED)
         return CS_OK;
-    cloth->style.texture = cs_texture_make(texture);
+    if (init_texture(canvas, texture, &cloth->style.texture, error))
+        return error->status;
     float *uv = cs_arena_take_n(&canvas->arena, cloth->mesh.n_vertices, 2 * sizeof *uv, error);
     if (!uv)
         return error->status;
@@ -174,7 +184,7 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
     }
     const struct cs_ball solid = cs_extent_solid(canvas->system, frame->x, frame->obstacles);
-    const bool varies = cs_camera_varies(&canvas->scene->camera);
+    const bool varies = cs_view_varies(canvas->scene);
     if (varies)
         move_camera(canvas, frame, &solid);
     cs_gl_colliders_move(&canvas->colliders, frame->obstacles, varies);

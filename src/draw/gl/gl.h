@@ -22,7 +22,7 @@
     X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                                            \
     X(FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer)                                            \
     X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D) X(GENBUFFERS, GenBuffers)                        \
-    X(GENERATEMIPMAP, GenerateMipmap) X(GENFRAMEBUFFERS, GenFramebuffers)                          \
+    X(GENFRAMEBUFFERS, GenFramebuffers)                          \
     X(GENRENDERBUFFERS, GenRenderbuffers) X(GENTEXTURES, GenTextures)                              \
     X(GENVERTEXARRAYS, GenVertexArrays) X(GETERROR, GetError) X(GETINTEGERV, GetIntegerv)          \
     X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv)                          \

@@ -33,10 +33,6 @@ static const char common[] = GLSL(
         vec3 curve = 1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055;
         return mix(curve, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
     }
-    vec3 decode(vec3 c) {
-        vec3 curve = pow((c + 0.055) / 1.055, vec3(2.4));
-        return mix(curve, c / 12.92, vec3(lessThan(c, vec3(0.04045))));
-    }
     vec3 map_colour(float value) {
         float at = clamp(value, 0.0, 1.0) * 5.0;
         int low = min(int(at), 4);

@@ -66,7 +66,7 @@ static const char surface_fragment[] = GLSL(
         vec3 base = gl_FrontFacing ? front : back;
         float towards = abs(dot(n, v));
         if (mode == 1)
-            base *= decode(texture(picture, uv).rgb);
+            base *= texture(picture, uv).rgb;
         vec3 c;
         if (mode < 2)
             c = blinn_phong(base, n, v);

@@ -88,18 +88,20 @@ void cs_surface_program_use(const struct cs_surface_program *program,
     }
 }
 
-unsigned cs_texture_make(const struct cs_image *image) {
+unsigned cs_texture_make(const struct cs_mips *mips) {
     GLuint name;
     gl.GenTextures(1, &name);
     gl.ActiveTexture(GL_TEXTURE0);
     gl.BindTexture(GL_TEXTURE_2D, name);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, (GLsizei)image->width, (GLsizei)image->height, 0,
-                  GL_RGB, GL_UNSIGNED_BYTE, image->rgb);
+    for (int level = 0; level < mips->n; level++)
+        gl.TexImage2D(GL_TEXTURE_2D, level, GL_RGB16, mips->copies[level].width,
+                      mips->copies[level].height, 0, GL_RGB, GL_UNSIGNED_SHORT,
+                      mips->copies[level].light);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, mips->n - 1);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_REPEAT);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl.GenerateMipmap(GL_TEXTURE_2D);
     return name;
 }

@@ -2,7 +2,7 @@
 #ifndef CS_DRAW_SURFACE_H
 #define CS_DRAW_SURFACE_H
 
-#include "base/image.h"
+#include "draw/mips.h"
 #include "draw/style.h"
 
 #include <stdbool.h>
@@ -22,8 +22,8 @@ void cs_surface_upload(struct cs_surface *surface, const struct cs_vertex *verti
                        uint32_t n);
 /* Gives texture coordinates (n,2) once. */
 void cs_surface_set_uv(struct cs_surface *surface, const float *uv, uint32_t n);
-/* Returns the name of a texture with trilinear filtering; its texels stay in sRGB. */
-unsigned cs_texture_make(const struct cs_image *image);
+/* Returns the name of a texture with trilinear filtering. */
+unsigned cs_texture_make(const struct cs_mips *mips);
 /* Draws with the program in use. */
 void cs_surface_draw(const struct cs_surface *surface);
 

@@ -4,23 +4,25 @@
 
 #include "base/arena.h"
 #include "base/image.h"
+#include "draw/tone.h"
 
 enum { CS_MIPS_MOST = 24 };
 
-/* Bytes stay in sRGB and are blended as such, as OpenGL does with a plain texture. */
+/* Light, not bytes of sRGB: a mean of it is what is seen from afar. */
 struct cs_mips {
     int n; /* copies, each half as wide and high as the one before, down to 1 x 1 */
     struct {
         int width, height;
-        const uint8_t *rgb; /* owned by the arena */
+        const uint16_t *light; /* (height, width, 3) of 65535, owned by the arena */
     } copies[CS_MIPS_MOST];
 };
 
 enum cs_status cs_mips_make(struct cs_mips *mips, const struct cs_image *image,
-                            struct cs_arena *arena, struct cs_error *error);
+                            const struct cs_tone *tone, struct cs_arena *arena,
+                            struct cs_error *error);
 
-/* The colour at (u, v) in 0..1 a repeat, as sRGB in 0..255. square: texels of the first copy
- * from one pixel to the next, squared. */
+/* The linear colour at (u, v) in 0..1 a repeat. square: texels of the first copy from one pixel
+ * to the next, squared. */
 void cs_mips_look(const struct cs_mips *mips, float u, float v, float square, float rgb[3]);
 
 #endif

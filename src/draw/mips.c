@@ -1,5 +1,5 @@
 /* mips.c - trilinear filtering (Williams 1983): two copies, four texels of each. */
-#include "draw/cpu/mips.h"
+#include "draw/mips.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,50 +8,60 @@ static int halved(int n) {
     return n > 1 ? n / 2 : 1;
 }
 
-// texels i and j = i + 1 at most n - 1, and the share of j, of place i of a copy in the larger
-static void source(int i, int small, int large, int at[2], float *share) {
-    const float where = ((float)i + 0.5f) * (float)large / (float)small - 0.5f;
-    at[0] = where > 0 ? (int)where : 0;
-    at[1] = at[0] + 1 < large ? at[0] + 1 : at[0];
-    *share = where > 0 ? where - (float)at[0] : 0;
+/* What texel i of a row covers of one that is up to three times as long: the shares of the
+ * texels from the returned one on. */
+static int cover(int i, int small, int large, double shares[4]) {
+    const double from = (double)i * large / small, to = (double)(i + 1) * large / small;
+    const int first = (int)from;
+    for (int k = 0; k < 4; k++) {
+        const double low = fmax(from, first + k), high = fmin(to, first + k + 1);
+        shares[k] = first + k < large && high > low ? (high - low) / (to - from) : 0;
+    }
+    return first;
 }
 
-static void shrink(const uint8_t *from, int width, int height, uint8_t *to) {
+// the mean of the light that a texel covers
+static uint16_t mean_of(const uint16_t *from, size_t stride, const double across[4],
+                        const double down[4]) {
+    double sum = 0;
+    for (size_t r = 0; r < 4; r++)
+        for (size_t c = 0; c < 4; c++)
+            if (down[r] > 0 && across[c] > 0)
+                sum += down[r] * across[c] * from[r * stride + 3 * c];
+    return (uint16_t)(sum + 0.5);
+}
+
+static void shrink(const uint16_t *from, int width, int height, uint16_t *to) {
     const int w = halved(width), h = halved(height);
+    const size_t stride = 3 * (size_t)width;
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
-            int column[2], row[2];
-            float across, down;
-            source(x, w, width, column, &across);
-            source(y, h, height, row, &down);
-            for (int k = 0; k < 3; k++) {
-                float line[2];
-                for (int r = 0; r < 2; r++) {
-                    const uint8_t *in = from + 3 * (size_t)row[r] * (size_t)width + k;
-                    const float a = (float)in[3 * column[0]], b = (float)in[3 * column[1]];
-                    line[r] = a + across * (b - a);
-                }
-                *to++ = (uint8_t)(line[0] + down * (line[1] - line[0]) + 0.5f);
-            }
+            double across[4], down[4];
+            const int column = cover(x, w, width, across), row = cover(y, h, height, down);
+            for (size_t k = 0; k < 3; k++)
+                *to++ = mean_of(from + (size_t)row * stride + 3 * (size_t)column + k, stride,
+                                across, down);
         }
 }
 
 enum cs_status cs_mips_make(struct cs_mips *mips, const struct cs_image *image,
-                            struct cs_arena *arena, struct cs_error *error) {
+                            const struct cs_tone *tone, struct cs_arena *arena,
+                            struct cs_error *error) {
     int width = (int)image->width, height = (int)image->height;
     for (mips->n = 0; mips->n < CS_MIPS_MOST; mips->n++) {
-        uint8_t *rgb = cs_arena_take_n(arena, (size_t)width * (size_t)height, 3, error);
-        if (!rgb)
-            return error->status;
+        const size_t n = 3 * (size_t)width * (size_t)height;
         const int last = mips->n - 1;
-        if (mips->n == 0)
-            memcpy(rgb, image->rgb, 3 * (size_t)width * (size_t)height);
-        else
-            shrink(mips->copies[last].rgb, mips->copies[last].width, mips->copies[last].height,
-                   rgb);
+        uint16_t *light = cs_arena_take_n(arena, n, sizeof *light, error);
+        if (!light)
+            return error->status;
+        for (size_t i = 0; mips->n == 0 && i < n; i++)
+            light[i] = (uint16_t)(tone->linear[image->rgb[i]] * 65535 + 0.5f);
+        if (mips->n > 0)
+            shrink(mips->copies[last].light, mips->copies[last].width,
+                   mips->copies[last].height, light);
         mips->copies[mips->n].width = width;
         mips->copies[mips->n].height = height;
-        mips->copies[mips->n].rgb = rgb;
+        mips->copies[mips->n].light = light;
         if (width == 1 && height == 1) {
             mips->n++;
             break;
@@ -81,11 +91,12 @@ static void bilinear(const struct cs_mips *mips, int copy, float u, float v, flo
     for (int k = 0; k < 3; k++) {
         float line[2];
         for (int r = 0; r < 2; r++) {
-            const uint8_t *in = mips->copies[copy].rgb + 3 * (size_t)row[r] * (size_t)width + k;
+            const uint16_t *in =
+                mips->copies[copy].light + 3 * (size_t)row[r] * (size_t)width + k;
             const float a = (float)in[3 * column[0]], b = (float)in[3 * column[1]];
             line[r] = a + across * (b - a);
         }
-        rgb[k] = line[0] + down * (line[1] - line[0]);
+        rgb[k] = (line[0] + down * (line[1] - line[0])) / 65535;
     }
 }
 
