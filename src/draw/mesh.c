@@ -2,6 +2,7 @@
 #include "draw/mesh.h"
 
 #include "draw/matrix.h"
+#include "mesh/trimesh.h"
 #include "model/system/faces.h"
 #include "model/system/surfaces.h"
 
@@ -16,22 +17,50 @@ void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
     }
 }
 
+static bool is_box(const struct cs_body *body) {
+    return body->mesh.present && body->mesh.shape == CS_MESH_BOX;
+}
+
+// which of six sides of a box a triangle lies on
+static uint8_t side_of(const struct cs_trimesh *box, uint32_t triangle) {
+    double normal[3];
+    int axis = 0;
+    cs_trimesh_normal(box, triangle, box->places, box->n, 0, normal);
+    for (int i = 1; i < 3; i++)
+        if (fabs(normal[i]) > fabs(normal[axis]))
+            axis = i;
+    return (uint8_t)(2 * axis + (normal[axis] < 0));
+}
+
+static enum cs_status init_creases(struct cs_mesh *mesh, struct cs_arena *arena,
+                                   struct cs_error *error) {
+    const uint32_t n = mesh->n_indices / 3;
+    mesh->faces = cs_arena_take_n(arena, n, 3 * sizeof *mesh->faces, error);
+    mesh->sides = cs_arena_take_n(arena, n, sizeof *mesh->sides, error);
+    for (uint32_t t = 0; error->status == CS_OK && t < n; t++)
+        mesh->sides[t] = side_of(mesh->range.mesh, t);
+    return error->status;
+}
+
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error) {
     const struct cs_body_range *range = system->bodies + body;
     const bool marked = system->scene->render.look == CS_LOOK_CROSSINGS;
     mesh->range = *range;
     mesh->flat = cs_scene_bodies(system->scene)[body].material.shading == CS_SHADING_FLAT;
-    mesh->split = mesh->flat || marked || (textured && range->mesh && range->mesh->uv);
+    mesh->creased = !mesh->flat && is_box(cs_scene_bodies(system->scene) + body);
+    mesh->split =
+        mesh->flat || mesh->creased || marked || (textured && range->mesh && range->mesh->uv);
     mesh->first_triangle = marked ? system->surfaces->first_triangle[body] : 0;
     mesh->n_indices = 3 * cs_faces_count(range);
     mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
     mesh->vertices = cs_arena_take_n(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
     mesh->indices = cs_arena_take_n(arena, mesh->n_indices, sizeof *mesh->indices, error);
-    mesh->normals = cs_arena_take_n(arena, range->count, 3 * sizeof *mesh->normals, error);
+    mesh->normals = cs_arena_take_n(arena, mesh->creased ? mesh->n_indices : range->count,
+                                    3 * sizeof *mesh->normals, error);
     for (uint32_t t = 0; error->status == CS_OK && 3 * t < mesh->n_indices; t++)
         cs_face_corners(range, t, mesh->indices + 3 * (size_t)t);
-    return error->status;
+    return error->status || !mesh->creased ? error->status : init_creases(mesh, arena, error);
 }
 
 static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double *x,
@@ -76,10 +105,28 @@ static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     }
 }
 
+static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
+    const struct cs_trimesh *box = mesh->range.mesh;
+    memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->n_indices);
+    for (uint32_t k = 0; k < mesh->n_indices; k += 3)
+        triangle_normal(mesh, n, x, mesh->indices + k, mesh->faces + k);
+    for (uint32_t k = 0; k < mesh->n_indices; k++) {
+        const uint32_t vertex = mesh->indices[k];
+        for (uint32_t a = vertex ? box->around_end[vertex - 1] : 0; a < box->around_end[vertex];
+             a++) {
+            const uint32_t t = box->around[a];
+            for (size_t i = 0; i < 3 && mesh->sides[t] == mesh->sides[k / 3]; i++)
+                mesh->normals[3 * (size_t)k + i] += mesh->faces[3 * (size_t)t + i];
+        }
+    }
+}
+
 void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame) {
     const double *x = frame->x;
     double normal[3];
-    if (!mesh->flat)
+    if (mesh->creased)
+        sum_creased(mesh, n, x);
+    else if (!mesh->flat)
         sum_normals(mesh, n, x);
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
         const uint32_t i = mesh->split ? mesh->indices[k] : k, particle = mesh->range.first + i;
@@ -88,7 +135,7 @@ void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *fra
         if (mesh->flat && k % 3 == 0)
             triangle_normal(mesh, n, x, mesh->indices + k, normal);
         set_vertex(mesh->vertices + k, place,
-                   mesh->flat ? normal : mesh->normals + 3 * (size_t)i,
+                   mesh->flat ? normal : mesh->normals + 3 * (size_t)(mesh->creased ? k : i),
                    frame->marks ? frame->marks[mesh->first_triangle + k / 3]
                                 : scaled(frame->scalar, particle, frame->range));
     }

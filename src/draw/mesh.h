@@ -13,16 +13,18 @@ struct cs_vertex {
 
 /* A grid has two triangles a cell, counter-clockwise seen from +z for a hanging cloth; a mesh
  * has its own. A vertex a particle, shared by its triangles; split: three vertices a triangle
- * of their own, for one normal a triangle (flat), texture coordinates of corners, or marks of
- * triangles. */
+ * of their own, for one normal a triangle (flat), normals that end at the edges of a box
+ * (creased), texture coordinates of corners, or marks of triangles. */
 struct cs_mesh {
     struct cs_body_range range;
-    bool flat, split;
+    bool flat, creased, split;
     uint32_t first_triangle; /* of the body among the system's */
     uint32_t n_vertices, n_indices;
     struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
     uint32_t *indices;          /* (n_indices) particles of the body, three a triangle */
-    double *normals;            /* (count, 3) work */
+    double *normals;            /* (count, 3) work; creased: (n_indices, 3) */
+    double *faces;              /* (triangles, 3) normals, work; NULL unless creased */
+    uint8_t *sides;             /* (triangles) of the box; NULL likewise */
 };
 
 /* Of a body, as its material and the scene's look have it. textured: texture coordinates will
@@ -33,7 +35,8 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
 /* Fills the vertices from a frame of n particles; its values become 0..1 between the ends of
  * their range, or the marks of triangles 0 and 1.
  * A smooth normal is the sum of the normals of its triangles, each as long as the triangle is
- * large. Positions that are not finite, or far off after a blow-up, are drawn at a bound. */
+ * large; on a box of those on the same side of it. Positions that are not finite, or far off
+ * after a blow-up, are drawn at a bound. */
 void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame);
 
 /* Texture coordinates (n_vertices, 2): of a grid from 0 at the top left to `repeat`; of a mesh

@@ -154,7 +154,7 @@ static const struct cs_option material_rows[] = {
     REAL(struct cs_material, specular, "", 0.2, 0, 10, "coefficient ks of the highlight"),
     REAL(struct cs_material, shininess, "", 24, 1, 1000, "exponent of the highlight"),
     CHOICE(struct cs_material, shading, shading_names, CS_SHADING_SMOOTH,
-           "normals: interpolated, or one a triangle"),
+           "normals: interpolated, but not over the edges of the shape box; or one a triangle"),
     TEXT(struct cs_material, texture, "PNG file, relative to the scene file; times the colour"),
     VECTOR(struct cs_material, texture_repeat, 2, "", one2, 1e-3, 1e4,
            "how often the texture fits along a row and a column, or a mesh's width and height"),

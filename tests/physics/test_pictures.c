@@ -331,6 +331,43 @@ START_TEST(a_camera_follows_its_path) {
 }
 END_TEST
 
+/* A side of a box that is seen straight on has one colour from edge to edge; a ball has not. */
+START_TEST(sides_of_a_box_are_flat) {
+    static uint8_t rgb[3 * WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
+    static const char *const shapes[] = {"box", "sphere"};
+    for (size_t k = 0; k < 2; k++) {
+        struct cs_image image = {WIDTH, HEIGHT, rgb, alpha};
+        struct fixture body;
+        struct cs_picture picture;
+        struct cs_error error = {0};
+        size_t covered = 0, first = 0, others = 0;
+        fixture_open(
+            &body, "symplectic-euler",
+            "{\"bodies\": [{\"mesh\": {\"shape\": \"%s\", \"detail\": 4}, \"mass\": "
+            "{\"total\": 1}, \"material\": {\"specular\": 0}}], \"camera\": {\"eye\": "
+            "[0, 0, 3], \"projection\": \"orthographic\"}, \"light\": {\"direction\": "
+            "[0, 0, -1]}, \"render\": {\"size\": [160, 120], \"background\": \"none\", "
+            "\"ground\": \"none\"}}",
+            shapes[k]);
+        fixture_start(&body);
+        cs_picture_open(&picture, body.system, CS_RENDERER_AUTO, false, false, &error);
+        cs_picture_begin(&picture, &body.session.run, &image);
+        cs_picture_end(&picture, &error);
+        ck_assert_msg(!error.status, "%s", error.message);
+        cs_picture_close(&picture);
+        fixture_close(&body);
+        for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+            if (alpha[i] < 255)
+                continue;
+            first = covered++ ? first : i;
+            others += memcmp(rgb + 3 * i, rgb + 3 * first, 3) != 0;
+        }
+        ck_assert_uint_gt(covered, 1000);
+        ck_assert_msg(k == 0 ? others == 0 : others > 500, "%zu of %zu", others, covered);
+    }
+}
+END_TEST
+
 static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                                     struct cs_image *image, struct cs_error *error) {
     (void)canvas, (void)image;
@@ -375,6 +412,7 @@ int main(void) {
                                   shadows_lie_below_what_has_no_floor,
                                   an_orthographic_picture_has_no_distance,
                                   a_camera_follows_its_path,
+                                  sides_of_a_box_are_flat,
                                   a_gradient_runs_from_edge_to_edge,
                                   a_renderer_that_fails_is_told};
     return fixture_run("pictures", tests, sizeof tests / sizeof *tests);
