@@ -40,7 +40,7 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
                                const struct cs_obstacle *obstacles) {
     const struct cs_scene *scene = system->scene;
     double low[3], high[3], diagonal[3], place[3];
-    struct cs_ball ball = {.lowest = 0};
+    struct cs_ball ball = {.radius = 0};
     cs_mesh_place(system->view.n, x, 0, low);
     memcpy(high, low, sizeof high);
     for (uint32_t i = 0; i < system->view.n; i++) {
@@ -58,7 +58,8 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
     }
     for (int i = 0; i < 3; i++)
         ball.centre[i] = (low[i] + high[i]) / 2;
-    ball.lowest = low[1];
+    memcpy(ball.low, low, sizeof low);
+    memcpy(ball.high, high, sizeof high);
     cs_subtract(high, low, diagonal);
     /* even a lone particle has some extent: what is drawn scales by the radius */
     ball.radius = fmax(cs_length(diagonal) / 2, 1e-3);

@@ -47,7 +47,7 @@ void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
     ground->present = render->ground != CS_GROUND_AUTO || !isnan(ground->height);
     // what falls without end is followed by it
     if (isnan(ground->height))
-        ground->height = extent->lowest;
+        ground->height = extent->low[1];
     ground->span[0] = (float)extent->centre[0];
     ground->span[2] = (float)extent->centre[2];
     ground->span[3] = (float)(6 * extent->radius);
@@ -65,7 +65,7 @@ static void grow(float box[4], const double place[2]) {
     }
 }
 
-/* Where light carries the corners of a cube around `solid`; false where one is above a lamp, so
+/* Where light carries the corners of a box around `solid`; false where one is above a lamp, so
  * that there is no end to its shadow. */
 static bool cast(const struct cs_ball *solid, const float light[4], double height,
                  float box[4]) {
@@ -73,7 +73,7 @@ static bool cast(const struct cs_ball *solid, const float light[4], double heigh
     for (int corner = 0; corner < 8; corner++) {
         double p[3], down[3];
         for (int c = 0; c < 3; c++) {
-            p[c] = solid->centre[c] + (corner >> c & 1 ? 1 : -1) * solid->radius;
+            p[c] = corner >> c & 1 ? solid->high[c] : solid->low[c];
             down[c] = is_lamp ? p[c] - (double)light[c] : -(double)light[c];
         }
         if (!(down[1] < 0))
@@ -87,15 +87,18 @@ static bool cast(const struct cs_ball *solid, const float light[4], double heigh
 void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
                    const struct cs_ball *solid) {
     const float *span = ground->span;
-    const double below = solid->lowest - 0.02 * solid->radius;
+    const double below = solid->low[1] - 0.02 * solid->radius;
     const double height = ground->sinks ? fmin(ground->height, below) : ground->height;
     const float whole[4] = {span[0] - span[3], span[2] - span[3], span[0] + span[3],
                             span[2] + span[3]};
     float box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     ground->span[1] = (float)height;
     const bool bounded = ground->pitch <= 0 && cast(solid, block->light, height, box);
+    // edges are blurred by some texels
+    const float soft = (float)(0.08 * solid->radius);
     for (int c = 0; c < 4; c++) {
-        const float inside = c < 2 ? fmaxf(box[c], whole[c]) : fminf(box[c], whole[c]);
+        const float inside =
+            c < 2 ? fmaxf(box[c] - soft, whole[c]) : fminf(box[c] + soft, whole[c]);
         ground->box[c] = bounded ? inside : whole[c];
     }
     // shadows are not seen from below, nor made by light from there

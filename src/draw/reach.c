@@ -78,7 +78,7 @@ static double lowest_of_body(const struct cs_system *system, uint32_t b) {
 
 double cs_reach_lowest(const struct cs_system *system, const struct cs_obstacle *obstacles) {
     const struct cs_scene *scene = system->scene;
-    double lowest = cs_extent_solid(system, system->view.start, obstacles).lowest;
+    double lowest = cs_extent_solid(system, system->view.start, obstacles).low[1];
     const bool falls = scene->forces.gravity[1] < 0;
     for (uint32_t b = 0; falls && b < scene->bodies.n; b++) {
         const double own = is_released(scene) ? (double)NAN : lowest_of_body(system, b);

@@ -33,7 +33,7 @@ struct cs_view_state {
 /* A ball around what is drawn. */
 struct cs_ball {
     double centre[3], radius;
-    double lowest; /* m: height of the lowest place that it was put around */
+    double low[3], high[3]; /* m: of the box that it was put around */
 };
 
 /* Fills the block from the scene; everything in `extent` lies between near and far plane. */

@@ -63,6 +63,18 @@ static float lines_at(const struct cs_grid *grid, float x, float y, const float 
     return fine > coarse ? fine : coarse;
 }
 
+/* A pixel that shows one thing keeps one colour: a new one, since the sky's is its row's. */
+static void lay_pixel(struct cs_board *board, size_t pixel, unsigned mask, uint32_t ink,
+                      uint32_t share) {
+    if (mask != 15 || board->codes[pixel] != 0) {
+        cs_board_lay(board, pixel, mask, ink, share);
+        return;
+    }
+    const uint32_t laid = board->n_colours++;
+    board->colours[laid] = cs_tone_blend(board->colours[board->base[pixel]], ink, share);
+    board->base[pixel] = laid;
+}
+
 static void lay(const struct cs_grid *grid, struct cells *cells, struct cs_board *board) {
     static const float up[N] = {0}; // x and z of the normals
     float places[3][N], ones[N], shares[N];
@@ -93,7 +105,7 @@ static void lay(const struct cs_grid *grid, struct cells *cells, struct cs_board
         const float share = near * near * (dark + (1 - dark) * 0.55f * lines);
         const uint32_t byte = (uint32_t)(share * 255 + 0.5f);
         if (byte)
-            cs_board_lay(board, cells->pixels[i], cells->masks[i], grid->ink, byte);
+            lay_pixel(board, cells->pixels[i], cells->masks[i], grid->ink, byte);
     }
     cells->n = 0;
 }
