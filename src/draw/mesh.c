@@ -17,6 +17,21 @@ void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
     }
 }
 
+/* A tenth of how large the body is at the start: folds are as deep in a finer grid. */
+static double reach_of(const struct cs_system *system, const struct cs_body_range *range) {
+    double square = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double *x = system->view.start + c * system->view.n + range->first;
+        double low = x[0], high = x[0];
+        for (uint32_t i = 1; i < range->count; i++) {
+            low = fmin(low, x[i]);
+            high = fmax(high, x[i]);
+        }
+        square += (high - low) * (high - low);
+    }
+    return 0.1 * sqrt(square);
+}
+
 static bool is_box(const struct cs_body *body) {
     return body->mesh.present && body->mesh.shape == CS_MESH_BOX;
 }
@@ -51,6 +66,10 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
     mesh->creased = !mesh->flat && is_box(cs_scene_bodies(system->scene) + body);
     mesh->split =
         mesh->flat || mesh->creased || marked || (textured && range->mesh && range->mesh->uv);
+    mesh->folds = system->scene->render.look == CS_LOOK_LIT && !mesh->flat && !mesh->creased;
+    mesh->reach = reach_of(system, range);
+    if (mesh->folds)
+        mesh->ways = cs_arena_take_n(arena, range->count, 4 * sizeof *mesh->ways, error);
     mesh->first_triangle = marked ? system->surfaces->first_triangle[body] : 0;
     mesh->n_indices = 3 * cs_faces_count(range);
     mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
@@ -85,6 +104,36 @@ static void set_vertex(struct cs_vertex *vertex, const double place[3], const do
         vertex->normal[i] = (float)unit[i];
     }
     vertex->value = (float)value;
+}
+
+/* The ways from each particle to its neighbours, and their squares, summed over triangles. */
+static void sum_ways(const struct cs_mesh *mesh, uint32_t n, const double *x) {
+    memset(mesh->ways, 0, 4 * sizeof *mesh->ways * mesh->range.count);
+    for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
+        double p[3][3];
+        for (uint32_t c = 0; c < 3; c++)
+            cs_mesh_place(n, x, mesh->range.first + mesh->indices[k + c], p[c]);
+        // each side of the triangle is a way for both of its ends
+        for (uint32_t c = 0; c < 3; c++) {
+            double *from = mesh->ways + 4 * (size_t)mesh->indices[k + c];
+            double *to = mesh->ways + 4 * (size_t)mesh->indices[k + (c + 1) % 3];
+            for (int i = 0; i < 3; i++) {
+                const double way = p[(c + 1) % 3][i] - p[c][i];
+                from[i] += way;
+                to[i] -= way;
+                from[3] += way * way;
+                to[3] += way * way;
+            }
+        }
+    }
+}
+
+/* Of a groove z = k s^2 / 2 neighbours lie k L^2 / 4 above its bottom, in the mean over all
+ * ways there; its slope at the reach is k reach / 2. */
+static double fold_of(const struct cs_mesh *mesh, uint32_t i) {
+    const double *normal = mesh->normals + 3 * (size_t)i, *ways = mesh->ways + 4 * (size_t)i;
+    const double length = cs_length(normal) * ways[3];
+    return length > 0 ? 2 * mesh->reach * cs_dot(normal, ways) / length : 0;
 }
 
 static double scaled(const double *values, uint32_t i, const double range[2]) {
@@ -128,6 +177,8 @@ void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *fra
         sum_creased(mesh, n, x);
     else if (!mesh->flat)
         sum_normals(mesh, n, x);
+    if (mesh->folds)
+        sum_ways(mesh, n, x);
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
         const uint32_t i = mesh->split ? mesh->indices[k] : k, particle = mesh->range.first + i;
         double place[3];
@@ -136,8 +187,9 @@ void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *fra
             triangle_normal(mesh, n, x, mesh->indices + k, normal);
         set_vertex(mesh->vertices + k, place,
                    mesh->flat ? normal : mesh->normals + 3 * (size_t)(mesh->creased ? k : i),
-                   frame->marks ? frame->marks[mesh->first_triangle + k / 3]
-                                : scaled(frame->scalar, particle, frame->range));
+                   mesh->folds    ? fold_of(mesh, i)
+                   : frame->marks ? frame->marks[mesh->first_triangle + k / 3]
+                                  : scaled(frame->scalar, particle, frame->range));
     }
 }
 

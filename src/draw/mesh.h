@@ -19,10 +19,13 @@ struct cs_mesh {
     struct cs_body_range range;
     bool flat, creased, split;
     uint32_t first_triangle; /* of the body among the system's */
+    bool folds;              /* values of vertices tell how deep in a fold they lie */
+    double reach;            /* m: how far around a vertex folds take light away */
     uint32_t n_vertices, n_indices;
     struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
     uint32_t *indices;          /* (n_indices) particles of the body, three a triangle */
     double *normals;            /* (count, 3) work; creased: (n_indices, 3) */
+    double *ways;               /* (count, 4) work: ways to neighbours, and their squares */
     double *faces;              /* (triangles, 3) normals, work; NULL unless creased */
     uint8_t *sides;             /* (triangles) of the box; NULL likewise */
 };
@@ -33,7 +36,10 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
                             bool textured, struct cs_arena *arena, struct cs_error *error);
 
 /* Fills the vertices from a frame of n particles; its values become 0..1 between the ends of
- * their range, or the marks of triangles 0 and 1.
+ * their range, or the marks of triangles 0 and 1. Where folds are wanted the value is the slope
+ * of the walls of a groove as curved as the surface, at its reach: above 0 where the front is
+ * the inside. Of the ambient light 1 / sqrt(1 + value^2) comes to the middle of such a groove,
+ * its view factor to the sky between straight walls.
  * A smooth normal is the sum of the normals of its triangles, each as long as the triangle is
  * large; on a box of those on the same side of it. Positions that are not finite, or far off
  * after a blow-up, are drawn at a bound. */

@@ -13,7 +13,8 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
     *style = (struct cs_surface_style){.ambient = material->ambient,
                                        .diffuse = material->diffuse,
                                        .specular = material->specular,
-                                       .shininess = material->shininess};
+                                       .shininess = material->shininess,
+                                       .folds = look == CS_LOOK_LIT};
     memcpy(style->front, material->colour, sizeof style->front);
     memcpy(style->back, has_back ? material->back_colour : material->colour,
            sizeof style->back);

@@ -19,6 +19,7 @@ struct cs_surface_style {
     double front[3], back[3]; /* linear RGB */
     double ambient, diffuse, specular, shininess;
     double sink; /* m by which the depth is moved away */
+    bool folds;  /* values darken ambient light (mesh.h) */
     double fade; /* m about the origin where it has melted; 0: none */
 };
 

@@ -46,8 +46,9 @@ static void set_attributes(const struct cs_body_picture *body, uint32_t i,
                            struct cs_corner *corner) {
     const struct cs_vertex *vertex = body->mesh.vertices + i;
     memcpy(corner->attributes, vertex->normal, sizeof vertex->normal);
-    corner->attributes[3] = body->uv ? body->uv[2 * (size_t)i] : vertex->value;
-    corner->attributes[4] = body->uv ? body->uv[2 * (size_t)i + 1] : 0;
+    corner->attributes[3] = vertex->value;
+    corner->attributes[4] = body->uv ? body->uv[2 * (size_t)i] : 0;
+    corner->attributes[5] = body->uv ? body->uv[2 * (size_t)i + 1] : 0;
 }
 
 void cs_body_picture_add(struct cs_body_picture *body, const struct cs_lens *lens,

@@ -229,9 +229,7 @@ static void add_bodies(struct cs_canvas *canvas) {
         struct cs_body_picture *body = canvas->bodies + b;
         const struct cs_triangle_kind kind = {
             .surface = (uint16_t)(canvas->settings.scene->colliders.n + b),
-            .attributes = body->coat->mode == CS_SURFACE_PLAIN   ? 3
-                          : body->coat->mode == CS_SURFACE_VALUE ? 4
-                                                                 : CS_ATTRIBUTES};
+            .attributes = (uint8_t)body->coat->attributes};
         if (!body->hidden)
             cs_body_picture_add(body, &canvas->lens, &kind, &drawing->triangles);
     }

@@ -26,7 +26,7 @@ static float texels_of(const struct cs_drawing *drawing, const struct cs_triangl
     float uv[3][2], squares[2];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++)
-            uv[i][k] = value_at(t->attributes + 3 + k, places[i][0], places[i][1]) /
+            uv[i][k] = value_at(t->attributes + 4 + k, places[i][0], places[i][1]) /
                        value_at(&t->inverse, places[i][0], places[i][1]);
     for (int i = 0; i < 2; i++) {
         const float du = (uv[i + 1][0] - uv[0][0]) * (float)mips->copies[0].width;
@@ -69,9 +69,7 @@ static void add_fragment(const struct cs_drawing *drawing, const struct cs_trian
     f->y[i] = (float)y;
     // the middle of a pixel may lie beyond the edge, and there beyond the horizon
     f->inverse[i] = inverse > 1e-6f ? inverse : 1e-6f;
-    for (int k = 0; k < 3; k++)
-        f->attributes[k][i] = value_at(t->attributes + k, across, down);
-    for (int k = 3; k < CS_ATTRIBUTES && f->coat->mode != CS_SURFACE_PLAIN; k++)
+    for (int k = 0; k < f->coat->attributes; k++)
         f->attributes[k][i] = value_at(t->attributes + k, across, down);
     if (drawing->easel.rays.parallel)
         f->along[i] = along_of(drawing, t, f->coat, x, y);

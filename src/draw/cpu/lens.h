@@ -12,7 +12,7 @@
 #include <clothsim/clones.h>
 #include <stdbool.h>
 
-enum { CS_ATTRIBUTES = 5 }; /* normal, then a value, or texture coordinates */
+enum { CS_ATTRIBUTES = 6 }; /* normal, a value, texture coordinates */
 
 struct cs_lens {
     float x[4], y[4], z[4], w[4]; /* rows of the matrix: clip coordinates from (place, 1) */

@@ -22,6 +22,10 @@ void cs_coat_make(struct cs_coat *coat, const struct cs_surface_style *style) {
         coat->base[1][i] = (float)style->back[i];
     }
     coat->mode = style->mode;
+    coat->folds = style->folds;
+    coat->attributes = style->mode == CS_SURFACE_TEXTURED                ? CS_ATTRIBUTES
+                       : style->mode == CS_SURFACE_VALUE || style->folds ? 4
+                                                                         : 3;
     coat->ambient = (float)style->ambient;
     coat->diffuse = (float)style->diffuse;
     coat->specular = (float)style->specular;
@@ -131,16 +135,35 @@ static void paint_base(const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < f->n; i++) {
         const float t = 1 / f->inverse[i];
         float rgb[3];
-        cs_mips_look(f->coat->mips, f->attributes[3][i] * t, f->attributes[4][i] * t,
+        cs_mips_look(f->coat->mips, f->attributes[4][i] * t, f->attributes[5][i] * t,
                      f->texels[i], rgb);
         for (int k = 0; k < 3; k++)
             w->base[k][i] *= rgb[k];
     }
 }
 
+// the share of ambient light that comes into folds (mesh.h)
+CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
+    const float side = f->side ? -1 : 1;
+    if (!f->coat->folds) {
+        for (int i = 0; i < N; i++)
+            folds[i] = 1;
+        return;
+    }
+    for (int i = 0; i < N; i++) {
+        const float deep = side * f->attributes[3][i] / f->inverse[i];
+        const float least = deep > 0 ? deep : 0;
+        folds[i] = 1 + least * least;
+    }
+    for (int i = 0; i < N; i++)
+        folds[i] = 1 / sqrtf(folds[i]);
+}
+
 CS_INLINE void shade_lit(const struct cs_easel *easel, const struct cs_fragments *f,
                          struct work *w) {
     const struct cs_coat *coat = f->coat;
+    float folds[N];
+    find_folds(f, folds);
     find_light(easel, w);
     const struct cs_lit lit = {.places = {w->place[0], w->place[1], w->place[2]},
                                .normals = {w->normal[0], w->normal[1], w->normal[2]},
@@ -163,9 +186,10 @@ CS_INLINE void shade_lit(const struct cs_easel *easel, const struct cs_fragments
             const float around = 0.7f + 0.3f * across + 0.35f * w->normal[1][i];
             const float facing = w->facing[i] > 0 ? w->facing[i] : 0;
             const float base = w->base[k][i];
-            w->colour[k][i] = (around > 0 ? around : 0) * coat->ambient * ambient * base +
-                              w->share[i] * (coat->diffuse * facing * diffuse * base +
-                                             coat->specular * w->shine[i] * specular);
+            w->colour[k][i] =
+                (around > 0 ? around : 0) * folds[i] * coat->ambient * ambient * base +
+                w->share[i] * (coat->diffuse * facing * diffuse * base +
+                               coat->specular * w->shine[i] * specular);
         }
     }
 }

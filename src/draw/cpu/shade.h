@@ -12,6 +12,8 @@ enum { CS_FRAGMENTS = 256 };
 /* The style of a surface in the numbers that shading needs. */
 struct cs_coat {
     enum cs_surface_mode mode;
+    int attributes;   /* that shading wants: see lens.h */
+    bool folds;       /* the value is that of a fold */
     float base[2][3]; /* front, back */
     float ambient, diffuse, specular;
     int shine;      /* whole part of the exponent of highlights */

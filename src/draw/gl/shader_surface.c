@@ -48,6 +48,9 @@ static const char surface_fragment[] = GLSL(
         // ambient light is 1 on an upright surface seen straight on; more from above and less
         // towards the outline, or folds without direct light would be one flat patch
         float around = 0.7 + 0.3 * dot(n, v) + 0.35 * n.y;
+        // and less in folds, whose values those of vertices are here
+        float deep = max(gl_FrontFacing ? value : -value, 0.0);
+        around *= inversesqrt(1.0 + deep * deep);
         vec3 c = max(around, 0.0) * coefficients.x * light_ambient.rgb * base;
         vec3 l = normalize(light.xyz - light.w * place);
         float facing = dot(n, l);
