@@ -206,9 +206,16 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     if (strcmp(hash, pixels) != 0)
         cs_text_add(&work->again->notes,
                     "the pixels in the file are not those that were written\n");
-    if (!cs_still_paint(&work->session, renderer_of(&work->carried), &now, &drawn_by, error))
+    const struct cs_render *render = &work->session.scene.render;
+    /* as the run had it: colours are not laid on white then */
+    if (render->background.kind == CS_BACKGROUND_NONE &&
+        !(now.alpha = malloc((size_t)render->size[0] * (size_t)render->size[1])))
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+    else if (!cs_still_paint(&work->session, renderer_of(&work->carried), &now, &drawn_by,
+                             error))
         compare_pixels(work, then, &now, cs_text_get(&drawn_by));
     free(now.rgb);
+    free(now.alpha);
     cs_text_finish(&drawn_by);
     return error->status;
 }

@@ -6,7 +6,7 @@
 #include "study/session.h"
 
 /* Draws the state of an open session's run, at the size that its scene says; the caller frees
- * image->rgb, also on failure. Adds what drew it to renderer. */
+ * image->rgb, also on failure. image->alpha is the caller's. Adds what drew it to renderer. */
 enum cs_status cs_still_paint(struct cs_session *session, enum cs_renderer_kind kind,
                               struct cs_image *image, struct cs_text *renderer,
                               struct cs_error *error);
