@@ -9,8 +9,12 @@
 #include <string.h>
 
 #define FIRST_LINE "clothsim checkpoint 1\n"
-/* of a scene of the most particles, with any method */
+/* of a scene of the most particles, with any method, or what addresses reach */
+#if SIZE_MAX > UINT32_MAX
 #define BYTES_MAX ((size_t)1 << 36)
+#else
+#define BYTES_MAX (SIZE_MAX / 2)
+#endif
 enum { LINE = 128, SHOWN = 60 };
 
 static void add_item(struct cs_record *file, const char *name, const void *bytes,
@@ -67,10 +71,11 @@ static const char *take_item(struct cs_record *file, const char *name, size_t *l
     if (!end || (size_t)(end - line) <= size || strncmp(line, name, size) != 0 ||
         line[size] != ' ')
         return NULL;
-    *length = strtoull(line + size, NULL, 10);
+    const unsigned long long found = strtoull(line + size, NULL, 10);
     const size_t begin = (size_t)(end - line) + 1;
-    if (*length >= left - begin)
+    if (found >= left - begin)
         return NULL;
+    *length = (size_t)found;
     file->at += begin + *length + 1;
     return line + begin;
 }

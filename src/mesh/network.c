@@ -121,10 +121,13 @@ enum cs_status cs_network_make(const struct cs_network *network, struct cs_trime
     struct work work = {.network = network, .mesh = mesh, .draws = {(uint64_t)network->seed}};
     for (work.pairs.mask = 1; work.pairs.mask < 2 * (most + mesh->n_edges);)
         work.pairs.mask = 2 * work.pairs.mask + 1;
-    work.pairs.slots = calloc(work.pairs.mask + 1, sizeof *work.pairs.slots);
+    /* where addresses are short, a mask can be longer */
+    if (work.pairs.mask < SIZE_MAX / sizeof *work.pairs.slots)
+        work.pairs.slots = calloc((size_t)work.pairs.mask + 1, sizeof *work.pairs.slots);
     work.normals = calloc(mesh->n, 3 * sizeof *work.normals);
     mesh->n_inner = 0;
-    mesh->inner = cs_arena_take_n(arena, most, 2 * sizeof *mesh->inner, error);
+    if (work.pairs.slots)
+        mesh->inner = cs_arena_take_n(arena, (size_t)most, 2 * sizeof *mesh->inner, error);
     if (!work.pairs.slots || !work.normals)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a network of %llu springs",
                 (unsigned long long)most);

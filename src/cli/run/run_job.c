@@ -236,10 +236,10 @@ static void record_job(void *ctx, struct cs_record *record) {
     cs_record_text(record, &job->ledger_rows);
     CS_RECORD(record, job->account.work);
     CS_RECORD(record, n);
-    if (record->loading && (record->failed || n > record->length || !has_room(job, n)))
+    if (record->loading && (record->failed || n > record->length || !has_room(job, (size_t)n)))
         record->failed = true;
     else
-        cs_record_bytes(record, job->kept, n * sizeof *job->kept);
+        cs_record_bytes(record, job->kept, (size_t)n * sizeof *job->kept);
 }
 
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
