@@ -3,12 +3,15 @@
  * of the program and of modules: CS_CLONES before a function is all.
  *
  * The bits are the same in each: contraction is off, and vectors only do several independent
- * elements at once. Clang 14 refuses the attribute on some of these functions; gcc 12 fails on
+ * elements at once. It takes a C library that chooses functions when it loads a program, which
+ * musl does not. Clang 14 refuses the attribute on some of these functions; gcc 12 fails on
  * clones of a program that is built for AVX-512 as a whole, which then needs none. */
 #ifndef CS_CLONES_H
 #define CS_CLONES_H
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                         \
+#include <stdint.h>
+
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&   \
     !defined(__AVX512F__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define CS_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
