@@ -27,10 +27,11 @@ export build seconds commit
 printf '%s\n' "$@" | xargs -P "$processors" -I TARGET sh -c '
     mkdir -p "$build/corpus/TARGET"
     code=0
-    "$build/tests/fuzz/fuzz_TARGET" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    "$build/tests/fuzz/fuzz_TARGET" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 \
         -max_len=4096 -dict="$build/dictionary" -artifact_prefix="$build/found/TARGET-" \
         -print_final_stats=1 "$build/corpus/TARGET" seeds/TARGET >"$build/TARGET.log" 2>&1 || code=$?
     executions=$(sed -n "s/^stat::number_of_executed_units: //p" "$build/TARGET.log")
     printf "%s\t%s\tTARGET\t%s\t%s\t%s\n" "$(date -u +%F)" "$commit" "${executions:-0}" "$seconds" \
-        "$([ $code = 0 ] && echo none || echo "exit code $code")" | tee -a executions.tsv
+        "$(case $code in 0) echo nothing ;; 70) echo "too slow" ;; 71) echo "too much memory" ;;
+            *) echo "crash" ;; esac)" | tee -a executions.tsv
     [ $code = 0 ] || { tail -n 40 "$build/TARGET.log"; exit 1; }'

@@ -32,7 +32,7 @@ static bool is_fine(const uint8_t *bytes, size_t length) {
         size_t digits = 0;
         for (size_t k = 0; at + k < end && k < 8; k++)
             digits += (at[k] >= '0' && at[k] <= '9') || at[k] == 'e' || at[k] == 'E';
-        if (digits > 2)
+        if (digits > 1)
             return true;
     }
     return false;
