@@ -25,7 +25,7 @@ seconds=$(awk "BEGIN { print int($hours * 3600 * $processors / $#) }")
 commit=$(git rev-parse --short=7 HEAD 2>/dev/null || echo unknown)
 export build seconds commit
 printf '%s\n' "$@" | xargs -P "$processors" -I TARGET sh -c '
-    mkdir -p "$build/corpus/TARGET"
+    python3 corpus.py unpack corpus/TARGET.hex "$build/corpus/TARGET"
     code=0
     "$build/tests/fuzz/fuzz_TARGET" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 \
         -max_len=4096 -dict="$build/dictionary" -artifact_prefix="$build/found/TARGET-" \

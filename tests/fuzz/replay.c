@@ -1,7 +1,10 @@
 /* Feeds files to a fuzz target: each as it is, and cut and damaged in ways that are the same in
  * every run, so that the targets are tests on machines without a fuzzer too.
  *
- *     fuzz_scene [-n DAMAGES] FILE...
+ *     fuzz_scene [-l LIST] [-n DAMAGES] FILE...
+ *
+ * LIST holds inputs that a fuzzer has found, a line of hexadecimal digits each (corpus.py):
+ * they are fed as they are.
  */
 #include <errno.h>
 #include <stdint.h>
@@ -81,13 +84,44 @@ static void replay(const uint8_t *bytes, size_t length, long damages) {
     free(copy);
 }
 
+static int value_of(int digit) {
+    return digit <= '9' ? digit - '0' : digit - 'a' + 10;
+}
+
+/* how many inputs there are in a list; 0: it cannot be read */
+static long feed_list(const char *path) {
+    static uint8_t bytes[FILE_BYTES_MAX];
+    FILE *file = fopen(path, "r");
+    size_t digits = 0;
+    long n = 0;
+    for (int digit; file && (digit = fgetc(file)) != EOF && digits / 2 < sizeof bytes;)
+        if (digit == '\n') {
+            feed(bytes, digits / 2);
+            digits = 0;
+            n++;
+        } else {
+            uint8_t *at = bytes + digits++ / 2;
+            *at = (uint8_t)(*at << 4 | value_of(digit));
+        }
+    if (file)
+        fclose(file);
+    return n;
+}
+
 int main(int argc, char **argv) {
     static uint8_t bytes[FILE_BYTES_MAX];
-    long damages = 500;
+    long damages = 500, listed = 0;
     int first = 1;
-    if (argc > 2 && !strcmp(argv[1], "-n")) {
-        damages = strtol(argv[2], NULL, 10);
+    if (argc > 2 && !strcmp(argv[1], "-l")) {
+        if (!(listed = feed_list(argv[2]))) {
+            fprintf(stderr, "cannot read \"%s\"\n", argv[2]);
+            return 1;
+        }
         first = 3;
+    }
+    if (argc > first + 1 && !strcmp(argv[first], "-n")) {
+        damages = strtol(argv[first + 1], NULL, 10);
+        first += 2;
     }
     for (int i = first; i < argc; i++) {
         FILE *file = fopen(argv[i], "rb");
@@ -99,6 +133,7 @@ int main(int argc, char **argv) {
         fclose(file);
         replay(bytes, length, damages);
     }
-    printf("%d files, each cut and damaged %ld times: no crash\n", argc - first, damages);
+    printf("%ld inputs as they are, %d files cut and damaged %ld times each: no crash\n",
+           listed, argc - first, damages);
     return argc == first;
 }
