@@ -1,0 +1,71 @@
+#!/bin/sh
+# cross.sh [MACHINE-COMPILER-LEVEL ...] - some golden rows (rows.tsv) with these builds, or with those
+# below: machines of both byte orders and of 32 and 64 bits, two compilers, two C libraries, all levels
+# of optimisation, and each with 1, 4 and 16 threads. Others than amd64 run under qemu-user.
+set -eu
+cd "$(dirname "$0")/../.."
+folder=$PWD/build/cross threads="1 4 16"
+[ $# -gt 0 ] || set -- amd64-gcc-O3 amd64-clang-O2 musl-gcc-O3 musl-gcc-O0 \
+    aarch64-gcc-O3 aarch64-gcc-O0 aarch64-clang-O2 armhf-gcc-O2 armhf-clang-O3 \
+    i386-gcc-O3 i386-clang-O1 s390x-gcc-O2 s390x-clang-O3 riscv64-gcc-O1 riscv64-clang-O2 \
+    mips-gcc-O2 mips-clang-O1
+[ ! -d /usr/lib/ccache ] || PATH=/usr/lib/ccache:$PATH
+
+# the file and the program to run its programs with, of a machine
+triple_of() { sed -n "s/^triple = '\(.*\)'/\1/p" "tests/cross/$1.ini"; }
+qemu_of() { sed -n "s/^exe_wrapper = \['\([^']*\)'.*/\1/p" "tests/cross/$1.ini"; }
+
+# options BUILD: those of meson setup for the machine and its compiler
+options() {
+    machine=${1%%-*} compiler=${1#*-}
+    compiler=${compiler%-*}
+    [ "$machine" = amd64 ] || echo "--cross-file tests/cross/$machine.ini"
+    [ "$machine" = amd64 ] || [ "$compiler" = gcc ] || echo "--cross-file tests/cross/$compiler.ini"
+}
+
+# libraries, if they are not Debian's own, and the program with the modules that need none
+build() {
+    machine=${1%%-*} build=$folder/$1 compiler=${1#*-}
+    if [ "$machine" != amd64 ]; then
+        triple=$(triple_of "$machine")
+        cc=$(sed -n "s/^c_args = \[\(.*\)\]/\1/p" "tests/cross/$machine.ini" | tr -d "',")
+        if [ "$machine" = musl ]; then cc="musl-gcc $cc"; else cc="$triple-gcc $cc"; fi
+        tests/cross/libraries.sh "$folder" "$triple" $cc || return 1
+        export PKG_CONFIG_LIBDIR="$folder/$triple/lib/pkgconfig"
+    fi
+    [ -f "$build/build.ninja" ] || CC=${compiler%-*} meson setup "$build" $(options "$1") \
+        -Dwerror=true -Doptimization="${1##*-O}" -Ddebug=false -Dsundials=disabled -Dcholmod=disabled \
+        -Drender=disabled -Ddeflate=disabled -Dman=disabled -Dtests=disabled || return 1
+    ninja -C "$build" clothsim $(ninja -C "$build" -t targets all | sed -n 's/: .*//p' |
+        grep -xE 'plugins/[^/]*[.]so')
+}
+
+mkdir -p "$folder/table/golden"
+ln -sfn "$PWD/scenes" "$folder/table/scenes"
+awk -F '\t' 'NR == FNR { wanted[$1, $2, $3]; n++; next }
+    FNR == 1 || (($1, $2, $4) in wanted && $6 == "any") { print; found += FNR > 1 }
+    END { exit found != n }' tests/cross/rows.tsv golden/hash.tsv >"$folder/table/golden/hash.tsv" || {
+    echo "cross.sh: a row of rows.tsv is not in golden/hash.tsv, or is there twice" >&2
+    exit 1
+}
+for name; do
+    (build "$name") >"$folder/$name.log" 2>&1 || { tail -n 40 "$folder/$name.log" >&2 && exit 1; }
+done
+
+begin=$(date +%s)
+for name; do
+    machine=${name%%-*} wrapper=
+    case $machine in
+        amd64 | musl) ;;
+        *) wrapper="$(qemu_of "$machine") -L /usr/$(triple_of "$machine")" ;;
+    esac
+    for n in $threads; do echo "$name $n $wrapper $folder/$name/clothsim"; done
+done | xargs -P "$(nproc)" -L 1 sh -c '
+    name=$1 n=$2
+    shift 2
+    code=0
+    found=$("$@" golden --hashes --quiet --threads "$n" --folder "$0/table/golden" 2>&1) || code=$?
+    printf "%-16s %2d threads: %s\n" "$name" "$n" "$found"
+    exit $code' "$folder"
+set -- "$@"
+echo "$(($# * $(echo $threads | wc -w))) cells agree, in $(($(date +%s) - begin)) s"
