@@ -40,7 +40,8 @@ library() {
         objects="$objects $object"
     done
     ar rcs "$lib/lib$name.a" $objects
-    cat >"$lib/pkgconfig/$(basename "$name" | sed 's/^\(cjson\|png\|xxhash\)$/lib\1/').pc" <<PC
+    case $name in z) package=zlib ;; *) package=lib$name ;; esac
+    cat >"$lib/pkgconfig/$package.pc" <<PC
 Name: $name
 Description: for $triple
 Version: $version
@@ -61,7 +62,7 @@ cp "$sources/cjson/cJSON.h" "$sources"/zlib/z*.h "$sources/xxhash/xxhash.h" "$so
     "$folder/$triple/include"
 cd "$sources"
 library cjson 1.7.15 "" cjson/cJSON.c
-library z 1.2.13 "" $(for f in adler32 crc32 deflate infback inffast inflate inftrees trees zutil; do echo zlib/$f.c; done)
-library png 1.6.39 z $(ls libpng1.6/png*.c | grep -v pngtest)
+library z 1.2.13 "" $(for f in adler32 compress crc32 deflate infback inffast inflate inftrees trees uncompr zutil; do echo zlib/$f.c; done)
+library png 1.6.39 zlib $(ls libpng1.6/png*.c | grep -v pngtest)
 library xxhash 0.8.1 "" xxhash/xxhash.c
 touch "$lib/done"
