@@ -62,7 +62,8 @@ cp "$sources/cjson/cJSON.h" "$sources"/zlib/z*.h "$sources/xxhash/xxhash.h" "$so
     "$folder/$triple/include"
 cd "$sources"
 library cjson 1.7.15 "" cjson/cJSON.c
-library z 1.2.13 "" $(for f in adler32 compress crc32 deflate infback inffast inflate inftrees trees uncompr zutil; do echo zlib/$f.c; done)
+library z 1.2.13 "" $(printf 'zlib/%s.c ' adler32 compress crc32 deflate infback inffast inflate \
+    inftrees trees uncompr zutil)
 library png 1.6.39 zlib $(ls libpng1.6/png*.c | grep -v pngtest)
 library xxhash 0.8.1 "" xxhash/xxhash.c
 touch "$lib/done"
