@@ -29,10 +29,19 @@ static const struct cs_module *const modules[] = {
 enum { MODULES_N = sizeof modules / sizeof *modules };
 
 /* a crash is the fuzzer's to see, not the program's to explain */
-void cs_crash_watch(const char *kind, const char *name, const char *place) {
-    (void)kind, (void)name, (void)place;
+void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
+                    const char *place) {
+    (void)side, (void)kind, (void)name, (void)place;
 }
-void cs_crash_forget(void) {
+void cs_crash_forget(enum cs_crash_side side) {
+    (void)side;
+}
+void cs_crash_begin(enum cs_crash_side side) {
+    (void)side;
+}
+bool cs_crash_was_starved(enum cs_crash_side side) {
+    (void)side;
+    return false;
 }
 
 /* Ends a run by counting: a clock would end the two runs at different steps. */
