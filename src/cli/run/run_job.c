@@ -7,6 +7,7 @@
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "cli/run/run_claims.h"
+#include "cli/run/run_kept.h"
 #include "io/scene_hash.h"
 #include "io/scene_write.h"
 #include "study/coarse.h"
@@ -86,28 +87,6 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
         (uint32_t)render->size[0], (uint32_t)render->size[1],
         render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
     return cs_frames_create(settings->folder, &frames, &job->writer, error);
-}
-
-static bool has_room(struct cs_job *job, size_t frames) {
-    if (frames <= job->kept_capacity)
-        return true;
-    const size_t capacity = 2 * frames + 64;
-    void *larger = realloc(job->kept, capacity * sizeof *job->kept);
-    if (!larger)
-        return false;
-    job->kept = larger;
-    job->kept_capacity = capacity;
-    return true;
-}
-
-static enum cs_status keep(struct cs_job *job, const struct cs_job_frame *frame,
-                           struct cs_error *error) {
-    const size_t number = job->session.run.frame;
-    if (!has_room(job, number))
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %zu frames",
-                       number);
-    job->kept[number - 1] = *frame;
-    return CS_OK;
 }
 
 /* Waits for the picture under way and hands it over. */
@@ -195,7 +174,7 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (cs_export_take(&job->export, run->frame, run->t, run->x, run->v, error))
         return error->status;
-    if (cs_job_wants_json(settings) && keep(job, &frame, error))
+    if (cs_job_wants_json(settings) && cs_job_keep(job, &frame, error))
         return error->status;
     return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
 }
@@ -224,24 +203,6 @@ static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error
     return write_checkpoint(job, error);
 }
 
-/* What the job keeps of the frames so far, for a checkpoint. */
-static void record_job(void *ctx, struct cs_record *record) {
-    struct cs_job *job = ctx;
-    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
-    CS_RECORD(record, job->watch);
-    CS_RECORD(record, job->tally);
-    CS_RECORD(record, job->hash);
-    CS_RECORD(record, job->drawn);
-    cs_record_text(record, &job->watch_rows);
-    cs_record_text(record, &job->ledger_rows);
-    CS_RECORD(record, job->account.work);
-    CS_RECORD(record, n);
-    if (record->loading && (record->failed || n > record->length || !has_room(job, (size_t)n)))
-        record->failed = true;
-    else
-        cs_record_bytes(record, job->kept, (size_t)n * sizeof *job->kept);
-}
-
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     cs_job_print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
@@ -251,7 +212,7 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
                                     .hash = job->scene_hash,
                                     .method = cs_text_get(&job->method),
                                     .outputs = cs_text_get(&job->outputs),
-                                    .record = record_job,
+                                    .record = cs_job_record,
                                     .ctx = job};
     return cs_resume_begin(&job->checkpoints, &job->session, &of, settings->folder,
                            &settings->checkpoint, error);
