@@ -35,10 +35,10 @@ struct layout {
 /* As many tiles as there are pictures for, in a whole rectangle; of equal ones the one whose
  * sides are most like those that were asked for. */
 static void choose_grid(struct cs_sheet *sheet, uint32_t n) {
-    const long columns = sheet->columns, rows = sheet->rows;
+    const long columns = sheet->columns, rows = sheet->rows, most = (long)n;
     long best = 0, unlike = 0;
     for (long c = columns; c > 0; c--) {
-        const long r = n / c < rows ? n / c : rows, off = labs(c * rows - r * columns);
+        const long r = most / c < rows ? most / c : rows, off = labs(c * rows - r * columns);
         if (c * r < best || (c * r == best && off >= unlike))
             continue;
         best = c * r;
