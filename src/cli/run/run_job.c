@@ -7,7 +7,6 @@
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "cli/run/run_claims.h"
-#include "cli/run/run_kept.h"
 #include "io/scene_hash.h"
 #include "io/scene_write.h"
 #include "study/coarse.h"
@@ -15,7 +14,6 @@
 #include "study/origin.h"
 #include "study/within.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* The scene with every value, its hash, and the method. */
@@ -174,7 +172,7 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
         return error->status;
     if (cs_export_take(&job->export, run->frame, run->t, run->x, run->v, error))
         return error->status;
-    if (cs_job_wants_json(settings) && cs_job_keep(job, &frame, error))
+    if (cs_job_wants_json(settings) && cs_kept_add(&job->kept, run->frame, &frame, error))
         return error->status;
     return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
 }
@@ -203,6 +201,21 @@ static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error
     return write_checkpoint(job, error);
 }
 
+/* What the job keeps of the frames so far, for a checkpoint. */
+static void record_job(void *ctx, struct cs_record *record) {
+    struct cs_job *job = ctx;
+    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
+    CS_RECORD(record, job->watch);
+    CS_RECORD(record, job->tally);
+    CS_RECORD(record, job->hash);
+    CS_RECORD(record, job->drawn);
+    cs_record_text(record, &job->watch_rows);
+    cs_record_text(record, &job->ledger_rows);
+    CS_RECORD(record, job->account.work);
+    CS_RECORD(record, n);
+    cs_kept_record(&job->kept, n, record);
+}
+
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     cs_job_print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
@@ -212,7 +225,7 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
                                     .hash = job->scene_hash,
                                     .method = cs_text_get(&job->method),
                                     .outputs = cs_text_get(&job->outputs),
-                                    .record = cs_job_record,
+                                    .record = record_job,
                                     .ctx = job};
     return cs_resume_begin(&job->checkpoints, &job->session, &of, settings->folder,
                            &settings->checkpoint, error);
@@ -358,6 +371,6 @@ void cs_job_finish(struct cs_job *job) {
     cs_account_close(&job->account);
     cs_text_finish(&job->outputs);
     cs_resume_finish(&job->checkpoints);
-    free(job->kept);
+    cs_kept_finish(&job->kept);
     *job = (struct cs_job){0};
 }

@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "cli/run/run_camera.h"
+#include "cli/run/run_kept.h"
 #include "cli/run/run_picture.h"
 #include "cli/run/run_resume.h"
 #include "cli/run/run_settings.h"
@@ -16,23 +17,14 @@
 #include "study/tally.h"
 #include "study/watch.h"
 
-/* What is kept of a frame for the report. */
-struct cs_job_frame {
-    char hash[CS_HASH_DIGITS];
-    bool drawn;
-    double range[2];    /* of the colours, where drawn by a value */
-    uint64_t crossings; /* where they are counted */
-};
-
 /* Zeroed: nothing done. */
 struct cs_job {
     const struct cs_job_settings *settings;
     struct cs_session session;
     struct cs_picture picture;
     struct cs_frames *writer;
-    uint32_t frames;           /* asked for */
-    struct cs_job_frame *kept; /* (run.frame), owned; only where JSON is written */
-    size_t kept_capacity;
+    uint32_t frames;                 /* asked for */
+    struct cs_kept kept;             /* a row a frame; only where JSON is written */
     struct cs_watch watch;           /* is it still sound */
     struct cs_tally tally;           /* of crossings, where the scene asks for it */
     struct cs_text watch_rows;       /* CSV; empty unless asked for */

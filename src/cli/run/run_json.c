@@ -158,7 +158,7 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const bool coloured = cs_picture_is_coloured(&job->session.scene);
     cs_text_add(out, "  \"frames\": [");
     for (uint32_t i = 0; i < job->session.run.frame; i++) {
-        const struct cs_job_frame *frame = job->kept + i;
+        const struct cs_job_frame *frame = job->kept.frames + i;
         cs_text_add(out, "%s\n    {\"number\": %u, \"hash\": \"%s\", \"drawn\": %s",
                     i ? "," : "", i + 1, frame->hash, frame->drawn ? "true" : "false");
         if (frame->drawn)

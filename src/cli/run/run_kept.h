@@ -1,14 +1,33 @@
-/* run_kept.h - what a run keeps from frame to frame. */
+/* run_kept.h - what a run keeps of its frames for the report. */
 #ifndef CS_RUN_KEPT_H
 #define CS_RUN_KEPT_H
 
-#include "cli/run/run_job.h"
+#include "base/hash.h"
+#include "sim/run_record.h"
 
-/* A frame of the report; CS_ERR_MEMORY. */
-enum cs_status cs_job_keep(struct cs_job *job, const struct cs_job_frame *frame,
-                           struct cs_error *error);
+#include <stdbool.h>
+#include <stddef.h>
 
-/* What the job keeps of the frames so far, for a checkpoint; ctx: the job. */
-void cs_job_record(void *ctx, struct cs_record *record);
+struct cs_job_frame {
+    char hash[CS_HASH_DIGITS];
+    bool drawn;
+    double range[2];    /* of the colours, where drawn by a value */
+    uint64_t crossings; /* where they are counted */
+};
+
+/* Zeroed: none. */
+struct cs_kept {
+    struct cs_job_frame *frames; /* owned */
+    size_t capacity;
+};
+
+/* The frame of that number, from 1; CS_ERR_MEMORY. */
+enum cs_status cs_kept_add(struct cs_kept *kept, size_t number,
+                           const struct cs_job_frame *frame, struct cs_error *error);
+
+/* The first n frames, into a checkpoint or from it. */
+void cs_kept_record(struct cs_kept *kept, uint64_t n, struct cs_record *record);
+
+void cs_kept_finish(struct cs_kept *kept);
 
 #endif
