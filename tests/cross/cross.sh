@@ -58,7 +58,10 @@ for name; do
     machine=${name%%-*} wrapper=
     case $machine in
         amd64 | musl) ;;
-        *) wrapper="$(qemu_of "$machine") -L /usr/$(triple_of "$machine")" ;;
+        # the C library of the loader: the cache may name another one of this machine, and a libc
+        # beside a loader of another build does not return from pthread_create
+        *) root=/usr/$(triple_of "$machine")
+            wrapper="$(qemu_of "$machine") -L $root -E LD_LIBRARY_PATH=$root/lib" ;;
     esac
     for n in $threads; do echo "$name $n $wrapper $folder/$name/clothsim"; done
 done | xargs -P "$(nproc)" -L 1 sh -c '
