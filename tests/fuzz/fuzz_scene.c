@@ -1,27 +1,11 @@
 /* Any bytes as a scene: read or refused with a place, and what was read prints and reads back.
  */
-#include "io/scene_read.h"
-#include "io/scene_write.h"
+#include "read_back.h"
 
 #include <stdint.h>
 #include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
-
-/* The resolved text of a scene reads as a scene with the same text. */
-static void read_back(const struct cs_scene *scene) {
-    struct cs_text first = {0}, second = {0};
-    struct cs_error error = {0};
-    struct cs_scene back;
-    cs_scene_print(scene, NULL, NULL, 0, &first);
-    cs_scene_read_text(&back, "back.json", cs_text_get(&first), first.length, NULL, 0, &error);
-    CS_ASSERT(!error.status);
-    cs_scene_print(&back, NULL, NULL, 0, &second);
-    CS_ASSERT(!strcmp(cs_text_get(&first), cs_text_get(&second)));
-    cs_text_finish(&first);
-    cs_text_finish(&second);
-    cs_scene_finish(&back);
-}
 
 /* A shape of very many triangles is no mistake, and takes seconds to make. */
 static bool is_fine(const uint8_t *bytes, size_t length) {

@@ -1,7 +1,6 @@
 /* Any lines as --set of a scene: taken, or refused with the place; what is taken prints and
  * reads back as the same scene. */
-#include "io/scene_read.h"
-#include "io/scene_write.h"
+#include "read_back.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -29,20 +28,6 @@ static uint32_t cut(char *text, struct cs_override *overrides) {
         overrides[n++] = (struct cs_override){line, equals + 1};
     }
     return n;
-}
-
-static void read_back(const struct cs_scene *scene) {
-    struct cs_text first = {0}, second = {0};
-    struct cs_error error = {0};
-    struct cs_scene back;
-    cs_scene_print(scene, NULL, NULL, 0, &first);
-    cs_scene_read_text(&back, "back.json", cs_text_get(&first), first.length, NULL, 0, &error);
-    CS_ASSERT(!error.status);
-    cs_scene_print(&back, NULL, NULL, 0, &second);
-    CS_ASSERT(!strcmp(cs_text_get(&first), cs_text_get(&second)));
-    cs_text_finish(&first);
-    cs_text_finish(&second);
-    cs_scene_finish(&back);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {

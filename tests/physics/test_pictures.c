@@ -142,18 +142,24 @@ END_TEST
     "[0.3, 0.2, 0.1]}}], \"render\": {\"size\": [160, 120], \"ground\": \"none\", "            \
     "\"background\": %s}}"
 
-static void draw_backed(const char *background, struct cs_image *image) {
-    struct fixture cloth;
+/* The last of that many frames of an open scene, which is closed. */
+static void draw_last(struct fixture *cloth, uint32_t frames, struct cs_image *image) {
     struct cs_picture picture;
     struct cs_error error = {0};
-    fixture_open(&cloth, "symplectic-euler", BACKED, background);
-    fixture_start(&cloth);
-    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, false, &error);
-    cs_picture_begin(&picture, &cloth.session.run, image);
+    fixture_start(cloth);
+    cs_picture_open(&picture, cloth->system, CS_RENDERER_AUTO, false, false, &error);
+    fixture_frames(cloth, frames);
+    cs_picture_begin(&picture, &cloth->session.run, image);
     cs_picture_end(&picture, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     cs_picture_close(&picture);
-    fixture_close(&cloth);
+    fixture_close(cloth);
+}
+
+static void draw_backed(const char *background, struct cs_image *image) {
+    struct fixture cloth;
+    fixture_open(&cloth, "symplectic-euler", BACKED, background);
+    draw_last(&cloth, 0, image);
 }
 
 /* byte of sRGB from light that is laid on white */
@@ -214,17 +220,8 @@ END_TEST
 static void draw_grounded(const char *pins, const char *collider, const char *keys,
                           uint32_t frames, struct cs_image *image) {
     struct fixture cloth;
-    struct cs_picture picture;
-    struct cs_error error = {0};
     fixture_open(&cloth, "symplectic-euler", GROUNDED, pins, collider, keys);
-    fixture_start(&cloth);
-    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, false, &error);
-    fixture_frames(&cloth, frames);
-    cs_picture_begin(&picture, &cloth.session.run, image);
-    cs_picture_end(&picture, &error);
-    ck_assert_msg(!error.status, "%s", error.message);
-    cs_picture_close(&picture);
-    fixture_close(&cloth);
+    draw_last(&cloth, frames, image);
 }
 
 /* Where a cloth hangs and there is no floor, its shadow lies below it in every frame: beside
@@ -270,17 +267,8 @@ END_TEST
 
 static void draw_seen(const char *camera, uint32_t frames, struct cs_image *image) {
     struct fixture cloth;
-    struct cs_picture picture;
-    struct cs_error error = {0};
     fixture_open(&cloth, "symplectic-euler", SEEN, camera);
-    fixture_start(&cloth);
-    cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, false, &error);
-    fixture_frames(&cloth, frames);
-    cs_picture_begin(&picture, &cloth.session.run, image);
-    cs_picture_end(&picture, &error);
-    ck_assert_msg(!error.status, "%s", error.message);
-    cs_picture_close(&picture);
-    fixture_close(&cloth);
+    draw_last(&cloth, frames, image);
 }
 
 /* pixels that are covered in the left and in the right half */
