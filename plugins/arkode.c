@@ -154,7 +154,7 @@ static enum cs_step create(const struct cs_host *host, const void *options,
         return CS_STEP_FAIL;
     *out = self;
     self->asked = *(const struct ark_options *)options;
-    self->steps = (struct fixed_step){.host = host, .dt = self->asked.dt};
+    self->steps = fixed_step_of(host, self->asked.dt, NULL);
     self->base.max_steps = self->asked.max_steps;
     self->base.equal_steps = self->asked.dt > 0;
     const struct ark_table *table = tables + self->asked.order;

@@ -106,8 +106,8 @@ static enum cs_step create(const struct cs_host *host, const struct lossy_option
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop =
-        (struct fixed_step){.host = host, .dt = asked->dt, .fresh = true, .step = step};
+    self->loop = fixed_step_of(host, asked->dt, step);
+    self->loop.fresh = true;
     self->loss = asked->loss;
     if (!(self->a = host->alloc(host->ctx, bytes)))
         return CS_STEP_FAIL;
@@ -174,8 +174,8 @@ static enum cs_step verlet_archive(void *object, const struct cs_archive *archiv
 #define EXPLICIT(struct_, rows_, archive_)                                                     \
     .size = sizeof(struct cs_integrator), .options = rows_,                                    \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
-    .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance, .save = archive_,              \
-    .load = archive_
+    .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance, .stats = fixed_step_stats,     \
+    .save = archive_, .load = archive_
 
 /* the eigenvalues of a step lie outside the unit circle wherever nothing damps */
 static const char *const gains_energy[] = {"energy", "contact-energy", NULL};

@@ -14,6 +14,8 @@
  */
 #include "explicit_steps.h"
 
+#include <math.h>
+
 static struct explicit_method *method_of(struct fixed_step *loop) {
     return (struct explicit_method *)loop;
 }

@@ -19,6 +19,7 @@
 #include "fixed_step.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* what springs and matrix do not hold */
@@ -162,6 +163,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
 }
 
 static void stats(const void *object, struct cs_stats *out) {
+    fixed_step_stats(object, out);
     out->newton = ((const struct local_global *)object)->passes;
 }
 

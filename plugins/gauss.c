@@ -15,6 +15,7 @@
 #include "collocation.h"
 #include "newton_methods.h"
 
+#include <math.h>
 #include <string.h>
 
 /* How far below the bound on rounding the stages go: steps are many, and what is left adds up.

@@ -1,54 +1,26 @@
 /* halving.c - see halving.h. */
 #include "halving.h"
 
-struct halving *halving_create(const struct cs_host *host, size_t bytes, double dt,
-                               halving_step *step) {
-    struct halving *self = host->alloc(host->ctx, bytes);
-    if (!self)
-        return NULL;
-    self->loop = fixed_step_of(host, dt, NULL);
-    self->loop.fresh = true;
-    self->step = step;
-    return fixed_step_guard(&self->loop, NULL) == CS_STEP_OK ? self : NULL;
-}
+#include <math.h>
+#include <string.h>
 
-struct newton_method *newton_method_create(const struct cs_host *host, size_t bytes, double dt,
-                                           double rtol, int64_t iterations,
-                                           halving_step *step) {
-    struct newton_method *self = (struct newton_method *)halving_create(host, bytes, dt, step);
-    if (!self || newton_init(&self->newton, host, rtol, iterations) != CS_STEP_OK)
-        return NULL;
-    self->base.newton = &self->newton;
-    return self;
-}
-
-enum cs_step halving_take(const struct cs_host *host, double **const arrays[], size_t n) {
-    for (size_t k = 0; k < n; k++)
-        if (!(*arrays[k] = host->alloc(host->ctx, 3 * sizeof(double) * host->view->n)))
-            return CS_STEP_FAIL;
-    return CS_STEP_OK;
-}
-
-static int most_halvings(const struct halving *self) {
-    return self->loop.saved ? HALVINGS_IN_CONTACT : HALVINGS_MAX;
-}
-
-static enum cs_step give_up(const struct halving *self, double t, double h) {
-    const struct cs_host *host = self->loop.host;
+static enum cs_step give_up(struct fixed_step *loop, double t, double h) {
+    const struct halving *self = (const struct halving *)loop;
+    const struct cs_host *host = loop->host;
     if (self->passed || (self->newton && self->newton->blocked))
         return host->fail(host->ctx,
-                          "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
+                          "a step of %.3g s at t = %.9g s, halved %u times, still passes over "
                           "contact or through a surface",
-                          h, t, most_halvings(self));
+                          h, t, loop->most_cuts);
     if (self->turned)
         return host->fail(host->ctx,
-                          "a step of %.3g s at t = %.9g s, halved %d times, still turns a "
+                          "a step of %.3g s at t = %.9g s, halved %u times, still turns a "
                           "spring by more than half its length",
-                          h, t, most_halvings(self));
+                          h, t, loop->most_cuts);
     return host->fail(host->ctx,
-                      "Newton's iteration fails in a step of %.3g s at t = %.9g s, halved %d "
+                      "Newton's iteration fails in a step of %.3g s at t = %.9g s, halved %u "
                       "times: the residual is %.3g of the impulse, asked %.3g",
-                      h, t, most_halvings(self), self->newton->norm / self->newton->impulse,
+                      h, t, loop->most_cuts, self->newton->norm / self->newton->impulse,
                       self->newton->rtol);
 }
 
@@ -71,59 +43,59 @@ static enum cs_step take_step(struct halving *self, double t, double h, double *
     return status;
 }
 
-/* One step of length h from t, whole or in parts; it ends at `end`. */
-static enum cs_step cross(struct halving *self, double t, double h, double end, double *x,
-                          double *v) {
-    const struct cs_host *host = self->loop.host;
-    // the step is cut into 2^depth parts, of which `at` are done
-    uint32_t depth = 0, at = 0;
-    while (depth > 0 || at == 0) {
-        const double part = h / (double)(1u << depth), from = t + at * part;
-        bool accepted = false, changed = false;
-        self->passed = false;
-        enum cs_step status = take_step(self, from, part, x, v, &accepted);
-        if (status != CS_STEP_OK)
-            return status;
-        if (!accepted) {
-            self->rejected++;
-            if ((int)depth == most_halvings(self))
-                return give_up(self, from, part);
-            depth++, at *= 2;
-            continue;
-        }
-        at++;
-        self->before = part;
-        status = host->commit(host->ctx, at == 1u << depth ? end : t + at * part, part, x, v,
-                              &changed);
-        if (status != CS_STEP_OK)
-            return status;
-        self->loop.fresh = changed;
-        for (; depth > 0 && at % 2 == 0; at /= 2)
-            depth--;
-    }
-    return CS_STEP_OK;
+static enum cs_step attempt(struct fixed_step *loop, double t, double h, double *x, double *v,
+                            bool *cut) {
+    struct halving *self = (struct halving *)loop;
+    bool accepted = false;
+    self->passed = false;
+    const enum cs_step status = take_step(self, t, h, x, v, &accepted);
+    *cut = status == CS_STEP_OK && !accepted;
+    self->before = accepted ? h : self->before;
+    return status;
 }
 
-enum cs_step halving_advance(void *object, double t0, double t1, double *x, double *v) {
-    struct halving *self = object;
-    double n;
-    enum cs_step status = fixed_step_count(&self->loop, t1 - t0, &n);
-    const double h = (t1 - t0) / n;
-    for (double i = 0; i < n && status == CS_STEP_OK; i++)
-        status = cross(self, t0 + i * h, h, i + 1 == n ? t1 : t0 + (i + 1) * h, x, v);
-    return status;
+struct halving *halving_create(const struct cs_host *host, size_t bytes, double dt,
+                               halving_step *step) {
+    struct halving *self = host->alloc(host->ctx, bytes);
+    if (!self)
+        return NULL;
+    self->loop = fixed_step_of(host, dt, NULL);
+    self->loop.fresh = true;
+    self->loop.attempt = attempt;
+    self->loop.give_up = give_up;
+    self->step = step;
+    if (fixed_step_guard(&self->loop, NULL) != CS_STEP_OK)
+        return NULL;
+    self->loop.most_cuts = self->loop.saved ? HALVINGS_IN_CONTACT : HALVINGS_MAX;
+    return self;
+}
+
+struct newton_method *newton_method_create(const struct cs_host *host, size_t bytes, double dt,
+                                           double rtol, int64_t iterations,
+                                           halving_step *step) {
+    struct newton_method *self = (struct newton_method *)halving_create(host, bytes, dt, step);
+    if (!self || newton_init(&self->newton, host, rtol, iterations) != CS_STEP_OK)
+        return NULL;
+    self->base.newton = &self->newton;
+    return self;
+}
+
+enum cs_step halving_take(const struct cs_host *host, double **const arrays[], size_t n) {
+    for (size_t k = 0; k < n; k++)
+        if (!(*arrays[k] = host->alloc(host->ctx, 3 * sizeof(double) * host->view->n)))
+            return CS_STEP_FAIL;
+    return CS_STEP_OK;
 }
 
 void halving_stats(const void *object, struct cs_stats *out) {
     const struct halving *self = object;
-    out->rejected = self->rejected;
+    fixed_step_stats(object, out);
     out->newton = self->newton ? self->newton->done : 0;
 }
 
 enum cs_step halving_archive(void *object, const struct cs_archive *archive) {
     struct halving *self = object;
     archive->reals(archive->ctx, &self->before, 1);
-    archive->wholes(archive->ctx, &self->rejected, 1);
     if (self->newton)
         archive->wholes(archive->ctx, &self->newton->done, 1);
     return fixed_step_archive(self, archive);

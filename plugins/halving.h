@@ -2,9 +2,8 @@
  *
  * As fixed_step.h, the span of an advance is cut into equal steps of at most dt. A step that
  * its method refuses (Newton does not converge, springs turn too far), or that passes over
- * contact by force (host->max_share), is taken as two halves, each of which may be refused in
- * turn, at most HALVINGS_MAX times; then the run fails. Two halves done, the next step is as
- * long as both. Each part is committed by itself.
+ * contact by force (host->max_share), is halved, at most HALVINGS_MAX times; then the run
+ * fails.
  */
 #ifndef HALVING_H
 #define HALVING_H
@@ -20,9 +19,8 @@ struct halving {
     struct fixed_step loop; /* its step is not used */
     struct newton *newton;  /* NULL: the method has none */
     double before;          /* length of the last accepted step in s */
-    uint64_t rejected;
-    bool passed; /* the last step was taken back, for it passed over contact */
-    bool turned; /* the last step was refused by springs_turned */
+    bool passed;            /* the last step was taken back, for it passed over contact */
+    bool turned;            /* the last step was refused by springs_turned */
     /* From (x, v) at t to t + h, without the commit; where *accepted stays false, x and v are
      * left as they were. */
     enum cs_step (*step)(struct halving *self, double t, double h, double *x, double *v,
@@ -47,7 +45,6 @@ struct newton_method *newton_method_create(const struct cs_host *host, size_t by
 /* Takes `n` arrays (3,n) of doubles; [create]. */
 enum cs_step halving_take(const struct cs_host *host, double **const arrays[], size_t n);
 
-enum cs_step halving_advance(void *self, double t0, double t1, double *x, double *v);
 void halving_stats(const void *self, struct cs_stats *out);
 /* What the loop remembers, for save and load. */
 enum cs_step halving_archive(void *self, const struct cs_archive *archive);
@@ -64,7 +61,7 @@ bool springs_turned(const struct cs_view *view, const double *x0, const double *
 #define HALVING_METHOD(struct_, rows_, archive_)                                               \
     .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \
-    .restart = fixed_step_restart, .advance = halving_advance, .stats = halving_stats,         \
+    .restart = fixed_step_restart, .advance = fixed_step_advance, .stats = halving_stats,      \
     .save = archive_, .load = archive_
 
 #endif

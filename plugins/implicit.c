@@ -283,6 +283,7 @@ static const struct cs_integrator implicit_linearised = {
     .create = create_linearised,
     .restart = restart_linearised,
     .advance = fixed_step_advance,
+    .stats = fixed_step_stats,
     .save = archive_linearised,
     .load = archive_linearised,
 };
@@ -308,6 +309,7 @@ static const struct cs_integrator implicit_block = {
     .create = create_block,
     .restart = fixed_step_restart,
     .advance = fixed_step_advance,
+    .stats = fixed_step_stats,
     .save = fixed_step_archive,
     .load = fixed_step_archive,
 };

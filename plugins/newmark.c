@@ -13,6 +13,7 @@
  */
 #include "newton_methods.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { SET_NEWMARK, SET_HHT, SET_ALPHA, SET_OWN };

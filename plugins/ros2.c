@@ -21,6 +21,7 @@
  */
 #include "newton_methods.h"
 
+#include <math.h>
 #include <string.h>
 
 struct ros2_options {

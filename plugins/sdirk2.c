@@ -7,6 +7,7 @@
  */
 #include "newton_methods.h"
 
+#include <math.h>
 #include <string.h>
 
 struct sdirk2_options {

@@ -262,7 +262,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = (struct fixed_step){.host = host, .step = step};
+    self->loop = fixed_step_of(host, asked->dt, step);
     self->rotation = asked->rotation;
     choose_dt(&self->loop, asked->dt);
     if (view->n_clusters == 0)
@@ -308,6 +308,7 @@ static const struct cs_integrator shape_matching = {
     .create = create,
     .restart = restart,
     .advance = fixed_step_advance,
+    .stats = fixed_step_stats,
     .goals = goals,
     .save = archive,
     .load = archive,

@@ -10,6 +10,7 @@
  */
 #include "newton_methods.h"
 
+#include <math.h>
 #include <string.h>
 
 struct tr_bdf2_options {

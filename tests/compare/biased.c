@@ -49,9 +49,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->base.host = host;
-    self->base.dt = ((const struct biased_options *)options)->dt;
-    self->base.step = step;
+    self->base = fixed_step_of(host, ((const struct biased_options *)options)->dt, step);
     self->stage = host->alloc(host->ctx, bytes);
     for (int s = 0; s < 4; s++)
         self->k[s] = host->alloc(host->ctx, bytes);
