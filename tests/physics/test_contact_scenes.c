@@ -2,8 +2,8 @@
  * all families, and what a scene is about converges with the step. Small ones by default; "all"
  * for the rest. */
 #include "fixture.h"
+#include "meeting.h"
 
-#include "model/cross/crossings.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -13,75 +13,45 @@
 
 #define LENGTH(a) (sizeof(a) / sizeof *(a))
 
-enum { OVERRIDES = 6 };
-
-/* A scene of the folder with some keys changed, and a method. */
-struct run_of {
-    const char *scene, *method;
-    struct cs_override overrides[OVERRIDES];
-    uint32_t frames;
-    bool slow;
-};
-
 static bool all;
-
-static void open_run(struct cs_session *session, const struct run_of *of) {
-    struct cs_error error = {0};
-    char path[64];
-    uint32_t n = 0;
-    while (n < OVERRIDES && of->overrides[n].path)
-        n++;
-    snprintf(path, sizeof path, "scenes/%s.json", of->scene);
-    const struct cs_session_settings settings = {
-        .scene = path, .overrides = of->overrides, .n_overrides = n, .integrator = of->method};
-    cs_session_open(session, &settings, &error);
-    ck_assert_msg(!error.status, "%s: %s", of->scene, error.message);
-}
-
-static void next_frame(struct cs_session *session, const struct run_of *of) {
-    struct cs_error error = {0};
-    cs_run_frame(&session->run, &error);
-    ck_assert_msg(!error.status && session->run.outcome == CS_RUNNING, "%s by %s: %s",
-                  of->scene, of->method, error.message);
-}
 
 /* --- nothing goes through anything --- */
 
-#define GRID(columns, rows)                                                                    \
-    { .path = "bodies[0].cloth.grid", .value = "[" #columns "," #rows "]" }
-#define LIMIT                                                                                  \
-    { .path = "crossings", .value = "limit" }
-
-static const struct run_of kept_apart[] = {
-    {"needles", "velocity-verlet", {GRID(7, 7)}, 11, false},
-    {"needles", "dopri5:rtol=1e-3", {GRID(7, 7)}, 11, false},
-    {"needles", "implicit-linearised:dt=0.008", {GRID(7, 7)}, 16, false},
-    {"needles", "newmark:dt=0.008", {GRID(7, 7)}, 11, false},
-    {"needles", "cvode-bdf:rtol=1e-3", {GRID(7, 7)}, 11, false},
-    {"needles", "xpbd:dt=0.004", {GRID(7, 7)}, 11, false},
-    {"bear_drape", NULL, {GRID(9, 9)}, 15, false},
-    {"reef_knot", "implicit-linearised:dt=0.008", {{NULL, NULL}}, 12, false},
-    {"needles", NULL, {{NULL, NULL}}, 90, true},
-    {"needles", "velocity-verlet", {GRID(13, 13)}, 60, true},
-    {"needles", "bdf2:dt=0.004", {GRID(13, 13)}, 60, true},
-    {"bear_drape", NULL, {GRID(25, 25)}, 60, true},
-    {"bear_drape", "cvode-bdf:rtol=1e-3", {GRID(13, 13)}, 40, true},
-    {"winding", NULL, {GRID(21, 21)}, 200, true},
-    {"bear_heap", NULL, {{NULL, NULL}}, 120, true},
-    {"reef_knot", NULL, {{NULL, NULL}}, 66, true},
-    {"ribbon", NULL, {LIMIT}, 240, true},
-    {"fold", NULL, {LIMIT}, 60, true},
-    {"trampoline", NULL, {LIMIT}, 60, true},
-    {"layers", NULL, {LIMIT}, 60, true},
+/* one of the small ones, or of the rest */
+struct kept {
+    struct meeting meeting;
+    bool slow;
 };
 
-static void check_apart(const struct run_of *of) {
+static const struct kept kept_apart[] = {
+    {{"needles", "velocity-verlet", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"needles", "dopri5:rtol=1e-3", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"needles", "implicit-linearised:dt=0.008", {MEETING_GRID(7, 7)}, 16}, false},
+    {{"needles", "newmark:dt=0.008", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"needles", "cvode-bdf:rtol=1e-3", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"needles", "xpbd:dt=0.004", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"bear_drape", NULL, {MEETING_GRID(9, 9)}, 15}, false},
+    {{"reef_knot", "implicit-linearised:dt=0.008", {{NULL, NULL}}, 12}, false},
+    {{"needles", NULL, {{NULL, NULL}}, 90}, true},
+    {{"needles", "velocity-verlet", {MEETING_GRID(13, 13)}, 60}, true},
+    {{"needles", "bdf2:dt=0.004", {MEETING_GRID(13, 13)}, 60}, true},
+    {{"bear_drape", NULL, {MEETING_GRID(25, 25)}, 60}, true},
+    {{"bear_drape", "cvode-bdf:rtol=1e-3", {MEETING_GRID(13, 13)}, 40}, true},
+    {{"winding", NULL, {MEETING_GRID(21, 21)}, 200}, true},
+    {{"bear_heap", NULL, {{NULL, NULL}}, 120}, true},
+    {{"reef_knot", NULL, {{NULL, NULL}}, 66}, true},
+    {{"ribbon", NULL, {MEETING_LIMIT}, 240}, true},
+    {{"fold", NULL, {MEETING_LIMIT}, 60}, true},
+    {{"trampoline", NULL, {MEETING_LIMIT}, 60}, true},
+    {{"layers", NULL, {MEETING_LIMIT}, 60}, true},
+};
+
+static void check_apart(const struct meeting *of) {
     struct cs_session session;
-    open_run(&session, of);
+    meeting_open(&session, of);
     for (uint32_t frame = 0; frame < of->frames; frame++) {
-        next_frame(&session, of);
-        const struct cs_run *run = &session.run;
-        const uint64_t n = cs_crossings_count(&session.system, run->t, run->x).n;
+        meeting_frame(&session, of);
+        const uint64_t n = meeting_crossings(&session);
         ck_assert_msg(!n, "%s by %s, frame %u: %llu crossings", of->scene, of->method,
                       frame + 1, (unsigned long long)n);
     }
@@ -91,7 +61,7 @@ static void check_apart(const struct run_of *of) {
 START_TEST(nothing_goes_through) {
     for (size_t k = 0; k < LENGTH(kept_apart); k++)
         if (all == kept_apart[k].slow)
-            check_apart(kept_apart + k);
+            check_apart(&kept_apart[k].meeting);
 }
 END_TEST
 
@@ -125,12 +95,12 @@ START_TEST(knot_is_tight) {
                                        "implicit-linearised:dt=0.001"};
     double pull[2];
     for (int k = 0; k < 2; k++) {
-        const struct run_of of = {
-            "reef_knot", all ? fine[k] : quick[k], {{NULL, NULL}}, all ? 60 : 8, all};
+        const struct meeting of = {
+            "reef_knot", all ? fine[k] : quick[k], {{NULL, NULL}}, all ? 60 : 8};
         struct cs_session session;
-        open_run(&session, &of);
+        meeting_open(&session, &of);
         for (uint32_t frame = 0; frame < of.frames; frame++)
-            next_frame(&session, &of);
+            meeting_frame(&session, &of);
         pull[k] = pull_of(&session);
         cs_session_close(&session);
     }
@@ -156,12 +126,14 @@ START_TEST(ball_winds_up_the_sheet) {
     const int n = all ? 3 : 2;
     double turn[3];
     for (int k = 0; k < n; k++) {
-        const struct run_of of = {
-            "winding", methods[k], {GRID(7, 7), {"events[0].from", "0.2"}}, all ? 48 : 18, all};
+        const struct meeting of = {"winding",
+                                   methods[k],
+                                   {MEETING_GRID(7, 7), {"events[0].from", "0.2"}},
+                                   all ? 48 : 18};
         struct cs_session session;
-        open_run(&session, &of);
+        meeting_open(&session, &of);
         for (uint32_t frame = 0; frame < of.frames; frame++)
-            next_frame(&session, &of);
+            meeting_frame(&session, &of);
         turn[k] = turn_of(&session);
         cs_session_close(&session);
     }
@@ -177,14 +149,13 @@ END_TEST
 /* The tetrahedron pushes all three sheets through, none through another. The small case begins
  * to. */
 START_TEST(sheets_go_through_the_funnel) {
-    const struct run_of of = {"funnel", NULL, {{NULL, NULL}}, all ? 180 : 1, all};
+    const struct meeting of = {"funnel", NULL, {{NULL, NULL}}, all ? 180 : 1};
     struct cs_session session;
     double highest = -HUGE_VAL;
-    open_run(&session, &of);
+    meeting_open(&session, &of);
     for (uint32_t frame = 0; frame < of.frames; frame++) {
-        next_frame(&session, &of);
-        const struct cs_run *run = &session.run;
-        ck_assert_uint_eq(cs_crossings_count(&session.system, run->t, run->x).n, 0);
+        meeting_frame(&session, &of);
+        ck_assert_uint_eq(meeting_crossings(&session), 0);
     }
     const size_t n = session.system.view.n;
     for (size_t i = 0; i < n; i++)
@@ -219,8 +190,7 @@ static double carried(const char *method, uint32_t grid, double mu, uint32_t fra
     fixture_start(&cloth);
     for (uint32_t frame = 0; frame < frames; frame++) {
         fixture_frames(&cloth, 1);
-        const struct cs_run *run = &cloth.session.run;
-        ck_assert_uint_eq(cs_crossings_count(cloth.system, run->t, run->x).n, 0);
+        ck_assert_uint_eq(meeting_crossings(&cloth.session), 0);
     }
     for (size_t i = 0; i < cloth.n; i++)
         mean += cloth.x[2 * cloth.n + i] / (double)cloth.n;

@@ -1,0 +1,128 @@
+/* Every scene in which surfaces meet, in full length, by methods of all families: no frame has
+ * an edge through a triangle. Prints the rows of the table in docs/contact.md as it goes:
+ * scene, method, frames, crossings, processor time.
+ *
+ * test_contact_methods [METHOD [SCENE ...]]: of one method, "all" for every one. */
+#include "fixture.h"
+#include "meeting.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#define LENGTH(a) (sizeof(a) / sizeof *(a))
+
+static const char *const methods[] = {
+    "velocity-verlet",  "dopri5:rtol=1e-3",    "implicit-linearised:dt=0.004",
+    "newmark:dt=0.004", "cvode-bdf:rtol=1e-3", "xpbd:dt=0.004"};
+
+#define BALL                                                                                   \
+    "[{\"mesh\": {\"shape\": \"sphere\", \"detail\": 6, \"scale\": [0.4, 0.4, 0.4], "          \
+    "\"place\": {\"translate\": [0.05, -0.15, -0.45]}}, \"friction\": 0.3, \"thickness\": "    \
+    "0.008}]"
+#define LAW "{\"law\": \"force\", \"damping\": 0.001, \"friction_speed\": 0.05}"
+
+/* coarser than they stand where a method would take hours */
+static const struct meeting scenes[] = {
+    {.scene = "self_compare", .frames = 60, .overrides = {MEETING_LIMIT}},
+    {.scene = "ribbon", .frames = 240},
+    {.scene = "reef_knot", .frames = 66},
+    {.scene = "fold", .frames = 60},
+    {.scene = "trampoline", .frames = 60},
+    {.scene = "needles", .frames = 100, .overrides = {MEETING_GRID(17, 17)}},
+    {.scene = "bear_drape", .frames = 60, .overrides = {MEETING_GRID(21, 21)}},
+    {.scene = "curtain_ball",
+     .frames = 150,
+     .overrides = {MEETING_GRID(21, 24),
+                   MEETING_LIMIT,
+                   {.path = "contact", .value = LAW},
+                   {.path = "colliders", .value = BALL},
+                   {.path = "bodies[0].self_contact", .value = "true"}}},
+    {.scene = "layers",
+     .frames = 60,
+     .overrides = {MEETING_GRID(17, 17), MEETING_GRID_OF(1, 17, 17)}},
+    {.scene = "funnel",
+     .frames = 180,
+     .overrides = {MEETING_GRID(9, 9), MEETING_GRID_OF(1, 9, 9), MEETING_GRID_OF(2, 9, 9)}},
+    {.scene = "bear_heap", .frames = 120},
+    {.scene = "winding", .frames = 240, .overrides = {MEETING_GRID(15, 15)}},
+};
+
+static const char *asked_method;
+static char **asked_scenes;
+
+static double processor_seconds(void) {
+    struct rusage used;
+    getrusage(RUSAGE_SELF, &used);
+    return (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+           1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+/* What became of one scene by one method. */
+struct course {
+    uint32_t frames; /* that were done */
+    uint64_t most;   /* crossings in one of them */
+    struct cs_error error;
+};
+
+static void follow(struct cs_session *session, uint32_t frames, struct course *course) {
+    while (course->frames < frames && !course->error.status) {
+        cs_run_frame(&session->run, &course->error);
+        if (session->run.outcome != CS_RUNNING)
+            cs_fail(&course->error, CS_ERR_MODULE, "%s", cs_outcome_text(session->run.outcome));
+        if (course->error.status)
+            return;
+        const uint64_t n = meeting_crossings(session);
+        course->most = n > course->most ? n : course->most;
+        course->frames++;
+    }
+}
+
+/* true: all frames were done and nothing crossed */
+static bool run(const struct meeting *meeting) {
+    struct cs_session session;
+    struct course course = {0};
+    const double before = processor_seconds();
+    meeting_open(&session, meeting);
+    follow(&session, meeting->frames, &course);
+    printf("| %s | %s | %u | %llu | %.1f | %s |\n", meeting->scene, meeting->method,
+           course.frames, (unsigned long long)course.most, processor_seconds() - before,
+           course.error.status ? course.error.message : "");
+    fflush(stdout);
+    cs_session_close(&session);
+    return !course.error.status && !course.most;
+}
+
+static bool is_asked(const char *scene) {
+    bool asked = !*asked_scenes;
+    for (char **name = asked_scenes; *name; name++)
+        asked = asked || !strcmp(*name, scene);
+    return asked;
+}
+
+START_TEST(nothing_goes_through) {
+    uint32_t failed = 0, done = 0;
+    for (size_t s = 0; s < LENGTH(scenes); s++)
+        for (size_t m = 0; m < LENGTH(methods); m++) {
+            struct meeting meeting = scenes[s];
+            meeting.method = methods[m];
+            if (!is_asked(meeting.scene) ||
+                (strcmp(asked_method, "all") != 0 &&
+                 strncmp(asked_method, methods[m], strlen(asked_method)) != 0))
+                continue;
+            failed += !run(&meeting);
+            done++;
+        }
+    ck_assert_uint_gt(done, 0);
+    ck_assert_msg(!failed, "%u of %u runs failed, see their rows", failed, done);
+}
+END_TEST
+
+int main(int argc, char **argv) {
+    const TTest *const tests[] = {nothing_goes_through};
+    asked_method = argc > 1 ? argv[1] : "all";
+    asked_scenes = argv + (argc > 2 ? 2 : argc);
+    return fixture_run("contact methods", tests, LENGTH(tests));
+}
