@@ -6,7 +6,6 @@
 #include "io/scene_read.h"
 #include "model/cross/crossings.h"
 #include "model/cross/listed.h"
-#include "model/force/terms.h"
 #include "model/pair/pairs.h"
 #include "model/plan.h"
 #include "model/system_build.h"
@@ -247,97 +246,6 @@ START_TEST(list_limits_as_the_tree_does) {
 }
 END_TEST
 
-/* adds what two edges, or a point and a facet, do to each other; false: out of range */
-static bool add_one(const struct fixture *cloth, enum cs_stencil_kind kind,
-                    const uint32_t at[4], const struct cs_facet_use *use, double *f) {
-    const struct cs_system *system = cloth->system;
-    const struct cs_touch_parts parts = {1, 1};
-    const uint32_t *body = system->pairs->search.body;
-    struct cs_meeting meeting =
-        *cs_meeting_of(&system->pairs->meetings, body[at[0]], body[at[2]]);
-    struct cs_reaction reaction;
-    double p[4][3], v[4][3], push[4][3];
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++) {
-            p[k][c] = cloth->x[c * cloth->n + at[k]];
-            v[k][c] = cloth->v[c * cloth->n + at[k]];
-        }
-    meeting.range *= use ? CS_FACET_WITHIN : CS_MEETING_EDGES;
-    meeting.k *= use ? use->count : 1;
-    cs_reaction_measure(&reaction, kind, use ? use->form : (struct cs_facet_form){0}, p);
-    if (!use && !(reaction.stencil.d < meeting.range))
-        return false;
-    cs_reaction_set(&reaction, &meeting, &system->scene->contact, v);
-    cs_reaction_force(&reaction, parts, push);
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            f[c * cloth->n + at[k]] += push[k][c];
-    return true;
-}
-
-static size_t add_facets(const struct fixture *cloth, const uint32_t at[4], uint32_t triangle,
-                         double *f) {
-    const struct cs_pairs *pairs = cloth->system->pairs;
-    const uint32_t *body = pairs->search.body;
-    struct cs_facet_use uses[CS_FACETS];
-    const struct cs_facets_pair pair = {
-        .at = {at[0], at[1], at[2], at[3]},
-        .triangle = triangle,
-        .own = body[at[0]] == body[at[1]],
-        .range = cs_meeting_of(&pairs->meetings, body[at[0]], body[at[1]])->range};
-    const uint32_t n = cs_facets_find(&pairs->facets, &pair, cloth->x, uses);
-    for (uint32_t k = 0; k < n; k++)
-        add_one(cloth, CS_STENCIL_TRIANGLE, uses[k].at, uses + k, f);
-    return n;
-}
-
-/* all pairs there are, one after the other, without any list */
-static size_t add_all(const struct fixture *cloth, double *f) {
-    const struct cs_surfaces *s = cloth->system->surfaces;
-    size_t found = 0;
-    for (uint32_t kind = 0; kind < 2; kind++)
-        for (uint32_t a = 0; a < (kind ? s->n_edges : cloth->n); a++)
-            for (uint32_t b = kind ? a + 1 : 0; b < (kind ? s->n_edges : s->n_triangles); b++) {
-                const uint32_t pair[2] = {a, b};
-                uint32_t at[4];
-                bool same = false;
-                cs_search_corners(s, kind, pair, at);
-                for (int i = 0; i < 2; i++)
-                    for (int j = i + 1; j < 4; j++)
-                        same = same || (at[i] == at[j] && (kind ? i / 2 != j / 2 : !i));
-                if (!same)
-                    found +=
-                        kind ? add_one(cloth, kind, at, NULL, f) : add_facets(cloth, at, b, f);
-            }
-    return found;
-}
-
-START_TEST(lists_miss_no_pair) {
-    struct fixture cloth;
-    static double all[3 * 600], found[3 * 600];
-    fixture_open(&cloth, "velocity-verlet:dt=5e-4", "%s", crumple);
-    fixture_start(&cloth);
-    // springs and the like aside
-    for (uint32_t k = 0; k < cloth.system->n_terms; k++)
-        if (cloth.system->terms[k] == &cs_term_pairs)
-            for (int frame = 0; frame < 2; frame++) {
-                fixture_frames(&cloth, FRAMES / 2);
-                struct cs_system alone = *cloth.system;
-                alone.terms[0] = &cs_term_pairs;
-                alone.n_terms = 1;
-                memset(all, 0, sizeof all);
-                const size_t n = add_all(&cloth, all);
-                cs_terms_force(
-                    &alone, &(struct cs_eval){.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL},
-                    found);
-                ck_assert_uint_eq(n, cloth.system->pairs->now.n);
-                ck_assert(!memcmp(all, found, 3 * cloth.n * sizeof *all));
-            }
-    ck_assert_uint_gt(cloth.system->pairs->now.n, 40);
-    fixture_close(&cloth);
-}
-END_TEST
-
 /* a cloth whose layers have no room for its thickness is told so */
 START_TEST(too_thick_is_refused) {
     struct cs_error error = {0};
@@ -364,7 +272,6 @@ int main(void) {
                                   lists_are_not_seen_in_the_bits,
                                   lists_kept_too_long_are_seen,
                                   list_limits_as_the_tree_does,
-                                  lists_miss_no_pair,
                                   too_thick_is_refused};
     return fixture_run("pairs", tests, sizeof tests / sizeof *tests);
 }

@@ -1,0 +1,222 @@
+/* Lists of pairs miss none: forces by them are those of all pairs there are, one after the
+ * other in the order of their keys, to the last bit, while surfaces move and lists grow old;
+ * and two that come straight at each other are seen whatever the age. The folder faults has
+ * lists with one thing wrong. */
+#include "model/pair/pairs.h"
+#include "model/pair/reaction.h"
+#include "sheet.h"
+
+/* --- all pairs --- */
+
+/* adds what two edges, or a point and a facet, do to each other; false: out of range */
+static bool add_one(const struct sheet *sheet, enum cs_stencil_kind kind, const uint32_t at[4],
+                    const struct cs_facet_use *use, double *f) {
+    const struct cs_system *system = &sheet->system;
+    const uint32_t *body = system->pairs->search.body;
+    struct cs_meeting meeting =
+        *cs_meeting_of(&system->pairs->meetings, body[at[0]], body[at[2]]);
+    struct cs_reaction reaction;
+    double p[4][3], v[4][3], push[4][3];
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++) {
+            p[k][c] = sheet->x[c * sheet->n + at[k]];
+            v[k][c] = sheet->v[c * sheet->n + at[k]];
+        }
+    meeting.range *= use ? CS_FACET_WITHIN : CS_MEETING_EDGES;
+    meeting.k *= use ? use->count : 1;
+    cs_reaction_measure(&reaction, kind, use ? use->form : (struct cs_facet_form){0}, p);
+    if (kind == CS_STENCIL_EDGES && !(reaction.stencil.d < meeting.range))
+        return false;
+    cs_reaction_set(&reaction, &meeting, &system->scene->contact, v);
+    cs_reaction_force(&reaction, (struct cs_touch_parts){1, 1}, push);
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            f[c * sheet->n + at[k]] += push[k][c];
+    return true;
+}
+
+static size_t add_facets(const struct sheet *sheet, const uint32_t at[4], uint32_t triangle,
+                         double *f) {
+    const struct cs_pairs *pairs = sheet->system.pairs;
+    const uint32_t *body = pairs->search.body;
+    struct cs_facet_use uses[CS_FACETS];
+    const struct cs_facets_pair pair = {
+        .at = {at[0], at[1], at[2], at[3]},
+        .triangle = triangle,
+        .own = body[at[0]] == body[at[1]],
+        .range = cs_meeting_of(&pairs->meetings, body[at[0]], body[at[1]])->range};
+    const uint32_t n = cs_facets_find(&pairs->facets, &pair, sheet->x, uses);
+    for (uint32_t k = 0; k < n; k++)
+        add_one(sheet, CS_STENCIL_TRIANGLE, uses[k].at, uses + k, f);
+    return n;
+}
+
+static size_t add_all(const struct sheet *sheet, double *f) {
+    const struct cs_surfaces *s = sheet->system.surfaces;
+    size_t found = 0;
+    for (uint32_t kind = 0; kind < 2; kind++)
+        for (uint32_t a = 0; a < (kind ? s->n_edges : sheet->n); a++)
+            for (uint32_t b = kind ? a + 1 : 0; b < (kind ? s->n_edges : s->n_triangles); b++) {
+                const uint32_t pair[2] = {a, b};
+                uint32_t at[4];
+                bool same = false;
+                cs_search_corners(s, kind, pair, at);
+                for (int i = 0; i < 2; i++)
+                    for (int j = i + 1; j < 4; j++)
+                        same = same || (at[i] == at[j] && (kind ? i / 2 != j / 2 : !i));
+                if (!same)
+                    found +=
+                        kind ? add_one(sheet, kind, at, NULL, f) : add_facets(sheet, at, b, f);
+            }
+    return found;
+}
+
+enum { MOST = 3 * 160 };
+
+/* returns how many are in range */
+static size_t compare(const struct sheet *sheet) {
+    double all[MOST] = {0}, found[MOST] = {0};
+    struct cs_pairs *pairs = sheet->system.pairs;
+    ck_assert_uint_le(3 * sheet->n, MOST);
+    const size_t n = add_all(sheet, all);
+    cs_pairs_set(pairs, &(struct cs_eval){.x = sheet->x, .v = sheet->v, .parts = CS_PART_ALL});
+    cs_pair_set_add(&pairs->now, 0, sheet->n, found);
+    ck_assert_uint_eq(pairs->now.n, n);
+    ck_assert(!memcmp(all, found, 3 * sheet->n * sizeof *all));
+    return n;
+}
+
+/* --- sheets in folds --- */
+
+#define SHEET(columns, rows, side, height)                                                     \
+    "{\"cloth\": {\"grid\": [" #columns ", " #rows "], \"size\": [" #side ", " #side "], "     \
+    "\"start\": \"flat\", \"place\": {\"translate\": [0, " #height ", 0]}}, \"mass\": "        \
+    "{\"total\": 1}, \"thickness\": 0.1, \"self_contact\": true, \"friction\": 0.3}"
+
+#define LARGE SHEET(13, 6, 3, 0) ", " SHEET(9, 7, 3, 1)
+#define SMALL SHEET(2, 2, 1, 0) ", " SHEET(2, 2, 1, 1)
+
+static const char folded[] =
+    "{\"bodies\": [" LARGE "], \"pairs\": {\"among\": \"all\", \"friction\": 0.2}, "
+    "\"contact\": {\"law\": \"force\", \"stiffness\": 10, \"damping\": 0.01, "
+    "\"friction_speed\": 0.1}}";
+static const char two[] = "{\"bodies\": [" SMALL "], \"pairs\": \"all\", \"contact\": "
+                          "{\"law\": \"force\", \"stiffness\": 10}}";
+
+static double draw(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+/* the first about the second, in an S whose layers are about a range apart, all of it crumpled;
+ * rows against the order of cells, so that what these find is to be sorted */
+static void fold(struct sheet *sheet, uint64_t *state) {
+    const size_t n = sheet->n;
+    for (size_t i = 0; i < n; i++) {
+        const bool first = i < 78;
+        const size_t column = first ? i % 13 : (i - 78) % 9,
+                     row = first ? i / 13 : (i - 78) / 9;
+        const double layer = (double)(column / 5), along = (double)(column % 5);
+        const double turned = column / 5 % 2 ? 4 - along : along;
+        const double x = first ? 0.2 * turned : 0.1 * (double)column;
+        const double y = first ? 0.14 * layer : 0.07;
+        sheet->x[i] = x + 0.02 * draw(state);
+        sheet->x[n + i] = y + 0.03 * draw(state);
+        sheet->x[2 * n + i] = -0.16 * (double)row + 0.02 * draw(state);
+    }
+}
+
+/* by up to a tenth of the range a component, and speeds to go with it */
+static void move(struct sheet *sheet, uint64_t *state) {
+    for (size_t i = 0; i < 3 * sheet->n; i++) {
+        sheet->v[i] = draw(state);
+        sheet->x[i] += 0.01 * sheet->v[i];
+    }
+}
+
+START_TEST(lists_miss_no_pair) {
+    struct sheet sheet;
+    uint64_t state = 1;
+    size_t found = 0;
+    sheet_open(&sheet, 0, "%s", folded);
+    fold(&sheet, &state);
+    const struct cs_search *search = &sheet.system.pairs->search;
+    const uint64_t before = search->builds;
+    for (int k = 0; k < 16; k++) {
+        move(&sheet, &state);
+        found += compare(&sheet);
+    }
+    // some lists were old, and some were made
+    ck_assert_uint_gt(search->builds, before + 2);
+    ck_assert_uint_lt(search->builds, before + 13);
+    ck_assert_uint_gt(found, 16 * 100);
+    sheet_close(&sheet);
+}
+END_TEST
+
+/* the order of sums: by kind, then by the first and then by the second of a pair */
+START_TEST(keys_ascend) {
+    struct sheet sheet;
+    uint64_t state = 1;
+    size_t n = 0;
+    sheet_open(&sheet, 0, "%s", folded);
+    fold(&sheet, &state);
+    compare(&sheet);
+    const struct cs_search *search = &sheet.system.pairs->search;
+    uint64_t last = 0;
+    for (uint32_t l = 0; l < search->n_lots; l++) {
+        const struct cs_search_lot *lot = search->lots + l;
+        for (size_t k = 0; k < lot->n; k++, n++) {
+            const uint64_t key = ((uint64_t)(lot->kind == CS_STENCIL_EDGES) << 62) +
+                                 ((uint64_t)lot->pairs[2 * k] << 31) + lot->pairs[2 * k + 1];
+            ck_assert_msg(!n || key > last, "pair %zu", n);
+            last = key;
+        }
+    }
+    ck_assert_uint_gt(n, 1000);
+    sheet_close(&sheet);
+}
+END_TEST
+
+/* --- at the end of what a list is good for --- */
+
+/* Puts the second sheet beside the rim of the first, its own rim so far from it and in front of
+ * it by a share that facets feel soonest (facet.h: where m - f(m) is greatest). */
+static void put_beside(struct sheet *sheet, const double *flat, double distance) {
+    const double range = 0.1, aside = 0.69 * CS_FACET_BEND;
+    const size_t n = sheet->n;
+    for (size_t i = 4; i < n; i++) {
+        sheet->x[i] = 0.5 + distance * aside + 0.3 * (flat[i] + 0.5);
+        sheet->x[n + i] = distance * sqrt(1 - aside * aside) + range * (flat[i] + 0.5);
+        sheet->x[2 * n + i] = 0.3 * flat[2 * n + i];
+    }
+}
+
+/* A list made where a pair is just about to be in it, or just was not, and used after a move
+ * straight to where it is just still good, or just no more. */
+START_TEST(what_comes_straight_is_seen) {
+    struct sheet sheet;
+    double flat[3 * 8];
+    size_t felt = 0;
+    sheet_open(&sheet, 0, "%s", two);
+    struct cs_search *search = &sheet.system.pairs->search;
+    const double range = sheet.system.pairs->meetings.least, good = 2 * search->margin;
+    memcpy(flat, sheet.x, sizeof flat);
+    for (int from = -10; from <= 10; from++)
+        for (int to = -10; to <= 10; to++) {
+            const double start = range + good * (1 + 0.002 * from);
+            put_beside(&sheet, flat, start);
+            search->fresh = false;
+            ck_assert_uint_eq(compare(&sheet), 0);
+            put_beside(&sheet, flat, start - good * (1 + 0.002 * to));
+            felt += compare(&sheet) > 0;
+        }
+    ck_assert_uint_gt(felt, 100);
+    sheet_close(&sheet);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {lists_miss_no_pair, keys_ascend, what_comes_straight_is_seen};
+    return unit_run("lists", tests, sizeof tests / sizeof *tests);
+}
