@@ -19,6 +19,17 @@ struct meeting {
 #define MEETING_LIMIT                                                                          \
     { .path = "crossings", .value = "limit" }
 
+/* The curtain of that scene, which pushes points out of a ball, against a ball of triangles, by
+ * force. */
+#define MEETING_BALL                                                                           \
+    "[{\"mesh\": {\"shape\": \"sphere\", \"detail\": 6, \"scale\": [0.4, 0.4, 0.4], "          \
+    "\"place\": {\"translate\": [0.05, -0.15, -0.45]}}, \"friction\": 0.3, \"thickness\": "    \
+    "0.008}]"
+#define MEETING_LAW "{\"law\": \"force\", \"damping\": 0.001, \"friction_speed\": 0.05}"
+#define MEETING_CURTAIN                                                                        \
+    {.path = "contact", .value = MEETING_LAW}, {.path = "colliders", .value = MEETING_BALL},   \
+        {.path = "bodies[0].self_contact", .value = "true"}, MEETING_LIMIT
+
 /* Opens it as far as its system, or up to its start; what fails there fails the test. */
 void meeting_open_system(struct cs_session *session, const struct meeting *meeting);
 void meeting_open(struct cs_session *session, const struct meeting *meeting);

@@ -18,12 +18,6 @@ static const char *const methods[] = {
     "velocity-verlet",  "dopri5:rtol=1e-3",    "implicit-linearised:dt=0.004",
     "newmark:dt=0.004", "cvode-bdf:rtol=1e-3", "xpbd:dt=0.004"};
 
-#define BALL                                                                                   \
-    "[{\"mesh\": {\"shape\": \"sphere\", \"detail\": 6, \"scale\": [0.4, 0.4, 0.4], "          \
-    "\"place\": {\"translate\": [0.05, -0.15, -0.45]}}, \"friction\": 0.3, \"thickness\": "    \
-    "0.008}]"
-#define LAW "{\"law\": \"force\", \"damping\": 0.001, \"friction_speed\": 0.05}"
-
 /* coarser than they stand where a method would take hours */
 static const struct meeting scenes[] = {
     {.scene = "self_compare", .frames = 60, .overrides = {MEETING_LIMIT}},
@@ -35,11 +29,7 @@ static const struct meeting scenes[] = {
     {.scene = "bear_drape", .frames = 60, .overrides = {MEETING_GRID(21, 21)}},
     {.scene = "curtain_ball",
      .frames = 150,
-     .overrides = {MEETING_GRID(21, 24),
-                   MEETING_LIMIT,
-                   {.path = "contact", .value = LAW},
-                   {.path = "colliders", .value = BALL},
-                   {.path = "bodies[0].self_contact", .value = "true"}}},
+     .overrides = {MEETING_GRID(21, 24), MEETING_CURTAIN}},
     {.scene = "layers",
      .frames = 60,
      .overrides = {MEETING_GRID(17, 17), MEETING_GRID_OF(1, 17, 17)}},

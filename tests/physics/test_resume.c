@@ -92,6 +92,8 @@ START_TEST(scenes_go_on) {
         {"scenes/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
         {"scenes/layers.json", NULL, 6, {2, 4, 5}},
         {"scenes/funnel.json", "implicit-linearised", 4, {1, 2, 3}},
+        {"scenes/self_compare.json", "newmark", 60, {20, 35, 50}},
+        {"scenes/self_compare.json", "dopri5", 60, {20, 35, 50}},
         {"scenes/mixed_company.json", "shape-matching", 10, {1, 4, 7}},
         {"scenes/disc_drape.json", "bdf2", 36, {24, 29, 33}},
         {"scenes/disc_drape.json", "fast-mass-spring", 36, {24, 29, 33}},

@@ -1,0 +1,127 @@
+/* One state, to the last bit, of every scene in which surfaces meet: for lists with margins of
+ * a half, one and two, for 1, 2, 3 and 8 threads, and for a run that was broken off and goes
+ * on. (For compilers: golden hashes.) One small scene by default; "all" for the rest. */
+#include "fixture.h"
+#include "meeting.h"
+
+#include "base/pool.h"
+#include "model/pair/pairs.h"
+#include "sim/run_record.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define LENGTH(a) (sizeof(a) / sizeof *(a))
+
+static bool all;
+
+/* each until surfaces press on each other */
+static const struct meeting scenes[] = {
+    {.scene = "self_compare", .frames = 60},
+    {.scene = "fold", .frames = 30, .overrides = {MEETING_GRID(9, 25)}},
+    {.scene = "trampoline", .frames = 24, .overrides = {MEETING_GRID(13, 13)}},
+    {.scene = "layers",
+     .frames = 24,
+     .overrides = {MEETING_GRID(13, 13), MEETING_GRID_OF(1, 13, 13)}},
+    {.scene = "ribbon", .frames = 200},
+    {.scene = "needles", .frames = 40, .overrides = {MEETING_GRID(13, 13)}},
+    {.scene = "bear_drape", .frames = 30, .overrides = {MEETING_GRID(15, 15)}},
+    {.scene = "winding", .frames = 40, .overrides = {MEETING_GRID(11, 11)}},
+    {.scene = "funnel",
+     .frames = 40,
+     .overrides = {MEETING_GRID(9, 9), MEETING_GRID_OF(1, 9, 9), MEETING_GRID_OF(2, 9, 9)}},
+    {.scene = "bear_heap", .frames = 40},
+    {.scene = "reef_knot", .frames = 40},
+    {.scene = "curtain_ball",
+     .frames = 40,
+     .overrides = {MEETING_GRID(15, 17), MEETING_CURTAIN}},
+};
+
+static const char *const methods[] = {NULL, "dopri5:rtol=1e-3"};
+
+/* How a scene is run. */
+struct how {
+    uint32_t threads;
+    double margin; /* of lists, as a multiple */
+    bool broken;   /* off in the middle, and taken up from its record */
+};
+
+static void open(struct cs_session *session, const struct meeting *meeting, struct how how) {
+    struct cs_error error = {0};
+    meeting_open_system(session, meeting);
+    struct cs_search *search = &session->system.pairs->search;
+    search->margin *= how.margin;
+    search->fresh = false;
+    cs_session_begin(session, NULL, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+}
+
+/* In every run, as some methods start anew where a record is made. */
+static void break_off(struct cs_session *session, const struct meeting *meeting,
+                      struct how how) {
+    struct cs_error error = {0};
+    struct cs_record record = {0};
+    cs_run_save(&session->run, &record, &error);
+    if (how.broken) {
+        cs_session_close(session);
+        open(session, meeting, how);
+        record.loading = true;
+        cs_run_load(&session->run, &record, &error);
+    }
+    ck_assert_msg(!error.status, "%s", error.message);
+    cs_record_finish(&record);
+}
+
+/* Returns the state at the end, which the caller frees. */
+static double *run(const struct meeting *meeting, struct how how, size_t *bytes) {
+    struct cs_session session;
+    struct cs_error error = {0};
+    cs_pool_start(how.threads, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    open(&session, meeting, how);
+    for (uint32_t frame = 0; frame < meeting->frames; frame++) {
+        if (frame == meeting->frames / 2)
+            break_off(&session, meeting, how);
+        meeting_frame(&session, meeting);
+    }
+    ck_assert_msg(session.system.pairs->now.n > 0, "%s: nothing meets", meeting->scene);
+    *bytes = 6 * session.system.view.n * sizeof(double);
+    double *state = malloc(*bytes);
+    ck_assert_ptr_nonnull(state);
+    memcpy(state, session.run.x, *bytes);
+    cs_session_close(&session);
+    cs_pool_stop();
+    return state;
+}
+
+static void check(const struct meeting *meeting) {
+    static const struct how hows[] = {{1, 0.5, false}, {1, 2, false}, {2, 1, false},
+                                      {3, 1, false},   {8, 1, false}, {1, 1, true}};
+    size_t bytes;
+    double *right = run(meeting, (struct how){1, 1, false}, &bytes);
+    for (size_t k = 0; k < LENGTH(hows); k++) {
+        double *state = run(meeting, hows[k], &bytes);
+        ck_assert_msg(!memcmp(right, state, bytes),
+                      "%s by %s: %u threads, margin %g, %s run differs", meeting->scene,
+                      meeting->method ? meeting->method : "its own method", hows[k].threads,
+                      hows[k].margin, hows[k].broken ? "broken" : "unbroken");
+        free(state);
+    }
+    free(right);
+}
+
+START_TEST(one_state) {
+    for (size_t s = 0; s < (all ? LENGTH(scenes) : 1); s++)
+        for (size_t m = 0; m < LENGTH(methods); m++) {
+            struct meeting meeting = scenes[s];
+            meeting.method = methods[m];
+            check(&meeting);
+        }
+}
+END_TEST
+
+int main(int argc, char **argv) {
+    all = argc > 1 && !strcmp(argv[1], "all");
+    const TTest *const tests[] = {one_state};
+    return fixture_run("contact bits", tests, LENGTH(tests));
+}
