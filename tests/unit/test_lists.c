@@ -4,6 +4,7 @@
  * lists with one thing wrong. */
 #include "model/pair/pairs.h"
 #include "model/pair/reaction.h"
+#include "pair_places.h"
 #include "sheet.h"
 
 /* --- all pairs --- */
@@ -102,11 +103,6 @@ static const char folded[] =
     "\"friction_speed\": 0.1}}";
 static const char two[] = "{\"bodies\": [" SMALL "], \"pairs\": \"all\", \"contact\": "
                           "{\"law\": \"force\", \"stiffness\": 10}}";
-
-static double draw(uint64_t *state) {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) / 4503599627370496.0 - 1;
-}
 
 /* the first about the second, in an S whose layers are about a range apart, all of it crumpled;
  * rows against the order of cells, so that what these find is to be sorted */
