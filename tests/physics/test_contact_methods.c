@@ -33,9 +33,7 @@ static const struct meeting scenes[] = {
     {.scene = "layers",
      .frames = 60,
      .overrides = {MEETING_GRID(17, 17), MEETING_GRID_OF(1, 17, 17)}},
-    {.scene = "funnel",
-     .frames = 180,
-     .overrides = {MEETING_GRID(9, 9), MEETING_GRID_OF(1, 9, 9), MEETING_GRID_OF(2, 9, 9)}},
+    {.scene = "funnel", .frames = 180}, // coarser ones jam: the tip comes to lie on an edge
     {.scene = "bear_heap", .frames = 120},
     {.scene = "winding", .frames = 240, .overrides = {MEETING_GRID(15, 15)}},
 };
