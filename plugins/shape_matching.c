@@ -155,11 +155,16 @@ static void add_ways(const struct shape *self, uint32_t k, double alpha, const d
     }
 }
 
-/* alpha of a step of h, for the stiffness that the cluster's alpha means in its own step */
-static double alpha_of(const struct cs_view *view, uint32_t k, double h) {
-    const double alpha = view->cluster_alpha[k], step = view->cluster_step[k];
-    if (step == 0)
+/* alpha of a step of h, for the stiffness that the cluster's alpha means in its own step, or,
+ * where it holds for whatever step there is, in one before it was cut: parts of a step that
+ * went as far as the whole would never get by contact */
+static double alpha_of(const struct shape *self, uint32_t k, double h) {
+    const struct cs_view *view = self->loop.host->view;
+    const double alpha = view->cluster_alpha[k], own = view->cluster_step[k];
+    const uint32_t cuts = self->loop.cuts.depth;
+    if (own == 0 && cuts == 0)
         return alpha;
+    const double step = own > 0 ? own : h * (double)(1u << cuts);
     const double stiff = alpha * h * h, soft = (1 - alpha) * step * step;
     return stiff > 0 ? stiff / (soft + stiff) : 0;
 }
@@ -169,7 +174,7 @@ static void match(struct shape *self, double h, double *x, double *v) {
     double *d = self->f;
     memset(d, 0, 3 * sizeof *d * view->n);
     for (uint32_t k = 0; k < view->n_clusters; k++)
-        add_ways(self, k, alpha_of(view, k, h), x, self->clusters[k].turn, d);
+        add_ways(self, k, alpha_of(self, k, h), x, self->clusters[k].turn, d);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, at = c * view->n; i < view->n; i++, at++)
             if (self->held[i] > 0 && view->inv_mass[i] > 0) {

@@ -1,6 +1,8 @@
 /* Shape matching against closed forms and its limit cases. */
 #include "matched.h"
 
+#include "model/cross/crossings.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -221,8 +223,58 @@ START_TEST(other_bodies_are_those_of_symplectic_euler) {
 }
 END_TEST
 
+/* alpha_step, pairs */
+#define THROWN                                                                                 \
+    "{\"bodies\": [{" BOX ", \"thickness\": 0.1, \"mass\": "                                   \
+    "{\"total\": 1}, \"shape_matching\": {\"alpha\": 0.4, \"alpha_step\": %s}}, {\"mesh\": "   \
+    "{\"shape\": \"box\", \"detail\": 3, \"velocity\": [0, -4, 0], \"place\": "                \
+    "{\"translate\": [0.4, 1.25, 0.3]}}, \"thickness\": 0.1, \"mass\": {\"total\": 1}, "       \
+    "\"shape_matching\": {\"alpha\": 0.4, \"alpha_step\": %s}}], \"pairs\": \"%s\", "          \
+    "\"contact\": {\"law\": \"force\", \"stiffness\": 60}, \"crossings\": \"limit\"}"
+
+/* most crossings in any frame, until the run ends; *y the height of a corner then */
+static uint64_t throw_boxes(const char *step, const char *pairs, struct cs_counts *counts,
+                            double *y, struct cs_error *error) {
+    struct fixture boxes;
+    uint64_t most = 0;
+    fixture_open(&boxes, "shape-matching", THROWN, step, step, pairs);
+    fixture_start(&boxes);
+    struct cs_run *run = &boxes.session.run;
+    while (run->frame < 15 && !cs_run_frame(run, error)) {
+        const uint64_t found = cs_crossings_count(boxes.system, run->t, run->x).n;
+        most = found > most ? found : most;
+    }
+    *counts = run->counts;
+    *y = boxes.x[boxes.n];
+    fixture_close(&boxes);
+    return most;
+}
+
+/* Steps are cut as those of other methods are. Where alpha holds for any step, its parts have
+ * the stiffness of the whole, here of a frame. Where nothing keeps the boxes off each other no
+ * part is short enough. */
+START_TEST(a_limit_holds_off_what_goals_draw) {
+    static const char *const steps[] = {"0.016666666666666666", "0"};
+    double y[2];
+    for (int s = 0; s < 2; s++) {
+        struct cs_counts counts;
+        double end;
+        struct cs_error error = {0};
+        ck_assert_uint_eq(throw_boxes(steps[s], "all", &counts, y + s, &error), 0);
+        ck_assert_msg(!error.status, "%s", error.message);
+        ck_assert_uint_gt(counts.cut_steps, 0);
+        ck_assert_uint_eq(throw_boxes(steps[s], "listed", &counts, &end, &error), 0);
+        ck_assert_msg(error.status == CS_ERR_MODULE &&
+                          strstr(error.message, "through a surface"),
+                      "%s", error.message);
+    }
+    ck_assert_double_eq_tol(y[0], y[1], 1e-8);
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {alpha_0_is_symplectic_euler,
+    const TTest *const tests[] = {a_limit_holds_off_what_goals_draw,
+                                  alpha_0_is_symplectic_euler,
                                   rest_is_a_fixed_point,
                                   pair_swings_as_a_spring_in_implicit_euler,
                                   motion_has_a_limit_at_order_1,
