@@ -56,9 +56,9 @@ static void take(struct work *work, const uint32_t pair[2]) {
     uint32_t at[4];
     cs_search_corners(search->system->surfaces, work->lot->kind, pair, at);
     memcpy(work->pairs[k], pair, sizeof work->pairs[k]);
-    lanes->range[l] =
-        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range *
-        (work->lot->kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
+    lanes->range[l] = cs_search_range(
+        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]),
+        work->lot->kind);
     for (size_t j = 0; j < 4; j++)
         for (size_t c = 0; c < 3; c++)
             lanes->p[j][c][l] = search->close_at[c * n + at[j]];

@@ -1,6 +1,7 @@
 /* search.h - which pairs of points and triangles, and of edges, may be in range.
  *
- * A list holds all pairs whose true distance was below their range + 2 margin when it was made,
+ * A list holds all pairs whose true distance was below their range, of edges the share of it
+ * that these feel, + 2 margins when it was made,
  * and is good until particles have moved by more than that against each other: each body's
  * moves are taken against the middle of the moves of its particles, so that what falls as a
  * whole costs nothing. The smooth distance is never below the true one, so that none is missed.
@@ -39,7 +40,7 @@ double cs_search_moves(const struct cs_search *search, const double *x0, const d
 
 /* Up to that many, a list that covers the way has all pairs that may come as near to each other
  * on it as a tenth of where they start: for with the start s, the least gap g <= s/10 and the
- * move m, s <= g + m, and so g <= m/9. */
-#define CS_SEARCH_GAPS 8.9
+ * move m, s <= g + m, and so g <= m/9, which must be less than what edges feel. */
+#define CS_SEARCH_GAPS (8.9 * CS_MEETING_EDGES)
 
 #endif

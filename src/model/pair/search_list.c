@@ -116,8 +116,8 @@ static void take(struct work *work, uint32_t item, uint32_t other) {
     if (kind == CS_STENCIL_EDGES && other <= item)
         return;
     cs_search_corners(search->system->surfaces, kind, pair, at);
-    const double range =
-        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range;
+    const double range = cs_search_range(
+        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]), kind);
     if (share_corner(at, kind) || !(range > 0))
         return;
     for (size_t k = 0; k < 4; k++)
@@ -137,7 +137,8 @@ static struct cs_cell_box item_box(const struct cs_search *search, enum cs_stenc
     const uint32_t *at = edges ? search->system->surfaces->edges + 2 * (size_t)item : &item;
     if (!search->meetings->any[search->body[at[0]]])
         return nothing;
-    return box_of(search, at, edges ? 2 : 1, reach_of(search, search->meetings->widest));
+    const struct cs_meeting widest = {.range = search->meetings->widest};
+    return box_of(search, at, edges ? 2 : 1, reach_of(search, cs_search_range(&widest, kind)));
 }
 
 static void find_together(struct work *work, uint32_t begin, uint32_t end) {

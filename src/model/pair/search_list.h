@@ -43,6 +43,12 @@ struct cs_search {
  * all threads. false: no memory. */
 bool cs_search_list(struct cs_search *search);
 
+/* m, within which a pair of bodies that meet is felt. */
+static inline double cs_search_range(const struct cs_meeting *meeting,
+                                     enum cs_stencil_kind kind) {
+    return meeting->range * (kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
+}
+
 /* Points of a pair. */
 static inline void cs_search_corners(const struct cs_surfaces *surfaces,
                                      enum cs_stencil_kind kind, const uint32_t pair[2],
