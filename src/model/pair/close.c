@@ -16,6 +16,7 @@ enum { TOGETHER = 4, WAITING = TOGETHER * CS_PAIR_LANES };
 struct work {
     const struct cs_search *search;
     struct cs_search_lot *lot;
+    struct cs_sieve sieve; /* first: most are held back there */
     struct cs_pair_lanes lanes[TOGETHER];
     uint32_t pairs[WAITING][2], waiting;
 };
@@ -56,14 +57,27 @@ static void take(struct work *work, const uint32_t pair[2]) {
     uint32_t at[4];
     cs_search_corners(search->system->surfaces, work->lot->kind, pair, at);
     memcpy(work->pairs[k], pair, sizeof work->pairs[k]);
-    lanes->range[l] = cs_search_range(
-        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]),
-        work->lot->kind);
+    lanes->range[l] = cs_search_range_of(search, work->lot->kind, at);
     for (size_t j = 0; j < 4; j++)
         for (size_t c = 0; c < 3; c++)
             lanes->p[j][c][l] = search->close_at[c * n + at[j]];
     if (work->waiting == WAITING)
         measure(work);
+}
+
+static void sift(struct work *work) {
+    const uint32_t n = cs_sieve_run(&work->sieve, work->lot->kind == CS_STENCIL_EDGES);
+    for (uint32_t l = 0; l < n; l++)
+        take(work, work->sieve.pairs[l]);
+}
+
+static void put(struct work *work, const uint32_t pair[2]) {
+    const struct cs_search *search = work->search;
+    uint32_t at[4];
+    cs_search_corners(search->system->surfaces, work->lot->kind, pair, at);
+    const double reach = search->inverse * cs_search_range_of(search, work->lot->kind, at);
+    if (cs_sieve_add(&work->sieve, search->rough, at, reach, pair))
+        sift(work);
 }
 
 static void find_lot(void *arg, uint32_t number) {
@@ -72,7 +86,7 @@ static void find_lot(void *arg, uint32_t number) {
     struct work work;
     work.search = search;
     work.lot = lot;
-    work.waiting = 0;
+    work.waiting = work.sieve.n = 0;
     uint32_t *close =
         cs_arena_grow(lot->close, &lot->close_room, lot->n, 2 * sizeof *lot->close);
     lot->n_close = 0;
@@ -81,7 +95,8 @@ static void find_lot(void *arg, uint32_t number) {
         return;
     lot->close = close;
     for (size_t k = 0; k < lot->n; k++)
-        take(&work, lot->pairs + 2 * k);
+        put(&work, lot->pairs + 2 * k);
+    sift(&work);
     measure(&work);
 }
 
@@ -93,6 +108,7 @@ bool cs_close_find(struct cs_search *search, const double *x) {
     if (!cs_search_update(search, x))
         return false;
     memcpy(search->close_at, x, bytes);
+    cs_search_round(search, x);
     cs_pool_run(search->n_lots, find_lot, search);
     bool failed = false;
     for (uint32_t l = 0; l < search->n_lots; l++)

@@ -43,10 +43,12 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
     *search = (struct cs_search){.system = system,
                                  .meetings = meetings,
                                  .margin = CS_SEARCH_MARGIN * meetings->least,
+                                 .inverse = 1 / meetings->widest,
                                  .n_lots = point_lots + edge_lots};
     search->body = cs_arena_take_n(arena, n, sizeof *search->body, error);
     search->from = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *search->from, error);
     search->close_at = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *search->from, error);
+    search->rough = cs_arena_take_n(arena, n, sizeof *search->rough, error);
     take_clusters(&search->triangles, surfaces->n_triangles, arena, error);
     take_clusters(&search->edges, surfaces->n_edges, arena, error);
     search->lots = cs_arena_take_n(arena, search->n_lots, sizeof *search->lots, error);

@@ -3,8 +3,6 @@
 #include "model/pair/search_list.h"
 
 #include "base/pool.h"
-#include "model/pair/nearness.h"
-
 #include <math.h>
 
 /* points or edges that look for clusters together */
@@ -67,13 +65,11 @@ static bool fill(struct cs_search *search, struct cs_clusters *clusters,
 
 /* --- pairs --- */
 
-/* A lot at work: pairs whose boxes meet wait until their distances are found together. */
+/* A lot at work: pairs whose boxes meet wait until they are asked about together. */
 struct work {
     const struct cs_search *search;
     struct cs_search_lot *lot;
-    struct cs_nearness_lanes lanes;
-    uint32_t pairs[CS_NEARNESS_LANES][2], waiting;
-    double reach[CS_NEARNESS_LANES]; /* m */
+    struct cs_sieve sieve;
 };
 
 static void keep(struct cs_search_lot *lot, const uint32_t pair[2]) {
@@ -88,12 +84,9 @@ static void keep(struct cs_search_lot *lot, const uint32_t pair[2]) {
 }
 
 static void measure(struct work *work) {
-    if (work->waiting)
-        cs_nearness_measure(work->lot->kind, &work->lanes);
-    for (uint32_t l = 0; l < work->waiting; l++)
-        if (work->lanes.squared[l] < work->reach[l] * work->reach[l])
-            keep(work->lot, work->pairs[l]);
-    work->waiting = 0;
+    const uint32_t n = cs_sieve_run(&work->sieve, work->lot->kind == CS_STENCIL_EDGES);
+    for (uint32_t l = 0; l < n; l++)
+        keep(work->lot, work->sieve.pairs[l]);
 }
 
 static bool share_corner(const uint32_t at[4], enum cs_stencil_kind kind) {
@@ -110,8 +103,7 @@ static double reach_of(const struct cs_search *search, double range) {
 static void take(struct work *work, uint32_t item, uint32_t other) {
     const struct cs_search *search = work->search;
     const enum cs_stencil_kind kind = work->lot->kind;
-    const uint32_t pair[2] = {item, other}, l = work->waiting;
-    const size_t n = search->system->surfaces->n_points;
+    const uint32_t pair[2] = {item, other};
     uint32_t at[4];
     if (kind == CS_STENCIL_EDGES && other <= item)
         return;
@@ -120,13 +112,8 @@ static void take(struct work *work, uint32_t item, uint32_t other) {
         cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]), kind);
     if (share_corner(at, kind) || !(range > 0))
         return;
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            work->lanes.p[k][c][l] = search->from[c * n + at[k]];
-    work->reach[l] = reach_of(search, range);
-    work->pairs[l][0] = item;
-    work->pairs[l][1] = other;
-    if (++work->waiting == CS_NEARNESS_LANES)
+    const double reach = reach_of(search, range) * search->inverse;
+    if (cs_sieve_add(&work->sieve, search->rough, at, reach, pair))
         measure(work);
 }
 
@@ -178,7 +165,10 @@ static void sort_rows(uint32_t *pairs, size_t n) {
 static void list_lot(void *arg, uint32_t number) {
     const struct cs_search *search = arg;
     struct cs_search_lot *lot = search->lots + number;
-    struct work work = {.search = search, .lot = lot};
+    struct work work;
+    work.search = search;
+    work.lot = lot;
+    work.sieve.n = 0;
     lot->n = 0;
     lot->failed = false;
     for (uint32_t i = lot->begin; i < lot->end; i += TOGETHER)
@@ -187,10 +177,34 @@ static void list_lot(void *arg, uint32_t number) {
     sort_rows(lot->pairs, lot->n);
 }
 
+/* a search and the state that is rounded */
+struct rounding {
+    struct cs_search *search;
+    const double *x;
+};
+
+/* points that are rounded together */
+enum { ROUNDED = 2048 };
+
+static void round_block(void *arg, uint32_t number) {
+    const struct rounding *rounding = arg;
+    const size_t n = rounding->search->system->surfaces->n_points;
+    const size_t begin = (size_t)ROUNDED * number;
+    cs_sieve_round(rounding->x, n, rounding->search->inverse, begin,
+                   n - begin < ROUNDED ? n : begin + ROUNDED, rounding->search->rough);
+}
+
+void cs_search_round(struct cs_search *search, const double *x) {
+    struct rounding rounding = {search, x};
+    cs_pool_run((search->system->surfaces->n_points + ROUNDED - 1) / ROUNDED, round_block,
+                &rounding);
+}
+
 bool cs_search_list(struct cs_search *search) {
     const struct cs_surfaces *surfaces = search->system->surfaces;
     bool failed = !fill(search, &search->triangles, surfaces->triangles, 3) ||
                   !fill(search, &search->edges, surfaces->edges, 2);
+    cs_search_round(search, search->from);
     cs_pool_run(search->n_lots, list_lot, search);
     for (uint32_t l = 0; l < search->n_lots; l++)
         failed = failed || search->lots[l].failed;

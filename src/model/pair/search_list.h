@@ -2,7 +2,8 @@
 #ifndef CS_PAIR_SEARCH_LIST_H
 #define CS_PAIR_SEARCH_LIST_H
 
-#include "model/pair/clusters.h"
+#include "model/near/clusters.h"
+#include "model/near/sieve.h"
 #include "model/pair/meeting.h"
 #include "model/pair/stencil.h"
 
@@ -32,6 +33,8 @@ struct cs_search {
     struct cs_clusters triangles, edges;
     struct cs_search_lot *lots; /* points first */
     uint32_t n_lots;
+    struct cs_sieve_place *rough; /* (n_points) of the last state that was looked at */
+    double inverse;               /* 1/m, of their unit */
     double *drift;    /* (4, n_bodies) middle of the moves of a body, and how far they reach */
     bool fresh;       /* the list was made */
     double *close_at; /* (3,n_points) where close pairs were found */
@@ -43,10 +46,25 @@ struct cs_search {
  * all threads. false: no memory. */
 bool cs_search_list(struct cs_search *search);
 
+/* Sets search->rough to the places x (3, n_points), with all threads. */
+void cs_search_round(struct cs_search *search, const double *x);
+
 /* m, within which a pair of bodies that meet is felt. */
 static inline double cs_search_range(const struct cs_meeting *meeting,
                                      enum cs_stencil_kind kind) {
     return meeting->range * (kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
+}
+
+/* The same of a pair of the list: where all ranges are one, the bodies are not asked for. */
+static inline double cs_search_range_of(const struct cs_search *search,
+                                        enum cs_stencil_kind kind, const uint32_t at[4]) {
+    const struct cs_meetings *meetings = search->meetings;
+    const struct cs_meeting widest = {.range = meetings->widest};
+    return cs_search_range(
+        meetings->least == meetings->widest
+            ? &widest
+            : cs_meeting_of(meetings, search->body[at[0]], search->body[at[2]]),
+        kind);
 }
 
 /* Points of a pair. */

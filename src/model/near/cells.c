@@ -1,5 +1,5 @@
 /* The grid of boxes: sized, counted, filled. */
-#include "model/pair/cells.h"
+#include "model/near/cells.h"
 
 #include "base/arena.h"
 

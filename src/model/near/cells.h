@@ -1,7 +1,7 @@
 /* cells.h - boxes sorted into the cells of a uniform grid by counting: integer keys, no
  * pointers, items of a cell ascending. */
-#ifndef CS_PAIR_CELLS_H
-#define CS_PAIR_CELLS_H
+#ifndef CS_NEAR_CELLS_H
+#define CS_NEAR_CELLS_H
 
 #include <stdbool.h>
 #include <stddef.h>

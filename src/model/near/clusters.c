@@ -1,5 +1,5 @@
 /* Clusters near a box from the cells, then their items in lanes. */
-#include "model/pair/clusters.h"
+#include "model/near/clusters.h"
 
 #include "base/arena.h"
 

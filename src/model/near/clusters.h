@@ -3,10 +3,10 @@
  *
  * Single precision is enough: rounding keeps the order of numbers, so that boxes that meet do
  * so when all are rounded. */
-#ifndef CS_PAIR_CLUSTERS_H
-#define CS_PAIR_CLUSTERS_H
+#ifndef CS_NEAR_CLUSTERS_H
+#define CS_NEAR_CLUSTERS_H
 
-#include "model/pair/cells.h"
+#include "model/near/cells.h"
 
 enum { CS_CLUSTER = 16 };
 
