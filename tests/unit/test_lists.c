@@ -36,40 +36,63 @@ static bool add_one(const struct sheet *sheet, enum cs_stencil_kind kind, const 
     return true;
 }
 
-static size_t add_facets(const struct sheet *sheet, const uint32_t at[4], uint32_t triangle,
-                         double *f) {
+/* what a point feels of one triangle more, behind n uses of others */
+static uint32_t feel(const struct sheet *sheet, const uint32_t at[4], uint32_t triangle,
+                     struct cs_facet_use *felt, uint32_t n) {
     const struct cs_pairs *pairs = sheet->system.pairs;
     const uint32_t *body = pairs->search.body;
-    struct cs_facet_use uses[CS_FACETS];
     const struct cs_facets_pair pair = {
         .at = {at[0], at[1], at[2], at[3]},
         .triangle = triangle,
         .own = body[at[0]] == body[at[1]],
         .range = cs_meeting_of(&pairs->meetings, body[at[0]], body[at[1]])->range};
-    const uint32_t n = cs_facets_find(&pairs->facets, &pair, sheet->x, uses);
-    for (uint32_t k = 0; k < n; k++)
-        add_one(sheet, CS_STENCIL_TRIANGLE, uses[k].at, uses + k, f);
-    return n;
+    const uint32_t more = cs_facets_find(&pairs->facets, &pair, 1, sheet->x, felt + n);
+    return cs_facets_join(felt, n, more);
+}
+
+/* whether a point and a triangle, or two edges, have no particle in common */
+static bool are_apart(enum cs_stencil_kind kind, const uint32_t at[4]) {
+    bool same = false;
+    for (int i = 0; i < 2; i++)
+        for (int j = i + 1; j < 4; j++)
+            same = same || (at[i] == at[j] && (kind ? i / 2 != j / 2 : !i));
+    return !same;
+}
+
+static size_t add_points(const struct sheet *sheet, double *f) {
+    static struct cs_facet_use felt[1000];
+    const struct cs_surfaces *s = sheet->system.surfaces;
+    size_t found = 0;
+    for (uint32_t a = 0; a < sheet->n; a++) {
+        uint32_t n = 0, at[4];
+        for (uint32_t b = 0; b < s->n_triangles; b++) {
+            cs_search_corners(s, CS_STENCIL_TRIANGLE, (uint32_t[2]){a, b}, at);
+            if (are_apart(CS_STENCIL_TRIANGLE, at))
+                n = feel(sheet, at, b, felt, n);
+        }
+        for (uint32_t k = 0; k < n; k++)
+            found += cs_facets_counts(felt + k) &&
+                     add_one(sheet, CS_STENCIL_TRIANGLE, felt[k].at, felt + k, f);
+    }
+    return found;
+}
+
+static size_t add_edges(const struct sheet *sheet, double *f) {
+    const struct cs_surfaces *s = sheet->system.surfaces;
+    size_t found = 0;
+    for (uint32_t a = 0; a < s->n_edges; a++)
+        for (uint32_t b = a + 1; b < s->n_edges; b++) {
+            uint32_t at[4];
+            cs_search_corners(s, CS_STENCIL_EDGES, (uint32_t[2]){a, b}, at);
+            found += are_apart(CS_STENCIL_EDGES, at) &&
+                     add_one(sheet, CS_STENCIL_EDGES, at, NULL, f);
+        }
+    return found;
 }
 
 static size_t add_all(const struct sheet *sheet, double *f) {
-    const struct cs_surfaces *s = sheet->system.surfaces;
-    size_t found = 0;
-    for (uint32_t kind = 0; kind < 2; kind++)
-        for (uint32_t a = 0; a < (kind ? s->n_edges : sheet->n); a++)
-            for (uint32_t b = kind ? a + 1 : 0; b < (kind ? s->n_edges : s->n_triangles); b++) {
-                const uint32_t pair[2] = {a, b};
-                uint32_t at[4];
-                bool same = false;
-                cs_search_corners(s, kind, pair, at);
-                for (int i = 0; i < 2; i++)
-                    for (int j = i + 1; j < 4; j++)
-                        same = same || (at[i] == at[j] && (kind ? i / 2 != j / 2 : !i));
-                if (!same)
-                    found +=
-                        kind ? add_one(sheet, kind, at, NULL, f) : add_facets(sheet, at, b, f);
-            }
-    return found;
+    const size_t points = add_points(sheet, f);
+    return points + add_edges(sheet, f);
 }
 
 enum { MOST = 3 * 160 };

@@ -114,5 +114,6 @@ bool cs_close_find(struct cs_search *search, const double *x) {
     for (uint32_t l = 0; l < search->n_lots; l++)
         failed = failed || search->lots[l].failed;
     search->closed = !failed;
+    search->found++;
     return !failed;
 }

@@ -32,6 +32,8 @@
  */
 #define CS_FACET_BEND   0.2
 #define CS_FACET_WITHIN 0.992
+/* Of e^2: m up to which f is 0. */
+#define CS_FACET_FLAT 0.125
 
 /* Which facet the first rim of a triangle stands for: the rim, its first end, or the plane. */
 struct cs_facet_form {
@@ -99,9 +101,9 @@ CS_INLINE void cs_facet_slopes(struct cs_facet *s) {
 
 /* f's derivatives; f itself */
 CS_INLINE double cs_facet_bend(struct cs_facet *s, double m) {
-    const double e2 = s->form.e * s->form.e, span = 1 / (0.875 * e2);
+    const double e2 = s->form.e * s->form.e, span = 1 / ((1 - CS_FACET_FLAT) * e2);
     double step[3];
-    cs_facet_step((m - 0.125 * e2) * span, step);
+    cs_facet_step((m - CS_FACET_FLAT * e2) * span, step);
     s->f1 = s->form.off * (step[0] + m * step[1] * span);
     s->f2 = s->form.off * (2 * step[1] + m * step[2] * span) * span;
     return s->form.off * m * step[0];

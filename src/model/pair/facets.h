@@ -25,15 +25,17 @@ size_t cs_facets_bytes(const struct cs_scene *scene);
 /* A facet in range, as the first rim of its triangle. */
 struct cs_facet_use {
     uint32_t at[4];
-    double p[4][3], d; /* m */
-    double count;      /* how often it counts: below 0 it is taken away */
+    double d;     /* m */
+    double count; /* how often it counts: below 0 it is taken away */
     double alone; /* and where nothing may be taken away, so that a sum is not negative: of the
                      facet that is nearest alone. Over a flat mesh the same is left. */
     struct cs_facet_form form;
+    uint32_t whole[2]; /* the ends of a rim, or a corner and CS_NO_POINT, that is the same seen
+                          from all its triangles; twice that: it is not */
 };
 
 /* Three rims, three corners and the plane. */
-enum { CS_FACETS = 7 };
+enum { CS_FACETS = 7, CS_FACETS_PAIRS = 32 };
 
 /* A point and a triangle. */
 struct cs_facets_pair {
@@ -42,8 +44,20 @@ struct cs_facets_pair {
     double range;             /* m */
 };
 
-/* Fills uses with what the point feels at x (3, n_points), and returns how many they are. */
-uint32_t cs_facets_find(const struct cs_facets *facets, const struct cs_facets_pair *pair,
-                        const double *x, struct cs_facet_use uses[CS_FACETS]);
+/* Fills uses (n CS_FACETS) with what the points of n <= CS_FACETS_PAIRS pairs feel of their
+ * triangles at x (3, n_points), one pair after the other, and returns how many they are. What
+ * is the same function of the state is one: rims and corners near the foot are the plane, and a
+ * rim beyond its end is a corner. */
+uint32_t cs_facets_find(const struct cs_facets *facets, const struct cs_facets_pair *pairs,
+                        uint32_t n, const double *x, struct cs_facet_use *uses);
+
+/* Adds to `n` uses of one point, without any that is there twice, `more` that stand behind
+ * them, and returns how many that makes. */
+uint32_t cs_facets_join(struct cs_facet_use *uses, uint32_t n, uint32_t more);
+
+/* Whether anything is left of it: counts are whole shares of a triangle. */
+static inline bool cs_facets_counts(const struct cs_facet_use *use) {
+    return fabs(use->count) > 1e-9 || fabs(use->alone) > 1e-9;
+}
 
 #endif

@@ -121,6 +121,8 @@ CS_INLINE void share_bound(enum cs_stencil_kind kind, struct cs_pair_lanes *rest
         double g[4][3];
         react(kind, lanes, l, &law, &reaction);
         cs_reaction_matrix(&reaction, &matrix, g, &share);
+        share.along = -matrix.ck *
+                      cs_law_at(reaction.touch.d, lanes->range[l], lanes->stiff[l]).stiffness;
         write_lane(g, l, factors->g);
         write_share(&share, l, factors);
     }

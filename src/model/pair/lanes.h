@@ -16,7 +16,7 @@ struct cs_pair_lanes {
     double to[4][3][CS_PAIR_LANES];                          /* as in struct cs_pair */
     uint32_t at[CS_PAIR_LANES][4];
     double rim[CS_PAIR_LANES], off[CS_PAIR_LANES], bend[CS_PAIR_LANES]; /* form of a facet */
-    double stiff[CS_PAIR_LANES]; /* share of the stiffness that a matrix has */
+    double stiff[CS_PAIR_LANES]; /* N/m, of the law in a matrix */
     uint32_t n;
 };
 

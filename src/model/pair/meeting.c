@@ -80,6 +80,7 @@ void cs_meetings_rub(const struct cs_system *system, struct cs_meetings *meeting
     for (uint32_t b = n_bodies; b < meetings->n_bodies; b++)
         for (uint32_t a = 0; a < n_bodies; a++) {
             const double mu = cs_scene_obstacle(system->scene, b)->friction;
+            meetings->rubbed += meetings->of[(size_t)a * meetings->n_bodies + b].mu != mu;
             meetings->of[(size_t)a * meetings->n_bodies + b].mu = mu;
             meetings->of[(size_t)b * meetings->n_bodies + a].mu = mu;
         }

@@ -25,6 +25,7 @@ struct cs_meetings {
     struct cs_meeting *of; /* (n_bodies, n_bodies), symmetric */
     bool *any;             /* (n_bodies) the body meets one */
     double widest, least;  /* m, of all ranges */
+    uint64_t rubbed;       /* how often a friction changed */
 };
 
 /* Needs system->surfaces. Memory from the system's arena. CS_ERR_SCENE: no thickness or no

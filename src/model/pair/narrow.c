@@ -4,7 +4,6 @@
 
 #include "base/pool.h"
 #include "model/contact/near.h"
-#include "model/contact/points.h"
 
 #include <string.h>
 
@@ -17,8 +16,6 @@ struct work {
     const struct cs_narrow *narrow;
     enum cs_stencil_kind kind;
     struct cs_pair_lot *lot;
-    struct cs_pair_lanes lanes[TOGETHER];
-    uint32_t filling; /* of them */
 };
 
 /* what an obstacle has no place in is 0 for it */
@@ -33,14 +30,6 @@ static void read_lane(const double *from, size_t n, const uint32_t at[4], uint32
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
             to[k][c][lane] = from && at[k] < n ? from[c * n + at[k]] : 0;
-}
-
-/* what cannot move feels nothing, and holds nothing */
-static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
-    bool fixed = true;
-    for (int k = 0; k < 4; k++)
-        fixed = fixed && cs_points_inverse_mass(system, at[k]) == 0;
-    return fixed;
 }
 
 /* --- one by one --- */
@@ -74,7 +63,7 @@ static void answer(const struct work *work, const struct cs_reaction *reaction,
 static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
                       uint32_t lane) {
     const struct cs_narrow *narrow = work->narrow;
-    const struct cs_system *system = narrow->search->system;
+    const struct cs_system *system = narrow->active->search->system;
     const struct cs_meeting meeting = {from->range[lane], from->k[lane], from->mu[lane]};
     struct cs_reaction reaction;
     const struct cs_facet_form form = {from->rim[lane], from->off[lane], from->bend[lane]};
@@ -104,7 +93,7 @@ static void add_energy(const struct work *work, struct cs_pair_lanes *lanes) {
 
 static void push(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow *narrow = work->narrow;
-    const struct cs_pair_law law = {narrow->search->system->scene->contact,
+    const struct cs_pair_law law = {narrow->active->search->system->scene->contact,
                                     cs_near_parts(narrow->at.parts)};
     if (narrow->ask == CS_PAIR_CHANGE)
         cs_pair_lanes_change(work->kind, lanes, &law);
@@ -137,7 +126,7 @@ static void read_factors(const struct cs_pair_factors *factors, uint32_t lane,
 static void share(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow *narrow = work->narrow;
     struct cs_pair_factors factors;
-    cs_pair_lanes_matrix(work->kind, lanes, &narrow->search->system->scene->contact,
+    cs_pair_lanes_matrix(work->kind, lanes, &narrow->active->search->system->scene->contact,
                          narrow->matrix, &factors);
     for (uint32_t l = 0; l < lanes->n; l++) {
         struct cs_pair *pair = cs_pair_lot_next(work->lot);
@@ -147,7 +136,6 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes) {
         pair->n = 4;
         memcpy(pair->at, lanes->at[l], sizeof pair->at);
         read_factors(&factors, l, pair, part);
-        part->along *= lanes->stiff[l];
     }
 }
 
@@ -164,115 +152,61 @@ static void act(const struct work *work, struct cs_pair_lanes *lanes) {
             add_alone(work, lanes, l);
 }
 
-static void empty(struct work *work) {
-    for (uint32_t k = 0; k < TOGETHER; k++)
-        work->lanes[k].n = 0;
-    work->filling = 0;
-}
-
-static void act_on_all(struct work *work) {
-    for (uint32_t k = 0; k < TOGETHER; k++)
-        if (work->lanes[k].n)
-            act(work, work->lanes + k);
-    empty(work);
-}
-
 /* --- what is in range --- */
 
-static struct cs_meeting meeting_of(const struct cs_search *search, const uint32_t at[4]) {
-    return *cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]);
-}
-
-/* two edges, or a point and a facet */
-static void put(struct work *work, const uint32_t at[4], const struct cs_meeting *meeting,
-                const struct cs_facet_use *use) {
-    const struct cs_narrow *narrow = work->narrow;
-    const struct cs_system *system = narrow->search->system;
-    const size_t n = system->view.n, n_points = system->surfaces->n_points;
-    struct cs_pair_lanes *lanes = work->lanes + work->filling;
-    const uint32_t l = lanes->n;
-    memcpy(lanes->at[l], at, sizeof lanes->at[l]);
-    lanes->range[l] = meeting->range;
-    lanes->k[l] = meeting->k;
-    lanes->mu[l] = meeting->mu;
-    lanes->d[l] = use->d;
-    lanes->rim[l] = use->form.rim;
-    lanes->off[l] = use->form.off;
-    lanes->bend[l] = use->form.e;
-    lanes->stiff[l] = use->alone;
-    read_lane(narrow->x, n_points, at, l, lanes->p);
-    if (narrow->ask != CS_PAIR_ENERGY)
-        read_lane(narrow->v, n_points, at, l, lanes->v);
-    if (narrow->ask == CS_PAIR_CHANGE) {
-        read_lane(narrow->at.dx, n, at, l, lanes->dp);
-        read_lane(narrow->at.dv, n, at, l, lanes->dv);
-    }
-    if (++lanes->n == CS_PAIR_LANES && ++work->filling == TOGETHER)
-        act_on_all(work);
-}
-
-/* For a matrix that must not be negative: stiffness of the nearest facet alone; friction and
- * damping of all, since methods that are linear in a step take their exact slope from the
- * matrix, unless bounds are asked for. */
-static void make_positive(const struct cs_narrow *narrow, double mu, struct cs_facet_use *use) {
-    const double tau = narrow->search->system->scene->contact.damping;
-    const bool rubs = mu + tau > 0 && !narrow->matrix->bound;
-    use->alone /= rubs ? use->count : 1;
-    use->count = rubs ? use->count : use->alone;
-    use->alone = rubs ? use->alone : 1;
-}
-
-/* a point and a triangle: facet by facet */
-static void take_facets(struct work *work, const uint32_t at[4], uint32_t triangle) {
-    const struct cs_narrow *narrow = work->narrow;
-    const uint32_t *body = narrow->search->body;
-    const struct cs_meeting whole = meeting_of(narrow->search, at);
+/* The stiffness of a matrix that must not be negative is that of the nearest facet alone;
+ * friction and damping are those of all, since methods that are linear in a step take their
+ * exact slope from the matrix, unless bounds are asked for. */
+static void weigh(const struct cs_narrow *narrow, const struct cs_active_block *from,
+                  uint32_t l, struct cs_pair_lanes *lanes) {
+    const double tau = narrow->active->search->system->scene->contact.damping;
     const bool positive = narrow->ask == CS_PAIR_MATRIX && narrow->matrix->psd;
-    const struct cs_facets_pair pair = {.at = {at[0], at[1], at[2], at[3]},
-                                        .triangle = triangle,
-                                        .own = body[at[0]] == body[at[1]],
-                                        .range = whole.range};
-    struct cs_facet_use uses[CS_FACETS];
-    const uint32_t n = cs_facets_find(narrow->facets, &pair, narrow->x, uses);
-    for (uint32_t k = 0; k < n; k++) {
-        if (positive)
-            make_positive(narrow, whole.mu, uses + k);
-        else
-            uses[k].alone = 1;
-        const struct cs_meeting meeting = {CS_FACET_WITHIN * whole.range,
-                                           uses[k].count * whole.k, whole.mu};
-        if (uses[k].count != 0)
-            put(work, uses[k].at, &meeting, uses + k);
-    }
+    const bool rubs = from->mu[l] + tau > 0 && !(positive && narrow->matrix->bound);
+    const double count = positive && !rubs ? from->alone[l] : from->count[l];
+    lanes->k[l] = count * from->k[l];
+    lanes->stiff[l] = (positive ? from->alone[l] : count) * from->k[l];
 }
 
-static void take(struct work *work, const uint32_t pair[2]) {
-    const struct cs_search *search = work->narrow->search;
-    uint32_t at[4];
-    cs_search_corners(search->system->surfaces, work->kind, pair, at);
-    if (is_fixed(search->system, at))
-        return;
-    if (work->kind == CS_STENCIL_EDGES) {
-        struct cs_meeting meeting = meeting_of(search, at);
-        meeting.range *= CS_MEETING_EDGES;
-        put(work, at, &meeting, &(struct cs_facet_use){.alone = 1});
-    } else {
-        take_facets(work, at, pair[1]);
+static void fill(const struct cs_narrow *narrow, const struct cs_active_block *from, uint32_t n,
+                 struct cs_pair_lanes *lanes) {
+    const struct cs_system *system = narrow->active->search->system;
+    const size_t n_points = system->surfaces->n_points;
+    lanes->n = n;
+    memcpy(lanes->at, from->at, sizeof lanes->at);
+    memcpy(lanes->range, from->range, sizeof lanes->range);
+    memcpy(lanes->mu, from->mu, sizeof lanes->mu);
+    memcpy(lanes->rim, from->rim, sizeof lanes->rim);
+    memcpy(lanes->off, from->off, sizeof lanes->off);
+    memcpy(lanes->bend, from->bend, sizeof lanes->bend);
+    memcpy(lanes->d, from->d, sizeof lanes->d);
+    for (uint32_t l = 0; l < n; l++) {
+        weigh(narrow, from, l, lanes);
+        read_lane(narrow->x, n_points, from->at[l], l, lanes->p);
+        if (narrow->ask != CS_PAIR_ENERGY)
+            read_lane(narrow->v, n_points, from->at[l], l, lanes->v);
+        if (narrow->ask == CS_PAIR_CHANGE) {
+            read_lane(narrow->at.dx, system->view.n, from->at[l], l, lanes->dp);
+            read_lane(narrow->at.dv, system->view.n, from->at[l], l, lanes->dv);
+        }
     }
 }
 
 static void do_lot(void *arg, uint32_t number) {
     const struct cs_narrow *narrow = arg;
-    const struct cs_search_lot *from = narrow->search->lots + number;
-    struct work work;
-    work.narrow = narrow;
-    work.kind = from->kind;
-    work.lot = narrow->set->lots + number;
-    empty(&work);
+    const struct cs_active_lot *from = narrow->active->lots + number;
+    const struct work work = {narrow, from->kind, narrow->set->lots + number};
+    struct cs_pair_lanes lanes[TOGETHER];
     cs_pair_lot_clear(work.lot);
-    for (size_t k = 0; k < from->n_close; k++)
-        take(&work, from->close + 2 * k);
-    act_on_all(&work);
+    for (size_t first = 0; first < from->n; first += TOGETHER * CS_PAIR_LANES) {
+        uint32_t filled = 0;
+        for (size_t k = first; k < from->n && filled < TOGETHER; k += CS_PAIR_LANES) {
+            const size_t left = from->n - k;
+            fill(narrow, from->blocks + k / CS_PAIR_LANES,
+                 left < CS_PAIR_LANES ? (uint32_t)left : CS_PAIR_LANES, lanes + filled++);
+        }
+        for (uint32_t k = 0; k < filled; k++)
+            act(&work, lanes + k);
+    }
 }
 
 void cs_narrow_run(struct cs_narrow *narrow) {

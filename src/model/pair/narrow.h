@@ -2,9 +2,7 @@
 #ifndef CS_PAIR_NARROW_H
 #define CS_PAIR_NARROW_H
 
-#include "model/pair/facets.h"
-#include "model/pair/lanes.h"
-#include "model/pair/search.h"
+#include "model/pair/active.h"
 
 /* what the pairs in range are asked for */
 enum cs_pair_ask {
@@ -16,9 +14,8 @@ enum cs_pair_ask {
 };
 
 struct cs_narrow {
-    const struct cs_search *search; /* its close pairs are those of x */
-    const struct cs_facets *facets;
-    const double *x, *v; /* (3, n_points) at the state; v NULL: at rest */
+    const struct cs_active *active; /* those of x */
+    const double *x, *v;            /* (3, n_points) at the state; v NULL: at rest */
     struct cs_pair_set *set;
     enum cs_pair_ask ask;
     struct cs_eval at;

@@ -5,14 +5,19 @@
 #include "model/pair/close.h"
 #include "model/pair/narrow.h"
 
+/* false: no memory */
+static bool find(struct cs_pairs *pairs, const double *x) {
+    return cs_close_find(&pairs->search, x) &&
+           (cs_active_is_there(&pairs->active) || cs_active_find(&pairs->active, x));
+}
+
 static void run(struct cs_pairs *pairs, struct cs_narrow *narrow) {
     const struct cs_eval *at = &narrow->at;
-    narrow->search = &pairs->search;
-    narrow->facets = &pairs->facets;
+    narrow->active = &pairs->active;
     narrow->x = cs_points_places(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
     narrow->v = cs_points_velocities(pairs->system, at->t, at->v);
     cs_meetings_rub(pairs->system, &pairs->meetings);
-    if (cs_close_find(&pairs->search, narrow->x)) {
+    if (find(pairs, narrow->x)) {
         cs_narrow_run(narrow);
         return;
     }

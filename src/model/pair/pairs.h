@@ -13,15 +13,15 @@
 #ifndef CS_PAIR_PAIRS_H
 #define CS_PAIR_PAIRS_H
 
-#include "model/pair/facets.h"
+#include "model/pair/active.h"
 #include "model/pair/product.h"
-#include "model/pair/search.h"
 
 struct cs_pairs {
     const struct cs_system *system; /* borrowed */
     struct cs_meetings meetings;
     struct cs_search search;
     struct cs_facets facets;
+    struct cs_active active;          /* those in range at the last state */
     struct cs_pair_set now;           /* of the last force, product or bound */
     struct cs_pair_set matrix;        /* of the solver's matrix, until the next */
     struct cs_product product;        /* of `matrix` where it is not exact */

@@ -40,7 +40,8 @@ enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) 
     struct cs_pairs *pairs = cs_arena_take(&system->arena, sizeof *pairs, error);
     if (!pairs || cs_meetings_build(system, &pairs->meetings, error) ||
         cs_search_init(&pairs->search, system, &pairs->meetings, error) ||
-        cs_facets_init(&pairs->facets, system->surfaces, &system->arena, error))
+        cs_facets_init(&pairs->facets, system->surfaces, &system->arena, error) ||
+        cs_active_init(&pairs->active, &pairs->search, &pairs->facets, &system->arena, error))
         return error->status;
     pairs->system = system;
     pairs->blocks = &pairs->now;

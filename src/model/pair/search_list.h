@@ -39,6 +39,7 @@ struct cs_search {
     bool fresh;       /* the list was made */
     double *close_at; /* (3,n_points) where close pairs were found */
     bool closed;      /* they were */
+    uint64_t found;   /* how often */
     uint64_t builds;  /* lists that were made */
 };
 
