@@ -17,7 +17,8 @@
       "energy beyond twice the reference's, or half of it gained, and growing or tenfold")     \
     X(CS_STABILITY_NOT_FINITE, "not finite", 'X', "a number of the state is not finite")       \
     X(CS_STABILITY_FAILED, "solver failed", 'F', "the method gave up and said why")            \
-    X(CS_STABILITY_OVER_BUDGET, "over budget", 'b', "the time allowed for a cell ran out")
+    X(CS_STABILITY_OVER_BUDGET, "over budget", 'b', "the time allowed for a cell ran out")     \
+    X(CS_STABILITY_UNJUDGED, "not judged", '?', "there is no reference run to judge by")
 enum cs_stability_verdict {
 #define X(name, word, letter, help) name,
     CS_STABILITY_LIST(X)

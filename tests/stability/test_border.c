@@ -1,10 +1,12 @@
 /* The bisected border of stability against linear theory, on shipped scenes. */
 #include "study/stability/stability.h"
+#include "study/stability/stability_report.h"
 
 #include "../physics/fixture.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 struct row {
     const char *scene, *method, *grid;
@@ -66,8 +68,58 @@ START_TEST(forward_euler_lives_by_damping) {
 }
 END_TEST
 
+/* A sheet over a box of triangles. Watched for 200 of its periods, the soft one comes down and
+ * goes in, and its reference ends under the limit; the stiff one does not get there. */
+static const char over_a_box[] =
+    "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"size\": [0.3, 0.3], \"start\": \"flat\", "
+    "\"place\": {\"translate\": [0, 0.1, 0]}}, \"mass\": {\"total\": 0.1}, \"springs\": "
+    "{\"damping\": 0}, \"thickness\": "
+    "0.01}], \"colliders\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3, \"place\": "
+    "{\"translate\": [0, -0.5, 0]}}, \"thickness\": 0.01}], \"contact\": \"force\", "
+    "\"crossings\": \"limit\"}";
+
+static void map_over_a_box(struct cs_stability *map, struct cs_stability_settings *settings,
+                           double softest, double stiffest, struct cs_error *error) {
+    *settings = (struct cs_stability_settings){
+        .session = {.scene = "box", .text = over_a_box, .integrator = "symplectic-euler"},
+        .axis = CS_AXIS_STIFFNESS,
+        .values = {softest, stiffest},
+        .dt = {1e-4, 1e-3},
+        .columns = 2,
+        .rows = 2,
+        .seconds = 0.01,
+        .budget = 60,
+        .workers = 1};
+    cs_stability_run(map, settings, error);
+}
+
+START_TEST(column_without_a_reference_is_not_judged) {
+    struct cs_stability map;
+    struct cs_stability_settings settings;
+    struct cs_error error = {0};
+    struct cs_text table = {0};
+    map_over_a_box(&map, &settings, 0.02, 1e4, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    for (uint32_t r = 0; r < 2; r++) {
+        ck_assert_int_eq(map.columns[0].cells[r].verdict, CS_STABILITY_UNJUDGED);
+        ck_assert(map.columns[1].cells[r].verdict < CS_STABILITY_OVER_BUDGET);
+    }
+    ck_assert(isnan(map.columns[0].border) && !isnan(map.columns[1].border));
+    cs_stability_print_table(&map, &table);
+    ck_assert_ptr_nonnull(strstr(cs_text_get(&table), "stiffness = 0.02: no run to judge by"));
+    cs_text_finish(&table);
+    cs_stability_finish(&map);
+    // none has one
+    map_over_a_box(&map, &settings, 0.02, 0.03, &error);
+    ck_assert_int_eq(error.status, CS_ERR_USAGE);
+    ck_assert_ptr_nonnull(strstr(error.message, "no run to judge by"));
+    cs_stability_finish(&map);
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {border_lies_on_the_worst_limit,
-                                  forward_euler_lives_by_damping};
+                                  forward_euler_lives_by_damping,
+                                  column_without_a_reference_is_not_judged};
     return fixture_run("border", tests, sizeof tests / sizeof *tests);
 }

@@ -31,14 +31,40 @@ static enum cs_status find_border(struct cs_stability_column *column, uint32_t n
     column->border = HUGE_VAL;
     if (row == n_rows)
         return CS_OK;
-    /* a row that ran out of time says nothing */
-    if (column->cells[row].verdict == CS_STABILITY_OVER_BUDGET) {
+    /* a row that ran out of time says nothing, nor does one that was not judged */
+    if (column->cells[row].verdict >= CS_STABILITY_OVER_BUDGET) {
         column->border = (double)NAN;
         return CS_OK;
     }
     const bool known = row && cs_stability_is_stable(column->cells[row - 1].verdict);
     return cs_stability_border(trial, &column->reference, known ? column->cells[row - 1].dt : 0,
                                column->cells[row].dt, &column->border, error);
+}
+
+/* All cells of a column are judged by it: it may take the time of all. */
+static enum cs_status find_reference(const struct cs_stability *map,
+                                     const struct cs_trial_settings *trial,
+                                     struct cs_stability_column *column,
+                                     struct cs_error *error) {
+    struct cs_trial_settings patient = *trial;
+    patient.session.run.budget *= map->n_rows;
+    if (cs_reference_run(&column->reference, &patient, error))
+        return error->status;
+    if (!column->reference.found)
+        column->reference.worst.dt = (double)NAN;
+    return CS_OK;
+}
+
+static enum cs_status try_cell(const struct cs_trial_settings *trial,
+                               const struct cs_stability_column *column, double dt,
+                               struct cs_stability_cell *cell, struct cs_error *error) {
+    if (column->reference.found)
+        return cs_stability_try(trial, &column->reference, dt, cell, error);
+    *cell = (struct cs_stability_cell){.dt = dt,
+                                       .verdict = CS_STABILITY_UNJUDGED,
+                                       .drift = (double)NAN,
+                                       .crossings = (double)NAN};
+    return CS_OK;
 }
 
 static enum cs_status make_column(struct work *work, struct cs_stability_column *column,
@@ -57,19 +83,12 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
                           &trial.session, error))
         return error->status;
-    if (!column->has_reference && (cs_reference_run(&column->reference, &trial, error) ||
+    if (!column->has_reference && (find_reference(map, &trial, column, error) ||
                                    cs_journal_keep_reference(map, number, error)))
         return error->status;
-    if (!column->reference.found)
-        return cs_fail(error, CS_ERR_USAGE,
-                       "%s = %g: no run to judge by (%.400s); a shorter --seconds or a longer "
-                       "--budget may help",
-                       cs_axis_names[map->settings->axis], column->value,
-                       column->reference.message);
     for (uint32_t r = 0; r < map->n_rows; r++) {
         if (!(column->cells[r].dt > 0) &&
-            (cs_stability_try(&trial, &column->reference, map->dt[r], column->cells + r,
-                              error) ||
+            (try_cell(&trial, column, map->dt[r], column->cells + r, error) ||
              cs_journal_keep_cell(map, number, r, error)))
             return error->status;
         cs_workers_tick(&work->workers, 1);
@@ -181,6 +200,24 @@ static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) 
     return error->status;
 }
 
+/* a map that judges nothing is none */
+static enum cs_status check_references(const struct cs_stability *map, struct cs_error *error) {
+    const struct cs_stability_column *without = NULL;
+    for (uint32_t c = 0; c < map->n_columns; c++) {
+        const struct cs_stability_column *column = map->columns + c;
+        if (column->reference.found)
+            return CS_OK;
+        if (*column->reference.message)
+            without = column;
+    }
+    return without ? cs_fail(error, CS_ERR_USAGE,
+                             "%s = %g: no run to judge by (%.400s), nor elsewhere; a shorter "
+                             "--time or a longer --budget may help",
+                             cs_axis_names[map->settings->axis], without->value,
+                             without->reference.message)
+                   : CS_OK;
+}
+
 /* Columns of other shards may be there too, by way of the journal. */
 static bool is_complete(const struct cs_stability *map) {
     for (uint32_t c = 0; c < map->n_columns; c++)
@@ -203,7 +240,8 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                        map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                              : "has no option dt");
     if (name_series(map, error) || cs_session_build(&map->session, error) ||
-        lay_out(map, error) || cs_journal_open(map, error) || share_out(map, error)) {
+        lay_out(map, error) || cs_journal_open(map, error) || share_out(map, error) ||
+        check_references(map, error)) {
         cs_journal_close(map, false);
         return error->status;
     }

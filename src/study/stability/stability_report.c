@@ -123,6 +123,17 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
     }
 }
 
+/* columns that have no reference, and why */
+static void add_unjudged(const struct cs_stability *map, struct cs_text *out) {
+    for (uint32_t c = 0; c < map->n_columns; c++)
+        if (!map->columns[c].reference.found)
+            cs_text_add(out,
+                        "  %s = %.4g: no run to judge by (%s); a shorter --time or a longer "
+                        "--budget may help\n",
+                        cs_axis_names[map->settings->axis], map->columns[c].value,
+                        map->columns[c].reference.message);
+}
+
 /* For how long the border was watched: a column has as long as its slowest limit needs. */
 static void add_watch(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "watched for [s]");
@@ -155,6 +166,7 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
     add_crossings(map, out);
     cs_text_add(out, "\n");
     add_legend(map, out);
+    add_unjudged(map, out);
 }
 
 /* --- CSV and JSON --- */
@@ -285,7 +297,8 @@ static const char *const colours[CS_STABILITY_VERDICTS] = {
     [CS_STABILITY_BOUNDED] = "#9fd3b5", [CS_STABILITY_DAMPED] = "#a9c9e8",
     [CS_STABILITY_SHORT] = "#e3f1e8",   [CS_STABILITY_LOCAL] = "#f6d365",
     [CS_STABILITY_GLOBAL] = "#e8825a",  [CS_STABILITY_NOT_FINITE] = "#8e5c86",
-    [CS_STABILITY_FAILED] = "#7f858d",  [CS_STABILITY_OVER_BUDGET] = "#dfe1e4"};
+    [CS_STABILITY_FAILED] = "#7f858d",  [CS_STABILITY_OVER_BUDGET] = "#dfe1e4",
+    [CS_STABILITY_UNJUDGED] = "#f4f4f4"};
 
 static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
     const enum cs_axis axis = map->settings->axis;
