@@ -183,6 +183,15 @@ static struct cs_cell_box body_box(const struct cs_search *search, uint32_t body
     return box;
 }
 
+/* whether two bodies come within their range of each other, as boxes, from x0 to x1 */
+static bool may_come_near(const struct cs_search *search, uint32_t a, uint32_t b,
+                          const double *x0, const double *x1) {
+    const double range = cs_meeting_of(search->meetings, a, b)->range;
+    const struct cs_cell_box first = body_box(search, a, x0, x1, range);
+    const struct cs_cell_box second = body_box(search, b, x0, x1, 0);
+    return cs_cell_boxes_meet(&first, &second);
+}
+
 /* The most by which particles that may meet move against each other, from x0 to x1; bodies that
  * stay away from each other do not count. */
 static double largest_move(const struct cs_search *search, const double *x0, const double *x1) {
@@ -194,11 +203,7 @@ static double largest_move(const struct cs_search *search, const double *x0, con
             const double range = cs_meeting_of(meetings, a, b)->range;
             const double move =
                 apart(search->drift + 4 * (size_t)a, search->drift + 4 * (size_t)b);
-            if (!(range > 0) || move <= most)
-                continue;
-            const struct cs_cell_box first = body_box(search, a, x0, x1, range);
-            const struct cs_cell_box second = body_box(search, b, x0, x1, 0);
-            if (a == b || cs_cell_boxes_meet(&first, &second))
+            if (range > 0 && move > most && (a == b || may_come_near(search, a, b, x0, x1)))
                 most = move;
         }
     return most;
