@@ -246,6 +246,59 @@ START_TEST(list_limits_as_the_tree_does) {
 }
 END_TEST
 
+static size_t count_listed(const struct cs_search *search) {
+    size_t n = 0;
+    for (uint32_t l = 0; l < search->n_lots; l++)
+        n += search->lots[l].n;
+    return n;
+}
+
+/* Pairs that are listed of a strip that was flat and is then bent, where the list but for what
+ * was flat is taken to be good: `trusted`, that too. */
+static size_t listed_when_bent(bool trusted) {
+    struct fixture strip;
+    fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
+    struct cs_search *search = &strip.system->pairs->search;
+    ck_assert(cs_search_update(search, strip.x));
+    ck_assert_uint_gt(search->flat.n_flat, 0);
+    ck_assert_uint_eq(count_listed(search), 0);
+    bend(&strip);
+    for (size_t i = 2 * strip.n; i < 3 * strip.n; i++)
+        strip.x[i] *= 0.5;
+    search->held = HUGE_VAL;
+    search->flat.held = trusted ? HUGE_VAL : search->flat.held;
+    ck_assert(cs_search_update(search, strip.x));
+    const size_t n = count_listed(search);
+    fixture_close(&strip);
+    return n;
+}
+
+START_TEST(what_was_flat_is_looked_at_again) {
+    ck_assert_uint_gt(listed_when_bent(false), 20);
+    // a fault that is to be found
+    ck_assert_uint_eq(listed_when_bent(true), 0);
+}
+END_TEST
+
+/* a little bent, it is found to be flat still, and the list is kept */
+START_TEST(what_stays_flat_makes_no_list) {
+    struct fixture strip;
+    fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
+    struct cs_search *search = &strip.system->pairs->search;
+    ck_assert(cs_search_update(search, strip.x));
+    const uint64_t builds = search->builds;
+    for (int turn = 1; turn <= 3; turn++) {
+        for (size_t i = 0; i < strip.n; i++)
+            strip.x[2 * strip.n + i] += 0.6 * search->flat.held * sin(2.5 * strip.x[i]);
+        ck_assert(cs_search_update(search, strip.x));
+        ck_assert_int_eq(!memcmp(search->flat.from, strip.x, 3 * strip.n * sizeof *strip.x),
+                         turn == 2);
+    }
+    ck_assert_uint_eq(search->builds, builds);
+    fixture_close(&strip);
+}
+END_TEST
+
 /* a cloth whose layers have no room for its thickness is told so */
 START_TEST(too_thick_is_refused) {
     struct cs_error error = {0};
@@ -272,6 +325,8 @@ int main(void) {
                                   lists_are_not_seen_in_the_bits,
                                   lists_kept_too_long_are_seen,
                                   list_limits_as_the_tree_does,
+                                  what_was_flat_is_looked_at_again,
+                                  what_stays_flat_makes_no_list,
                                   too_thick_is_refused};
     return fixture_run("pairs", tests, sizeof tests / sizeof *tests);
 }

@@ -45,25 +45,42 @@ static bool add(struct cs_cluster_near *near, uint32_t cluster, const struct cs_
     return true;
 }
 
-static bool add_cell(struct cs_cluster_near *near, const struct cs_clusters *clusters,
-                     const struct cs_cell_box *box, const uint32_t first[3],
+/* a box that looks for clusters, and its first cell */
+struct looking {
+    const struct cs_clusters *clusters;
+    const struct cs_cell_box *box;
+    const struct cs_cluster_span *but;
+    uint32_t first[3];
+};
+
+static bool is_in(const struct cs_cluster_span *span, const struct cs_cluster_span *in) {
+    bool is = true;
+    for (int c = 0; c < 2; c++)
+        is &= span->first[c] >= in->first[c] && span->last[c] <= in->last[c];
+    return is;
+}
+
+static bool add_cell(struct cs_cluster_near *near, const struct looking *looking,
                      const uint32_t at[3]) {
+    const struct cs_clusters *clusters = looking->clusters;
     const struct cs_cells *cells = &clusters->cells;
     const size_t cell = cs_cells_at(cells, at[0], at[1], at[2]);
     bool there = true;
     for (uint32_t s = cells->starts[cell]; s < cells->starts[cell + 1]; s++) {
         const uint32_t cluster = cells->items[s];
         const struct cs_cell_box *other = clusters->boxes + cluster;
-        if (cluster >= near->least && cs_cell_boxes_meet(box, other) &&
-            is_first_cell(cells, other, first, at))
+        if (clusters->last[cluster] >= near->least && cs_cell_boxes_meet(looking->box, other) &&
+            is_first_cell(cells, other, looking->first, at) &&
+            !(looking->but && is_in(clusters->spans + cluster, looking->but)))
             there = there && add(near, cluster, other);
     }
     return there;
 }
 
 bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
-                          const struct cs_cell_box *box) {
-    uint32_t first[3], last[3], at[3];
+                          const struct cs_cell_box *box, const struct cs_cluster_span *but) {
+    struct looking looking = {clusters, box, but, {0}};
+    uint32_t *first = looking.first, last[3], at[3];
     bool there = true;
     near->n = 0;
     if (!clusters->cells.dim[0] || !(box->high[0] >= box->low[0]))
@@ -72,7 +89,7 @@ bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters
     for (at[2] = first[2]; at[2] <= last[2]; at[2]++)
         for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
             for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
-                there = there && add_cell(near, clusters, box, first, at);
+                there = there && add_cell(near, &looking, at);
     uint32_t *items =
         cs_arena_grow(near->items, &near->items_room, CS_CLUSTER * near->n, sizeof *items);
     near->items = items ? items : near->items;
@@ -96,15 +113,15 @@ CS_INLINE uint32_t lanes_of(const struct cs_cluster *restrict cluster, const flo
 }
 
 CS_CLONES static uint32_t find_items(const struct cs_cluster_near *near,
-                                     const struct cs_cluster *of, const float low[3],
+                                     const struct cs_clusters *of, const float low[3],
                                      const float high[3], uint32_t *items) {
     uint32_t n = 0;
     for (size_t k = 0; k < near->n; k += CS_CLUSTER)
         for (uint32_t some = lanes_of(near->boxes + k / CS_CLUSTER, low, high); some;
              some &= some - 1) {
             const uint32_t cluster = near->clusters[k + (uint32_t)__builtin_ctz(some)];
-            for (uint32_t bits = lanes_of(of + cluster, low, high); bits; bits &= bits - 1)
-                items[n++] = CS_CLUSTER * cluster + (uint32_t)__builtin_ctz(bits);
+            for (uint32_t bits = lanes_of(of->of + cluster, low, high); bits; bits &= bits - 1)
+                items[n++] = of->items[CS_CLUSTER * cluster + (uint32_t)__builtin_ctz(bits)];
         }
     return n;
 }
@@ -116,7 +133,7 @@ uint32_t cs_cluster_near_items(struct cs_cluster_near *near, const struct cs_clu
         low[c] = (float)box->low[c];
         high[c] = (float)box->high[c];
     }
-    return find_items(near, clusters->of, low, high, near->items);
+    return find_items(near, clusters, low, high, near->items);
 }
 
 void cs_cluster_near_finish(struct cs_cluster_near *near) {

@@ -14,11 +14,23 @@ struct cs_cluster {
     float low[3][CS_CLUSTER], high[3][CS_CLUSTER]; /* m */
 };
 
+/* A rectangle of a grid: rows and columns, first and last. */
+struct cs_cluster_span {
+    float first[2], last[2];
+};
+
+#define CS_NO_ITEM  UINT32_MAX
+#define CS_NO_BLOCK UINT32_MAX
+
 struct cs_clusters {
-    uint32_t n;                /* items; the last cluster may have empty boxes */
-    struct cs_cluster *of;     /* item i is lane i % CS_CLUSTER of i / CS_CLUSTER */
-    struct cs_cell_box *boxes; /* of clusters; may be empty */
-    struct cs_cells cells;     /* of them */
+    uint32_t n;                    /* clusters */
+    uint32_t *items;               /* (n, CS_CLUSTER) CS_NO_ITEM: none, with an empty box */
+    uint32_t *last;                /* (n) greatest item */
+    uint32_t *block;               /* (n) of cs_order_build, of a grid; or CS_NO_BLOCK */
+    struct cs_cluster *of;         /* (n) boxes of items */
+    struct cs_cell_box *boxes;     /* (n) of clusters; may be empty */
+    struct cs_cells cells;         /* of them */
+    struct cs_cluster_span *spans; /* (n) that hold all of a cluster; NULL: there is no grid */
 };
 
 /* Clusters that may meet any of some boxes. */
@@ -27,19 +39,16 @@ struct cs_cluster_near {
     struct cs_cluster *boxes; /* those of clusters, by sixteens */
     uint32_t *items;          /* what cs_cluster_near_items found */
     size_t n, clusters_room, boxes_room, items_room;
-    uint32_t least; /* clusters before it are passed over */
+    uint32_t least; /* clusters of items before it are passed over */
 };
-
-static inline uint32_t cs_clusters_count(uint32_t n_items) {
-    return (n_items + CS_CLUSTER - 1) / CS_CLUSTER;
-}
 
 /* Sets a lane; a box with high below low is empty, and met by none. */
 void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box);
 
-/* Sets near to the clusters from near->least on that a box meets. false: no memory. */
+/* Sets near to the clusters with an item from near->least on that a box meets; those that are
+ * wholly in `but` are left out (NULL: none). false: no memory. */
 bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
-                          const struct cs_cell_box *box);
+                          const struct cs_cell_box *box, const struct cs_cluster_span *but);
 
 /* Items of these clusters whose boxes meet a box, into near->items; returns how many. */
 uint32_t cs_cluster_near_items(struct cs_cluster_near *near, const struct cs_clusters *clusters,

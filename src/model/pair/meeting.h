@@ -20,6 +20,11 @@ struct cs_meeting {
  */
 #define CS_MEETING_EDGES 0.5
 
+/* m, within which pairs of points and triangles, or of edges, are felt. */
+static inline double cs_meeting_range(const struct cs_meeting *meeting, bool edges) {
+    return meeting->range * (edges ? CS_MEETING_EDGES : 1);
+}
+
 struct cs_meetings {
     uint32_t n_bodies;     /* as in surfaces.h: with obstacles */
     struct cs_meeting *of; /* (n_bodies, n_bodies), symmetric */

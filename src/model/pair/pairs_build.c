@@ -21,8 +21,8 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
                 for (size_t c = 0; c < 3; c++)
                     places[k][c] = pairs->system->start[c * n + at[k]];
             cs_stencil_set(&s, search->lots[l].kind, places);
-            const double range = cs_search_range(cs_meeting_of(&pairs->meetings, body, body),
-                                                 search->lots[l].kind);
+            const double range = cs_meeting_range(cs_meeting_of(&pairs->meetings, body, body),
+                                                  search->lots[l].kind == CS_STENCIL_EDGES);
             const uint32_t first = pairs->system->bodies[body].first;
             if (s.d < range)
                 return cs_fail(error, CS_ERR_SCENE,

@@ -1,6 +1,8 @@
 /* When a list is made, and for how long it is good. */
 #include "model/pair/search.h"
 
+#include "model/pair/search_find.h"
+
 #include <clothsim/clones.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,18 +13,8 @@ static void finish(void *object) {
     for (uint32_t l = 0; l < search->n_lots; l++) {
         free(search->lots[l].pairs);
         free(search->lots[l].close);
-        cs_cluster_near_finish(&search->lots[l].near);
     }
-    cs_cells_finish(&search->triangles.cells);
-    cs_cells_finish(&search->edges.cells);
-}
-
-static void take_clusters(struct cs_clusters *clusters, uint32_t n, struct cs_arena *arena,
-                          struct cs_error *error) {
-    const uint32_t count = cs_clusters_count(n);
-    clusters->n = n;
-    clusters->of = cs_arena_take_n(arena, count, sizeof *clusters->of, error);
-    clusters->boxes = cs_arena_take_n(arena, count, sizeof *clusters->boxes, error);
+    cs_search_find_finish(search);
 }
 
 static void cut(struct cs_search_lot *lots, enum cs_stencil_kind kind, uint32_t n) {
@@ -49,12 +41,11 @@ enum cs_status cs_search_init(struct cs_search *search, struct cs_system *system
     search->from = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *search->from, error);
     search->close_at = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *search->from, error);
     search->rough = cs_arena_take_n(arena, n, sizeof *search->rough, error);
-    take_clusters(&search->triangles, surfaces->n_triangles, arena, error);
-    take_clusters(&search->edges, surfaces->n_edges, arena, error);
     search->lots = cs_arena_take_n(arena, search->n_lots, sizeof *search->lots, error);
     search->drift =
         cs_arena_take_n(arena, 4 * (size_t)meetings->n_bodies, sizeof *search->drift, error);
-    if (error->status)
+    if (error->status || cs_search_flat_init(&search->flat, system, meetings, arena, error) ||
+        cs_search_find_init(search, arena, error))
         return error->status;
     for (uint32_t b = 0; b < meetings->n_bodies; b++)
         for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
@@ -149,19 +140,40 @@ static bool is_good(const struct cs_search *search, const double *x) {
     return good;
 }
 
+/* m, that flat parts are to be good for in a list that is good for so much */
+static double flat_margin(const struct cs_search *search, double margin) {
+    const double usual = CS_SEARCH_FLAT_MARGIN * search->meetings->least;
+    return margin < usual ? margin : usual;
+}
+
+/* whether what was flat has not moved too far to be it still */
+static bool is_flat(const struct cs_search *search, const double *x) {
+    const struct cs_search_flat *flat = &search->flat;
+    bool good = true;
+    if (flat->n_flat)
+        measure_drifts(search, flat->from, x);
+    for (uint32_t b = 0; flat->n_flat && b < search->meetings->n_bodies; b++)
+        good = good && (!flat->grids[b] || search->drift[4 * (size_t)b + 3] <= flat->held);
+    return good;
+}
+
 /* The list of the state `from`. false: no memory */
-static bool build(struct cs_search *search, double margin) {
+static bool build(struct cs_search *search, double margin, double flat) {
+    cs_search_flat_find(&search->flat, search->from, flat);
     search->builds++;
     search->held = margin;
-    search->fresh = cs_search_list(search);
+    cs_search_round(search, search->from);
+    search->fresh = cs_search_find(search) && cs_search_list(search);
     return search->fresh;
 }
 
 bool cs_search_update(struct cs_search *search, const double *x) {
-    if (is_good(search, x))
+    const double flat = flat_margin(search, search->margin);
+    if (is_good(search, x) &&
+        (is_flat(search, x) || cs_search_flat_renew(&search->flat, x, flat)))
         return true;
     memcpy(search->from, x, 3 * sizeof *x * search->system->surfaces->n_points);
-    return build(search, search->margin);
+    return build(search, search->margin, flat);
 }
 
 /* --- for a whole move --- */
@@ -209,18 +221,23 @@ static double largest_move(const struct cs_search *search, const double *x0, con
     return most;
 }
 
+static bool is_covered(const struct cs_search *search, const double *x0, const double *x1) {
+    return is_good(search, x0) && is_good(search, x1) && is_flat(search, x0) &&
+           is_flat(search, x1);
+}
+
 bool cs_search_cover(struct cs_search *search, const double *x0, const double *x1) {
     const size_t n = search->system->surfaces->n_points;
-    if (is_good(search, x0) && is_good(search, x1))
+    if (is_covered(search, x0, x1))
         return true;
     // a quarter of the move lies to both sides of the middle, for each of two particles
-    const double margin =
-        fmax(search->margin, 0.25 * largest_move(search, x0, x1) * (1 + 1e-9));
+    const double least = 0.25 * largest_move(search, x0, x1) * (1 + 1e-9);
+    const double margin = fmax(search->margin, least);
     if (!(margin <= CS_SEARCH_FAR * CS_SEARCH_MARGIN * search->meetings->least))
         return false;
     for (size_t i = 0; i < 3 * n; i++)
         search->from[i] = x0[i] + 0.5 * (x1[i] - x0[i]);
-    return build(search, margin);
+    return build(search, margin, fmax(flat_margin(search, search->margin), least));
 }
 
 double cs_search_moves(const struct cs_search *search, const double *x0, const double *x1) {

@@ -1,0 +1,185 @@
+/* Flat parts of grids: the bound of how far their parts are from each other, against all pairs
+ * there are; and the clusters that are made of blocks. */
+#include "model/near/order.h"
+#include "model/pair/nearness.h"
+#include "unit.h"
+
+#include <math.h>
+
+/* three blocks by three, so that all is round the one in the middle */
+enum { SIDE = 3 * CS_FLAT_BLOCK + 1, POINTS = SIDE * SIDE, CELLS = SIDE - 1, STATES = 24 };
+enum { TRIANGLES = 2 * CELLS * CELLS, EDGES = 2 * SIDE * CELLS + CELLS * CELLS };
+#define EDGE 0.02
+
+struct grid {
+    double x[3 * POINTS];
+    uint32_t triangles[3 * TRIANGLES], edges[2 * EDGES], n_edges;
+};
+
+static void add_edge(struct grid *grid, uint32_t a, uint32_t b) {
+    grid->edges[2 * grid->n_edges] = a;
+    grid->edges[2 * grid->n_edges++ + 1] = b;
+}
+
+static void connect(struct grid *grid) {
+    uint32_t *corner = grid->triangles;
+    grid->n_edges = 0;
+    for (uint32_t i = 0; i < POINTS; i++) {
+        const bool right = i % SIDE + 1 < SIDE, below = i + SIDE < POINTS;
+        if (right)
+            add_edge(grid, i, i + 1);
+        if (below)
+            add_edge(grid, i, i + SIDE);
+        if (!right || !below)
+            continue;
+        add_edge(grid, i + 1, i + SIDE);
+        const uint32_t two[6] = {i, i + SIDE, i + 1, i + 1, i + SIDE, i + SIDE + 1};
+        memcpy(corner, two, sizeof two);
+        corner += 6;
+    }
+}
+
+/* a number in -1..1, always the same ones */
+static double draw(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) / 4503599627370496.0 - 1;
+}
+
+/* stretched and skewed a little, and bent and shaken by ever more */
+static void place(struct grid *grid, int number) {
+    uint64_t seed = (uint64_t)number + 1;
+    const double much = number / (double)STATES, phase = draw(&seed);
+    const double skew[4] = {1 + 0.3 * much * draw(&seed), 0.3 * much * draw(&seed),
+                            0.3 * much * draw(&seed), 1 + 0.3 * much * draw(&seed)};
+    for (int i = 0; i < POINTS; i++) {
+        const double u = EDGE * (double)(i % SIDE), v = EDGE * (double)(i / SIDE);
+        grid->x[i] = 5 + skew[0] * u + skew[1] * v + 0.1 * much * EDGE * draw(&seed);
+        grid->x[POINTS + i] = much * EDGE * sin(12 * u + 7 * v + phase);
+        grid->x[2 * POINTS + i] = skew[2] * u + skew[3] * v + 0.1 * much * EDGE * draw(&seed);
+    }
+}
+
+static bool share(const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m) {
+    bool same = false;
+    for (uint32_t i = 0; i < n * m; i++)
+        same = same || a[i % n] == b[i / n];
+    return same;
+}
+
+/* of a with b, both of so many points; HUGE_VAL where they share one */
+static double distance(const struct grid *grid, const uint32_t *a, uint32_t n,
+                       const uint32_t *b) {
+    static struct cs_nearness_lanes lanes;
+    if (share(a, n, b, 4 - n))
+        return HUGE_VAL;
+    for (uint32_t k = 0; k < 4; k++)
+        for (uint32_t c = 0; c < 3; c++)
+            lanes.p[k][c][0] = grid->x[c * POINTS + (k < n ? a[k] : b[k - n])];
+    cs_nearness_measure(n == 1 ? CS_STENCIL_TRIANGLE : CS_STENCIL_EDGES, &lanes);
+    return sqrt(lanes.squared[0]);
+}
+
+static double least_distance(const struct grid *grid) {
+    double least = HUGE_VAL;
+    for (uint32_t a = 0; a < POINTS; a++)
+        for (uint32_t t = 0; t < TRIANGLES; t++)
+            least = fmin(least, distance(grid, &a, 1, grid->triangles + 3 * t));
+    for (uint32_t a = 0; a < EDGES; a++)
+        for (uint32_t b = a + 1; b < EDGES; b++)
+            least = fmin(least, distance(grid, grid->edges + 2 * a, 2, grid->edges + 2 * b));
+    return least;
+}
+
+static void open_flat(struct cs_flat *flat, struct cs_arena *arena) {
+    struct cs_error error = {0};
+    *flat = (struct cs_flat){.columns = SIDE, .rows = SIDE};
+    ck_assert_int_eq(cs_flat_init(flat, arena, &error), CS_OK);
+    ck_assert_uint_eq(flat->across * flat->down, 9);
+}
+
+/* never further apart than they are, and by half as much more it would be: a fault that is to
+ * be found */
+START_TEST(bound_is_below_all_distances) {
+    static struct grid grid;
+    struct cs_arena arena = {0};
+    struct cs_flat flat;
+    int above = 0, flats = 0;
+    connect(&grid);
+    ck_assert_uint_eq(grid.n_edges, EDGES);
+    open_flat(&flat, &arena);
+    for (int state = 0; state < STATES; state++) {
+        place(&grid, state);
+        cs_flat_measure(&flat, grid.x, POINTS);
+        const double bound = flat.apart[4], least = least_distance(&grid);
+        ck_assert_msg(bound <= least, "state %d: %.17g > %.17g", state, bound, least);
+        above += 1.5 * bound > least;
+        flats += bound > 0.5 * EDGE;
+        if (!state)
+            ck_assert_double_eq_tol(bound, EDGE * sqrt(0.5), 2e-6 * EDGE);
+    }
+    ck_assert_int_gt(above, 3);
+    ck_assert_int_gt(flats, 3);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+/* a place that is not finite makes its blocks, and those beside them, not flat */
+START_TEST(not_finite_is_not_flat) {
+    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    static struct grid grid;
+    struct cs_arena arena = {0};
+    struct cs_flat flat;
+    open_flat(&flat, &arena);
+    for (int k = 0; k < 9; k++) {
+        place(&grid, 0);
+        grid.x[k / 3 * POINTS] = bad[k % 3]; // the first corner of all
+        cs_flat_measure(&flat, grid.x, POINTS);
+        for (int b = 0; b < 9; b++)
+            ck_assert_int_eq(flat.apart[b] > 0, b % 3 == 2 || b / 3 == 2);
+    }
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+/* every item once; those of a grid with the others of their block, which its span holds */
+START_TEST(clusters_have_all_items) {
+    static struct grid grid;
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    struct cs_flat flat;
+    struct cs_clusters clusters = {0};
+    static int seen[EDGES];
+    const uint32_t first[3] = {0, EDGES - 40, EDGES}; // the last ones as if of a mesh
+    connect(&grid);
+    open_flat(&flat, &arena);
+    const struct cs_order order = {grid.edges, 2, first, 2, (struct cs_flat *[2]){&flat, NULL}};
+    ck_assert_int_eq(cs_order_build(&order, &clusters, &arena, &error), CS_OK);
+    for (uint32_t k = 0; k < clusters.n; k++)
+        for (uint32_t l = 0; l < CS_CLUSTER; l++) {
+            const uint32_t item = clusters.items[CS_CLUSTER * k + l];
+            const struct cs_cluster_span *span = clusters.spans + k;
+            if (item == CS_NO_ITEM)
+                continue;
+            seen[item]++;
+            ck_assert_uint_le(item, clusters.last[k]);
+            ck_assert_int_eq(clusters.block[k] == CS_NO_BLOCK, item >= first[1]);
+            for (uint32_t c = 0; c < 2; c++) {
+                const uint32_t point = grid.edges[2 * item + c];
+                ck_assert(span->first[0] <= point / SIDE && point / SIDE <= span->last[0]);
+                ck_assert(span->first[1] <= point % SIDE && point % SIDE <= span->last[1]);
+            }
+            if (item < first[1])
+                ck_assert(span->last[0] - span->first[0] <= CS_FLAT_BLOCK &&
+                          span->last[1] - span->first[1] <= CS_FLAT_BLOCK);
+        }
+    for (uint32_t e = 0; e < EDGES; e++)
+        ck_assert_int_eq(seen[e], 1);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {bound_is_below_all_distances, not_finite_is_not_flat,
+                                  clusters_have_all_items};
+    return unit_run("flat", tests, sizeof tests / sizeof *tests);
+}
