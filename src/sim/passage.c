@@ -2,8 +2,8 @@
 #include "sim/passage.h"
 
 #include "model/contact/share.h"
+#include "model/cover/cover.h"
 #include "model/cross/crossings.h"
-#include "model/pair/cover.h"
 #include "model/pair/seen.h"
 #include "scene/crossings.h"
 

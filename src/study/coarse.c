@@ -1,7 +1,7 @@
 /* Compares the edges of meshes with what their points cover. */
 #include "study/coarse.h"
 
-#include "model/pair/cover.h"
+#include "model/cover/cover.h"
 
 #include <math.h>
 

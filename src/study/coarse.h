@@ -5,7 +5,7 @@
 #include "model/system/system.h"
 
 /* Adds one line about the first collider that can come in between the points of an edge
- * (model/pair/cover.h), since it would take more of them than there may be, and how many more
+ * (model/cover/cover.h), since it would take more of them than there may be, and how many more
  * such there are; nothing where there is none, or contact is no force. */
 void cs_coarse_print(const struct cs_system *system, struct cs_text *out);
 

@@ -3,8 +3,8 @@
 #include "base/pool.h"
 #include "base/vec3.h"
 #include "fixture.h"
+#include "model/cover/cover.h"
 #include "model/force/terms.h"
-#include "model/pair/cover.h"
 #include "study/coarse.h"
 
 #include <math.h>

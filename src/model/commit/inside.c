@@ -3,8 +3,8 @@
 #include "model/commit/inside.h"
 
 #include "model/contact/obstacle.h"
+#include "model/cover/cover.h"
 #include "model/cross/crossings.h"
-#include "model/pair/cover.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
-/* Contact of what lies between particles with obstacles: the points of model/pair/cover.h as a
+/* Contact of what lies between particles with obstacles: the points of model/cover/cover.h as a
  * term. Particles themselves have it from term_contact.c. */
+#include "model/cover/cover_force.h"
 #include "model/force/term.h"
-#include "model/pair/cover_force.h"
 
 static bool any_round(const struct cs_scene *scene) {
     const struct cs_collider *colliders = cs_scene_colliders(scene);

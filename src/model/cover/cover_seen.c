@@ -1,5 +1,5 @@
 /* The energy that a step does not see of points between particles. */
-#include "model/pair/cover.h"
+#include "model/cover/cover.h"
 
 #include "base/vector.h"
 #include "model/contact/share.h"

@@ -1,8 +1,8 @@
 /* cover_force.h - what the points of cover.h do to the corners of their edges and triangles. */
-#ifndef CS_PAIR_COVER_FORCE_H
-#define CS_PAIR_COVER_FORCE_H
+#ifndef CS_COVER_FORCE_H
+#define CS_COVER_FORCE_H
 
-#include "model/pair/cover.h"
+#include "model/cover/cover.h"
 
 /* Sets covers->now to the forces at a state, or with at->dx or at->dv to their change. With all
  * threads, as all here. */

@@ -1,5 +1,5 @@
 /* Which edges and triangles need points against which collider, and the points one by one. */
-#include "model/pair/cover.h"
+#include "model/cover/cover.h"
 
 #include "mesh/trimesh.h"
 

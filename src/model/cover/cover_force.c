@@ -1,5 +1,5 @@
 /* Points in range: found lot by lot, each with what it does to its corners. */
-#include "model/pair/cover_force.h"
+#include "model/cover/cover_force.h"
 
 #include "base/pool.h"
 #include "base/vec3.h"

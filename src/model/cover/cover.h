@@ -12,8 +12,8 @@
  * corner, and all derivatives are those of a particle at p, seen through the weights. Energy is
  * kept, momentum and its moment go over in full, and there is no kink anywhere.
  */
-#ifndef CS_PAIR_COVER_H
-#define CS_PAIR_COVER_H
+#ifndef CS_COVER_H
+#define CS_COVER_H
 
 #include "model/contact/near.h"
 #include "model/pair/pair_set.h"
