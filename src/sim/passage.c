@@ -28,7 +28,7 @@ double cs_passage_share(const struct cs_system *system, double t0, const double 
 bool cs_passage_has_failed(const struct cs_system *system) {
     const struct cs_pairs *pairs = system->pairs;
     const struct cs_covers *covers = system->covers;
-    return (pairs && (pairs->now.failed || pairs->matrix.failed)) ||
+    return (pairs && pairs->failed) ||
            (covers && (covers->now.failed || covers->matrix.failed));
 }
 

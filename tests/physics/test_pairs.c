@@ -173,7 +173,7 @@ static size_t end_of_crumple(const char *method, struct how how, double state[6 
         fixture_frames(&cloth, 1);
         search->held = how.trust > 1 ? how.trust * search->margin : search->held;
     }
-    ck_assert_uint_gt(cloth.system->pairs->now.n, 40);
+    ck_assert_uint_gt(cloth.system->pairs->now->n, 40);
     ck_assert_uint_gt(search->builds, 3);
     const size_t n = 6 * cloth.n;
     ck_assert_uint_le(n, 6 * 600);

@@ -27,7 +27,7 @@ static void prepare(const struct cs_system *system, const struct cs_eval *at) {
 }
 
 static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
-    cs_pair_set_add(&system->pairs->now, at->block->begin, at->block->end, f);
+    cs_pairs_add(system->pairs, at->block->begin, at->block->end, f);
 }
 
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
@@ -42,7 +42,7 @@ static void prepare_matrix(const struct cs_system *system, const struct cs_matri
 static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks) {
     (void)matrix;
-    cs_pair_set_add_blocks(system->pairs->blocks, begin, end, blocks);
+    cs_pairs_add_blocks(system->pairs, begin, end, blocks);
 }
 
 static void add_product(const struct cs_system *system, const double *p, double *y) {

@@ -10,7 +10,8 @@
 static void finish(void *object) {
     struct cs_active *active = object;
     for (uint32_t l = 0; l < active->search->n_lots; l++)
-        free(active->lots[l].blocks), free(active->lots[l].felt);
+        free(active->lots[l].blocks), free(active->lots[l].felt), free(active->lots[l].at),
+            free(active->lots[l].to);
 }
 
 enum cs_status cs_active_init(struct cs_active *active, const struct cs_search *search,
@@ -20,7 +21,9 @@ enum cs_status cs_active_init(struct cs_active *active, const struct cs_search *
     active->lots = cs_arena_take_n(arena, search->n_lots, sizeof *active->lots, error);
     if (!error->status)
         cs_arena_own(arena, finish, active, error);
-    return error->status;
+    return error->status ? error->status
+                         : cs_gather_init(&active->gather, search->n_lots,
+                                          search->system->view.n, arena, error);
 }
 
 /* One lot at work. */
@@ -36,18 +39,26 @@ static struct cs_meeting meeting_of(const struct cs_search *search, const uint32
     return *cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]]);
 }
 
+/* a place for one pair more; NULL: no memory */
+static struct cs_active_block *next(struct cs_active_lot *lot) {
+    const size_t n_blocks = lot->n / CS_PAIR_LANES + 1;
+    struct cs_active_block *blocks =
+        cs_arena_grow(lot->blocks, &lot->room, n_blocks, sizeof *blocks);
+    lot->blocks = blocks ? blocks : lot->blocks;
+    uint32_t(*at)[4] = cs_arena_grow(lot->at, &lot->at_room, lot->n + 1, sizeof *at);
+    lot->at = at ? at : lot->at;
+    lot->failed = lot->failed || !blocks || !at;
+    return blocks && at ? blocks + lot->n / CS_PAIR_LANES : NULL;
+}
+
 static void put(const struct work *work, const struct cs_facet_use *use, double share) {
     struct cs_active_lot *lot = work->lot;
     const struct cs_meeting meeting = meeting_of(work->active->search, use->at);
-    const size_t l = lot->n % CS_PAIR_LANES, b = lot->n / CS_PAIR_LANES;
-    struct cs_active_block *blocks =
-        cs_arena_grow(lot->blocks, &lot->room, b + 1, sizeof *blocks);
-    lot->failed = lot->failed || !blocks;
-    if (!blocks)
+    struct cs_active_block *to = next(lot);
+    const size_t l = lot->n % CS_PAIR_LANES;
+    if (!to)
         return;
-    lot->blocks = blocks;
-    struct cs_active_block *to = blocks + b;
-    memcpy(to->at[l], use->at, sizeof to->at[l]);
+    memcpy(lot->at + lot->n++, use->at, sizeof *lot->at);
     to->range[l] = share * meeting.range;
     to->k[l] = meeting.k;
     to->mu[l] = meeting.mu;
@@ -57,7 +68,6 @@ static void put(const struct work *work, const struct cs_facet_use *use, double 
     to->off[l] = use->form.off;
     to->bend[l] = use->form.e;
     to->d[l] = use->d;
-    lot->n++;
 }
 
 /* --- points and triangles --- */
@@ -163,6 +173,7 @@ bool cs_active_find(struct cs_active *active, const double *x) {
     bool failed = false;
     cs_pool_run(active->search->n_lots, find_lot, &job);
     active->n = 0;
+    active->gathered = false;
     for (uint32_t l = 0; l < active->search->n_lots; l++) {
         active->n += active->lots[l].n;
         failed = failed || active->lots[l].failed;
@@ -170,4 +181,25 @@ bool cs_active_find(struct cs_active *active, const double *x) {
     active->found = failed ? 0 : active->search->found;
     active->rubbed = active->search->meetings->rubbed;
     return !failed;
+}
+
+static void number_lot(void *arg, uint32_t number) {
+    struct cs_active *active = arg;
+    struct cs_active_lot *lot = active->lots + number;
+    struct cs_gather_lot *rows = active->gather.lots + number;
+    uint32_t(*to)[4] = cs_arena_grow(lot->to, &lot->to_room, lot->n, sizeof *to);
+    cs_gather_clear(rows);
+    rows->failed = lot->n && !to;
+    lot->to = to ? to : lot->to;
+    for (size_t p = 0; p < lot->n && !rows->failed; p++)
+        for (int k = 0; k < 4; k++)
+            to[p][k] = cs_gather_row(rows, lot->at[p][k]);
+}
+
+bool cs_active_gather(struct cs_active *active) {
+    if (!active->gathered) {
+        cs_pool_run(active->search->n_lots, number_lot, active);
+        active->gathered = cs_gather_set(&active->gather);
+    }
+    return active->gathered;
 }

@@ -5,12 +5,12 @@
 #define CS_PAIR_ACTIVE_H
 
 #include "model/pair/facets.h"
+#include "model/pair/gather.h"
 #include "model/pair/lanes.h"
 #include "model/pair/search.h"
 
 /* Eight pairs as lanes take them; after the last pair numbers mean nothing. */
 struct cs_active_block {
-    uint32_t at[CS_PAIR_LANES][4]; /* points */
     double range[CS_PAIR_LANES], k[CS_PAIR_LANES], mu[CS_PAIR_LANES];
     double count[CS_PAIR_LANES], alone[CS_PAIR_LANES]; /* as in struct cs_facet_use */
     double rim[CS_PAIR_LANES], off[CS_PAIR_LANES], bend[CS_PAIR_LANES];
@@ -21,10 +21,14 @@ struct cs_active_block {
 struct cs_active_lot {
     enum cs_stencil_kind kind;
     struct cs_active_block *blocks;
-    size_t n, room;            /* pairs; room in blocks */
+    uint32_t (*at)[4]; /* (n) points of each pair */
+    uint32_t (*to)[4]; /* (n) and their rows, of cs_active_gather */
+    size_t n;          /* pairs */
+    size_t room, at_room, to_room;
     struct cs_facet_use *felt; /* of one point, while they are found */
     size_t felt_room;
-    bool failed; /* there was no memory */
+    double energy; /* J, where it was asked for */
+    bool failed;   /* there was no memory */
 };
 
 struct cs_active {
@@ -34,6 +38,8 @@ struct cs_active {
     uint64_t found;             /* the search's number of close pairs that they are of */
     uint64_t rubbed;            /* and the meetings' of frictions */
     size_t n;                   /* pairs of all lots */
+    struct cs_gather gather;    /* with the lots' numbers */
+    bool gathered;              /* it is set */
 };
 
 /* Fixed arrays from the arena, which then owns what grows too. CS_ERR_MEMORY. */
@@ -47,5 +53,9 @@ bool cs_active_is_there(const struct cs_active *active);
 /* Sets them to those of the close pairs that were found at x (3, n_points). false: no memory.
  * With all threads. */
 bool cs_active_find(struct cs_active *active, const double *x);
+
+/* Gives rows to all their points, where it is not done yet. false: no memory. With all threads.
+ */
+bool cs_active_gather(struct cs_active *active);
 
 #endif

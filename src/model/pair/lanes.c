@@ -99,15 +99,26 @@ CS_INLINE void change(enum cs_stencil_kind kind, struct cs_pair_lanes *restrict 
 KERNEL(push)
 KERNEL(change)
 
-CS_INLINE void write_share(const struct cs_pair_share *share, int lane,
-                           struct cs_pair_factors *factors) {
+CS_INLINE void write_factors(enum cs_stencil_kind kind, double g[4][3],
+                             const struct cs_pair_share *share, int lane,
+                             struct cs_pair_factors *factors) {
+    double weight[3];
+    cs_stencil_fold(kind, share->weight, weight);
+    factors->weight[0][lane] = weight[0];
+    factors->weight[1][lane] = weight[1];
     factors->along[lane] = share->along;
-    CS_UNROLLED
-    for (int k = 0; k < 4; k++)
-        factors->weight[k][lane] = share->weight[k];
     CS_UNROLLED
     for (int e = 0; e < 6; e++)
         factors->of[e][lane] = share->of[e];
+    CS_UNROLLED
+    for (int c = 0; c < 3; c++) {
+        const double four[4] = {g[0][c], g[1][c], g[2][c], g[3][c]};
+        double by[3];
+        cs_stencil_fold(kind, four, by);
+        CS_UNROLLED
+        for (int k = 0; k < 3; k++)
+            factors->g[k][c][lane] = by[k];
+    }
 }
 
 /* a definite matrix; `bound` known to the compiler, or the loop would have a branch */
@@ -123,8 +134,7 @@ CS_INLINE void share_bound(enum cs_stencil_kind kind, struct cs_pair_lanes *rest
         cs_reaction_matrix(&reaction, &matrix, g, &share);
         share.along = -matrix.ck *
                       cs_law_at(reaction.touch.d, lanes->range[l], lanes->stiff[l]).stiffness;
-        write_lane(g, l, factors->g);
-        write_share(&share, l, factors);
+        write_factors(kind, g, &share, l, factors);
     }
 }
 
@@ -161,53 +171,142 @@ void cs_pair_lanes_matrix(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes
         share_triangles(lanes, *keys, *matrix, factors);
 }
 
-CS_INLINE void multiply(double g[4][3], const struct cs_pair_share *share, double p[4][3],
-                        double by[4][3]) {
-    const double *s = share->of;
-    double along = 0, v[3] = {0};
-    CS_UNROLLED
-    for (int k = 0; k < 4; k++) {
-        along += cs_vec3_dot(g[k], p[k]);
+CS_INLINE void turn(const struct cs_pair_factors *factors, int l, const double v[3],
+                    double out[3]) {
+    const double xx = factors->of[0][l], xy = factors->of[1][l], xz = factors->of[2][l],
+                 yy = factors->of[3][l], yz = factors->of[4][l], zz = factors->of[5][l];
+    out[0] = xx * v[0] + xy * v[1] + xz * v[2];
+    out[1] = xy * v[0] + yy * v[1] + yz * v[2];
+    out[2] = xz * v[0] + yz * v[1] + zz * v[2];
+}
+
+CS_INLINE void multiply(enum cs_stencil_kind kind, struct cs_pair_factors *restrict factors,
+                        double p[restrict 4][3][CS_PAIR_LANES]) {
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        double at[4][3], d[3][3], v[3], rub[3], along = 0;
+        read_lane(p, l, at);
+        cs_stencil_differences(kind, at, d[0], d[1], d[2]);
+        const double weight[3] = {factors->weight[0][l], factors->weight[1][l], 1};
         CS_UNROLLED
-        for (int c = 0; c < 3; c++)
-            v[c] += share->weight[k] * p[k][c];
-    }
-    const double rub[3] = {s[0] * v[0] + s[1] * v[1] + s[2] * v[2],
-                           s[1] * v[0] + s[3] * v[1] + s[4] * v[2],
-                           s[2] * v[0] + s[4] * v[1] + s[5] * v[2]};
-    CS_UNROLLED
-    for (int k = 0; k < 4; k++) {
-        double b[6] = {0};
-        cs_pair_add_own(g[k], share->weight[k], share, b);
-        const double own[3] = {b[0] * p[k][0] + b[1] * p[k][1] + b[2] * p[k][2],
-                               b[1] * p[k][0] + b[3] * p[k][1] + b[4] * p[k][2],
-                               b[2] * p[k][0] + b[4] * p[k][1] + b[5] * p[k][2]};
+        for (int c = 0; c < 3; c++) {
+            v[c] = weight[0] * d[0][c] + weight[1] * d[1][c] + d[2][c];
+            along += factors->g[0][c][l] * d[0][c] + factors->g[1][c][l] * d[1][c] +
+                     factors->g[2][c][l] * d[2][c];
+        }
+        along *= factors->along[l];
+        turn(factors, l, v, rub);
         CS_UNROLLED
-        for (int c = 0; c < 3; c++)
-            by[k][c] = share->along * along * g[k][c] + share->weight[k] * rub[c] - own[c];
+        for (int c = 0; c < 3; c++) {
+            double four[4];
+            cs_stencil_spread(kind, along * factors->g[0][c][l] + weight[0] * rub[c],
+                              along * factors->g[1][c][l] + weight[1] * rub[c],
+                              along * factors->g[2][c][l] + rub[c], four);
+            CS_UNROLLED
+            for (int k = 0; k < 4; k++)
+                p[k][c][l] = four[k];
+        }
     }
 }
 
-CS_INLINE void read_share(const struct cs_pair_factors *factors, int lane,
-                          struct cs_pair_share *share) {
+/* by the points */
+CS_INLINE void read_factors(enum cs_stencil_kind kind, const struct cs_pair_factors *factors,
+                            int lane, double g[4][3], struct cs_pair_share *share) {
+    const double(*by)[3][CS_PAIR_LANES] = factors->g;
     share->along = factors->along[lane];
-    CS_UNROLLED
-    for (int k = 0; k < 4; k++)
-        share->weight[k] = factors->weight[k][lane];
     CS_UNROLLED
     for (int e = 0; e < 6; e++)
         share->of[e] = factors->of[e][lane];
+    cs_stencil_spread(kind, factors->weight[0][lane], factors->weight[1][lane], 1,
+                      share->weight);
+    CS_UNROLLED
+    for (int c = 0; c < 3; c++) {
+        double four[4];
+        cs_stencil_spread(kind, by[0][c][lane], by[1][c][lane], by[2][c][lane], four);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            g[k][c] = four[k];
+    }
 }
 
-CS_CLONES void cs_pair_lanes_multiply(struct cs_pair_factors *restrict factors,
-                                      double p[restrict 4][3][CS_PAIR_LANES]) {
+/* by how much the blocks of the gradients, or of the weights, must grow for all together to be
+ * above what the pair couples */
+CS_INLINE void find_growth(const double size[4], double growth[4]) {
+    const double sum = size[0] + size[1] + size[2] + size[3];
+    CS_UNROLLED
+    for (int k = 0; k < 4; k++)
+        growth[k] = size[k] > 0 ? sum / size[k] : 1;
+}
+
+/* line by line: a loop in the loop over lanes would keep that from being vectors */
+CS_INLINE void write_own(const double g[3], double along, double rub,
+                         const struct cs_pair_share *share, int l,
+                         double own[6][CS_PAIR_LANES]) {
+    own[0][l] = along * (g[0] * g[0]) + rub * share->of[0];
+    own[1][l] = along * (g[0] * g[1]) + rub * share->of[1];
+    own[2][l] = along * (g[0] * g[2]) + rub * share->of[2];
+    own[3][l] = along * (g[1] * g[1]) + rub * share->of[3];
+    own[4][l] = along * (g[1] * g[2]) + rub * share->of[4];
+    own[5][l] = along * (g[2] * g[2]) + rub * share->of[5];
+}
+
+CS_INLINE void find_own(enum cs_stencil_kind kind, struct cs_pair_factors *restrict factors,
+                        bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
-        double at[4][3], g[4][3], by[4][3];
+        double g[4][3], size[4], weight[4], along[4], rub[4];
         struct cs_pair_share share;
-        read_share(factors, l, &share);
-        read_lane(factors->g, l, g);
-        read_lane(p, l, at);
-        multiply(g, &share, at, by);
-        write_lane(by, l, p);
+        read_factors(kind, factors, l, g, &share);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++) {
+            size[k] = sqrt(cs_vec3_dot(g[k], g[k]));
+            weight[k] = fabs(share.weight[k]);
+        }
+        find_growth(size, along);
+        find_growth(weight, rub);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            write_own(g[k], share.along * (alone ? along[k] : 1),
+                      weight[k] * weight[k] * (alone ? rub[k] : 1), &share, l, own[k]);
     }
+}
+
+CS_CLONES static void multiply_triangles(struct cs_pair_factors *restrict factors,
+                                         double p[restrict 4][3][CS_PAIR_LANES]) {
+    multiply(CS_STENCIL_TRIANGLE, factors, p);
+}
+
+CS_CLONES static void multiply_edges(struct cs_pair_factors *restrict factors,
+                                     double p[restrict 4][3][CS_PAIR_LANES]) {
+    multiply(CS_STENCIL_EDGES, factors, p);
+}
+
+void cs_pair_lanes_multiply(enum cs_stencil_kind kind, struct cs_pair_factors *factors,
+                            double p[4][3][CS_PAIR_LANES]) {
+    if (kind == CS_STENCIL_EDGES)
+        multiply_edges(factors, p);
+    else
+        multiply_triangles(factors, p);
+}
+
+CS_CLONES static void find_own_triangles(struct cs_pair_factors *restrict factors, bool alone,
+                                         double own[restrict 4][6][CS_PAIR_LANES]) {
+    if (alone)
+        find_own(CS_STENCIL_TRIANGLE, factors, true, own);
+    else
+        find_own(CS_STENCIL_TRIANGLE, factors, false, own);
+}
+
+CS_CLONES static void find_own_edges(struct cs_pair_factors *restrict factors, bool alone,
+                                     double own[restrict 4][6][CS_PAIR_LANES]) {
+    if (alone)
+        find_own(CS_STENCIL_EDGES, factors, true, own);
+    else
+        find_own(CS_STENCIL_EDGES, factors, false, own);
+}
+
+void cs_pair_lanes_own(enum cs_stencil_kind kind, struct cs_pair_factors *factors, bool alone,
+                       double own[4][6][CS_PAIR_LANES]) {
+    if (kind == CS_STENCIL_EDGES)
+        find_own_edges(factors, alone, own);
+    else
+        find_own_triangles(factors, alone, own);
 }

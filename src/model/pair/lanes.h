@@ -13,8 +13,7 @@ struct cs_pair_lanes {
     double range[CS_PAIR_LANES], k[CS_PAIR_LANES], mu[CS_PAIR_LANES];
     double dp[4][3][CS_PAIR_LANES], dv[4][3][CS_PAIR_LANES]; /* of a change */
     double d[CS_PAIR_LANES];                                 /* m, the smooth distance */
-    double to[4][3][CS_PAIR_LANES];                          /* as in struct cs_pair */
-    uint32_t at[CS_PAIR_LANES][4];
+    double to[4][3][CS_PAIR_LANES];                          /* forces, or their changes */
     double rim[CS_PAIR_LANES], off[CS_PAIR_LANES], bend[CS_PAIR_LANES]; /* form of a facet */
     double stiff[CS_PAIR_LANES]; /* N/m, of the law in a matrix */
     uint32_t n;
@@ -35,33 +34,25 @@ void cs_pair_lanes_push(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
 void cs_pair_lanes_change(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
                           const struct cs_pair_law *law);
 
-/* What a matrix has of as many pairs. */
+/* What a matrix has of as many pairs, by the differences u, v, w of their points: half as many
+ * numbers as by the points. */
 struct cs_pair_factors {
-    double g[4][3][CS_PAIR_LANES], weight[4][CS_PAIR_LANES];
+    double g[3][3][CS_PAIR_LANES], weight[2][CS_PAIR_LANES]; /* the weight by w is 1 */
     double along[CS_PAIR_LANES], of[6][CS_PAIR_LANES];
-    uint32_t at[CS_PAIR_LANES][4];
 };
 
-/* Sets all of them but `at`, as cs_reaction_matrix of a matrix that is psd. */
+/* Sets them, as cs_reaction_matrix of a matrix that is psd. */
 void cs_pair_lanes_matrix(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
                           const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
                           struct cs_pair_factors *factors);
 
-/* In place of p: the share of each pair times p, less what the diagonal blocks of the solver
- * have of it. How gradients turn is not in it. */
-void cs_pair_lanes_multiply(struct cs_pair_factors *factors, double p[4][3][CS_PAIR_LANES]);
+/* In place of p: the share of each pair times p. How gradients turn is not in it. */
+void cs_pair_lanes_multiply(enum cs_stencil_kind kind, struct cs_pair_factors *factors,
+                            double p[4][3][CS_PAIR_LANES]);
 
-/* block (6) += that of a corner with gradient g and weight w with itself. */
-CS_INLINE void cs_pair_add_own(const double g[3], double w, const struct cs_pair_share *share,
-                               double block[6]) {
-    const double along = share->along, rub = w * w;
-    // line by line: a loop in the loop over lanes would keep that from being vectors
-    block[0] += along * (g[0] * g[0]) + rub * share->of[0];
-    block[1] += along * (g[0] * g[1]) + rub * share->of[1];
-    block[2] += along * (g[0] * g[2]) + rub * share->of[2];
-    block[3] += along * (g[1] * g[1]) + rub * share->of[3];
-    block[4] += along * (g[1] * g[2]) + rub * share->of[4];
-    block[5] += along * (g[2] * g[2]) + rub * share->of[5];
-}
+/* own = the diagonal blocks of each pair. alone: so much larger that they are above all of it,
+ * as in cs_pair_set_add_blocks. */
+void cs_pair_lanes_own(enum cs_stencil_kind kind, struct cs_pair_factors *factors, bool alone,
+                       double own[4][6][CS_PAIR_LANES]);
 
 #endif

@@ -3,26 +3,29 @@
 #define CS_PAIR_NARROW_H
 
 #include "model/pair/active.h"
+#include "model/pair/product.h"
 
 /* what the pairs in range are asked for */
 enum cs_pair_ask {
     CS_PAIR_FORCE,
     CS_PAIR_CHANGE, /* of the force */
-    CS_PAIR_ENERGY, /* into the lots' energy: no pair is kept */
+    CS_PAIR_ENERGY,
     CS_PAIR_MATRIX,
     CS_PAIR_BOUND
 };
 
 struct cs_narrow {
-    const struct cs_active *active; /* those of x */
-    const double *x, *v;            /* (3, n_points) at the state; v NULL: at rest */
-    struct cs_pair_set *set;
+    struct cs_active *active; /* those of x */
+    const double *x, *v;      /* (3, n_points) at the state; v NULL: at rest */
     enum cs_pair_ask ask;
     struct cs_eval at;
     const struct cs_matrix *matrix; /* of CS_PAIR_MATRIX */
+    struct cs_product *product;     /* of a matrix that is psd */
+    struct cs_pair_set *set;        /* of any other, and of bounds */
 };
 
-/* Fills the lots of narrow->set and counts them, with all threads. */
-void cs_narrow_run(struct cs_narrow *narrow);
+/* Answers into the sums of the active pairs' rows, which are there but for energies; into their
+ * lots' energies; or fills the product or the set. false: no memory. With all threads. */
+bool cs_narrow_run(struct cs_narrow *narrow);
 
 #endif

@@ -5,68 +5,117 @@
 #include "model/pair/close.h"
 #include "model/pair/narrow.h"
 
-/* false: no memory */
-static bool find(struct cs_pairs *pairs, const double *x) {
-    return cs_close_find(&pairs->search, x) &&
-           (cs_active_is_there(&pairs->active) || cs_active_find(&pairs->active, x));
+/* those of the close pairs if they are there, else in the list that no product needs; NULL: no
+ * memory */
+static struct cs_active *find(struct cs_pairs *pairs, const double *x) {
+    if (!cs_close_find(&pairs->search, x))
+        return NULL;
+    for (int k = 0; k < 2; k++)
+        if (cs_active_is_there(pairs->lists + k))
+            return pairs->lists + k;
+    struct cs_active *active = pairs->lists + (pairs->kept.active == pairs->lists);
+    return cs_active_find(active, x) ? active : NULL;
 }
 
-static void run(struct cs_pairs *pairs, struct cs_narrow *narrow) {
+/* false: no memory */
+static bool answer(struct cs_pairs *pairs, struct cs_narrow *narrow) {
     const struct cs_eval *at = &narrow->at;
-    narrow->active = &pairs->active;
     narrow->x = cs_points_places(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
     narrow->v = cs_points_velocities(pairs->system, at->t, at->v);
     cs_meetings_rub(pairs->system, &pairs->meetings);
-    if (find(pairs, narrow->x)) {
-        cs_narrow_run(narrow);
+    narrow->active = find(pairs, narrow->x);
+    if (!narrow->active)
+        return false;
+    pairs->now = narrow->active;
+    if (narrow->ask != CS_PAIR_ENERGY && !cs_active_gather(pairs->now))
+        return false;
+    if (narrow->product &&
+        !cs_product_begin(narrow->product, pairs->now,
+                          narrow->product == &pairs->other && narrow->matrix->bound))
+        return false;
+    return cs_narrow_run(narrow);
+}
+
+static void run(struct cs_pairs *pairs, struct cs_narrow *narrow) {
+    if (answer(pairs, narrow))
         return;
-    }
-    narrow->set->failed = true;
-    cs_pair_set_count(narrow->set);
+    pairs->failed = true;
+    pairs->now->n = 0;
 }
 
 void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at) {
-    struct cs_narrow narrow = {.set = &pairs->now,
-                               .ask = at->dx || at->dv ? CS_PAIR_CHANGE : CS_PAIR_FORCE,
+    struct cs_narrow narrow = {.ask = at->dx || at->dv ? CS_PAIR_CHANGE : CS_PAIR_FORCE,
                                .at = *at};
     run(pairs, &narrow);
-    cs_pair_set_gather(&pairs->now);
+}
+
+void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double *f) {
+    const struct cs_gather *gather = &pairs->now->gather;
+    if (pairs->now->n)
+        cs_gather_add(gather, gather->sums, 3, begin, end, f);
 }
 
 double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at) {
-    struct cs_narrow narrow = {.set = &pairs->now, .ask = CS_PAIR_ENERGY, .at = *at};
+    struct cs_narrow narrow = {.ask = CS_PAIR_ENERGY, .at = *at};
+    double sum = 0;
     run(pairs, &narrow);
-    return cs_pair_set_energy(&pairs->now);
+    for (uint32_t l = 0; l < pairs->search.n_lots && pairs->now->n; l++)
+        sum += pairs->now->lots[l].energy;
+    return sum;
+}
+
+/* --- matrices --- */
+
+static struct cs_pair_set *set_of(struct cs_pairs *pairs, const struct cs_matrix *matrix,
+                                  bool kept) {
+    struct cs_pair_set *set = kept ? &pairs->exact : &pairs->others;
+    set->exact = true;
+    set->alone = !kept && matrix->bound;
+    return set;
 }
 
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept) {
-    struct cs_pair_set *set = kept ? &pairs->matrix : &pairs->now;
     struct cs_narrow narrow = {
-        .set = set,
         .ask = CS_PAIR_MATRIX,
         .at = {.t = matrix->t, .x = matrix->x, .v = matrix->v, .parts = CS_PART_ALL},
         .matrix = matrix};
-    set->exact = !matrix->psd;
-    set->alone = !kept && matrix->bound;
+    if (matrix->psd)
+        narrow.product = kept ? &pairs->kept : &pairs->other;
+    else
+        narrow.set = set_of(pairs, matrix, kept);
+    if (kept)
+        pairs->kept.active = NULL;
     run(pairs, &narrow);
-    cs_pair_set_gather(set);
-    pairs->blocks = set;
-    if (kept && !set->exact && !cs_product_set(&pairs->product)) {
-        set->failed = true;
-        set->n = 0;
-    }
+    if (kept)
+        pairs->blocks = matrix->psd ? CS_PAIRS_KEPT : CS_PAIRS_EXACT;
+    else
+        pairs->blocks = matrix->psd ? CS_PAIRS_OTHER : CS_PAIRS_OTHERS;
+}
+
+void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
+                         double *blocks) {
+    if (pairs->failed)
+        return;
+    if (pairs->blocks == CS_PAIRS_EXACT || pairs->blocks == CS_PAIRS_OTHERS)
+        cs_pair_set_add_blocks(pairs->blocks == CS_PAIRS_EXACT ? &pairs->exact : &pairs->others,
+                               begin, end, blocks);
+    else
+        cs_product_add_blocks(pairs->blocks == CS_PAIRS_KEPT ? &pairs->kept : &pairs->other,
+                              begin, end, blocks);
 }
 
 void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y) {
-    if (pairs->matrix.exact)
-        cs_pair_set_multiply(&pairs->matrix, p, y);
+    if (pairs->failed)
+        return;
+    if (pairs->kept.active)
+        cs_product_add(&pairs->kept, p, y);
     else
-        cs_product_add(&pairs->product, p, y);
+        cs_pair_set_multiply(&pairs->exact, p, y);
 }
 
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
                         double *damping) {
-    struct cs_narrow narrow = {.set = &pairs->now, .ask = CS_PAIR_BOUND, .at = *at};
+    struct cs_narrow narrow = {.ask = CS_PAIR_BOUND, .at = *at, .set = &pairs->others};
     run(pairs, &narrow);
-    cs_pair_set_add_bound(&pairs->now, stiffness, damping);
+    cs_pair_set_add_bound(&pairs->others, stiffness, damping);
 }

@@ -21,11 +21,14 @@ struct cs_pairs {
     struct cs_meetings meetings;
     struct cs_search search;
     struct cs_facets facets;
-    struct cs_active active;          /* those in range at the last state */
-    struct cs_pair_set now;           /* of the last force, product or bound */
-    struct cs_pair_set matrix;        /* of the solver's matrix, until the next */
-    struct cs_product product;        /* of `matrix` where it is not exact */
-    const struct cs_pair_set *blocks; /* whose diagonal blocks are asked for */
+    struct cs_active lists[2]; /* in range at two states: of `kept`, and of the last question */
+    struct cs_active *now;     /* of the last question */
+    struct cs_product kept;    /* the solver's matrix, until the next, */
+    struct cs_pair_set exact;  /* or this one: kept.active is NULL */
+    struct cs_product other;   /* a matrix that is not kept, or */
+    struct cs_pair_set others; /* one that is exact, and bounds */
+    enum { CS_PAIRS_KEPT, CS_PAIRS_EXACT, CS_PAIRS_OTHER, CS_PAIRS_OTHERS } blocks;
+    bool failed; /* there was no memory: pairs lack, and the run must end */
 };
 
 /* Makes system->pairs, and the surfaces if they are not there. CS_ERR_SCENE: as
@@ -33,16 +36,22 @@ struct cs_pairs {
  * CS_ERR_MEMORY. */
 enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error);
 
-/* Sets pairs->now to what the pairs do at a state: forces, or with at->dx or at->dv their
- * change. With all threads. */
+/* Finds what the pairs do at a state: forces, or with at->dx or at->dv their change. With all
+ * threads. */
 void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at);
+/* f (3,n) += that at particles [begin, end). */
+void cs_pairs_add(const struct cs_pairs *pairs, size_t begin, size_t end, double *f);
 
 /* J, of the elastic part. */
 double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at);
 
-/* Sets pairs->blocks to the shares of a matrix. kept: in pairs->matrix, for products; else in
- * pairs->now, and with matrix->bound for their blocks alone. */
+/* Finds the shares of a matrix. kept: for products too; else with matrix->bound for their
+ * blocks alone. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept);
+/* blocks (6,n) += the diagonal blocks of the matrix that was found last, at particles
+ * [begin, end). */
+void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
+                         double *blocks);
 
 /* y (3,n) += the kept matrix without its diagonal blocks, times p. With all threads. */
 void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y);

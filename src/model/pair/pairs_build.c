@@ -34,22 +34,30 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
     return CS_OK;
 }
 
+static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *arena,
+                                   struct cs_error *error) {
+    const uint32_t n = pairs->system->view.n, n_lots = pairs->search.n_lots;
+    for (int k = 0; k < 2; k++)
+        if (cs_active_init(pairs->lists + k, &pairs->search, &pairs->facets, arena, error))
+            return error->status;
+    if (cs_product_init(&pairs->kept, n_lots, arena, error) ||
+        cs_product_init(&pairs->other, n_lots, arena, error) ||
+        cs_pair_set_init(&pairs->exact, n, n_lots, arena, error))
+        return error->status;
+    return cs_pair_set_init(&pairs->others, n, n_lots, arena, error);
+}
+
 enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
     if (cs_points_build(system, error))
         return error->status;
     struct cs_pairs *pairs = cs_arena_take(&system->arena, sizeof *pairs, error);
     if (!pairs || cs_meetings_build(system, &pairs->meetings, error) ||
         cs_search_init(&pairs->search, system, &pairs->meetings, error) ||
-        cs_facets_init(&pairs->facets, system->surfaces, &system->arena, error) ||
-        cs_active_init(&pairs->active, &pairs->search, &pairs->facets, &system->arena, error))
+        cs_facets_init(&pairs->facets, system->surfaces, &system->arena, error))
         return error->status;
     pairs->system = system;
-    pairs->blocks = &pairs->now;
-    cs_pair_set_init(&pairs->now, system->view.n, pairs->search.n_lots, &system->arena, error);
-    cs_pair_set_init(&pairs->matrix, system->view.n, pairs->search.n_lots, &system->arena,
-                     error);
-    if (error->status ||
-        cs_product_init(&pairs->product, &pairs->matrix, &system->arena, error))
+    pairs->now = pairs->lists;
+    if (init_answers(pairs, &system->arena, error))
         return error->status;
     if (!cs_search_update(&pairs->search,
                           cs_points_places(system, CS_POINTS_BEGIN, 0, system->start)))

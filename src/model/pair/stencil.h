@@ -97,6 +97,14 @@ CS_INLINE void cs_stencil_spread(enum cs_stencil_kind kind, double u, double v, 
     out[3] = v;
 }
 
+/* back: of out that sums to 0 */
+CS_INLINE void cs_stencil_fold(enum cs_stencil_kind kind, const double four[4], double by[3]) {
+    const bool edges = kind == CS_STENCIL_EDGES;
+    by[0] = edges ? -four[1] : four[2];
+    by[1] = four[3];
+    by[2] = edges ? four[0] + four[1] : four[0];
+}
+
 /* The differences and l. */
 CS_INLINE void cs_stencil_frame(struct cs_stencil *s, enum cs_stencil_kind kind,
                                 double p[4][3]) {
