@@ -84,7 +84,7 @@ static double *run(const struct meeting *meeting, struct how how, size_t *bytes)
             break_off(&session, meeting, how);
         meeting_frame(&session, meeting);
     }
-    ck_assert_msg(session.system.pairs->now.n > 0, "%s: nothing meets", meeting->scene);
+    ck_assert_msg(session.system.pairs->now->n > 0, "%s: nothing meets", meeting->scene);
     *bytes = 6 * session.system.view.n * sizeof(double);
     double *state = malloc(*bytes);
     ck_assert_ptr_nonnull(state);
