@@ -4,11 +4,10 @@
 
 #include "base/pool.h"
 #include "model/cross/gap.h"
-#include "model/cross/swath.h"
-#include "model/pair/nearness.h"
 #include "model/pair/pairs.h"
 
 #include <math.h>
+#include <string.h>
 
 /* but for obstacles with each other */
 static bool all_meet(const struct cs_meetings *meetings, uint32_t n_bodies) {
@@ -27,10 +26,11 @@ bool cs_listed_covers(const struct cs_system *system, bool apart, const double *
            cs_search_cover(&pairs->search, x0, x1);
 }
 
+/* pairs that are sieved at a time */
+enum { SOME = 256 };
+
 struct job {
-    struct cs_search *search;
-    const double *x0, *x1;
-    double moves; /* cs_search_moves */
+    struct cs_pairs *pairs;
 };
 
 /* a single particle has no surface to go through */
@@ -50,26 +50,11 @@ static void order_edges(const struct cs_search *search, uint32_t edges[2]) {
     edges[1] = e;
 }
 
-static bool may_meet(enum cs_gap_kind kind, double p[4][3], double moves[4][3]) {
-    struct cs_swath swaths[2] = {cs_swath_none(), cs_swath_none()};
-    const int side = kind == CS_GAP_POINT ? 1 : 2;
-    for (int k = 0; k < 4; k++) {
-        struct cs_swath *swath = swaths + (k >= side);
-        for (int c = 0; c < 3; c++) {
-            cs_swath_widen(swath->low + c, swath->high + c, p[k][c], p[k][c]);
-            cs_swath_widen(swath->least + c, swath->most + c, moves[k][c], moves[k][c]);
-        }
-    }
-    return cs_swaths_meet(swaths, swaths + 1, CS_GAP_LEAST);
-}
-
 static double share_of(const struct job *job, enum cs_stencil_kind stencil,
                        const uint32_t pair[2], double most) {
-    const struct cs_search *search = job->search;
+    const struct cs_search *search = &job->pairs->search;
     const struct cs_surfaces *surfaces = search->system->surfaces;
     const bool edges = stencil == CS_STENCIL_EDGES;
-    const enum cs_gap_kind kind = edges ? CS_GAP_EDGES : CS_GAP_POINT;
-    const size_t n = search->system->surfaces->n_points;
     uint32_t items[2] = {pair[0], pair[1]}, at[4];
     double p[4][3], moves[4][3];
     if (edges)
@@ -77,33 +62,35 @@ static double share_of(const struct job *job, enum cs_stencil_kind stencil,
     else if (is_alone(surfaces, search->body[pair[0]]))
         return most;
     cs_search_corners(surfaces, stencil, items, at);
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            p[k][c] = job->x0[c * n + at[k]];
-    // the cheapest question first: most are further from each other than anything moves
-    const double range =
-        cs_meeting_of(search->meetings, search->body[at[0]], search->body[at[2]])->range;
-    if (cs_nearness_is_apart(stencil, p, job->moves * range + CS_GAP_LEAST))
-        return most;
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            moves[k][c] = job->x1[c * n + at[k]] - p[k][c];
-    return may_meet(kind, p, moves)
-               ? cs_gap_share(kind, (const double(*)[3])p, (const double(*)[3])moves, most)
-               : most;
+    for (size_t k = 0; k < 4; k++) {
+        const double *move = job->pairs->moves[at[k]].of;
+        memcpy(p[k], move + CS_POINT_MOVE_FROM, sizeof p[k]);
+        memcpy(moves[k], move + CS_POINT_MOVE_BY, sizeof moves[k]);
+    }
+    return cs_gap_share(edges ? CS_GAP_EDGES : CS_GAP_POINT, (const double(*)[3])p,
+                        (const double(*)[3])moves, most);
 }
 
 static void share_lot(void *arg, uint32_t number) {
     const struct job *job = arg;
-    struct cs_search_lot *lot = job->search->lots + number;
+    struct cs_search_lot *lot = job->pairs->search.lots + number;
+    struct cs_point_moves_pairs items = {.surfaces = job->pairs->system->surfaces,
+                                         .edges = lot->kind == CS_STENCIL_EDGES};
+    uint32_t some[SOME][2];
     lot->answer = 1;
-    for (size_t k = 0; k < lot->n; k++)
-        lot->answer = share_of(job, lot->kind, lot->pairs + 2 * k, lot->answer);
+    for (size_t p = 0; p < lot->n; p += SOME) {
+        items.items = lot->pairs + 2 * p;
+        items.n = lot->n - p < SOME ? lot->n - p : SOME;
+        const size_t n = cs_point_moves_sieve(job->pairs->moves, &items, CS_GAP_LEAST, some[0]);
+        for (size_t k = 0; k < n; k++)
+            lot->answer = share_of(job, lot->kind, some[k], lot->answer);
+    }
 }
 
 double cs_listed_share(const struct cs_system *system, const double *x0, const double *x1) {
     struct cs_search *search = &system->pairs->search;
-    struct job job = {search, x0, x1, cs_search_moves(search, x0, x1)};
+    struct job job = {system->pairs};
+    cs_point_moves_set(system, x0, x1, system->pairs->moves);
     double share = 1;
     cs_pool_run(search->n_lots, share_lot, &job);
     for (uint32_t l = 0; l < search->n_lots; l++)

@@ -8,6 +8,7 @@
 static size_t bytes_of(const struct cs_scene *scene) {
     const size_t bodies = cs_scene_surfaces(scene);
     return cs_points_bytes(scene) + cs_facets_bytes(scene) + sizeof(struct cs_pairs) +
+           cs_surfaces_points(scene) * sizeof(struct cs_point_move) +
            bodies * bodies * sizeof(struct cs_meeting);
 }
 

@@ -13,6 +13,7 @@
 #ifndef CS_PAIR_PAIRS_H
 #define CS_PAIR_PAIRS_H
 
+#include "model/contact/moves.h"
 #include "model/pair/active.h"
 #include "model/pair/product.h"
 
@@ -28,6 +29,8 @@ struct cs_pairs {
     struct cs_product other;   /* a matrix that is not kept, or */
     struct cs_pair_set others; /* one that is exact, and bounds */
     enum { CS_PAIRS_KEPT, CS_PAIRS_EXACT, CS_PAIRS_OTHER, CS_PAIRS_OTHERS } blocks;
+    struct cs_point_move *moves; /* (n_points) of the step that was asked about last */
+    uint32_t unseen;             /* the lot with what was last not seen of a step */
     bool failed; /* there was no memory: pairs lack, and the run must end */
 };
 

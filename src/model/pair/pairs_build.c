@@ -56,6 +56,8 @@ enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) 
         cs_facets_init(&pairs->facets, system->surfaces, &system->arena, error))
         return error->status;
     pairs->system = system;
+    pairs->moves = cs_arena_take_n(&system->arena, system->surfaces->n_points,
+                                   sizeof *pairs->moves, error);
     pairs->now = pairs->lists;
     if (init_answers(pairs, &system->arena, error))
         return error->status;

@@ -3,19 +3,20 @@
 
 #include "base/pool.h"
 #include "model/contact/points.h"
-#include "model/pair/nearness.h"
 #include "model/pair/way.h"
 
 #include <string.h>
 
 /* points of one move, at most */
 enum { POINTS_MOST = 64 };
+/* pairs that are sieved at a time */
+enum { SOME = 256 };
+#define NONE UINT32_MAX
 
 struct job {
-    const struct cs_pairs *pairs;
-    const double *x0, *x1; /* (3, n_points) */
-    double h;
-    double moves; /* cs_search_moves */
+    struct cs_pairs *pairs;
+    double h;        /* s */
+    uint32_t unseen; /* a lot that has a pair that goes unseen; NONE */
 };
 
 /* One lot at work: ways wait until they are asked about together. */
@@ -24,8 +25,12 @@ struct work {
     enum cs_stencil_kind kind;
     struct cs_way_lanes lanes;
     uint32_t waiting;
-    uint64_t unseen;
+    bool unseen;
 };
+
+static double range_share(enum cs_stencil_kind kind) {
+    return kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1;
+}
 
 /* d (points + 1, and up to a lane less than CS_PAIR_LANES behind) = the smooth distances at the
  * start and at `points` places of the way, the last of them its end; returns whether one is
@@ -84,62 +89,84 @@ static void ask(struct work *work) {
     if (work->waiting)
         cs_way_lanes_ask(work->kind, &work->lanes, work->job->h);
     for (uint32_t l = 0; l < work->waiting; l++)
-        work->unseen += is_lane_unseen(work, l);
+        work->unseen = work->unseen || is_lane_unseen(work, l);
     work->waiting = 0;
 }
 
-/* leaves out pairs so far apart that nothing comes into range on a way as long as any */
+/* the pair waits for others of its kind */
 static void take(struct work *work, const uint32_t pair[2]) {
-    const struct job *job = work->job;
-    const struct cs_search *search = &job->pairs->search;
-    const size_t n = job->pairs->system->surfaces->n_points;
+    const struct cs_pairs *pairs = work->job->pairs;
+    const struct cs_search *search = &pairs->search;
     struct cs_way_lanes *lanes = &work->lanes;
     const uint32_t l = work->waiting;
     uint32_t at[4];
-    double from[4][3];
-    cs_search_corners(job->pairs->system->surfaces, work->kind, pair, at);
+    cs_search_corners(pairs->system->surfaces, work->kind, pair, at);
     const struct cs_meeting *meeting =
-        cs_meeting_of(&job->pairs->meetings, search->body[at[0]], search->body[at[2]]);
-    const double range =
-        meeting->range * (work->kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1);
-    for (size_t k = 0; k < 4; k++)
-        for (size_t c = 0; c < 3; c++)
-            from[k][c] = job->x0[c * n + at[k]];
-    if (cs_nearness_is_apart(work->kind, from, range * (1 + job->moves)))
-        return;
-    lanes->range[l] = range;
+        cs_meeting_of(&pairs->meetings, search->body[at[0]], search->body[at[2]]);
+    lanes->range[l] = meeting->range * range_share(work->kind);
     lanes->k[l] = meeting->k;
     for (size_t k = 0; k < 4; k++) {
-        lanes->inverse_mass[k][l] = cs_points_inverse_mass(job->pairs->system, at[k]);
+        const double *move = pairs->moves[at[k]].of;
+        lanes->inverse_mass[k][l] = move[CS_POINT_MOVE_INVERSE_MASS];
         for (size_t c = 0; c < 3; c++) {
-            lanes->from[k][c][l] = from[k][c];
-            lanes->move[k][c][l] = job->x1[c * n + at[k]] - from[k][c];
+            lanes->from[k][c][l] = move[CS_POINT_MOVE_FROM + c];
+            lanes->move[k][c][l] = move[CS_POINT_MOVE_BY + c];
         }
     }
     if (++work->waiting == CS_WAY_LANES)
         ask(work);
 }
 
-static void count_unseen(void *arg, uint32_t number) {
-    const struct job *job = arg;
-    struct cs_search_lot *lot = job->pairs->search.lots + number;
-    struct work work = {.job = job, .kind = lot->kind};
-    for (size_t p = 0; p < lot->n; p++)
-        take(&work, lot->pairs + 2 * p);
-    ask(&work);
-    lot->answer = (double)work.unseen;
+/* of a lot, those pairs that may come into range */
+static void ask_lot(struct work *work, const struct cs_search_lot *lot) {
+    const struct cs_pairs *pairs = work->job->pairs;
+    const double reach = pairs->meetings.widest * range_share(lot->kind) * (1 + 1e-9);
+    uint32_t some[SOME][2];
+    struct cs_point_moves_pairs items = {.surfaces = pairs->system->surfaces,
+                                         .edges = lot->kind == CS_STENCIL_EDGES};
+    for (size_t p = 0; p < lot->n && !work->unseen; p += SOME) {
+        items.items = lot->pairs + 2 * p;
+        items.n = lot->n - p < SOME ? lot->n - p : SOME;
+        const size_t n = cs_point_moves_sieve(pairs->moves, &items, reach, some[0]);
+        for (size_t k = 0; k < n && !work->unseen; k++)
+            take(work, some[k]);
+    }
+    ask(work);
+}
+
+static void find_unseen(void *arg, uint32_t number) {
+    struct job *job = arg;
+    const struct cs_search *search = &job->pairs->search;
+    // the one that was unseen before may well be so again
+    const uint32_t l = (number + job->pairs->unseen) % search->n_lots;
+    struct work work = {.job = job, .kind = search->lots[l].kind};
+    if (__atomic_load_n(&job->unseen, __ATOMIC_RELAXED) != NONE)
+        return;
+    ask_lot(&work, search->lots + l);
+    if (work.unseen)
+        __atomic_store_n(&job->unseen, l, __ATOMIC_RELAXED);
+}
+
+/* of all pairs in the list as it is */
+static bool all_seen(struct cs_pairs *pairs, double h) {
+    struct job job = {pairs, h, NONE};
+    cs_pool_run(pairs->search.n_lots, find_unseen, &job);
+    if (job.unseen != NONE)
+        pairs->unseen = job.unseen;
+    return job.unseen == NONE;
 }
 
 bool cs_pairs_are_seen(struct cs_pairs *pairs, double t0, const double *x0, double t1,
                        const double *x1) {
-    struct job job = {pairs, cs_points_places(pairs->system, CS_POINTS_BEGIN, t0, x0),
-                      cs_points_places(pairs->system, CS_POINTS_END, t1, x1), t1 - t0, 0};
-    job.moves = cs_search_moves(&pairs->search, job.x0, job.x1);
-    if (!cs_search_cover(&pairs->search, job.x0, job.x1))
+    const struct cs_search *search = &pairs->search;
+    const double *from = cs_points_places(pairs->system, CS_POINTS_BEGIN, t0, x0);
+    const double *to = cs_points_places(pairs->system, CS_POINTS_END, t1, x1);
+    const uint64_t builds = search->builds;
+    cs_point_moves_set(pairs->system, from, to, pairs->moves);
+    // what the list at hand refuses needs none that covers the way
+    if (search->fresh && !all_seen(pairs, t1 - t0))
         return false;
-    cs_pool_run(pairs->search.n_lots, count_unseen, &job);
-    bool seen = true;
-    for (uint32_t l = 0; l < pairs->search.n_lots; l++)
-        seen = seen && pairs->search.lots[l].answer == 0;
-    return seen;
+    if (!cs_search_cover(&pairs->search, from, to))
+        return false;
+    return search->builds == builds || all_seen(pairs, t1 - t0);
 }
