@@ -22,7 +22,7 @@ static const char *const methods[] = {
 static const struct meeting scenes[] = {
     {.scene = "self_compare", .frames = 60, .overrides = {MEETING_LIMIT}},
     {.scene = "ribbon", .frames = 240},
-    {.scene = "reef_knot", .frames = 66},
+    {.scene = "reef_knot", .frames = 120},
     {.scene = "fold", .frames = 60},
     {.scene = "trampoline", .frames = 60},
     {.scene = "needles", .frames = 100},
