@@ -191,9 +191,12 @@ static void number_lot(void *arg, uint32_t number) {
     cs_gather_clear(rows);
     rows->failed = lot->n && !to;
     lot->to = to ? to : lot->to;
+    // neighbours in the list have points in common
     for (size_t p = 0; p < lot->n && !rows->failed; p++)
         for (int k = 0; k < 4; k++)
-            to[p][k] = cs_gather_row(rows, lot->at[p][k]);
+            to[p][k] = p && lot->at[p][k] == lot->at[p - 1][k]
+                           ? to[p - 1][k]
+                           : cs_gather_row(rows, lot->at[p][k]);
 }
 
 bool cs_active_gather(struct cs_active *active) {

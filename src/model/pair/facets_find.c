@@ -160,7 +160,7 @@ static void count_corners(struct finding *on) {
     for (int k = 0; k < 3; k++) {
         const uint32_t corner = on->pair->at[1 + k];
         const double share = on->facets->share[corner];
-        if (share != 0 && is_in_range(on, CORNER + k) &&
+        if (is_in_range(on, CORNER + k) && share != 0 &&
             !(on->pair->own && are_joined(on->facets, on->pair->at[0], corner)))
             on->count[CORNER + k] += share;
     }
