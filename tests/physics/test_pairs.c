@@ -299,6 +299,53 @@ START_TEST(what_stays_flat_makes_no_list) {
 }
 END_TEST
 
+static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix,
+                          const double *x) {
+    static double stiffness[600], damping[600];
+    const struct cs_eval at = {.x = x, .v = matrix->v, .parts = CS_PART_ALL};
+    struct cs_matrix other = *matrix;
+    other.x = x;
+    cs_pairs_set(pairs, &at);
+    cs_pairs_energy(pairs, &at);
+    cs_pairs_set_matrix(pairs, &other, false);
+    cs_pairs_add_bound(pairs, &at, stiffness, damping);
+    other.psd = false;
+    cs_pairs_set_matrix(pairs, &other, false);
+}
+
+/* the kept matrix is that of its state, whatever is asked at others, and what is asked twice is
+ * the same to the bit */
+START_TEST(questions_do_not_disturb_each_other) {
+    struct fixture cloth;
+    static double x[3 * 600], y[4][3 * 600], f[4][3 * 600];
+    uint64_t seed = 4;
+    fixture_open(&cloth, "velocity-verlet:dt=5e-4", "%s", crumple);
+    fixture_start(&cloth);
+    fixture_frames(&cloth, FRAMES / 2);
+    struct cs_pairs *pairs = cloth.system->pairs;
+    const struct cs_eval at = {.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL};
+    struct cs_matrix matrix = {
+        .x = cloth.x, .v = cloth.v, .cm = 1, .cd = -0.01, .ck = -1e-4, .psd = true};
+    for (int k = 0; k < 4; k++) {
+        matrix.psd = k < 2;
+        if (k % 2 == 0)
+            cs_pairs_set_matrix(pairs, &matrix, true);
+        cs_pairs_multiply(pairs, cloth.v, y[k]);
+        cs_pairs_set(pairs, &at);
+        cs_pairs_add(pairs, 0, cloth.n, f[k]);
+        shake(&cloth, 0.1 * k, &seed, x);
+        ask_elsewhere(pairs, &matrix, x);
+        cs_pairs_set(pairs, &at);
+        ask_elsewhere(pairs, &matrix, x);
+    }
+    for (int k = 1; k < 4; k++)
+        ck_assert(!memcmp(f[0], f[k], sizeof f[0]));
+    ck_assert(!memcmp(y[0], y[1], sizeof y[0]) && !memcmp(y[2], y[3], sizeof y[0]));
+    ck_assert(memcmp(y[0], y[2], sizeof y[0]));
+    fixture_close(&cloth);
+}
+END_TEST
+
 /* a cloth whose layers have no room for its thickness is told so */
 START_TEST(too_thick_is_refused) {
     struct cs_error error = {0};
@@ -327,6 +374,7 @@ int main(void) {
                                   list_limits_as_the_tree_does,
                                   what_was_flat_is_looked_at_again,
                                   what_stays_flat_makes_no_list,
+                                  questions_do_not_disturb_each_other,
                                   too_thick_is_refused};
     return fixture_run("pairs", tests, sizeof tests / sizeof *tests);
 }

@@ -128,9 +128,9 @@ bool cs_gather_set(struct cs_gather *gather) {
     uint32_t *starts = gather->starts + 1;
     if (!count_rows(gather) || (gather->n_rows && !take_rows(gather)))
         return false;
-    memset(gather->starts, 0, (gather->n_particles + (size_t)2) * sizeof *starts);
     if (!gather->n_rows)
         return true;
+    memset(gather->starts, 0, (gather->n_particles + (size_t)2) * sizeof *starts);
     count_points(gather, starts);
     for (uint32_t i = 0; i < gather->n_particles; i++)
         starts[i + 1] += starts[i];
