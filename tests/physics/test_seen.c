@@ -196,6 +196,27 @@ START_TEST(steps_that_come_into_range_are_asked) {
 }
 END_TEST
 
+/* a list that covers a step has room for the next one, where that goes on alike */
+START_TEST(lists_look_ahead) {
+    struct fixture cloth;
+    static double x[MOST];
+    enum { STEPS = 12 };
+    fixture_open(&cloth, "implicit-linearised:dt=0.02", "%s", sheets);
+    struct cs_search *search = &cloth.system->pairs->search;
+    const size_t first = cloth.system->bodies[1].first;
+    const uint64_t before = search->builds;
+    for (int step = 0; step < STEPS; step++) {
+        memcpy(x, cloth.x, 3 * cloth.n * sizeof *x);
+        for (size_t i = first; i < cloth.n; i++)
+            x[i] += 0.6 * search->meetings->least;
+        ck_assert(cs_search_cover(search, cloth.x, x));
+        memcpy(cloth.x, x, 3 * cloth.n * sizeof *x);
+    }
+    ck_assert_uint_le(search->builds - before, STEPS / 2);
+    fixture_close(&cloth);
+}
+END_TEST
+
 /* one pair through the sieve */
 static bool passes(const struct fixture *cloth, const struct pair *pair, double reach) {
     uint32_t out[2];
@@ -237,7 +258,7 @@ END_TEST
 
 int main(void) {
     const TTest *const tests[] = {steps_are_seen_as_by_all_pairs,
-                                  steps_that_come_into_range_are_asked,
+                                  steps_that_come_into_range_are_asked, lists_look_ahead,
                                   sieves_hold_what_swaths_do};
     return fixture_run("seen", tests, sizeof tests / sizeof *tests);
 }

@@ -226,18 +226,23 @@ static bool is_covered(const struct cs_search *search, const double *x0, const d
            is_flat(search, x1);
 }
 
+/* ways of a step, at most, that the middle of a list lies ahead of it */
+#define AHEAD 2
+
 bool cs_search_cover(struct cs_search *search, const double *x0, const double *x1) {
     const size_t n = search->system->surfaces->n_points;
     if (is_covered(search, x0, x1))
         return true;
-    // a quarter of the move lies to both sides of the middle, for each of two particles
-    const double least = 0.25 * largest_move(search, x0, x1) * (1 + 1e-9);
-    const double margin = fmax(search->margin, least);
+    const double move = largest_move(search, x0, x1) * (1 + 1e-9);
+    // half of the way lies to both sides of its middle, and each particle goes half of that
+    const double margin = fmax(search->margin, 0.25 * move);
     if (!(margin <= CS_SEARCH_FAR * CS_SEARCH_MARGIN * search->meetings->least))
         return false;
+    // the next step goes on much as this one: the list is made as far along as it covers this
+    const double along = fmin(2 * margin / move, AHEAD);
     for (size_t i = 0; i < 3 * n; i++)
-        search->from[i] = x0[i] + 0.5 * (x1[i] - x0[i]);
-    return build(search, margin, fmax(flat_margin(search, search->margin), least));
+        search->from[i] = x0[i] + along * (x1[i] - x0[i]);
+    return build(search, margin, fmax(flat_margin(search, search->margin), 0.5 * along * move));
 }
 
 double cs_search_moves(const struct cs_search *search, const double *x0, const double *x1) {
