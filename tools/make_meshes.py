@@ -37,13 +37,13 @@ def funnel():
 
 def needles():
     places, triangles = [], []
-    for i in range(7):
-        for j in range(7):
-            x, z, first = 0.1 * (i - 3), 0.1 * (j - 3), len(places)
+    for i in range(10):
+        for j in range(10):
+            x, z, first = 0.07 * (i - 4.5), 0.07 * (j - 4.5), len(places)
             places += ring(0.018, 0, 6, x, z) + ring(0.0099, 0.096, 6, x, z) + [(x, 0.16, z)]
             triangles += wall(first, 6, True)
             triangles += [(first + 6 + k, first + 12, first + 6 + (k + 1) % 6) for k in range(6)]
-    write("needles", "7 x 7 cones of six sides, open below", places, triangles)
+    write("needles", "10 x 10 cones of six sides, open below", places, triangles)
 
 
 def tetrahedron():

@@ -4,6 +4,7 @@
 #include "fixture.h"
 #include "meeting.h"
 
+#include "model/force/measure.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -24,17 +25,17 @@ struct kept {
 };
 
 static const struct kept kept_apart[] = {
-    {{"needles", "velocity-verlet", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"needles", "velocity-verlet", {MEETING_GRID(5, 5)}, 9}, false},
     {{"needles", "dopri5:rtol=1e-3", {MEETING_GRID(7, 7)}, 11}, false},
     {{"needles", "implicit-linearised:dt=0.008", {MEETING_GRID(7, 7)}, 16}, false},
-    {{"needles", "newmark:dt=0.008", {MEETING_GRID(7, 7)}, 11}, false},
+    {{"needles", "newmark:dt=0.008", {MEETING_GRID(5, 5)}, 9}, false},
     {{"needles", "cvode-bdf:rtol=1e-3", {MEETING_GRID(7, 7)}, 11}, false},
     {{"needles", "xpbd:dt=0.004", {MEETING_GRID(7, 7)}, 11}, false},
     {{"bear_drape", NULL, {MEETING_GRID(9, 9)}, 15}, false},
     {{"reef_knot", "implicit-linearised:dt=0.008", {{NULL, NULL}}, 12}, false},
-    {{"needles", NULL, {{NULL, NULL}}, 90}, true},
-    {{"needles", "velocity-verlet", {MEETING_GRID(13, 13)}, 60}, true},
-    {{"needles", "bdf2:dt=0.004", {MEETING_GRID(13, 13)}, 60}, true},
+    {{"needles", NULL, {{NULL, NULL}}, 125}, true},
+    {{"needles", "velocity-verlet", {MEETING_GRID(13, 13)}, 90}, true},
+    {{"needles", "bdf2:dt=0.004", {MEETING_GRID(13, 13)}, 90}, true},
     {{"bear_drape", NULL, {MEETING_GRID(25, 25)}, 60}, true},
     {{"bear_drape", "cvode-bdf:rtol=1e-3", {MEETING_GRID(13, 13)}, 40}, true},
     {{"winding", NULL, {MEETING_GRID(21, 21)}, 200}, true},
@@ -66,6 +67,20 @@ START_TEST(nothing_goes_through) {
 END_TEST
 
 /* --- what scenes are about --- */
+
+/* A sheet that is pulled off needles is not torn by them: found is a strain of 0.2. */
+START_TEST(needles_do_not_tear) {
+    const struct meeting of = {"needles", NULL, {MEETING_GRID(13, 13)}, all ? 125 : 1};
+    struct cs_session session;
+    meeting_open(&session, &of);
+    for (uint32_t frame = 0; frame < of.frames; frame++) {
+        meeting_frame(&session, &of);
+        const double strain = cs_measure_strain(&session.system, session.run.x);
+        ck_assert_msg(strain < 0.4, "frame %u: %.3g", frame + 1, strain);
+    }
+    cs_session_close(&session);
+}
+END_TEST
 
 enum { RIBBON = 363, HELD = 6, FRAMES_OF_MEAN = 6 };
 
@@ -136,7 +151,23 @@ static double turn_of(const struct cs_session *session) {
     return atan2(x[2 * n + middle - 1] - x[2 * n + middle + 1], x[middle + 1] - x[middle - 1]);
 }
 
-/* the ball takes the sheet along, by an angle that the step does not decide */
+/* rad, over all frames */
+static double wind_up(const struct meeting *of) {
+    struct cs_session session;
+    double turned = 0, before = 0;
+    meeting_open(&session, of);
+    for (uint32_t frame = 0; frame < of->frames; frame++) {
+        meeting_frame(&session, of);
+        const double now = turn_of(&session);
+        turned += remainder(now - before, 2 * acos(-1));
+        before = now;
+    }
+    cs_session_close(&session);
+    return turned;
+}
+
+/* The ball takes the sheet along, by an angle that the step does not decide: in three seconds
+ * by more than a whole turn. The small case begins to. */
 START_TEST(ball_winds_up_the_sheet) {
     static const char *const methods[] = {"implicit-linearised:dt=0.004",
                                           "implicit-linearised:dt=0.002",
@@ -144,21 +175,15 @@ START_TEST(ball_winds_up_the_sheet) {
     const int n = all ? 3 : 2;
     double turn[3];
     for (int k = 0; k < n; k++) {
-        const struct meeting of = {"winding",
-                                   methods[k],
-                                   {MEETING_GRID(7, 7), {"events[0].from", "0.2"}},
-                                   all ? 48 : 18};
-        struct cs_session session;
-        meeting_open(&session, &of);
-        for (uint32_t frame = 0; frame < of.frames; frame++)
-            meeting_frame(&session, &of);
-        turn[k] = turn_of(&session);
-        cs_session_close(&session);
+        const struct meeting whole = {"winding", methods[k], {MEETING_GRID(7, 7)}, 240};
+        const struct meeting part = {
+            "winding", methods[k], {MEETING_GRID(7, 7), {"events[0].from", "0.2"}}, 18};
+        turn[k] = wind_up(all ? &whole : &part);
     }
-    ck_assert_msg(turn[0] > (all ? 0.3 : 0.05), "turned by %.3g", turn[0]);
+    ck_assert_msg(turn[0] > (all ? 6.3 : 0.02), "turned by %.3g", turn[0]);
     for (int k = 1; k < n; k++)
-        ck_assert_msg(fabs(turn[k] - turn[k - 1]) < 0.08 * turn[k], "%.5g, %.5g", turn[k - 1],
-                      turn[k]);
+        ck_assert_msg(fabs(turn[k] - turn[k - 1]) < (all ? 0.02 : 0.08) * turn[k], "%.5g, %.5g",
+                      turn[k - 1], turn[k]);
 }
 END_TEST
 
@@ -186,8 +211,8 @@ END_TEST
 
 /* --- curtain and ball --- */
 
-/* A ball of triangles on its way through a curtain (after Bridson et al. 2002); columns and
- * rows, friction. */
+/* A ball of triangles that goes into a curtain, and stays where the curtain hangs down over it
+ * (after Bridson et al. 2002); columns and rows, friction. */
 #define CURTAIN                                                                                \
     "{\"bodies\": [{\"cloth\": {\"grid\": [%u, %u], \"size\": [0.8, 0.8], \"place\": "         \
     "{\"translate\": [0, 0, 0]}}, \"mass\": {\"areal_density\": 0.25}, \"springs\": "          \
@@ -196,43 +221,59 @@ END_TEST
     "4, "                                                                                      \
     "\"scale\": [0.4, 0.4, 0.4], \"place\": {\"translate\": [0.03, -0.1, -0.3]}}, "            \
     "\"friction\": %g, \"thickness\": 0.02}], \"contact\": {\"law\": \"force\", "              \
-    "\"damping\": 0.001, \"friction_speed\": 0.05}, \"events\": [{\"from\": 0, \"to\": 1.2, "  \
-    "\"move\": {\"collider\": 0, \"path\": [{\"at\": 1.2, \"point\": [0, 0, 0.9]}]}}], "       \
+    "\"damping\": 0.001, \"friction_speed\": 0.05}, \"events\": [{\"from\": 0, \"to\": 0.8, "  \
+    "\"move\": {\"collider\": 0, \"path\": [{\"at\": 0.8, \"point\": [0, 0, 0.6]}]}}], "       \
     "\"crossings\": \"limit\"}"
 
-/* Runs it, and gives the mean of the curtain's particles along the ball's way, in m. */
-static double carried(const char *method, uint32_t grid, double mu, uint32_t frames) {
+/* z in m of the ball's centre in the end */
+#define BALL_END 0.3
+
+/* Runs it, and gives the mean of the curtain's particles along the ball's way, in m, and which
+ * share of them is in front of where the ball ends. */
+static double carried(const char *method, uint32_t grid, double mu, uint32_t frames,
+                      double *front) {
     struct fixture cloth;
     double mean = 0;
+    *front = 0;
     fixture_open(&cloth, method, CURTAIN, grid, grid, mu);
     fixture_start(&cloth);
     for (uint32_t frame = 0; frame < frames; frame++) {
         fixture_frames(&cloth, 1);
         ck_assert_uint_eq(meeting_crossings(&cloth.session), 0);
     }
-    for (size_t i = 0; i < cloth.n; i++)
+    for (size_t i = 0; i < cloth.n; i++) {
         mean += cloth.x[2 * cloth.n + i] / (double)cloth.n;
+        *front += (cloth.x[2 * cloth.n + i] > BALL_END) / (double)cloth.n;
+    }
     fixture_close(&cloth);
     return mean;
 }
 
-START_TEST(ball_goes_through_the_curtain) {
+/* After two seconds 0.4 of the curtain is in front of the ball, at any step where friction
+ * holds it there; without friction it slips by and by. */
+START_TEST(ball_goes_into_the_curtain) {
     static const char *const steps[] = {"implicit-linearised:dt=0.004",
                                         "implicit-linearised:dt=0.002",
                                         "implicit-linearised:dt=0.001"};
-    const uint32_t grid = all ? 17 : 7, frames = all ? 60 : 24;
+    const uint32_t grid = all ? 17 : 7, frames = all ? 120 : 24;
     for (int rub = all ? 0 : 1; rub < 2; rub++) {
-        const double mu = rub ? 0.6 : 0;
-        const double coarse = carried(steps[all], grid, mu, frames);
-        const double fine = carried(steps[1 + all], grid, mu, frames);
-        ck_assert_msg(fabs(coarse - fine) < 0.01, "rub %d: %.4g, %.4g m", rub, coarse, fine);
+        const double mu = rub ? 0.6 : 0, most = !all ? 0.01 : rub ? 0.002 : 0.03;
+        double share[2];
+        const double coarse = carried(steps[all], grid, mu, frames, share);
+        const double fine = carried(steps[1 + all], grid, mu, frames, share + 1);
+        ck_assert_msg(fabs(coarse - fine) < most, "rub %d: %.4g, %.4g m", rub, coarse, fine);
+        ck_assert_msg(fabs(share[0] - share[1]) < 2 * most, "rub %d: %.4g, %.4g in front", rub,
+                      share[0], share[1]);
+        ck_assert_msg(!all || fabs(share[1] - 0.4) < 0.1, "rub %d: %.4g in front", rub,
+                      share[1]);
     }
 }
 END_TEST
 
 int main(int argc, char **argv) {
     all = argc > 1 && !strcmp(argv[1], "all");
-    const TTest *const tests[] = {nothing_goes_through, knot_is_tight, ball_winds_up_the_sheet,
-                                  sheets_go_through_the_funnel, ball_goes_through_the_curtain};
+    const TTest *const tests[] = {
+        nothing_goes_through,    needles_do_not_tear,          knot_is_tight,
+        ball_winds_up_the_sheet, sheets_go_through_the_funnel, ball_goes_into_the_curtain};
     return fixture_run("contact scenes", tests, LENGTH(tests));
 }
