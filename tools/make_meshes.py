@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Writes the meshes of scenes that bodies meet: scenes/funnel.obj, scenes/needles.obj,
-scenes/tetrahedron.obj, and scenes/bight.obj, a ribbon that is half a reef knot."""
+scenes/tetrahedron.obj, scenes/bight.obj, a ribbon that is half a reef knot, and the tube
+scenes/twister.obj with scenes/twister.json, whose ends turn on chords."""
+import json
 import math
 
 
@@ -101,7 +103,68 @@ def bight():
     write("bight", "a ribbon of 121 x 3 points, half a reef knot", places, triangles)
 
 
+# the twister: both ends turn at SPIN degrees/s against each other, and come inwards
+AROUND, RINGS, RADIUS, LENGTH, SPIN, INWARDS, CHORD, END = 24, 25, 0.25, 1.0, 72, 0.005, 15, 6.25
+
+
+def turned(k, degrees):
+    angle = 2 * math.pi * k / AROUND + math.radians(degrees)
+    return [RADIUS * math.cos(angle), RADIUS * math.sin(angle)]
+
+
+def grab(first, k, sign):
+    points = []
+    for chord in range(1, round(SPIN * END / CHORD) + 1):
+        t, start = chord * CHORD / SPIN, turned(k, 0)
+        now = turned(k, sign * chord * CHORD)
+        shift = [sign * INWARDS * t, now[0] - start[0], now[1] - start[1]]
+        points.append({"at": float("%.9g" % t), "point": [float("%.6g" % c) for c in shift]})
+    return {"from": 0, "to": END,
+            "grab": {"particles": [first + k], "relative": True, "path": points}}
+
+
+def twister():
+    places = [tuple([LENGTH * (j / (RINGS - 1) - 0.5)] + turned(k, 0))
+              for j in range(RINGS) for k in range(AROUND)]
+    triangles = []
+    for j in range(RINGS - 1):
+        for k in range(AROUND):
+            a, b = j * AROUND + k, j * AROUND + (k + 1) % AROUND
+            c, d = a + AROUND, b + AROUND
+            triangles += [(a, c, b), (b, c, d)] if (j + k) % 2 else [(a, c, d), (a, d, b)]
+    write("twister", "a tube, open at both ends", places, triangles)
+    events = [grab(0, k, 1) for k in range(AROUND)]
+    events += [grab(AROUND * (RINGS - 1), k, -1) for k in range(AROUND)]
+    with open("scenes/twister.json", "w") as out:
+        out.write(TWISTER % ",\n    ".join(json.dumps(event) for event in events))
+
+
+TWISTER = """{
+  "about": "A tube of cloth is twisted from both ends: from about one turn on it winds up on itself.",
+  "source": "after Li, Kaufman, Jiang 2021 (Codimensional IPC): both ends of a cylinder turn at 72 degrees a second and come inwards at 5 mm/s, frames of 40 ms; offset 1.5 mm there, 10 mm here for coarser triangles",
+  "time": { "fps": 25 },
+  "bodies": [
+    {
+      "mesh": { "file": "twister.obj" },
+      "mass": { "areal_density": 0.15 },
+      "springs": { "stretch": 60, "bend": 1, "damping": 0.02 },
+      "thickness": 0.01, "self_contact": true,
+      "material": { "colour": [0.45, 0.08, 0.1], "back_colour": [0.55, 0.42, 0.15] }
+    }
+  ],
+  "contact": { "law": "force", "stiffness": 1000, "damping": 0.0005, "friction_speed": 0.01 },
+  "forces": { "gravity": [0, 0, 0], "drag": 2e-4 },
+  "events": [
+    %s
+  ],
+  "crossings": "limit",
+  "camera": { "eye": [0.2, 0.45, 1.5], "target": [0, 0, 0] },
+  "integrator": { "name": "implicit-linearised", "dt": 0.004 }
+}
+"""
+
 funnel()
 needles()
 tetrahedron()
 bight()
+twister()

@@ -42,6 +42,7 @@ static const struct kept kept_apart[] = {
     {{"bear_heap", NULL, {{NULL, NULL}}, 120}, true},
     {{"reef_knot", NULL, {{NULL, NULL}}, 105}, true},
     {{"ribbon", NULL, {MEETING_LIMIT}, 240}, true},
+    {{"twister", NULL, {{NULL, NULL}}, 156}, true},
     {{"fold", NULL, {MEETING_LIMIT}, 60}, true},
     {{"trampoline", NULL, {MEETING_LIMIT}, 60}, true},
     {{"layers", NULL, {MEETING_LIMIT}, 60}, true},
