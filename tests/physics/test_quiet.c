@@ -161,8 +161,49 @@ START_TEST(sheets_lie_still) {
 }
 END_TEST
 
+/* --- friction that is linearised --- */
+
+/* A particle at rest on a floor, but for a speed along it; a is h mu N/(m ev), in steps of 4 ms
+ * with mu = 0.5. */
+static double slide(double a, uint32_t frames) {
+    const double speed = 4e-3 * 0.5 * gravity / a;
+    // carries the weight at 0.49 of the range of 0.02 m
+    const double y = 0.49, part = (1 - y) * (1 - y) * (1 - y) * (1 + 3 * y) / (y * y);
+    const double stiffness = 12 * 1e-3 * gravity / (0.02 * part);
+    struct fixture block;
+    fixture_open(
+        &block, "implicit-linearised:dt=4e-3",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [1, 1], \"start\": \"flat\", \"velocity\": "
+        "[%.17g, 0, 0], \"place\": {\"translate\": [0, 0.0098, 0]}}, \"mass\": {\"total\": "
+        "1e-3}}], \"colliders\": [{\"floor\": {\"height\": 0}, \"friction\": 0.5, "
+        "\"thickness\": 0.02}], \"contact\": {\"law\": \"force\", \"stiffness\": %.17g, "
+        "\"damping\": 0.01, \"friction_speed\": %.17g}, \"time\": {\"fps\": 250}}",
+        3 * speed, stiffness, speed);
+    fixture_start(&block);
+    fixture_frames(&block, frames);
+    const double v = fabs(block.v[0]) / speed;
+    fixture_close(&block);
+    return v;
+}
+
+/* Friction at its slope, step by step: u' = u - a u/s/(1 + a/s^3), s^2 = 1 + u^2, with u =
+ * v/ev. It goes to and fro for ever, u' = -u, where a s^2 = 2 s^3 + 2 a, which has a root for
+ * a^2 >= 54. */
+START_TEST(linearised_friction_chatters_above_a_limit) {
+    ck_assert_double_lt(slide(0.99 * sqrt(54), 300), 1e-9);
+    const double a = 1.05 * sqrt(54);
+    double low = a / 3, high = a / 2;
+    for (int k = 0; k < 60; k++) {
+        const double s = (low + high) / 2;
+        *(a * s * s > 2 * s * s * s + 2 * a ? &low : &high) = s;
+    }
+    ck_assert_double_eq_tol(slide(a, 300), sqrt(low * low - 1), 1e-3);
+}
+END_TEST
+
 int main(int argc, char **argv) {
     all = argc > 1 && strcmp(argv[1], "all") == 0;
-    const TTest *const tests[] = {slope_takes_nothing, sheets_push_straight, sheets_lie_still};
+    const TTest *const tests[] = {slope_takes_nothing, sheets_push_straight, sheets_lie_still,
+                                  linearised_friction_chatters_above_a_limit};
     return fixture_run("quiet", tests, LENGTH(tests));
 }
