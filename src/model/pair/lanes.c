@@ -99,6 +99,43 @@ CS_INLINE void change(enum cs_stencil_kind kind, struct cs_pair_lanes *restrict 
 KERNEL(push)
 KERNEL(change)
 
+CS_INLINE void find_bounds(enum cs_stencil_kind kind, struct cs_pair_lanes *restrict lanes,
+                           struct cs_contact_keys keys, struct cs_pair_bounds *restrict to) {
+    const struct cs_pair_law law = {.keys = keys};
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        struct cs_reaction reaction;
+        double stiffness[4], damping[4];
+        react(kind, lanes, l, &law, &reaction);
+        cs_reaction_bound(&reaction, stiffness, damping);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            to->stiffness[k][l] = stiffness[k];
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            to->damping[k][l] = damping[k];
+    }
+}
+
+CS_CLONES static void bound_triangles(struct cs_pair_lanes *restrict lanes,
+                                      struct cs_contact_keys keys,
+                                      struct cs_pair_bounds *restrict to) {
+    find_bounds(CS_STENCIL_TRIANGLE, lanes, keys, to);
+}
+
+CS_CLONES static void bound_edges(struct cs_pair_lanes *restrict lanes,
+                                  struct cs_contact_keys keys,
+                                  struct cs_pair_bounds *restrict to) {
+    find_bounds(CS_STENCIL_EDGES, lanes, keys, to);
+}
+
+void cs_pair_lanes_bound(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
+                         const struct cs_contact_keys *keys, struct cs_pair_bounds *bounds) {
+    if (kind == CS_STENCIL_EDGES)
+        bound_edges(lanes, *keys, bounds);
+    else
+        bound_triangles(lanes, *keys, bounds);
+}
+
 CS_INLINE void write_factors(enum cs_stencil_kind kind, double g[4][3],
                              const struct cs_pair_share *share, int lane,
                              struct cs_pair_factors *factors) {

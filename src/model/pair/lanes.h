@@ -34,6 +34,13 @@ void cs_pair_lanes_push(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
 void cs_pair_lanes_change(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
                           const struct cs_pair_law *law);
 
+/* Bounds of each pair's particles, as cs_reaction_bound. */
+struct cs_pair_bounds {
+    double stiffness[4][CS_PAIR_LANES], damping[4][CS_PAIR_LANES]; /* N/m, N s/m */
+};
+void cs_pair_lanes_bound(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
+                         const struct cs_contact_keys *keys, struct cs_pair_bounds *bounds);
+
 /* What a matrix has of as many pairs, by the differences u, v, w of their points: half as many
  * numbers as by the points. */
 struct cs_pair_factors {

@@ -47,27 +47,13 @@ static void add_turn(const struct work *work, const struct cs_reaction *reaction
     cs_reaction_turn(reaction, work->narrow->matrix, full + lot->n - 1);
 }
 
-static void answer(const struct work *work, const struct cs_reaction *reaction,
-                   struct cs_pair *pair, struct cs_pair_part *part) {
-    const struct cs_narrow *narrow = work->narrow;
-    struct cs_pair_share share;
-    if (narrow->ask == CS_PAIR_BOUND) {
-        cs_reaction_bound(reaction, part->of, part->share);
-        return;
-    }
-    cs_reaction_matrix(reaction, narrow->matrix, pair->to, &share);
-    part->along = share.along;
-    memcpy(part->share, share.weight, sizeof share.weight);
-    memcpy(part->of, share.of, sizeof share.of);
-    add_turn(work, reaction);
-}
-
 static void add_alone(const struct work *work, const struct cs_pair_lanes *from, uint32_t lane,
                       const uint32_t at[4]) {
     const struct cs_narrow *narrow = work->narrow;
     const struct cs_system *system = narrow->active->search->system;
     const struct cs_meeting meeting = {from->range[lane], from->k[lane], from->mu[lane]};
     struct cs_reaction reaction;
+    struct cs_pair_share share;
     const struct cs_facet_form form = {from->rim[lane], from->off[lane], from->bend[lane]};
     double p[4][3], v[4][3];
     struct cs_pair_lot *lot = narrow->set->lots + work->number;
@@ -81,7 +67,11 @@ static void add_alone(const struct work *work, const struct cs_pair_lanes *from,
     read(narrow->v, system->surfaces->n_points, pair->at, v);
     cs_reaction_measure(&reaction, work->lot->kind, form, p);
     cs_reaction_set(&reaction, &meeting, &system->scene->contact, v);
-    answer(work, &reaction, pair, part);
+    cs_reaction_matrix(&reaction, narrow->matrix, pair->to, &share);
+    part->along = share.along;
+    memcpy(part->share, share.weight, sizeof share.weight);
+    memcpy(part->of, share.of, sizeof share.of);
+    add_turn(work, &reaction);
 }
 
 /* --- in lanes --- */
@@ -133,13 +123,28 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t f
                          narrow->product->lots[work->number].factors + first / CS_PAIR_LANES);
 }
 
+/* stiffness in the first number of each row, damping in as many behind them all */
+static void add_bounds(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
+    const struct cs_active *active = work->narrow->active;
+    const struct cs_gather *gather = &active->gather;
+    uint32_t(*to)[4] = work->lot->to + first;
+    double *sums = cs_gather_of(gather->lots + work->number, gather->sums, 1);
+    struct cs_pair_bounds bounds;
+    cs_pair_lanes_bound(work->lot->kind, lanes, &active->search->system->scene->contact,
+                        &bounds);
+    for (uint32_t l = 0; l < lanes->n; l++)
+        for (int k = 0; k < 4; k++) {
+            sums[to[l][k]] += bounds.stiffness[k][l];
+            sums[gather->n_rows + to[l][k]] += bounds.damping[k][l];
+        }
+}
+
 static bool is_force(const struct cs_narrow *narrow) {
     return narrow->ask == CS_PAIR_FORCE || narrow->ask == CS_PAIR_CHANGE;
 }
 
 static bool is_in_set(const struct cs_narrow *narrow) {
-    return narrow->ask == CS_PAIR_BOUND ||
-           (narrow->ask == CS_PAIR_MATRIX && !narrow->matrix->psd);
+    return narrow->ask == CS_PAIR_MATRIX && !narrow->matrix->psd;
 }
 
 static bool has_rows(const struct cs_narrow *narrow) {
@@ -152,6 +157,8 @@ static void act(const struct work *work, struct cs_pair_lanes *lanes, size_t fir
         add_energy(work, lanes, first);
     else if (is_force(work->narrow))
         push(work, lanes);
+    else if (work->narrow->ask == CS_PAIR_BOUND)
+        add_bounds(work, lanes, first);
     else if (!is_in_set(work->narrow))
         share(work, lanes, first);
     else
@@ -218,6 +225,18 @@ static void do_some(const struct work *work, size_t first) {
         add_pushes(work, lanes + p / CS_PAIR_LANES, first + p);
 }
 
+/* of one lot's rows */
+static void clear_sums(const struct cs_narrow *narrow, const struct cs_gather_lot *rows) {
+    const struct cs_gather *gather = &narrow->active->gather;
+    if (is_force(narrow)) {
+        memset(cs_gather_of(rows, gather->sums, 3), 0, 3 * sizeof(double) * rows->n);
+    } else if (narrow->ask == CS_PAIR_BOUND) {
+        double *stiffness = cs_gather_of(rows, gather->sums, 1);
+        memset(stiffness, 0, sizeof *stiffness * rows->n);
+        memset(stiffness + gather->n_rows, 0, sizeof *stiffness * rows->n);
+    }
+}
+
 /* false: there is nothing to do */
 static bool begin(const struct work *work) {
     const struct cs_narrow *narrow = work->narrow;
@@ -228,8 +247,7 @@ static bool begin(const struct work *work) {
         cs_pair_lot_clear(narrow->set->lots + work->number);
     if (!work->lot->n)
         return false;
-    if (is_force(narrow))
-        memset(cs_gather_of(rows, gather->sums, 3), 0, 3 * sizeof(double) * rows->n);
+    clear_sums(narrow, rows);
     return narrow->ask != CS_PAIR_MATRIX || is_in_set(narrow) ||
            cs_product_lot_begin(narrow->product, work->number);
 }

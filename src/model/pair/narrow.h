@@ -21,11 +21,12 @@ struct cs_narrow {
     struct cs_eval at;
     const struct cs_matrix *matrix; /* of CS_PAIR_MATRIX */
     struct cs_product *product;     /* of a matrix that is psd */
-    struct cs_pair_set *set;        /* of any other, and of bounds */
+    struct cs_pair_set *set;        /* of any other */
 };
 
-/* Answers into the sums of the active pairs' rows, which are there but for energies; into their
- * lots' energies; or fills the product or the set. false: no memory. With all threads. */
+/* Answers into the sums of the active pairs' rows, which are there but for energies: forces
+ * (n_rows, 3), or bounds (2, n_rows), stiffness and damping; into their lots' energies; or
+ * fills the product or the set. false: no memory. With all threads. */
 bool cs_narrow_run(struct cs_narrow *narrow);
 
 #endif

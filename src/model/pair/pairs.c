@@ -115,7 +115,12 @@ void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y)
 
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
                         double *damping) {
-    struct cs_narrow narrow = {.ask = CS_PAIR_BOUND, .at = *at, .set = &pairs->others};
+    struct cs_narrow narrow = {.ask = CS_PAIR_BOUND, .at = *at};
     run(pairs, &narrow);
-    cs_pair_set_add_bound(&pairs->others, stiffness, damping);
+    const struct cs_gather *gather = &pairs->now->gather;
+    const size_t n = pairs->system->view.n;
+    if (!pairs->now->n)
+        return;
+    cs_gather_add(gather, gather->sums, 1, 0, n, stiffness);
+    cs_gather_add(gather, gather->sums + gather->n_rows, 1, 0, n, damping);
 }

@@ -27,7 +27,7 @@ struct cs_pairs {
     struct cs_product kept;    /* the solver's matrix, until the next, */
     struct cs_pair_set exact;  /* or this one: kept.active is NULL */
     struct cs_product other;   /* a matrix that is not kept, or */
-    struct cs_pair_set others; /* one that is exact, and bounds */
+    struct cs_pair_set others; /* one that is exact */
     enum { CS_PAIRS_KEPT, CS_PAIRS_EXACT, CS_PAIRS_OTHER, CS_PAIRS_OTHERS } blocks;
     struct cs_point_move *moves; /* (n_points) of the step that was asked about last */
     uint32_t unseen;             /* the lot with what was last not seen of a step */

@@ -14,23 +14,3 @@ void cs_reaction_turn(const struct cs_reaction *reaction, const struct cs_matrix
             turn->of[i][j] = turn->of[j][i] = push * column[i / 3][i % 3];
     }
 }
-
-void cs_reaction_bound(const struct cs_reaction *reaction, double stiffness[4],
-                       double damping[4]) {
-    double length[4], sum = 0, shares = 0, own, rub;
-    // what is taken away bounds as what is there
-    struct cs_touch touch = reaction->touch;
-    touch.k = fabs(touch.k);
-    cs_touch_bound(&touch, &own, &rub);
-    for (int k = 0; k < 4; k++) {
-        const double w = reaction->weight[k];
-        length[k] = sqrt(cs_vec3_dot(reaction->g[k], reaction->g[k]));
-        sum += length[k];
-        shares += w < 0 ? -w : w;
-    }
-    for (int k = 0; k < 4; k++) {
-        const double w = reaction->weight[k];
-        stiffness[k] = own * length[k] * sum;
-        damping[k] = rub * (w < 0 ? -w : w) * shares;
-    }
-}
