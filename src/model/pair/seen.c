@@ -147,10 +147,11 @@ static void find_unseen(void *arg, uint32_t number) {
         __atomic_store_n(&job->unseen, l, __ATOMIC_RELAXED);
 }
 
-/* of all pairs in the list as it is */
-static bool all_seen(struct cs_pairs *pairs, double h) {
+/* of the pairs in the first lots of the list as it is, the one that was refused last before
+ * others */
+static bool are_seen(struct cs_pairs *pairs, uint32_t lots, double h) {
     struct job job = {pairs, h, NONE};
-    cs_pool_run(pairs->search.n_lots, find_unseen, &job);
+    cs_pool_run(lots, find_unseen, &job);
     if (job.unseen != NONE)
         pairs->unseen = job.unseen;
     return job.unseen == NONE;
@@ -158,15 +159,12 @@ static bool all_seen(struct cs_pairs *pairs, double h) {
 
 bool cs_pairs_are_seen(struct cs_pairs *pairs, double t0, const double *x0, double t1,
                        const double *x1) {
-    const struct cs_search *search = &pairs->search;
+    struct cs_search *search = &pairs->search;
     const double *from = cs_points_places(pairs->system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_points_places(pairs->system, CS_POINTS_END, t1, x1);
-    const uint64_t builds = search->builds;
     cs_point_moves_set(pairs->system, from, to, pairs->moves);
-    // what the list at hand refuses needs none that covers the way
-    if (search->fresh && !all_seen(pairs, t1 - t0))
+    // what is refused again needs no list that covers the way
+    if (search->fresh && !are_seen(pairs, 1, t1 - t0))
         return false;
-    if (!cs_search_cover(&pairs->search, from, to))
-        return false;
-    return search->builds == builds || all_seen(pairs, t1 - t0);
+    return cs_search_cover(search, from, to) && are_seen(pairs, search->n_lots, t1 - t0);
 }
