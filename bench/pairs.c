@@ -3,7 +3,8 @@
  * Flat, the sheet meets nothing. Folded, it lies in layers of 16 columns one upon the other,
  * at 0.6 to 5.4 ranges from each other. In motion it goes to and fro along a velocity field of
  * up to 1 m/s, by a step a force, so that lists are made as often as in an explicit run; a
- * step of an implicit method is FRAME / 4 of it. */
+ * step of an implicit method is FRAME / 4 of it, halved until it sees its contact where that is
+ * asked. */
 #include "sheet.h"
 #include "timing.h"
 
@@ -27,6 +28,7 @@ struct bed {
     double *x, *v, *out; /* (3,n) the middle of the motion, the field, and what is asked for */
     double *at;          /* (3,n) where the motion is */
     double h;            /* s a force */
+    double taken;        /* s a step of an implicit method that is taken */
     uint32_t r;
     bool folded;
 };
@@ -95,23 +97,33 @@ static void product(void *object) {
     cs_pairs_multiply(bed->session.system.pairs, bed->v, bed->out);
 }
 
+static bool ask(struct bed *bed, double h) {
+    move(bed, h);
+    const bool is = cs_pairs_are_seen(bed->session.system.pairs, 0, bed->x, h, bed->at);
+    move(bed, 0);
+    return is;
+}
+
 static void seen(void *object) {
     struct bed *bed = object;
-    move(bed, FRAME / 4);
-    bed->session.system.pairs->search.fresh = false;
-    cs_pairs_are_seen(bed->session.system.pairs, 0, bed->x, FRAME / 4, bed->at);
-    move(bed, 0);
+    ask(bed, bed->taken);
 }
 
 static void share(void *object) {
     struct bed *bed = object;
-    move(bed, FRAME / 4);
-    bed->out[0] = cs_crossings_share(&bed->session.system, 0, bed->x, FRAME / 4, bed->at);
+    move(bed, bed->taken);
+    bed->out[0] = cs_crossings_share(&bed->session.system, 0, bed->x, bed->taken, bed->at);
     move(bed, 0);
 }
 
+static void crossings(void *object) {
+    struct bed *bed = object;
+    bed->out[0] = (double)cs_crossings_count(&bed->session.system, 0, bed->x).n;
+}
+
 /* The list as it stands comes before what makes others. kept: it is found to be good; list: it
- * is made from nothing; seen and limited: what is asked of a step. */
+ * is made from nothing; seen and limited: what is asked of a step, by a list that covers it;
+ * counted: asked of a frame. */
 static const struct stage {
     const char *name;
     void (*run)(void *bed);
@@ -127,6 +139,7 @@ static const struct stage {
     {"motion", in_motion, BY_NONE},
     {"seen", seen, BY_NONE},
     {"limited", share, BY_NONE},
+    {"counted", crossings, BY_NONE},
 };
 enum { STAGES = sizeof stages / sizeof *stages };
 
@@ -173,7 +186,8 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
         fold(bed);
     cs_perturb_random(system, 0.02 / bed->r, 0);
     stir(bed);
-    move(bed, 0);
+    for (bed->taken = FRAME / 4; !ask(bed, bed->taken); bed->taken *= 0.5)
+        ;
     matrix(bed);
     return CS_OK;
 }
