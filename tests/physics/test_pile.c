@@ -24,12 +24,13 @@ static void write_pile(char *text, size_t room) {
             "{\"cloth\": {\"grid\": [%d, %d], \"size\": [0.4, 0.4], \"start\": \"flat\", "
             "\"place\": {\"translate\": [0, %g, 0], \"rotate\": [0, %.17g, 0, 1]}}, "
             "\"thickness\": 0.02, \"mass\": {\"areal_density\": 0.3}, \"springs\": "
-            "{\"stretch\": 60, \"shear\": 20, \"bend\": 1, \"damping\": 0.02}}, ",
+            "{\"stretch\": 60, \"shear\": 20, \"bend\": 1, \"damping\": 0.1}}, ",
             GRID, GRID, 0.018 * (k + 1), tan(k * acos(-1) / 44));
     snprintf(text + n, room - n,
              "{\"mesh\": {\"shape\": \"sphere\", \"detail\": 4, \"scale\": [0.24, 0.24, 0.24], "
              "\"place\": {\"translate\": [0, 0.4, 0]}}, \"mass\": {\"total\": 0.3}, "
              "\"springs\": {\"stretch\": 400, \"damping\": 0.1}, \"thickness\": 0.02}], "
+             "\"forces\": {\"drag\": 2e-3}, "
              "\"pairs\": {\"among\": \"all\", \"friction\": %g}, \"colliders\": [{\"floor\": "
              "{\"height\": 0}, \"friction\": 0.3, \"thickness\": 0.02}], \"contact\": "
              "{\"law\": \"force\", \"stiffness\": 200, \"damping\": 0.004, "
@@ -139,7 +140,8 @@ START_TEST(ten_sheets_come_to_rest) {
     static char text[1 << 13];
     struct fixture pile;
     write_pile(text, sizeof text);
-    fixture_open(&pile, "implicit-linearised:dt=4e-3", "%s", text);
+    // longer steps may chatter: linearised_friction_chatters_above_a_limit in test_quiet.c
+    fixture_open(&pile, "implicit-linearised:dt=1e-3", "%s", text);
     fixture_start(&pile);
     for (uint32_t frame = 0; frame < (all ? 180 : 1); frame++) {
         fixture_frames(&pile, 1);
