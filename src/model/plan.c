@@ -198,9 +198,8 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
         return cs_fail(
             error, CS_ERR_SCENE,
             "contact.law: integrator \"%s\" takes contact as it is where a step "
-            "begins and cannot follow a force as stiff; expected project, or another "
-            "integrator",
-            method->name);
+            "begins and cannot follow a force as stiff; expected %sanother integrator",
+            method->name, cs_scene_any_meet(scene) ? "" : "project, or ");
     return CS_OK;
 }
 
