@@ -69,7 +69,9 @@ static bool add_cell(struct cs_cluster_near *near, const struct looking *looking
     for (uint32_t s = cells->starts[cell]; s < cells->starts[cell + 1]; s++) {
         const uint32_t cluster = cells->items[s];
         const struct cs_cell_box *other = clusters->boxes + cluster;
-        if (clusters->last[cluster] >= near->least && cs_cell_boxes_meet(looking->box, other) &&
+        if (clusters->last[cluster] >= near->least &&
+            (clusters->body[cluster] == near->body) == near->own &&
+            cs_cell_boxes_meet(looking->box, other) &&
             is_first_cell(cells, other, looking->first, at) &&
             !(looking->but && is_in(clusters->spans + cluster, looking->but)))
             there = there && add(near, cluster, other);

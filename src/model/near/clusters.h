@@ -26,6 +26,7 @@ struct cs_clusters {
     uint32_t n;                    /* clusters */
     uint32_t *items;               /* (n, CS_CLUSTER) CS_NO_ITEM: none, with an empty box */
     uint32_t *last;                /* (n) greatest item */
+    uint32_t *body;                /* (n) that the items are of */
     uint32_t *block;               /* (n) of cs_order_build, of a grid; or CS_NO_BLOCK */
     struct cs_cluster *of;         /* (n) boxes of items */
     struct cs_cell_box *boxes;     /* (n) of clusters; may be empty */
@@ -40,12 +41,14 @@ struct cs_cluster_near {
     uint32_t *items;          /* what cs_cluster_near_items found */
     size_t n, clusters_room, boxes_room, items_room;
     uint32_t least; /* clusters of items before it are passed over */
+    uint32_t body;  /* and those of this body, or with `own` of others */
+    bool own;
 };
 
 /* Sets a lane; a box with high below low is empty, and met by none. */
 void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box);
 
-/* Sets near to the clusters with an item from near->least on that a box meets; those that are
+/* Sets near to the clusters that are not passed over and that a box meets; those that are
  * wholly in `but` are left out (NULL: none). false: no memory. */
 bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
                           const struct cs_cell_box *box, const struct cs_cluster_span *but);

@@ -102,6 +102,7 @@ static enum cs_status take(struct cs_clusters *clusters, size_t most, bool spans
                            struct cs_arena *arena, struct cs_error *error) {
     clusters->items = cs_arena_take_n(arena, CS_CLUSTER * most, sizeof(uint32_t), error);
     clusters->last = cs_arena_take_n(arena, most, sizeof *clusters->last, error);
+    clusters->body = cs_arena_take_n(arena, most, sizeof *clusters->body, error);
     clusters->block = cs_arena_take_n(arena, most, sizeof *clusters->block, error);
     if (spans)
         clusters->spans = cs_arena_take_n(arena, most, sizeof *clusters->spans, error);
@@ -123,6 +124,7 @@ enum cs_status cs_order_build(const struct cs_order *order, struct cs_clusters *
         else
             put_body(order, b, clusters);
         for (uint32_t k = first; k < clusters->n; k++) {
+            clusters->body[k] = b;
             clusters->last[k] = last_of(clusters->items + CS_CLUSTER * (size_t)k);
             if (spans)
                 set_span(order, order->grids[b], clusters, k);

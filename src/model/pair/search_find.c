@@ -5,6 +5,7 @@
 #include "base/pool.h"
 #include "model/near/boxes.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* --- made once --- */
@@ -63,7 +64,8 @@ enum cs_status cs_search_find_init(struct cs_search *search, struct cs_arena *ar
 void cs_search_find_finish(struct cs_search *search) {
     for (uint32_t b = 0; b < search->n_batches; b++) {
         free(search->batches[b].pairs);
-        cs_cluster_near_finish(&search->batches[b].near);
+        cs_cluster_near_finish(search->batches[b].near);
+        cs_cluster_near_finish(search->batches[b].near + 1);
     }
     cs_cells_finish(&search->triangles.cells);
     cs_cells_finish(&search->edges.cells);
@@ -132,18 +134,22 @@ static void take(struct work *work, uint32_t item, uint32_t other) {
         measure(work);
 }
 
-/* m, of the pairs that reach furthest */
-static double widest_reach(const struct cs_search *search, bool edges) {
-    const struct cs_meeting widest = {.range = search->meetings->widest};
-    return reach_of(search, cs_meeting_range(&widest, edges));
+/* m, how far what is of a body reaches for its own, or for others at most; 0: for none */
+static double widest_reach(const struct cs_search *search, uint32_t body, bool own,
+                           bool edges) {
+    double widest = 0;
+    for (uint32_t b = own ? body : 0; b < (own ? body + 1 : search->meetings->n_bodies); b++)
+        if (own || b != body)
+            widest =
+                fmax(widest, cs_meeting_range(cs_meeting_of(search->meetings, body, b), edges));
+    return widest > 0 ? reach_of(search, widest) : 0;
 }
 
 /* of all items of a cluster, that of edges as it was filled */
 static struct cs_cell_box group_box(const struct cs_search *search, bool edges,
-                                    uint32_t cluster) {
+                                    uint32_t cluster, double reach) {
     const struct cs_boxes points = boxes_of(search, NULL, 1);
     struct cs_cell_box all = edges ? search->edges.boxes[cluster] : cs_box_none;
-    const double reach = widest_reach(search, edges);
     for (uint32_t k = 0; k < CS_CLUSTER && !edges; k++) {
         const struct cs_cell_box one =
             cs_box_of(&points, search->points.items[CS_CLUSTER * (size_t)cluster + k], 0);
@@ -156,40 +162,73 @@ static struct cs_cell_box group_box(const struct cs_search *search, bool edges,
     return all;
 }
 
-/* Sets batch->near to the clusters that a cluster may meet. */
-static bool find_clusters(const struct cs_search *search, struct cs_search_batch *batch,
-                          uint32_t cluster) {
-    const bool edges = batch->kind == CS_STENCIL_EDGES;
-    const struct cs_clusters *of = edges ? &search->edges : &search->points;
-    const struct cs_cell_box box = group_box(search, edges, cluster);
-    const bool flat = search->flat.n_flat && of->block[cluster] != CS_NO_BLOCK;
+/* A cluster of points or edges, and how far it reaches for its own body and for others. */
+struct group {
+    const struct cs_clusters *of, *others;
+    uint32_t cluster;
+    bool edges;
+    double reach[2]; /* m; 0: not at all */
+};
+
+static struct group group_of(const struct cs_search *search, bool edges, uint32_t cluster) {
+    struct group group = {.of = edges ? &search->edges : &search->points,
+                          .others = edges ? &search->edges : &search->triangles,
+                          .cluster = cluster,
+                          .edges = edges};
+    for (int k = 0; k < 2; k++)
+        group.reach[k] = widest_reach(search, group.of->body[cluster], k == 0, edges);
+    return group;
+}
+
+/* Sets near to the clusters of its own body, or of others, that a group may meet. */
+static bool find_clusters(const struct cs_search *search, const struct group *group, bool own,
+                          struct cs_cluster_near *near) {
+    const double reach = group->reach[!own];
+    const uint32_t block = group->of->block[group->cluster];
+    const bool flat = own && search->flat.n_flat && block != CS_NO_BLOCK;
+    near->n = 0;
+    if (!(reach > 0))
+        return true;
+    near->own = own;
+    near->body = group->of->body[group->cluster];
     // an edge is listed with later ones alone
-    batch->near.least = edges ? of->items[CS_CLUSTER * (size_t)cluster] : 0;
-    return cs_cluster_near_find(&batch->near, edges ? &search->edges : &search->triangles, &box,
-                                flat ? search->flat.round[batch->kind] + of->block[cluster]
-                                     : NULL);
+    near->least = group->edges ? group->of->items[CS_CLUSTER * (size_t)group->cluster] : 0;
+    const struct cs_cell_box box = group_box(search, group->edges, group->cluster, reach);
+    return cs_cluster_near_find(
+        near, group->others, &box,
+        flat ? search->flat.round[group->edges ? CS_STENCIL_EDGES : CS_STENCIL_TRIANGLE] + block
+             : NULL);
+}
+
+static void find_item(struct work *work, const struct group *group, uint32_t item) {
+    const struct cs_search *search = work->search;
+    const struct cs_boxes boxes = group->edges
+                                      ? boxes_of(search, search->system->surfaces->edges, 2)
+                                      : boxes_of(search, NULL, 1);
+    for (int k = 0; k < 2; k++) {
+        struct cs_cluster_near *near = work->batch->near + k;
+        if (!near->n)
+            continue;
+        const struct cs_cell_box box = cs_box_of(&boxes, item, group->reach[k]);
+        const uint32_t n = cs_cluster_near_items(near, group->others, &box);
+        for (uint32_t l = 0; l < n; l++)
+            take(work, item, near->items[l]);
+    }
 }
 
 /* what the items of a cluster have near them */
 static void find_together(struct work *work, uint32_t cluster) {
     const struct cs_search *search = work->search;
     struct cs_search_batch *batch = work->batch;
-    const bool edges = batch->kind == CS_STENCIL_EDGES;
-    const uint32_t *items =
-        (edges ? &search->edges : &search->points)->items + CS_CLUSTER * (size_t)cluster;
-    const bool there = find_clusters(search, batch, cluster);
+    const struct group group = group_of(search, batch->kind == CS_STENCIL_EDGES, cluster);
+    const uint32_t *items = group.of->items + CS_CLUSTER * (size_t)cluster;
+    bool there = true;
+    for (int k = 0; k < 2; k++)
+        there = there && find_clusters(search, &group, k == 0, batch->near + k);
     batch->failed = batch->failed || !there;
-    if (!there)
-        return;
-    const struct cs_boxes boxes =
-        boxes_of(search, edges ? search->system->surfaces->edges : NULL, edges ? 2 : 1);
-    for (uint32_t k = 0; k < CS_CLUSTER && batch->near.n; k++) {
-        const struct cs_cell_box box = cs_box_of(&boxes, items[k], widest_reach(search, edges));
-        const uint32_t n = cs_cluster_near_items(
-            &batch->near, edges ? &search->edges : &search->triangles, &box);
-        for (uint32_t l = 0; l < n; l++)
-            take(work, items[k], batch->near.items[l]);
-    }
+    for (uint32_t k = 0; k < CS_CLUSTER && there && batch->near[0].n + batch->near[1].n; k++)
+        if (items[k] != CS_NO_ITEM)
+            find_item(work, &group, items[k]);
 }
 
 /* notes where the pairs of each item are */

@@ -28,8 +28,8 @@ struct cs_search_batch {
     uint32_t begin, end;
     uint32_t *pairs; /* (n, 2) */
     size_t n, room;
-    bool failed; /* there was no memory */
-    struct cs_cluster_near near;
+    bool failed;                    /* there was no memory */
+    struct cs_cluster_near near[2]; /* a cluster's, of its own body and of others */
 };
 
 /* Where those of an item are: pairs [begin, begin + n) of a batch. */
