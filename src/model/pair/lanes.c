@@ -265,6 +265,11 @@ CS_INLINE void read_factors(enum cs_stencil_kind kind, const struct cs_pair_fact
     }
 }
 
+void cs_pair_factors_read(enum cs_stencil_kind kind, const struct cs_pair_factors *factors,
+                          int lane, double g[4][3], struct cs_pair_share *share) {
+    read_factors(kind, factors, lane, g, share);
+}
+
 /* by how much the blocks of the gradients, or of the weights, must grow for all together to be
  * above what the pair couples */
 CS_INLINE void find_growth(const double size[4], double growth[4]) {

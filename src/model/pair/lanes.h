@@ -48,6 +48,10 @@ struct cs_pair_factors {
     double along[CS_PAIR_LANES], of[6][CS_PAIR_LANES];
 };
 
+/* One pair's by its points: the gradient g, and the rest. */
+void cs_pair_factors_read(enum cs_stencil_kind kind, const struct cs_pair_factors *factors,
+                          int lane, double g[4][3], struct cs_pair_share *share);
+
 /* Sets them, as cs_reaction_matrix of a matrix that is psd. */
 void cs_pair_lanes_matrix(enum cs_stencil_kind kind, struct cs_pair_lanes *lanes,
                           const struct cs_contact_keys *keys, const struct cs_matrix *matrix,

@@ -27,6 +27,7 @@ struct cs_hierarchy {
     const struct cs_spring_run *runs; /* (n_runs) the body's, borrowed */
     uint32_t n_runs;
     bool forced; /* the matrix has blocks at single particles, not numbers alone */
+    bool linked; /* the body meets itself */
     const struct cs_hierarchy_kind *kind;
     uint32_t n_levels;
     struct cs_level levels[CS_HIERARCHY_MOST];

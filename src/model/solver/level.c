@@ -4,6 +4,7 @@
 
 #include "base/pool.h"
 #include "model/solver/lanes.h"
+#include "model/solver/links.h"
 #include "model/solver/wave.h"
 
 #include <clothsim/small.h>
@@ -73,13 +74,18 @@ static size_t cells_of_block(const struct cs_level *level) {
     return (cells + CS_LANES - 1) / CS_LANES * CS_LANES;
 }
 
-/* a mesh has neighbours anywhere: one loop after the other */
+/* a mesh, and a body that meets itself */
+static bool has_neighbours_anywhere(const struct cs_level *level) {
+    return level->form == CS_LEVEL_LISTS || (level->links && level->links->any);
+}
+
+/* where neighbours are anywhere, one loop after the other */
 static void run(struct loops *loops) {
     const struct cs_level *level = loops->loops->level;
     loops->cells = cells_of_block(level);
     const uint32_t blocks =
         (uint32_t)((level->end - level->begin + loops->cells - 1) / loops->cells);
-    if (level->form != CS_LEVEL_LISTS)
+    if (!has_neighbours_anywhere(level))
         cs_wave_run(&(struct cs_wave){loops->n, blocks, run_block, loops});
     else
         for (loops->at = 0; loops->at < loops->n; loops->at++)
@@ -175,9 +181,30 @@ CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form
     }
 }
 
+/* r -= the links' share of A d, of those cells that have any */
+CS_INLINE void take_links(const struct loop *loop, size_t begin, size_t end) {
+    struct cs_level *level = loop->level;
+    const size_t n = level->n;
+    for (size_t i = begin; i < end; i += CS_LANES) {
+        const struct cs_links_slots slots = cs_links_of(level->links, i / CS_LANES);
+        if (!slots.n)
+            continue;
+        const struct vectors here = get3(loop->d + i, n);
+        struct vectors r = get3(level->r + i, n);
+        for (size_t k = 0; k < slots.n; k++) {
+            const struct vectors there = gather3(loop->d, n, slots.cells + k * CS_LANES);
+            const struct blocks b = get6(slots.springs + k * 6 * CS_LANES, CS_LANES);
+            r = minus(r, times(b, minus(here, there)));
+        }
+        put3(level->r + i, n, r);
+    }
+}
+
 /* a copy of the loop for every form */
 CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
     const enum cs_level_form form = loop->level->form;
+    if (loop->level->links && loop->level->links->any)
+        take_links(loop, begin, end);
     if (form == CS_LEVEL_FACTORED)
         sweep_form(loop, CS_LEVEL_FACTORED, begin, end);
     else if (form == CS_LEVEL_FORCED)
@@ -280,6 +307,8 @@ CS_CLONES static void invert(const struct loop *loop, size_t begin, size_t end) 
     const size_t n = level->n;
     for (size_t i = begin; i < end; i += CS_LANES) {
         struct blocks sum = sum_springs(level, i);
+        if (level->links && level->links->any)
+            sum = plus6(sum, get6(level->links->held + i, n));
         if (level->form == CS_LEVEL_FACTORED) {
             const lanes mass = get(level->own + i);
             sum.xx += mass, sum.yy += mass, sum.zz += mass;

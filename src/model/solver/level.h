@@ -23,6 +23,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct cs_links;
+
 enum { CS_LEVEL_STEPS = 6 };
 
 enum cs_level_form {
@@ -49,8 +51,15 @@ struct cs_level {
     uint32_t *starts, *neighbours, *numbers;
     uint32_t n_springs, *ends;
     float *blocks;
-    uint32_t *parents; /* (n) cells of the next level */
     uint32_t *targets; /* (n_springs) springs of the next level, or CS_GRAPH_NONE */
+
+    /* a mesh, or a body that meets itself */
+    uint32_t *parents; /* (n) cells of the next level; CS_GRAPH_NONE: padding */
+
+    /* a body that meets itself: more springs, else NULL; cell i of the next level has been
+     * made of children[child_starts[i]..child_starts[i + 1]) */
+    struct cs_links *links;
+    uint32_t *children, *child_starts;
 
     float *springs;
     float *own;           /* FACTORED: (n) masses; else (6,n): xx, xy, xz, yy, yz, zz */

@@ -3,6 +3,7 @@
 
 #include "base/vector.h"
 #include "model/force/terms.h"
+#include "model/pair/pairs.h"
 
 #include <clothsim/clones.h>
 #include <clothsim/small.h>
@@ -82,6 +83,23 @@ static double mean_mass(const struct cs_system *system) {
     return sum / system->view.n;
 }
 
+/* pairs that hold less than a tenth of what masses do are left to the diagonal */
+#define LEAST 0.1
+
+/* stiffness: the largest ratio to mass */
+static void set_multigrid(struct cs_linear *linear, double stiffness) {
+    struct cs_pairs *pairs = linear->system->pairs;
+    const double mass = mean_mass(linear->system), cm = linear->matrix.cm;
+    const struct cs_multigrid_matrix matrix = {.factors = linear->factors,
+                                               .mass = linear->mass,
+                                               .blocks = linear->blocks,
+                                               .pairs = pairs,
+                                               .least = LEAST * mass * cm,
+                                               .scale = mass * (cm + stiffness)};
+    if (!cs_multigrid_setup(&linear->multigrid, &matrix))
+        pairs->failed = true;
+}
+
 bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     const struct cs_system *system = linear->system;
     const struct cs_view *view = &system->view;
@@ -93,10 +111,7 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     cs_terms_prepare_matrix(system, matrix, true);
     cs_vector_share(view->n, set_mass, linear);
     if (linear->stiff)
-        cs_multigrid_setup(
-            &linear->multigrid,
-            &(struct cs_multigrid_matrix){linear->factors, linear->mass, linear->blocks,
-                                          mean_mass(system) * (matrix->cm + stiffness)});
+        set_multigrid(linear, stiffness);
     /* an exact matrix shows in its blocks whether it is definite, mostly */
     return (linear->stiff && matrix->psd) || invert_blocks(linear);
 }

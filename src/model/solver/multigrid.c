@@ -3,6 +3,9 @@
 
 #include "base/pool.h"
 #include "model/force/terms.h"
+#include "model/solver/coupling.h"
+#include "model/solver/links.h"
+#include "scene/pairs.h"
 #include "scene/shape.h"
 
 #include <clothsim/clones.h>
@@ -14,6 +17,11 @@ static bool is_worth_it(const struct cs_scene *scene) {
         if (cs_shape_count(cs_scene_bodies(scene) + b) > CS_MULTIGRID_PARTICLES)
             return true;
     return false;
+}
+
+static bool meets_itself(const struct cs_scene *scene, uint32_t body) {
+    double friction;
+    return cs_scene_bodies_meet(scene, body, body, &friction);
 }
 
 static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
@@ -30,7 +38,20 @@ static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t
                                  .columns = range->mesh ? ROW : range->columns,
                                  .runs = springs->runs + begin,
                                  .n_runs = end - begin,
-                                 .forced = cs_terms_have_blocks(system)};
+                                 .forced = cs_terms_have_blocks(system),
+                                 .linked = meets_itself(system->scene, body)};
+}
+
+static void couple(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchy,
+                   struct cs_arena *arena, struct cs_error *error) {
+    if (!multigrid->inner) {
+        multigrid->inner =
+            cs_arena_take_n(arena, 6 * multigrid->system->view.n, sizeof(double), error);
+        if (!error->status)
+            cs_corners_init(&multigrid->corners, arena, error);
+    }
+    if (!error->status)
+        cs_coupling_init(hierarchy, arena, error);
 }
 
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
@@ -45,6 +66,8 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
         *hierarchy = hierarchy_of(system, b);
         (system->bodies[b].mesh ? cs_hierarchy_of_mesh : cs_hierarchy_of_grid)(hierarchy, arena,
                                                                                error);
+        if (hierarchy->linked && !error->status)
+            couple(multigrid, hierarchy, arena, error);
     }
     return error->status;
 }
@@ -56,6 +79,8 @@ size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced) {
         uint32_t n_springs = 0;
         cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &n_springs);
         bytes += sizeof(struct cs_hierarchy);
+        if (meets_itself(scene, b))
+            bytes += cs_coupling_bytes((size_t)cs_shape_count(bodies + b));
         bytes += bodies[b].mesh.present
                      ? cs_hierarchy_mesh_bytes((uint32_t)cs_shape_count(bodies + b), n_springs)
                      : cs_hierarchy_grid_bytes((uint32_t)bodies[b].cloth.grid[0],
@@ -76,6 +101,7 @@ struct exchange {
 struct loading {
     struct exchange exchange; /* first: loops take it for the whole */
     const struct cs_multigrid_matrix *matrix;
+    const double *inner; /* (6,n) what blocks have of links; NULL: nothing */
 };
 
 static uint32_t rows_of_block(const struct cs_hierarchy *hierarchy) {
@@ -109,6 +135,7 @@ CS_CLONES static void load_own(void *arg, uint32_t block) {
     const struct cs_hierarchy *hierarchy = loading->exchange.hierarchy;
     const struct cs_level *level = hierarchy->levels;
     const double *mass = loading->matrix->mass, *blocks = loading->matrix->blocks;
+    const double *inner = loading->inner;
     const double *inv_mass = loading->exchange.multigrid->system->inv_mass;
     const size_t n = loading->exchange.multigrid->system->view.n;
     for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
@@ -119,6 +146,8 @@ CS_CLONES static void load_own(void *arg, uint32_t block) {
                 double value = on_diagonal[c] ? mass[at] : 0;
                 if (blocks)
                     value += blocks[c * n + at];
+                if (inner)
+                    value -= inner[c * n + at];
                 /* 0 marks a dead cell: a pinned particle does not move */
                 own[i] = inv_mass[at] > 0 ? (float)(loading->exchange.gain * value) : 0;
             }
@@ -156,22 +185,55 @@ CS_CLONES static void store_x(void *arg, uint32_t block) {
     }
 }
 
-void cs_multigrid_setup(struct cs_multigrid *multigrid,
+/* false: there was no memory */
+static bool load_links(struct loading *loading, struct cs_hierarchy *hierarchy) {
+    const struct cs_multigrid *multigrid = loading->exchange.multigrid;
+    const struct cs_pairs *pairs = loading->matrix->pairs;
+    struct cs_coupling coupling = {hierarchy,
+                                   pairs,
+                                   &multigrid->corners,
+                                   multigrid->system->inv_mass,
+                                   loading->exchange.gain,
+                                   loading->matrix->least,
+                                   multigrid->inner};
+    if (!hierarchy->linked)
+        return true;
+    hierarchy->levels->links->any = false;
+    if (!pairs || !cs_corners_pairs(pairs))
+        return true;
+    loading->inner = multigrid->inner;
+    return cs_coupling_load(&coupling);
+}
+
+/* the numbers of all levels; false: there was no memory for links */
+static bool load_levels(struct loading *loading, struct cs_hierarchy *hierarchy) {
+    struct cs_level *level = hierarchy->levels;
+    bool done = load_links(loading, hierarchy);
+    run(&loading->exchange, load_own);
+    hierarchy->kind->load(hierarchy, loading->matrix->factors, loading->matrix->scale);
+    cs_level_invert(level);
+    for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
+        hierarchy->kind->coarsen(level, level + 1);
+        if (hierarchy->linked)
+            done = cs_coupling_coarsen(level, level + 1) && done;
+        cs_level_invert(level + 1);
+    }
+    return done;
+}
+
+bool cs_multigrid_setup(struct cs_multigrid *multigrid,
                         const struct cs_multigrid_matrix *matrix) {
-    const double scale = matrix->scale;
-    multigrid->scale = scale;
+    bool done = true;
+    multigrid->scale = matrix->scale;
+    if (multigrid->inner && cs_corners_pairs(matrix->pairs))
+        done = cs_corners_find(&multigrid->corners, matrix->pairs);
     for (uint32_t k = 0; k < multigrid->n; k++) {
         struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
-        struct cs_level *level = hierarchy->levels;
-        struct loading loading = {{multigrid, hierarchy, NULL, NULL, 1 / scale}, matrix};
-        run(&loading.exchange, load_own);
-        hierarchy->kind->load(hierarchy, matrix->factors, scale);
-        cs_level_invert(level);
-        for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
-            hierarchy->kind->coarsen(level, level + 1);
-            cs_level_invert(level + 1);
-        }
+        struct loading loading = {
+            {multigrid, hierarchy, NULL, NULL, 1 / matrix->scale}, matrix, NULL};
+        done = load_levels(&loading, hierarchy) && done;
     }
+    return done;
 }
 
 /* x of the first level for its r */

@@ -4,10 +4,11 @@
  * It is symmetric and positive definite whatever the coarse levels do. With S the smoother (S A
  * has its eigenvalues in (0, 2), see level.h, so that 2 S - S A S is positive) and C >= 0 the
  * answer of the coarse levels, a cycle is 2 S - S A S + (I - S A) C (I - A S). Aggregates and
- * their halved springs: hierarchy.h. */
+ * their halved springs: hierarchy.h; contact of a body with itself: coupling.h. */
 #ifndef CS_MULTIGRID_H
 #define CS_MULTIGRID_H
 
+#include "model/pair/corners.h"
 #include "model/solver/hierarchy.h"
 #include "model/system/system.h"
 
@@ -18,7 +19,10 @@ struct cs_multigrid {
     const struct cs_system *system;   /* borrowed */
     struct cs_hierarchy *hierarchies; /* (n) one a body, or none */
     uint32_t n;
-    double scale; /* what the matrix is divided by for single precision */
+    double *inner; /* (6,n) blocks of pairs that are links (coupling.h); NULL: no body meets
+                      itself */
+    struct cs_corners corners; /* of these pairs */
+    double scale;              /* what the matrix is divided by for single precision */
 };
 
 /* Makes the structure. CS_ERR_MEMORY. */
@@ -31,14 +35,16 @@ size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced);
 
 /* The matrix: springs' factors, and at each particle a mass and a block. */
 struct cs_multigrid_matrix {
-    const double *factors; /* (4 doubles a spring) */
-    const double *mass;    /* (n) */
-    const double *blocks;  /* (6,n) positive semidefinite; NULL: 0 */
-    double scale;          /* about its largest number */
+    const double *factors;        /* (4 doubles a spring) */
+    const double *mass;           /* (n) */
+    const double *blocks;         /* (6,n) positive semidefinite; NULL: 0 */
+    const struct cs_pairs *pairs; /* whose diagonal blocks are in `blocks`; NULL: none */
+    double least; /* of the trace of a pair's block that is worth springs of its own */
+    double scale; /* about its largest number */
 };
 
-/* Makes the numbers. */
-void cs_multigrid_setup(struct cs_multigrid *multigrid,
+/* Makes the numbers. false: there was no memory for pairs. */
+bool cs_multigrid_setup(struct cs_multigrid *multigrid,
                         const struct cs_multigrid_matrix *matrix);
 
 /* z = one V-cycle for r. size is about that of r, so that its parts fit single precision. z is
