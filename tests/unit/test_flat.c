@@ -1,5 +1,5 @@
 /* Flat parts of grids: the bound of how far their parts are from each other, against all pairs
- * there are; and the clusters that are made of blocks. */
+ * there are; and the clusters that are made of blocks, and found in cells. */
 #include "model/near/order.h"
 #include "model/pair/nearness.h"
 #include "unit.h"
@@ -178,8 +178,49 @@ START_TEST(clusters_have_all_items) {
 }
 END_TEST
 
+/* a box of a size, empty ones among them; every fiftieth large */
+static struct cs_cell_box draw_box(uint64_t *seed, uint32_t number) {
+    struct cs_cell_box box;
+    const double size = number % 50 == 7 ? 40 : number % 50 == 8 ? -1 : 0.05;
+    for (int c = 0; c < 3; c++) {
+        box.low[c] = draw(seed) - (size > 1 ? size / 2 : 0);
+        box.high[c] = box.low[c] + size * (1.5 + draw(seed));
+    }
+    return box;
+}
+
+/* each cluster that a box meets once, large ones too, which have cells of their own */
+START_TEST(clusters_near_a_box_are_found) {
+    enum { BOXES = 500, QUERIES = 300 };
+    static struct cs_cell_box boxes[BOXES];
+    static uint32_t last[BOXES], body[BOXES];
+    struct cs_clusters clusters = {.n = BOXES, .last = last, .body = body, .boxes = boxes};
+    struct cs_cluster_near near = {.own = true};
+    uint64_t seed = 3;
+    for (uint32_t k = 0; k < BOXES; k++)
+        boxes[k] = draw_box(&seed, k);
+    ck_assert(cs_clusters_sort(&clusters));
+    ck_assert(clusters.cells[1].dim[0] && 1 / clusters.cells[0].inverse < 0.2);
+    for (uint32_t q = 0; q < QUERIES; q++) {
+        const struct cs_cell_box box = draw_box(&seed, q);
+        uint32_t meets[BOXES] = {0}, n = 0;
+        ck_assert(cs_cluster_near_find(&near, &clusters, &box, NULL));
+        for (size_t k = 0; k < near.n; k++)
+            meets[near.clusters[k]]++;
+        for (uint32_t k = 0; k < BOXES; k++) {
+            const bool empty = q % 50 == 8 || k % 50 == 8;
+            UNIT_ASSERT_OFTEN(meets[k] == (!empty && cs_cell_boxes_meet(&box, boxes + k)));
+            n += meets[k];
+        }
+        ck_assert_uint_eq(n, near.n);
+    }
+    cs_cluster_near_finish(&near);
+    cs_clusters_finish(&clusters);
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {bound_is_below_all_distances, not_finite_is_not_flat,
-                                  clusters_have_all_items};
+                                  clusters_have_all_items, clusters_near_a_box_are_found};
     return unit_run("flat", tests, sizeof tests / sizeof *tests);
 }

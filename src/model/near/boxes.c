@@ -53,5 +53,5 @@ static void fill_some(void *arg, uint32_t block) {
 bool cs_boxes_fill(const struct cs_boxes *boxes, struct cs_clusters *clusters) {
     struct filling filling = {boxes, clusters};
     cs_pool_run((clusters->n + TOGETHER - 1) / TOGETHER, fill_some, &filling);
-    return cs_cells_fill(&clusters->cells, clusters->boxes, clusters->n);
+    return cs_clusters_sort(clusters);
 }

@@ -11,29 +11,29 @@
 enum { CELLS_EACH = 8, PLACES_EACH = 32, FEW = 4096 };
 #define LARGER 1.26
 
-static bool is_empty(const struct cs_cell_box *box) {
-    return !(box->high[0] >= box->low[0]);
+/* empty, or for another grid */
+static bool is_out(const struct cs_cell_boxes *boxes, uint32_t i) {
+    const double side = cs_cell_box_side(boxes->of + i);
+    return !(side >= 0 && side > boxes->least && side <= boxes->most);
 }
 
 /* low corner and extent of all boxes; returns their mean longest side, 0 where there is none */
-static double measure(const struct cs_cell_box *boxes, uint32_t n, double low[3],
-                      double extent[3]) {
+static double measure(const struct cs_cell_boxes *boxes, double low[3], double extent[3]) {
     double high[3], sum = 0;
     uint32_t count = 0;
     for (int c = 0; c < 3; c++) {
         low[c] = HUGE_VAL;
         high[c] = -HUGE_VAL;
     }
-    for (uint32_t i = 0; i < n; i++) {
-        double side = 0;
-        if (is_empty(boxes + i))
+    for (uint32_t i = 0; i < boxes->n; i++) {
+        const struct cs_cell_box *box = boxes->of + i;
+        if (is_out(boxes, i))
             continue;
         for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], boxes[i].low[c]);
-            high[c] = fmax(high[c], boxes[i].high[c]);
-            side = fmax(side, boxes[i].high[c] - boxes[i].low[c]);
+            low[c] = fmin(low[c], box->low[c]);
+            high[c] = fmax(high[c], box->high[c]);
         }
-        sum += side;
+        sum += cs_cell_box_side(box);
         count++;
     }
     for (int c = 0; c < 3; c++)
@@ -81,7 +81,7 @@ static size_t visit(struct cs_cells *cells, const struct cs_cell_box *box, uint3
     return places;
 }
 
-static bool count_all(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n,
+static bool count_all(struct cs_cells *cells, const struct cs_cell_boxes *boxes,
                       size_t *places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
     uint32_t *starts =
@@ -91,15 +91,14 @@ static bool count_all(struct cs_cells *cells, const struct cs_cell_box *boxes, u
         return false;
     cells->starts = starts;
     memset(starts, 0, (all + 1) * sizeof *starts);
-    for (uint32_t i = 0; i < n && *places <= (size_t)PLACES_EACH * n + FEW; i++)
-        if (!is_empty(boxes + i))
-            *places += visit(cells, boxes + i, i, false);
+    for (uint32_t i = 0; i < boxes->n && *places <= (size_t)PLACES_EACH * boxes->n + FEW; i++)
+        if (!is_out(boxes, i))
+            *places += visit(cells, boxes->of + i, i, false);
     return true;
 }
 
 /* places from the last to the first, so that items come down to where the cell begins */
-static bool fill_all(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n,
-                     size_t places) {
+static bool fill_all(struct cs_cells *cells, const struct cs_cell_boxes *boxes, size_t places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
     uint32_t *items = cs_arena_grow(cells->items, &cells->items_room, places, sizeof *items);
     if (!items && places)
@@ -108,31 +107,31 @@ static bool fill_all(struct cs_cells *cells, const struct cs_cell_box *boxes, ui
     for (size_t c = 1; c < all; c++)
         cells->starts[c] += cells->starts[c - 1];
     cells->starts[all] = (uint32_t)places;
-    for (uint32_t i = n; i--;)
-        if (!is_empty(boxes + i))
-            visit(cells, boxes + i, i, true);
+    for (uint32_t i = boxes->n; i--;)
+        if (!is_out(boxes, i))
+            visit(cells, boxes->of + i, i, true);
     return true;
 }
 
 /* false: no memory */
-static bool fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n,
+static bool fill(struct cs_cells *cells, const struct cs_cell_boxes *boxes,
                  const double extent[3], double size) {
     size_t places;
     for (;; size *= LARGER) {
-        if (!divide(cells, extent, size, (double)CELLS_EACH * n + FEW))
+        if (!divide(cells, extent, size, (double)CELLS_EACH * boxes->n + FEW))
             continue;
-        if (!count_all(cells, boxes, n, &places))
+        if (!count_all(cells, boxes, &places))
             return false;
-        if (places <= (size_t)PLACES_EACH * n + FEW)
-            return fill_all(cells, boxes, n, places);
+        if (places <= (size_t)PLACES_EACH * boxes->n + FEW)
+            return fill_all(cells, boxes, places);
     }
 }
 
-bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n) {
+bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_boxes *boxes) {
     double extent[3];
-    const double size = measure(boxes, n, cells->low, extent);
+    const double size = measure(boxes, cells->low, extent);
     const bool some = size > 0 && extent[0] + extent[1] + extent[2] < HUGE_VAL;
-    const bool filled = !some || fill(cells, boxes, n, extent, size);
+    const bool filled = !some || fill(cells, boxes, extent, size);
     if (!some || !filled)
         memset(cells->dim, 0, sizeof cells->dim);
     return filled;

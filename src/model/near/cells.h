@@ -35,11 +35,28 @@ struct cs_cells {
     size_t starts_room, items_room;
 };
 
+/* m, the longest; below 0: it is empty */
+static inline double cs_cell_box_side(const struct cs_cell_box *box) {
+    double side = -1;
+    for (int c = 0; c < 3; c++) {
+        const double along = box->high[c] - box->low[c];
+        side = along > side ? along : side;
+    }
+    return side;
+}
+
+/* The boxes of one grid: those whose longest side is above `least` and not above `most`. */
+struct cs_cell_boxes {
+    const struct cs_cell_box *of; /* (n) */
+    uint32_t n;
+    double least, most; /* m */
+};
+
 /* Puts box i into every cell that it touches; empty boxes (high below low) into none. Cells are
  * about as large as the boxes on average, and larger where there would be too many. Where boxes
  * are not finite, or all empty, there is no cell (dim 0), and so it is where false says that
  * there was no memory. */
-bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_box *boxes, uint32_t n);
+bool cs_cells_fill(struct cs_cells *cells, const struct cs_cell_boxes *boxes);
 
 /* Cells that a box touches, first and last along each axis. */
 void cs_cells_span(const struct cs_cells *cells, const struct cs_cell_box *box,

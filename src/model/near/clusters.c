@@ -7,6 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* times the side of usual boxes, above which one is large */
+#define LARGE 8
+
 void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box) {
     for (int c = 0; c < 3; c++) {
         // of an empty one no number is true of anything, even of a box without end
@@ -45,9 +48,37 @@ static bool add(struct cs_cluster_near *near, uint32_t cluster, const struct cs_
     return true;
 }
 
+/* mean longest side of boxes up to a length; 0: there is none */
+static double mean_side(const struct cs_clusters *clusters, double most) {
+    double sum = 0;
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < clusters->n; k++) {
+        const double side = cs_cell_box_side(clusters->boxes + k);
+        const bool counts = side >= 0 && side <= most;
+        sum += counts ? side : 0;
+        count += counts;
+    }
+    return count ? sum / count : 0;
+}
+
+/* A few large triangles, as of a floor, would make cells so large that all else is in the same
+ * ones: the mean of those below the mean is not theirs. */
+bool cs_clusters_sort(struct cs_clusters *clusters) {
+    const double most = LARGE * mean_side(clusters, mean_side(clusters, HUGE_VAL));
+    const struct cs_cell_boxes small = {clusters->boxes, clusters->n, -1, most};
+    const struct cs_cell_boxes large = {clusters->boxes, clusters->n, most, HUGE_VAL};
+    return cs_cells_fill(clusters->cells, &small) && cs_cells_fill(clusters->cells + 1, &large);
+}
+
+void cs_clusters_finish(struct cs_clusters *clusters) {
+    cs_cells_finish(clusters->cells);
+    cs_cells_finish(clusters->cells + 1);
+}
+
 /* a box that looks for clusters, and its first cell */
 struct looking {
     const struct cs_clusters *clusters;
+    const struct cs_cells *cells;
     const struct cs_cell_box *box;
     const struct cs_cluster_span *but;
     uint32_t first[3];
@@ -63,7 +94,7 @@ static bool is_in(const struct cs_cluster_span *span, const struct cs_cluster_sp
 static bool add_cell(struct cs_cluster_near *near, const struct looking *looking,
                      const uint32_t at[3]) {
     const struct cs_clusters *clusters = looking->clusters;
-    const struct cs_cells *cells = &clusters->cells;
+    const struct cs_cells *cells = looking->cells;
     const size_t cell = cs_cells_at(cells, at[0], at[1], at[2]);
     bool there = true;
     for (uint32_t s = cells->starts[cell]; s < cells->starts[cell + 1]; s++) {
@@ -79,19 +110,27 @@ static bool add_cell(struct cs_cluster_near *near, const struct looking *looking
     return there;
 }
 
+static bool add_cells(struct cs_cluster_near *near, struct looking *looking) {
+    uint32_t last[3], at[3];
+    bool there = true;
+    if (!looking->cells->dim[0])
+        return true;
+    cs_cells_span(looking->cells, looking->box, looking->first, last);
+    for (at[2] = looking->first[2]; at[2] <= last[2]; at[2]++)
+        for (at[1] = looking->first[1]; at[1] <= last[1]; at[1]++)
+            for (at[0] = looking->first[0]; at[0] <= last[0]; at[0]++)
+                there = there && add_cell(near, looking, at);
+    return there;
+}
+
 bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
                           const struct cs_cell_box *box, const struct cs_cluster_span *but) {
-    struct looking looking = {clusters, box, but, {0}};
-    uint32_t *first = looking.first, last[3], at[3];
     bool there = true;
     near->n = 0;
-    if (!clusters->cells.dim[0] || !(box->high[0] >= box->low[0]))
-        return true;
-    cs_cells_span(&clusters->cells, box, first, last);
-    for (at[2] = first[2]; at[2] <= last[2]; at[2]++)
-        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
-            for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
-                there = there && add_cell(near, &looking, at);
+    for (int k = 0; k < 2 && box->high[0] >= box->low[0]; k++) {
+        struct looking looking = {clusters, clusters->cells + k, box, but, {0}};
+        there = there && add_cells(near, &looking);
+    }
     uint32_t *items =
         cs_arena_grow(near->items, &near->items_room, CS_CLUSTER * near->n, sizeof *items);
     near->items = items ? items : near->items;

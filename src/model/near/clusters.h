@@ -30,7 +30,7 @@ struct cs_clusters {
     uint32_t *block;               /* (n) of cs_order_build, of a grid; or CS_NO_BLOCK */
     struct cs_cluster *of;         /* (n) boxes of items */
     struct cs_cell_box *boxes;     /* (n) of clusters; may be empty */
-    struct cs_cells cells;         /* of them */
+    struct cs_cells cells[2];      /* of them, and of those that are far larger than most */
     struct cs_cluster_span *spans; /* (n) that hold all of a cluster; NULL: there is no grid */
 };
 
@@ -48,6 +48,9 @@ struct cs_cluster_near {
 /* Sets a lane; a box with high below low is empty, and met by none. */
 void cs_cluster_set(struct cs_cluster *cluster, uint32_t lane, const struct cs_cell_box *box);
 
+/* Sorts the boxes into cells. false: no memory. */
+bool cs_clusters_sort(struct cs_clusters *clusters);
+
 /* Sets near to the clusters that are not passed over and that a box meets; those that are
  * wholly in `but` are left out (NULL: none). false: no memory. */
 bool cs_cluster_near_find(struct cs_cluster_near *near, const struct cs_clusters *clusters,
@@ -59,5 +62,6 @@ uint32_t cs_cluster_near_items(struct cs_cluster_near *near, const struct cs_clu
 
 /* Give memory back. */
 void cs_cluster_near_finish(struct cs_cluster_near *near);
+void cs_clusters_finish(struct cs_clusters *clusters);
 
 #endif

@@ -67,8 +67,8 @@ void cs_search_find_finish(struct cs_search *search) {
         cs_cluster_near_finish(search->batches[b].near);
         cs_cluster_near_finish(search->batches[b].near + 1);
     }
-    cs_cells_finish(&search->triangles.cells);
-    cs_cells_finish(&search->edges.cells);
+    cs_clusters_finish(&search->triangles);
+    cs_clusters_finish(&search->edges);
 }
 
 /* --- at a state --- */
