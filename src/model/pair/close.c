@@ -108,7 +108,8 @@ bool cs_close_find(struct cs_search *search, const double *x) {
     if (!cs_search_update(search, x))
         return false;
     memcpy(search->close_at, x, bytes);
-    cs_search_round(search, x);
+    if (search->n_listed)
+        cs_search_round(search, x);
     cs_pool_run(search->n_lots, find_lot, search);
     bool failed = false;
     for (uint32_t l = 0; l < search->n_lots; l++)

@@ -44,8 +44,11 @@ static void list_lot(void *arg, uint32_t number) {
 bool cs_search_list(struct cs_search *search) {
     bool failed = false;
     cs_pool_run(search->n_lots, list_lot, search);
-    for (uint32_t l = 0; l < search->n_lots; l++)
+    search->n_listed = 0;
+    for (uint32_t l = 0; l < search->n_lots; l++) {
         failed = failed || search->lots[l].failed;
+        search->n_listed += search->lots[l].n;
+    }
     return !failed;
 }
 

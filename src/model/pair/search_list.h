@@ -50,6 +50,7 @@ struct cs_search {
     struct cs_search_row *rows[2]; /* of points, and of edges */
     struct cs_search_lot *lots;    /* points first */
     uint32_t n_batches, n_lots;
+    size_t n_listed;              /* pairs in all lots */
     struct cs_sieve_place *rough; /* (n_points) of the last state that was looked at */
     double inverse;               /* 1/m, of their unit */
     double *drift;    /* (4, n_bodies) middle of the moves of a body, and how far they reach */
