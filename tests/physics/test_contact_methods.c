@@ -25,7 +25,7 @@ static const struct meeting scenes[] = {
     {.scene = "reef_knot", .frames = 120},
     {.scene = "fold", .frames = 60},
     {.scene = "trampoline", .frames = 60},
-    {.scene = "needles", .frames = 100},
+    {.scene = "needles", .frames = 125},
     {.scene = "bear_drape", .frames = 60},
     {.scene = "curtain_ball",
      .frames = 150,
