@@ -14,26 +14,30 @@
 
 #define LENGTH(a) (sizeof(a) / sizeof *(a))
 
+/* the first with steps of one length, short where contact is stiff: on scenes that leave these
+ * long enough alone, unless others are asked for */
 static const char *const methods[] = {
     "velocity-verlet",  "dopri5:rtol=1e-3",    "implicit-linearised:dt=0.004",
     "newmark:dt=0.004", "cvode-bdf:rtol=1e-3", "xpbd:dt=0.004"};
+enum { SHORT_STEPS = 0 };
 
-/* coarser than they stand where a method would take hours */
+/* as they stand, but for two that would take long */
+enum { MILD = 5 };
 static const struct meeting scenes[] = {
     {.scene = "self_compare", .frames = 60, .overrides = {MEETING_LIMIT}},
     {.scene = "ribbon", .frames = 240},
-    {.scene = "reef_knot", .frames = 120},
-    {.scene = "fold", .frames = 60},
     {.scene = "trampoline", .frames = 60},
-    {.scene = "needles", .frames = 125},
-    {.scene = "bear_drape", .frames = 60},
     {.scene = "curtain_ball",
      .frames = 150,
      .overrides = {MEETING_GRID(28, 32), MEETING_CURTAIN}},
+    {.scene = "fold", .frames = 60},
+    {.scene = "needles", .frames = 125},
+    {.scene = "bear_drape", .frames = 60},
     {.scene = "layers", .frames = 60},
-    {.scene = "funnel", .frames = 180}, // coarser ones jam: the tip comes to lie on an edge
     {.scene = "bear_heap", .frames = 120},
     {.scene = "winding", .frames = 240, .overrides = {MEETING_GRID(15, 15)}},
+    {.scene = "funnel", .frames = 180}, // coarser ones jam: the tip comes to lie on an edge
+    {.scene = "reef_knot", .frames = 120},
 };
 
 static const char *asked_method;
@@ -81,26 +85,25 @@ static bool run(const struct meeting *meeting) {
     return !course.error.status && !course.most;
 }
 
-static bool is_asked(const char *scene) {
-    bool asked = !*asked_scenes;
+static bool is_asked(size_t scene, size_t method) {
+    const size_t length = strlen(asked_method);
+    bool asked = !*asked_scenes && (method != SHORT_STEPS || scene < MILD);
     for (char **name = asked_scenes; *name; name++)
-        asked = asked || !strcmp(*name, scene);
-    return asked;
+        asked = asked || !strcmp(*name, scenes[scene].scene);
+    return asked &&
+           (!strcmp(asked_method, "all") || !strncmp(asked_method, methods[method], length));
 }
 
 START_TEST(nothing_goes_through) {
     uint32_t failed = 0, done = 0;
     for (size_t s = 0; s < LENGTH(scenes); s++)
-        for (size_t m = 0; m < LENGTH(methods); m++) {
-            struct meeting meeting = scenes[s];
-            meeting.method = methods[m];
-            if (!is_asked(meeting.scene) ||
-                (strcmp(asked_method, "all") != 0 &&
-                 strncmp(asked_method, methods[m], strlen(asked_method)) != 0))
-                continue;
-            failed += !run(&meeting);
-            done++;
-        }
+        for (size_t m = 0; m < LENGTH(methods); m++)
+            if (is_asked(s, m)) {
+                struct meeting meeting = scenes[s];
+                meeting.method = methods[m];
+                failed += !run(&meeting);
+                done++;
+            }
     ck_assert_uint_gt(done, 0);
     ck_assert_msg(!failed, "%u of %u runs failed, see their rows", failed, done);
 }
