@@ -131,7 +131,7 @@ def twister():
         for k in range(AROUND):
             a, b = j * AROUND + k, j * AROUND + (k + 1) % AROUND
             c, d = a + AROUND, b + AROUND
-            triangles += [(a, c, b), (b, c, d)] if (j + k) % 2 else [(a, c, d), (a, d, b)]
+            triangles += [(a, b, c), (b, d, c)] if (j + k) % 2 else [(a, d, c), (a, b, d)]
     write("twister", "a tube, open at both ends", places, triangles)
     events = [grab(0, k, 1) for k in range(AROUND)]
     events += [grab(AROUND * (RINGS - 1), k, -1) for k in range(AROUND)]
