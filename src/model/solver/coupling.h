@@ -14,7 +14,7 @@
 #ifndef CS_COUPLING_H
 #define CS_COUPLING_H
 
-#include "model/pair/corners.h"
+#include "model/solver/corners.h"
 #include "model/solver/hierarchy.h"
 
 /* Gives the levels of a hierarchy what links need. CS_ERR_MEMORY. */

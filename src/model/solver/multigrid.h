@@ -8,7 +8,7 @@
 #ifndef CS_MULTIGRID_H
 #define CS_MULTIGRID_H
 
-#include "model/pair/corners.h"
+#include "model/solver/corners.h"
 #include "model/solver/hierarchy.h"
 #include "model/system/system.h"
 

@@ -1,6 +1,6 @@
 /* corners.h - the kept matrix of pairs, by the particles that they are of. */
-#ifndef CS_PAIR_CORNERS_H
-#define CS_PAIR_CORNERS_H
+#ifndef CS_SOLVER_CORNERS_H
+#define CS_SOLVER_CORNERS_H
 
 #include "base/arena.h"
 

@@ -1,5 +1,5 @@
 /* Corners counted and put by particles, of either kind of matrix. */
-#include "model/pair/corners.h"
+#include "model/solver/corners.h"
 
 #include "model/pair/pairs.h"
 
