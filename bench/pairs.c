@@ -3,8 +3,9 @@
  * Flat, the sheet meets nothing. Folded, it lies in layers of 16 columns one upon the other,
  * at 0.6 to 5.4 ranges from each other. In motion it goes to and fro along a velocity field of
  * up to 1 m/s, by a step a force, so that lists are made as often as in an explicit run; a
- * step of an implicit method is FRAME / 4 of it, halved until it sees its contact where that is
- * asked. */
+ * step of an implicit method is FRAME / 4 of it. What is asked of a step is asked of one that
+ * moves by half a range against itself, as steps of a run do in contact, halved until it is
+ * seen. */
 #include "sheet.h"
 #include "timing.h"
 
@@ -186,7 +187,9 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
         fold(bed);
     cs_perturb_random(system, 0.02 / bed->r, 0);
     stir(bed);
-    for (bed->taken = FRAME / 4; !ask(bed, bed->taken); bed->taken *= 0.5)
+    // at 1 m/s, to either side
+    const double range = system->pairs->meetings.least;
+    for (bed->taken = fmin(FRAME / 4, 0.25 * range); !ask(bed, bed->taken); bed->taken *= 0.5)
         ;
     matrix(bed);
     return CS_OK;
