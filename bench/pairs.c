@@ -1,11 +1,12 @@
 /* Times contact of a sheet with itself stage by stage, beside the force of its springs.
  *
  * Flat, the sheet meets nothing. Folded, it lies in layers of 16 columns one upon the other,
- * at 0.6 to 5.4 ranges from each other. In motion it goes to and fro along a velocity field of
- * up to 1 m/s, by a step a force, so that lists are made as often as in an explicit run; a
- * step of an implicit method is FRAME / 4 of it. What is asked of a step is asked of one that
- * moves by half a range against itself, as steps of a run do in contact, halved until it is
- * seen. */
+ * at 0.6 to 5.4 ranges from each other, so that larger sheets have more layers; or in four
+ * layers whatever its size, so that particles have about as many pairs. In motion it goes to
+ * and fro along a velocity field of up to 1 m/s, by a step a force, so that lists are made as
+ * often as in an explicit run; a step of an implicit method is FRAME / 4 of it. What is asked
+ * of a step is asked of one that moves by half a range against itself, as steps of a run do in
+ * contact, halved until it is seen. */
 #include "sheet.h"
 #include "timing.h"
 
@@ -20,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 16, WAY = 32 };
+enum { WAY = 32 };
 #define FRAME (1 / 60.0)
 
 struct bed {
@@ -30,8 +31,8 @@ struct bed {
     double *at;          /* (3,n) where the motion is */
     double h;            /* s a force */
     double taken;        /* s a step of an implicit method that is taken */
-    uint32_t r;
-    bool folded;
+    const char *state;
+    uint32_t r, columns; /* along a side; in a layer, 0: it is flat */
 };
 
 static void move(struct bed *bed, double t) {
@@ -144,15 +145,15 @@ static const struct stage {
 };
 enum { STAGES = sizeof stages / sizeof *stages };
 
-/* layers of COLUMNS columns one upon the other, each bent back at its end */
+/* layers of so many columns one upon the other, each bent back at its end */
 static void fold(struct bed *bed) {
-    const size_t n = bed->session.system.view.n, r = bed->r;
+    const size_t n = bed->session.system.view.n, r = bed->r, columns = bed->columns;
     const double edge = 1.0 / (double)(r - 1);
     const double range = bed->session.system.pairs->meetings.widest;
     for (size_t i = 0; i < n; i++) {
-        const size_t column = i % r, layer = column / COLUMNS, along = column % COLUMNS;
+        const size_t column = i % r, layer = column / columns, along = column % columns;
         const double wave = sin(0.4 * (double)(i / r) + 2.1 * (double)layer);
-        bed->x[i] = edge * (double)(layer % 2 ? COLUMNS - 1 - along : along);
+        bed->x[i] = edge * (double)(layer % 2 ? columns - 1 - along : along);
         bed->x[n + i] = range * (3 * (double)layer + 1.4 * wave);
     }
 }
@@ -183,7 +184,7 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
     bed->at = cs_arena_take_n(&bed->arena, n, sizeof(double), error);
     if (error->status)
         return error->status;
-    if (bed->folded)
+    if (bed->columns)
         fold(bed);
     cs_perturb_random(system, 0.02 / bed->r, 0);
     stir(bed);
@@ -213,19 +214,17 @@ static void add_row(const struct bed *bed, const struct bench_task *tasks, int k
     if (items)
         snprintf(each, sizeof each, "%.3f,%.2f", (double)items / n,
                  1e9 * time.median / (double)items);
-    bench_table_add(table, "%u,%s,%s,%.4g,%.4g,%.4g,%s,%.4g", bed->r,
-                    bed->folded ? "folded" : "flat", stages[k].name, ns * time.median,
-                    ns * time.min, ns * time.max, each,
+    bench_table_add(table, "%u,%s,%s,%.4g,%.4g,%.4g,%s,%.4g", bed->r, bed->state,
+                    stages[k].name, ns * time.median, ns * time.min, ns * time.max, each,
                     time.median / times / tasks[0].time.median);
 }
 
-static enum cs_status measure(const struct bench_settings *settings, uint32_t r, bool folded,
+static enum cs_status measure(const struct bench_settings *settings, struct bed bed,
                               struct bench_table *table, struct cs_error *error) {
-    struct bed bed = {.r = r, .folded = folded};
     struct bench_task tasks[STAGES];
     for (int k = 0; k < STAGES; k++)
         tasks[k] = (struct bench_task){.run = stages[k].run, .object = &bed};
-    bench_tell("%s sheet of %u x %u", folded ? "folded" : "flat", r, r);
+    bench_tell("sheet of %u x %u, %s", bed.r, bed.r, bed.state);
     if (!open_bed(&bed, settings, error)) {
         build(&bed);
         const uint64_t items[] = {0, count(&bed, BY_CANDIDATE), count(&bed, BY_PAIR)};
@@ -244,9 +243,14 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
                           struct cs_error *error) {
     static const uint32_t sizes[] = {32, 64, 256};
     const uint32_t n = settings->quick ? 1 : sizeof sizes / sizeof *sizes;
-    for (uint32_t k = 0; k < n && !error->status; k++)
-        if (!measure(settings, sizes[k], false, table, error))
-            measure(settings, sizes[k], true, table, error);
+    for (uint32_t k = 0; k < n && !error->status; k++) {
+        const uint32_t r = sizes[k];
+        const struct bed beds[] = {{.r = r, .state = "flat"},
+                                   {.r = r, .state = "folded", .columns = 16},
+                                   {.r = r, .state = "four layers", .columns = r / 4}};
+        for (size_t b = 0; b < sizeof beds / sizeof *beds && !error->status; b++)
+            measure(settings, beds[b], table, error);
+    }
     return error->status;
 }
 
