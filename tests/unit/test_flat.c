@@ -125,7 +125,7 @@ END_TEST
 
 /* a place that is not finite makes its blocks, and those beside them, not flat */
 START_TEST(not_finite_is_not_flat) {
-    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     static struct grid grid;
     struct cs_arena arena = {0};
     struct cs_flat flat;
@@ -165,8 +165,10 @@ START_TEST(clusters_have_all_items) {
             ck_assert_int_eq(clusters.block[k] == CS_NO_BLOCK, item >= first[1]);
             for (uint32_t c = 0; c < 2; c++) {
                 const uint32_t point = grid.edges[2 * item + c];
-                ck_assert(span->first[0] <= point / SIDE && point / SIDE <= span->last[0]);
-                ck_assert(span->first[1] <= point % SIDE && point % SIDE <= span->last[1]);
+                const double at[2] = {point / SIDE, point % SIDE};
+                for (int way = 0; way < 2; way++)
+                    ck_assert((double)span->first[way] <= at[way] &&
+                              at[way] <= (double)span->last[way]);
             }
             if (item < first[1])
                 ck_assert(span->last[0] - span->first[0] <= CS_FLAT_BLOCK &&

@@ -135,7 +135,7 @@ END_TEST
 
 /* places that are not finite are let through: who asks next is to see them */
 START_TEST(not_finite_is_let_through) {
-    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     for (int edges = 0; edges < 2; edges++)
         for (size_t k = 0; k < 12; k++) {
             static struct cs_sieve sieve;
