@@ -129,7 +129,7 @@ START_TEST(knot_is_tight) {
                                         "implicit-linearised:dt=0.002"};
     static const char *const slow[] = {"implicit-linearised:dt=0.001",
                                        "implicit-linearised:dt=0.002",
-                                       "backward-euler:dt=0.004"};
+                                       "backward-euler:dt=0.004,iterations=100"};
     double odds;
     const uint32_t frames = all ? 105 : 8;
     const double first = tie(all ? slow[0] : quick[0], frames, &odds);
