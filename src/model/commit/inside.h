@@ -14,9 +14,9 @@ struct cs_inside {
  * energy of its way out from nowhere. By contact.start it is moved out along the normals,
  * and *inside says so; or CS_ERR_SCENE with the first particle, the obstacle and the depth, as
  * also where a particle lies between obstacles that leave no room, where a point between
- * particles that feels an obstacle (model/cover/cover.h) is then still inside, or where edges of
- * bodies that keep off each other, themselves or a mesh go through triangles (unless crossings
- * are ignored). */
+ * particles that feels an obstacle (model/cover/cover.h) is then still inside, or where edges
+ * of bodies that keep off each other, themselves or a mesh go through triangles (unless
+ * crossings are ignored). */
 enum cs_status cs_inside_clear(struct cs_system *system, struct cs_inside *inside,
                                struct cs_error *error);
 

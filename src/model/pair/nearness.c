@@ -8,26 +8,6 @@ CS_INLINE double least_of(double a, double b) {
     return a < b ? a : b;
 }
 
-CS_INLINE double most_of(double a, double b) {
-    return a > b ? a : b;
-}
-
-bool cs_nearness_is_apart(enum cs_stencil_kind kind, double p[4][3], double range) {
-    const bool edges = kind == CS_STENCIL_EDGES;
-    const double far = range * (1 + 1e-9);
-    bool apart = false;
-    for (int c = 0; c < 3; c++) {
-        // the second point is of either side
-        const double low = least_of(p[2][c], p[3][c]), high = most_of(p[2][c], p[3][c]);
-        const double from = edges ? least_of(p[0][c], p[1][c]) : p[0][c];
-        const double to = edges ? most_of(p[0][c], p[1][c]) : p[0][c];
-        const double least = edges ? low : least_of(low, p[1][c]);
-        const double most = edges ? high : most_of(high, p[1][c]);
-        apart |= from - most > far || least - to > far;
-    }
-    return apart;
-}
-
 /* of p from the segment a b; chosen, not branched to, so that loops over lanes vectorise */
 CS_INLINE double from_segment(const double p[3], const double a[3], const double b[3]) {
     const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};

@@ -5,10 +5,6 @@
 
 #include "model/pair/stencil.h"
 
-/* true where they are further apart than range along one of the axes, and so in space: a test
- * of a few nanoseconds. Of numbers that are not finite it may say either. */
-bool cs_nearness_is_apart(enum cs_stencil_kind kind, double p[4][3], double range);
-
 /* Pairs of one kind; lanes that hold none have numbers that mean nothing. */
 enum { CS_NEARNESS_LANES = 8 };
 struct cs_nearness_lanes {

@@ -28,10 +28,6 @@ struct work {
     bool unseen;
 };
 
-static double range_share(enum cs_stencil_kind kind) {
-    return kind == CS_STENCIL_EDGES ? CS_MEETING_EDGES : 1;
-}
-
 /* d (points + 1, and up to a lane less than CS_PAIR_LANES behind) = the smooth distances at the
  * start and at `points` places of the way, the last of them its end; returns whether one is
  * within range */
@@ -103,7 +99,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
     cs_search_corners(pairs->system->surfaces, work->kind, pair, at);
     const struct cs_meeting *meeting =
         cs_meeting_of(&pairs->meetings, search->body[at[0]], search->body[at[2]]);
-    lanes->range[l] = meeting->range * range_share(work->kind);
+    lanes->range[l] = cs_meeting_range(meeting, work->kind == CS_STENCIL_EDGES);
     lanes->k[l] = meeting->k;
     for (size_t k = 0; k < 4; k++) {
         const double *move = pairs->moves[at[k]].of;
@@ -120,10 +116,11 @@ static void take(struct work *work, const uint32_t pair[2]) {
 /* of a lot, those pairs that may come into range */
 static void ask_lot(struct work *work, const struct cs_search_lot *lot) {
     const struct cs_pairs *pairs = work->job->pairs;
-    const double reach = pairs->meetings.widest * range_share(lot->kind) * (1 + 1e-9);
+    const bool edges = lot->kind == CS_STENCIL_EDGES;
+    const struct cs_meeting widest = {.range = pairs->meetings.widest};
+    const double reach = cs_meeting_range(&widest, edges) * (1 + 1e-9);
     uint32_t some[SOME][2];
-    struct cs_point_moves_pairs items = {.surfaces = pairs->system->surfaces,
-                                         .edges = lot->kind == CS_STENCIL_EDGES};
+    struct cs_point_moves_pairs items = {.surfaces = pairs->system->surfaces, .edges = edges};
     for (size_t p = 0; p < lot->n && !work->unseen; p += SOME) {
         items.items = lot->pairs + 2 * p;
         items.n = lot->n - p < SOME ? lot->n - p : SOME;
