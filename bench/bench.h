@@ -28,6 +28,6 @@ extern const struct bench_section bench_limits, bench_kernels, bench_steps, benc
     bench_pairs, bench_pictures, bench_pipeline, bench_scipy;
 
 /* One line of progress on standard error. */
-void bench_tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void bench_report(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

@@ -7,11 +7,11 @@
 #include "sheet.h"
 
 #include "base/vector.h"
-#include "model/commit/contact.h"
-#include "model/commit/limit.h"
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
+#include "model/post_step/contact_projection.h"
+#include "model/post_step/strain_limit.h"
 #include "model/solver/linear.h"
 
 #include <stdio.h>
@@ -26,8 +26,8 @@ enum variant { FULL, UNDAMPED, RELATIVE, SLIM, VARIANTS };
 /* A system with all that a kernel may want. */
 struct bed {
     struct cs_session session;
-    struct cs_linear linear;   /* only of FULL */
-    struct cs_contact contact; /* likewise */
+    struct cs_linear linear;              /* only of FULL */
+    struct cs_contact_projection contact; /* likewise */
     struct cs_arena arena;
     double *x, *v;         /* of the system */
     double *dx, *dv, *out; /* (3,n) */
@@ -93,12 +93,12 @@ static void normals(void *object) {
 /* both have moved what there was to move when they are first called */
 static void contact(void *object) {
     struct bed *bed = object;
-    cs_contact_resolve(&bed->contact, 0, 1 / 60.0, bed->x, bed->v);
+    cs_contact_projection_resolve(&bed->contact, 0, 1 / 60.0, bed->x, bed->v);
 }
 
 static void limit(void *object) {
     struct bed *bed = object;
-    cs_limit_apply(&bed->session.system, 1 / 60.0, bed->x, bed->v);
+    cs_strain_limit_apply(&bed->session.system, 1 / 60.0, bed->x, bed->v);
 }
 
 static void dot(void *object) {
@@ -147,7 +147,7 @@ struct group {
 };
 
 static double *take(struct bed *bed, size_t n, struct cs_error *error) {
-    return cs_arena_take_n(&bed->arena, n, sizeof(double), error);
+    return cs_arena_alloc_array(&bed->arena, n, sizeof(double), error);
 }
 
 static enum cs_status open_bed(struct bed *bed, const struct bench_settings *settings,
@@ -177,12 +177,12 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
     bed->kxx = take(bed, 6 * n, error);
     bed->dvv = take(bed, 6 * n, error);
     if (error->status || cs_linear_init(&bed->linear, system, &bed->arena, error) ||
-        cs_contact_init(&bed->contact, system, &bed->arena, error))
+        cs_contact_projection_init(&bed->contact, system, &bed->arena, error))
         return error->status;
     memcpy(bed->dx, bed->v, 3 * n * sizeof *bed->dx);
     memcpy(bed->dv, bed->x, 3 * n * sizeof *bed->dv);
     setup(bed);
-    cs_contact_keep(&bed->contact, bed->x, bed->v, false);
+    cs_contact_projection_store(&bed->contact, bed->x, bed->v, false);
     return CS_OK;
 }
 
@@ -264,7 +264,7 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
     static const uint32_t sizes[] = {16, 64, 0, 256, 1000};
     const uint32_t n = settings->quick ? 3 : sizeof sizes / sizeof *sizes;
     for (uint32_t k = 0; k < n && !error->status; k++) {
-        bench_tell(sizes[k] ? "sheet of %u x %u" : "body of springs", sizes[k], sizes[k]);
+        bench_report(sizes[k] ? "sheet of %u x %u" : "body of springs", sizes[k], sizes[k]);
         measure(settings, sizes[k], table, error);
     }
     return error->status;

@@ -94,7 +94,7 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
         tasks[n] = (struct bench_task){.run = rows[r].run, .object = loops + n};
         bench_loop_init(loops + n++, rows[r].bytes, error);
     }
-    bench_tell("%u loops", n);
+    bench_report("%u loops", n);
     if (!error->status)
         bench_measure(settings, tasks, n);
     for (uint32_t k = 0, r = 0; k < n && !error->status; k++, r++) {

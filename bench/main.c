@@ -21,7 +21,7 @@ enum { SECTIONS = sizeof sections / sizeof *sections };
 
 static const char *running = "bench"; /* the section, for bench_tell */
 
-void bench_tell(const char *format, ...) {
+void bench_report(const char *format, ...) {
     va_list args;
     va_start(args, format);
     fprintf(stderr, "%s: ", running);
@@ -59,10 +59,10 @@ static enum cs_status choose(struct asked *asked, const char *name, struct cs_er
 static enum cs_status read_threads(struct asked *asked, const char *text,
                                    struct cs_error *error) {
     double threads;
-    if (!cs_parse_real(text, &threads) || !(threads >= 1 && threads <= CS_POOL_MOST) ||
+    if (!cs_parse_real(text, &threads) || !(threads >= 1 && threads <= CS_POOL_THREADS_MAX) ||
         threads != (uint32_t)threads)
         return cs_fail(error, CS_ERR_USAGE, "--threads: found \"%s\", expected 1 to %d", text,
-                       CS_POOL_MOST);
+                       CS_POOL_THREADS_MAX);
     asked->settings.threads = (uint32_t)threads;
     return CS_OK;
 }
@@ -97,7 +97,7 @@ static enum cs_status read_arguments(struct asked *asked, int argc, char **argv,
 
 static void print_head(const struct bench_settings *settings) {
     struct cs_machine machine;
-    cs_machine_look(&machine);
+    cs_machine_detect(&machine);
     printf("%s, %ld processors, load %.2f; %s, %s; %u thread%s%s\n\n",
            *machine.processor ? machine.processor : "unknown processor", machine.processors,
            machine.load, machine.compiler, machine.flags, settings->threads,
@@ -114,7 +114,7 @@ static enum cs_status run_section(const struct asked *asked,
     running = section->name;
     const double begin = cs_clock_wall();
     section->run(&asked->settings, &table, error);
-    bench_tell("%.1f s", cs_clock_wall() - begin);
+    bench_report("%.1f s", cs_clock_wall() - begin);
     bench_table_print(&table, &text);
     printf("%s", cs_text_get(&text));
     fflush(stdout);

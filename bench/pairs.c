@@ -10,10 +10,10 @@
 #include "sheet.h"
 #include "timing.h"
 
-#include "model/cross/crossings.h"
+#include "model/contact/ccd/crossings.h"
+#include "model/contact/narrow_phase/candidates_in_range.h"
+#include "model/contact/narrow_phase/pair_step_check.h"
 #include "model/force/terms.h"
-#include "model/pair/close.h"
-#include "model/pair/seen.h"
 #include "study/perturb.h"
 
 #include <math.h>
@@ -53,24 +53,24 @@ static void springs(void *object) {
 
 static void keep(void *object) {
     struct bed *bed = object;
-    cs_search_update(&bed->session.system.pairs->search, bed->at);
+    cs_candidates_update(&bed->session.system.pairs->candidates, bed->at);
 }
 
 static void build(void *object) {
     struct bed *bed = object;
-    bed->session.system.pairs->search.fresh = false;
+    bed->session.system.pairs->candidates.is_built = false;
     keep(bed);
 }
 
 static void candidates(void *object) {
     struct bed *bed = object;
-    bed->session.system.pairs->search.closed = false;
-    cs_close_find(&bed->session.system.pairs->search, bed->at);
+    bed->session.system.pairs->candidates.has_close_pairs = false;
+    cs_candidates_find_in_range(&bed->session.system.pairs->candidates, bed->at);
 }
 
 static void pairs(void *object) {
     struct bed *bed = object;
-    bed->session.system.pairs->search.closed = false;
+    bed->session.system.pairs->candidates.has_close_pairs = false;
     const struct cs_eval at = here(bed, CS_PART_POTENTIAL | CS_PART_DISSIPATIVE);
     cs_terms_force(&bed->session.system, &at, bed->out);
 }
@@ -101,7 +101,8 @@ static void product(void *object) {
 
 static bool ask(struct bed *bed, double h) {
     move(bed, h);
-    const bool is = cs_pairs_are_seen(bed->session.system.pairs, 0, bed->x, h, bed->at);
+    const bool is =
+        cs_contact_pairs_resolve_step(bed->session.system.pairs, 0, bed->x, h, bed->at);
     move(bed, 0);
     return is;
 }
@@ -114,7 +115,8 @@ static void seen(void *object) {
 static void share(void *object) {
     struct bed *bed = object;
     move(bed, bed->taken);
-    bed->out[0] = cs_crossings_share(&bed->session.system, 0, bed->x, bed->taken, bed->at);
+    bed->out[0] =
+        cs_crossings_safe_fraction(&bed->session.system, 0, bed->x, bed->taken, bed->at);
     move(bed, 0);
 }
 
@@ -149,7 +151,7 @@ enum { STAGES = sizeof stages / sizeof *stages };
 static void fold(struct bed *bed) {
     const size_t n = bed->session.system.view.n, r = bed->r, columns = bed->columns;
     const double edge = 1.0 / (double)(r - 1);
-    const double range = bed->session.system.pairs->meetings.widest;
+    const double range = bed->session.system.pairs->body_pairs.range_max;
     for (size_t i = 0; i < n; i++) {
         const size_t column = i % r, layer = column / columns, along = column % columns;
         const double wave = sin(0.4 * (double)(i / r) + 2.1 * (double)layer);
@@ -180,8 +182,8 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
     bed->h = bench_model_step(&model);
     bed->x = system->state;
     bed->v = bed->x + n;
-    bed->out = cs_arena_take_n(&bed->arena, n, sizeof(double), error);
-    bed->at = cs_arena_take_n(&bed->arena, n, sizeof(double), error);
+    bed->out = cs_arena_alloc_array(&bed->arena, n, sizeof(double), error);
+    bed->at = cs_arena_alloc_array(&bed->arena, n, sizeof(double), error);
     if (error->status)
         return error->status;
     if (bed->columns)
@@ -189,7 +191,7 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
     cs_perturb_random(system, 0.02 / bed->r, 0);
     stir(bed);
     // at 1 m/s, to either side
-    const double range = system->pairs->meetings.least;
+    const double range = system->pairs->body_pairs.range_min;
     for (bed->taken = fmin(FRAME / 4, 0.25 * range); !ask(bed, bed->taken); bed->taken *= 0.5)
         ;
     matrix(bed);
@@ -198,9 +200,9 @@ static enum cs_status open_bed(struct bed *bed, const struct bench_settings *set
 
 static uint64_t count(const struct bed *bed, int by) {
     const struct cs_pairs *pairs = bed->session.system.pairs;
-    uint64_t n = by == BY_PAIR ? pairs->kept.active->n : 0;
-    for (uint32_t l = 0; by == BY_CANDIDATE && l < pairs->search.n_lots; l++)
-        n += pairs->search.lots[l].n;
+    uint64_t n = by == BY_PAIR ? pairs->solver_psd.contacts->n : 0;
+    for (uint32_t l = 0; by == BY_CANDIDATE && l < pairs->candidates.n_chunks; l++)
+        n += pairs->candidates.chunks[l].n;
     return n;
 }
 
@@ -224,7 +226,7 @@ static enum cs_status measure(const struct bench_settings *settings, struct bed 
     struct bench_task tasks[STAGES];
     for (int k = 0; k < STAGES; k++)
         tasks[k] = (struct bench_task){.run = stages[k].run, .object = &bed};
-    bench_tell("sheet of %u x %u, %s", bed.r, bed.r, bed.state);
+    bench_report("sheet of %u x %u, %s", bed.r, bed.r, bed.state);
     if (!open_bed(&bed, settings, error)) {
         build(&bed);
         const uint64_t items[] = {0, count(&bed, BY_CANDIDATE), count(&bed, BY_PAIR)};

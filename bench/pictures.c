@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "io/png.h"
-#include "study/picture.h"
+#include "study/frame_picture.h"
 #include "study/session.h"
 
 #include <stdio.h>
@@ -147,8 +147,8 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
                                      : sizeof shots / sizeof *shots;
     for (size_t k = 0; k < n && !error->status; k++) {
         struct cs_session session = {0};
-        bench_tell("%s, %s, %u x %u", list[k].scene, list[k].look, list[k].width,
-                   list[k].height);
+        bench_report("%s, %s, %u x %u", list[k].scene, list[k].look, list[k].width,
+                     list[k].height);
         if (!step(&session, settings, list + k, error))
             measure(settings, list + k, &session, table, error);
         cs_session_close(&session);

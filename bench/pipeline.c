@@ -48,8 +48,8 @@ static enum cs_status measure(const struct bench_settings *settings, const struc
     const uint32_t runs = settings->quick ? RUNS_QUICK : RUNS;
     double samples[STAGES][RUNS], seconds[STAGES] = {0}, slowest = 0;
     for (uint32_t k = 0; k < runs && !error->status; k++) {
-        bench_tell("%s, %s, %u frames, run %u of %u", shot->scene, shot->size, frames, k + 1,
-                   runs);
+        bench_report("%s, %s, %u frames, run %u of %u", shot->scene, shot->size, frames, k + 1,
+                     runs);
         if (sample(settings, shot, frames, seconds, error))
             return error->status;
         for (int s = 0; s < STAGES; s++)

@@ -14,8 +14,8 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
                                NULL};
     struct bench_usage usage;
     struct cs_text output = {0};
-    bench_tell("%s",
-               settings->quick ? "the drum, 0.05 s" : "hanging sheets and the drum, 0.5 s");
+    bench_report("%s",
+                 settings->quick ? "the drum, 0.05 s" : "hanging sheets and the drum, 0.5 s");
     if (!bench_child_run(arguments, &output, &usage, error))
         for (char *line = output.bytes, *end; line && *line; line = end) {
             end = line + strcspn(line, "\n");

@@ -161,7 +161,7 @@ static enum cs_status million(const struct bench_settings *settings, struct benc
     const struct bench_model model = {.r = 1000, .stiffness = 1e4, .fps = 60};
     struct cs_session session;
     struct bench_run run;
-    bench_tell("implicit-linearised, a million particles (minutes)");
+    bench_report("implicit-linearised, a million particles (minutes)");
     /* writes the scene; the program opens it for itself */
     if (bench_sheet_open(&session, settings, &model, "implicit-linearised", 0, error))
         return error->status;
@@ -201,7 +201,7 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
             continue;
         char name[16];
         bench_model_name(&(struct bench_model){.r = cases[k].r}, name);
-        bench_tell("sheet %s, from %s on", name, cases[k].method);
+        bench_report("sheet %s, from %s on", name, cases[k].method);
         measure(settings, cases + k, n, table, error);
     }
     return error->status || settings->quick ? error->status : million(settings, table, error);

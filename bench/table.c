@@ -94,7 +94,7 @@ static void add_machine(const struct bench_section *section,
     char date[32];
     const time_t now = time(NULL);
     struct tm utc;
-    cs_machine_look(&machine);
+    cs_machine_detect(&machine);
     strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime_r(&now, &utc));
     cs_text_add(out, "# section: %s\n# date: %s\n", section->name, date);
     cs_text_add(out, "# version: clothsim %s, commit %s\n", machine.version, BENCH_COMMIT);
@@ -119,7 +119,7 @@ enum cs_status bench_table_write(const struct bench_table *table,
     cs_text_add(&path, "%s/%s.csv", folder, section->name);
     if (csv.failed || path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the table \"%s\"", section->name);
-    else if (!cs_folder_make(folder, error))
+    else if (!cs_folder_create(folder, error))
         cs_file_write(path.bytes, csv.bytes, csv.length, error);
     cs_text_finish(&csv);
     cs_text_finish(&path);

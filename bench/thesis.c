@@ -145,8 +145,8 @@ static enum cs_status run(const struct bench_settings *settings, struct bench_ta
     }
     for (uint32_t m = 0; m < METHODS; m++)
         for (uint32_t size = 0; size < SIZES && !error->status; size++) {
-            bench_tell("%s, %u a frame, r = %u", methods[m].method, methods[m].steps,
-                       published[size].r);
+            bench_report("%s, %u a frame, r = %u", methods[m].method, methods[m].steps,
+                         published[size].r);
             measure(settings, size, m, table, error);
         }
     return error->status;

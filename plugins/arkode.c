@@ -97,7 +97,7 @@ static const struct sundials_library library = {
     .evolve = ARK(Evolve),
     .one_step = ARK_ONE_STEP,
     .system = newton_system,
-    .moved = moved,
+    .on_state_changed = moved,
 };
 
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {

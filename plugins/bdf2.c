@@ -57,21 +57,22 @@ static enum cs_step step_on(struct method *self, double t, double h, double *x, 
     return status;
 }
 
-static enum cs_step step(struct halving *object, double t, double h, double *x, double *v,
+static enum cs_step step(struct step_halving *object, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)object;
-    const struct cs_view *view = object->loop.host->view;
+    const struct cs_view *view = object->fixed.host->view;
     const size_t bytes = 3 * sizeof(double) * view->n;
     /* on copies: a refused step leaves x and v as they were */
     memcpy(self->xn, x, bytes);
     memcpy(self->vn, v, bytes);
-    const enum cs_step status = halving_is_fresh(object, h)
+    const enum cs_step status = step_halving_is_fresh(object, h)
                                     ? sdirk2_step(&self->base.newton, &self->arrays,
                                                   self->linear ? newton_step : newton_solve, t,
                                                   h, self->xn, self->vn, accepted)
                                     : step_on(self, t, h, self->xn, self->vn, accepted);
-    object->turned = *accepted && self->linear && springs_turned(view, x, self->xn);
-    *accepted &= !object->turned;
+    object->refused_by_rotation =
+        *accepted && self->linear && springs_rotated_far(view, x, self->xn);
+    *accepted &= !object->refused_by_rotation;
     if (status != CS_STEP_OK || !*accepted)
         return status;
     /* the old state is the history of the next step */
@@ -91,21 +92,21 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
     struct method *self = (struct method *)base;
     self->linear = asked->solve == SOLVE_LINEAR;
     double **const arrays[] = {&self->xl, &self->vl, &self->xn, &self->vn};
-    if (halving_take(host, arrays, 4) != CS_STEP_OK)
+    if (step_halving_alloc(host, arrays, 4) != CS_STEP_OK)
         return CS_STEP_FAIL;
-    return sdirk2_take(host, &self->arrays);
+    return sdirk2_alloc(host, &self->arrays);
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
     struct method *self = object;
-    const size_t n3 = 3 * (size_t)self->base.base.loop.host->view->n;
+    const size_t n3 = 3 * (size_t)self->base.base.fixed.host->view->n;
     archive->reals(archive->ctx, self->xl, n3);
     archive->reals(archive->ctx, self->vl, n3);
-    return halving_archive(self, archive);
+    return step_halving_archive(self, archive);
 }
 
 const struct cs_integrator bdf2 = {
-    HALVING_METHOD(struct bdf2_options, rows, archive),
+    STEP_HALVING_METHOD(struct bdf2_options, rows, archive),
     .name = "bdf2",
     .summary = "two-step backward differentiation, by Newton or by one linear solve a step",
     .source = "Gear 1971; Choi, Ko 2002",

@@ -42,11 +42,11 @@ static void factor(struct collocation *self) {
         for (size_t j = 0; j < self->stages; j++) {
             double left = self->a[i][j];
             for (size_t k = 0; k < i && k < j; k++)
-                left -= self->lower[i][k] * upper[k][j];
+                left -= self->crout_factor[i][k] * upper[k][j];
             if (j <= i)
-                self->lower[i][j] = left;
+                self->crout_factor[i][j] = left;
             else
-                upper[i][j] = left / self->lower[i][i];
+                upper[i][j] = left / self->crout_factor[i][i];
         }
 }
 
@@ -59,7 +59,7 @@ void collocation_make(struct collocation *self, size_t stages) {
         self->weight[j] = evaluate(coefficients, 1, true);
         for (size_t i = 0; i < s; i++) {
             self->a[i][j] = evaluate(coefficients, self->node[i], true);
-            self->onward[i][j] = evaluate(coefficients, 1 + self->node[i], false);
+            self->extrapolate[i][j] = evaluate(coefficients, 1 + self->node[i], false);
         }
     }
     factor(self);

@@ -14,8 +14,10 @@ struct collocation {
     size_t stages;
     double node[COLLOCATION_STAGES], weight[COLLOCATION_STAGES]; /* c_i, b_j */
     double a[COLLOCATION_STAGES][COLLOCATION_STAGES];
-    double lower[COLLOCATION_STAGES][COLLOCATION_STAGES];  /* L of A = L U, where u_ii = 1 */
-    double onward[COLLOCATION_STAGES][COLLOCATION_STAGES]; /* l_j(1 + c_i): to the next step */
+    double crout_factor[COLLOCATION_STAGES]
+                       [COLLOCATION_STAGES]; /* L of A = L U, where u_ii = 1 */
+    double extrapolate[COLLOCATION_STAGES]
+                      [COLLOCATION_STAGES]; /* l_j(1 + c_i): to the next step */
 };
 
 /* stages: 2 to COLLOCATION_STAGES */

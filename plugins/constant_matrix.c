@@ -4,12 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-static bool take_arrays(struct constant_matrix *matrix) {
+static bool alloc_arrays(struct constant_matrix *matrix) {
     const struct cs_host *host = matrix->host;
     const size_t vector = sizeof(double) * (size_t)host->view->n;
     return (matrix->drag = host->alloc(host->ctx, vector)) &&
-           (matrix->first = host->alloc(host->ctx, vector)) &&
-           (matrix->last = host->alloc(host->ctx, vector)) &&
+           (matrix->drag_begin = host->alloc(host->ctx, vector)) &&
+           (matrix->drag_end = host->alloc(host->ctx, vector)) &&
            (matrix->inv_mass = host->alloc(host->ctx, vector)) &&
            (matrix->springs =
                 host->alloc(host->ctx, 2 * sizeof(double) * (size_t)host->view->n_springs));
@@ -17,7 +17,7 @@ static bool take_arrays(struct constant_matrix *matrix) {
 
 enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct cs_host *host) {
     matrix->host = host;
-    if (!take_arrays(matrix))
+    if (!alloc_arrays(matrix))
         return CS_STEP_FAIL;
     if (!cholmod_start(&matrix->common))
         return host->fail(host->ctx, "CHOLMOD does not start");
@@ -50,20 +50,22 @@ void constant_matrix_read_drag(struct constant_matrix *matrix, double t0, double
     for (size_t i = 0; i < 3 * n; i++)
         ones[i] = 1;
     // the end first: the scene's values are then those of the begin, from where steps go on
-    read_drag(matrix, t1, x, ones, f, matrix->last);
-    read_drag(matrix, t0, x, ones, f, matrix->first);
+    read_drag(matrix, t1, x, ones, f, matrix->drag_end);
+    read_drag(matrix, t0, x, ones, f, matrix->drag_begin);
     matrix->begin = t0;
     matrix->end = t1;
     // from one advance to the next drag can change by an event, and a restart follows
-    matrix->drag_changes = memcmp(matrix->first, matrix->last, n * sizeof *matrix->first) != 0;
-    memcpy(matrix->drag, matrix->first, n * sizeof *matrix->drag);
+    matrix->drag_changes =
+        memcmp(matrix->drag_begin, matrix->drag_end, n * sizeof *matrix->drag_begin) != 0;
+    memcpy(matrix->drag, matrix->drag_begin, n * sizeof *matrix->drag);
 }
 
 /* Drag at the end of the step, as it is implicit. */
 static void follow_drag(struct constant_matrix *matrix, double t) {
     const double share = (t - matrix->begin) / (matrix->end - matrix->begin);
     for (size_t i = 0; i < matrix->host->view->n; i++)
-        matrix->drag[i] = matrix->first[i] + (matrix->last[i] - matrix->first[i]) * share;
+        matrix->drag[i] =
+            matrix->drag_begin[i] + (matrix->drag_end[i] - matrix->drag_begin[i]) * share;
 }
 
 /* Takes over the springs as they are; whether the factor has others. */
@@ -185,7 +187,7 @@ enum cs_step constant_matrix_solve(struct constant_matrix *matrix, double *b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
     if (!cholmod_solve2(CHOLMOD_A, matrix->factor, &right, NULL, &matrix->u, NULL, &matrix->y,
-                        &matrix->e, &matrix->common))
+                        &matrix->solve_work, &matrix->common))
         return host->fail(host->ctx, "CHOLMOD cannot solve (status %d)", matrix->common.status);
     *u = matrix->u->x;
     return CS_STEP_OK;
@@ -196,7 +198,7 @@ void constant_matrix_finish(struct constant_matrix *matrix) {
         return;
     cholmod_free_dense(&matrix->u, &matrix->common);
     cholmod_free_dense(&matrix->y, &matrix->common);
-    cholmod_free_dense(&matrix->e, &matrix->common);
+    cholmod_free_dense(&matrix->solve_work, &matrix->common);
     cholmod_free_factor(&matrix->factor, &matrix->common);
     cholmod_finish(&matrix->common);
     matrix->started = false;

@@ -14,18 +14,18 @@
 #include <suitesparse/cholmod.h>
 
 struct constant_matrix {
-    const struct cs_host *host; /* borrowed */
-    double *drag;               /* (n) in N s/m */
-    double *first, *last;       /* (n) in N s/m: drag at the ends of the advance */
-    double begin, end;          /* s, of the advance */
-    bool drag_changes;          /* within the advance */
-    double *springs;            /* (2,n_springs): stiffness and damping in the factor */
-    double *inv_mass;           /* (n) in 1/kg: 0 where a particle is pinned in the factor */
-    double h;                   /* the step that the factor belongs to; 0: none */
+    const struct cs_host *host;    /* borrowed */
+    double *drag;                  /* (n) in N s/m */
+    double *drag_begin, *drag_end; /* (n) in N s/m: drag at the ends of the advance */
+    double begin, end;             /* s, of the advance */
+    bool drag_changes;             /* within the advance */
+    double *springs;               /* (2,n_springs): stiffness and damping in the factor */
+    double *inv_mass;              /* (n) in 1/kg: 0 where a particle is pinned in the factor */
+    double h;                      /* the step that the factor belongs to; 0: none */
     cholmod_common common;
     bool started;
     cholmod_factor *factor;
-    cholmod_dense *u, *y, *e; /* result and work of the solve, kept between calls */
+    cholmod_dense *u, *y, *solve_work; /* result and work of the solve, kept between calls */
 };
 
 /* Zeroed memory in, takes its arrays from the host. */

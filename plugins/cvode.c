@@ -3,16 +3,16 @@
  * CVODE goes on across frames, and after commits that moved the state: see cvode_history.h.
  */
 #include "cvode_history.h"
-#include "cvode_order.h"
+#include "cvode_order_control.h"
 
 #include "sundials_common.h"
-#include "sundials_pass.h"
+#include "sundials_overstep.h"
 
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 /* Below this damping ratio the orders above 2 of BDF are held back by their stability near the
- * imaginary axis: see cvode_order.h. */
+ * imaginary axis: see cvode_order_control.h. */
 #define WEAK_DAMPING 0.05
 
 /* A step whose best length is within these factors of the last keeps its length. CVODE lets it
@@ -98,14 +98,14 @@ static void stats(const void *object, struct cs_stats *out) {
 
 /* CVODE forgets its history, and its counts with it. step: the first to try in s; 0: CVODE's
  * own careful choice. */
-static int start_anew(struct cvode *self, double t, double step) {
+static int reinit_cvode(struct cvode *self, double t, double step) {
     struct sundials *base = &self->base;
     add_counts(self, &self->done);
-    cvode_history_watch(&self->history, base);
+    cvode_history_update(&self->history, base);
     int code = CVodeReInit(base->memory, t, base->state);
     cvode_history_find(&self->history, base);
-    cvode_order_forget(&self->order);
-    if (code == CV_SUCCESS && self->order.chosen)
+    cvode_order_reset(&self->order);
+    if (code == CV_SUCCESS && self->order.is_automatic)
         code = CVodeSetMaxOrd(base->memory, CVODE_ORDER_LOW);
     return code == CV_SUCCESS ? CVodeSetInitStep(base->memory, step) : code;
 }
@@ -115,22 +115,23 @@ static int start_anew(struct cvode *self, double t, double step) {
 static int moved(struct sundials *base, double t, double dt) {
     struct cvode *self = (struct cvode *)base;
     if (dt <= 0)
-        return start_anew(self, t, 0);
+        return reinit_cvode(self, t, 0);
     if (cvode_history_move(&self->history, base))
         return CV_SUCCESS;
     double next = 0;
     const int code = CVodeGetCurrentStep(base->memory, &next);
     next = next < GROWTH_MAX * dt ? next : GROWTH_MAX * dt;
-    return code == CV_SUCCESS ? start_anew(self, t, next) : code;
+    return code == CV_SUCCESS ? reinit_cvode(self, t, next) : code;
 }
 
 /* CVODE cannot lower its order without a new start; h: the last step's length in s. */
 static int change_order(struct cvode *self, double t, double h, double stop) {
-    if (self->order.high)
+    if (self->order.is_high)
         return CVodeSetMaxOrd(self->base.memory, CVODE_ORDER_HIGH);
-    const int code = start_anew(self, t, h);
-    return code == CV_SUCCESS && !self->base.shown ? CVodeSetStopTime(self->base.memory, stop)
-                                                   : code;
+    const int code = reinit_cvode(self, t, h);
+    return code == CV_SUCCESS && !self->base.interpolated
+               ? CVodeSetStopTime(self->base.memory, stop)
+               : code;
 }
 
 /* One step from *reached, before which the last one may change the order: not behind that one,
@@ -142,14 +143,14 @@ static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached
     if (code == CV_SUCCESS)
         code = CVodeGetLastStep(memory, &h);
     struct cvode *self = object;
-    if (code == CV_SUCCESS && self->order.chosen && h > 0 &&
-        cvode_order_watch(&self->order, h * self->base.host->view->omega))
+    if (code == CV_SUCCESS && self->order.is_automatic && h > 0 &&
+        cvode_order_update(&self->order, h * self->base.host->view->omega))
         code = change_order(self, *reached, h, t1);
     return code == CV_SUCCESS ? CVode(memory, t1, y, reached, task) : code;
 }
 
 static const struct sundials_library library = {
-    .recovers = true,
+    .can_retry = true,
     .name = "CVODE",
     .code_name = CVodeGetReturnFlagName,
     .set_stop = CVodeSetStopTime,
@@ -157,7 +158,7 @@ static const struct sundials_library library = {
     .one_step = CV_ONE_STEP,
     .interpolate = CVodeGetDky,
     .system = newton_system,
-    .moved = moved,
+    .on_state_changed = moved,
 };
 
 /* the highest order to begin with */
@@ -170,9 +171,9 @@ static int choose_bdf_order(struct cvode *self) {
     if (weak || self->asked.rtol >= 1e-3)
         cvode_order_begin(&self->order, omega > 0 ? delta / omega : 0);
     host->note(host->ctx, "max_order automatic: %s (rtol %g, damping %s)",
-               self->order.chosen ? "2, and 5 while steps are short" : "5", self->asked.rtol,
-               weak ? "weak" : "strong");
-    return self->order.chosen ? CVODE_ORDER_LOW : CVODE_ORDER_HIGH;
+               self->order.is_automatic ? "2, and 5 while steps are short" : "5",
+               self->asked.rtol, weak ? "weak" : "strong");
+    return self->order.is_automatic ? CVODE_ORDER_LOW : CVODE_ORDER_HIGH;
 }
 
 static int set_bdf_solver(struct cvode *self, int order) {
@@ -180,7 +181,7 @@ static int set_bdf_solver(struct cvode *self, int order) {
     int code = CVodeSetLinearSolver(memory, &self->base.solver, NULL);
     if (code == CV_SUCCESS && order > 2)
         code = CVodeSetStabLimDet(memory, SUNTRUE);
-    if (code == CV_SUCCESS && self->order.chosen)
+    if (code == CV_SUCCESS && self->order.is_automatic)
         code = CVodeSetEtaFixedStepBounds(memory, KEPT_FROM, KEPT_TO);
     return code == CV_SUCCESS ? CVodeSetNonlinConvCoef(memory, NONLINEAR_SHARE) : code;
 }
@@ -230,8 +231,8 @@ static enum cs_step create(const struct cs_host *host, const void *options, int 
                       bdf ? self->asked.linear_rtol : 0) != CS_STEP_OK)
         return CS_STEP_FAIL;
     if (bdf)
-        sundials_pass_begin(&self->base);
-    self->history.spare = sundials_vectors_take(&self->base.vectors);
+        sundials_overstep_begin(&self->base);
+    self->history.scratch = sundials_vectors_acquire(&self->base.vectors);
     const int code = open_memory(self, family);
     return code == CV_SUCCESS ? CS_STEP_OK : sundials_fail(&self->base, code, 0);
 }

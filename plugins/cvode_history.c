@@ -8,9 +8,9 @@ static size_t bytes_of(const struct sundials *base) {
     return 6 * sizeof(double) * (size_t)base->host->view->n;
 }
 
-void cvode_history_watch(struct cvode_history *history, struct sundials *base) {
+void cvode_history_update(struct cvode_history *history, struct sundials *base) {
     history->value = NULL;
-    history->checked = false;
+    history->is_checked = false;
     base->vectors.copied_from = NULL;
 }
 
@@ -23,16 +23,16 @@ void cvode_history_find(struct cvode_history *history, const struct sundials *ba
 static bool is_moved(const struct cvode_history *history, struct sundials *base) {
     double t; /* the end of the last step: the stop time is met up to rounding only */
     return CVodeGetCurrentTime(base->memory, &t) == CV_SUCCESS &&
-           CVodeGetDky(base->memory, t, 0, history->spare) == CV_SUCCESS &&
-           !memcmp(sundials_data(history->spare), sundials_data(base->state), bytes_of(base));
+           CVodeGetDky(base->memory, t, 0, history->scratch) == CV_SUCCESS &&
+           !memcmp(sundials_data(history->scratch), sundials_data(base->state), bytes_of(base));
 }
 
 bool cvode_history_move(struct cvode_history *history, struct sundials *base) {
     if (!history->value)
         return false;
     memcpy(sundials_data(history->value), sundials_data(base->state), bytes_of(base));
-    if (!history->checked && !is_moved(history, base))
+    if (!history->is_checked && !is_moved(history, base))
         history->value = NULL;
-    history->checked = true;
+    history->is_checked = true;
     return history->value != NULL;
 }

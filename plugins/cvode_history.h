@@ -16,13 +16,13 @@
 #include "sundials_common.h"
 
 struct cvode_history {
-    N_Vector value; /* borrowed from CVODE; NULL: not known */
-    N_Vector spare; /* to check with */
-    bool checked;
+    N_Vector value;   /* borrowed from CVODE; NULL: not known */
+    N_Vector scratch; /* to check with */
+    bool is_checked;
 };
 
 /* Before and after CVodeReInit. */
-void cvode_history_watch(struct cvode_history *history, struct sundials *base);
+void cvode_history_update(struct cvode_history *history, struct sundials *base);
 void cvode_history_find(struct cvode_history *history, const struct sundials *base);
 
 /* Moves the history to base->state; false: it cannot be done, start anew. */

@@ -86,7 +86,7 @@ static void combine(const struct dopri5 *self, const double *y, double h, const 
     }
 }
 
-static void weigh(struct dopri5 *self, const double *y, const double *z) {
+static void weighted_error(struct dopri5 *self, const double *y, const double *z) {
     const double rtol = self->asked.rtol, atol = self->asked.atol;
     for (size_t i = 0; i < self->length; i++) {
         const double size = fabs(y[i]) > fabs(z[i]) ? fabs(y[i]) : fabs(z[i]);
@@ -96,13 +96,14 @@ static void weigh(struct dopri5 *self, const double *y, const double *z) {
 
 static double norm(const struct dopri5 *self, const double *values) {
     const struct cs_vector_kernels *vector = self->host->vector;
-    return sqrt(vector->weighted_square(self->length, values, self->weight) / self->free);
+    return sqrt(vector->weighted_sum_of_squares(self->length, values, self->weight) /
+                self->free);
 }
 
 /* A first step whose explicit Euler step changes y by a hundredth, and whose term of order 5
  * would be near the tolerance (Hairer, Norsett, Wanner 1993, sec. II.4). */
 static double first_step(struct dopri5 *self, double t, double span, const double *y) {
-    weigh(self, y, y);
+    weighted_error(self, y, y);
     const double size = norm(self, y), speed = norm(self, self->k[0]);
     double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
     h = h < span ? h : span;
@@ -122,7 +123,7 @@ static double attempt(struct dopri5 *self, double t, double h, const double *y) 
         slope(self, t + nodes[i] * h, self->next, self->k[i]);
     }
     combine(self, NULL, h, difference, STAGES, self->error);
-    weigh(self, y, self->next);
+    weighted_error(self, y, self->next);
     return norm(self, self->error);
 }
 
@@ -167,8 +168,8 @@ static void prepare(struct dopri5 *self, double t, double span, const double *y)
 /* The step passes over contact by force, which no estimate sees that has no stage in it. */
 static bool passes_contact(const struct dopri5 *self, double t, double h, const double *x) {
     const struct cs_host *host = self->host;
-    return CS_HAS(host, max_share) && host->max_share &&
-           host->max_share(host->ctx, t, x, t + h, self->next) < 1;
+    return CS_HAS(host, max_step_fraction) && host->max_step_fraction &&
+           host->max_step_fraction(host->ctx, t, x, t + h, self->next) < 1;
 }
 
 /* what contact that follows the steps asks for */
@@ -249,13 +250,13 @@ static enum cs_step archive(void *object, const struct cs_archive *archive) {
     struct dopri5 *self = object;
     struct step_control *control = &self->control;
     uint64_t marks[] = {self->fresh, self->started, control->rejected};
-    archive->wholes(archive->ctx, marks, 3);
+    archive->integers(archive->ctx, marks, 3);
     self->fresh = marks[0] != 0;
     self->started = marks[1] != 0;
     control->rejected = marks[2] != 0;
-    archive->wholes(archive->ctx, &self->rejected, 1);
+    archive->integers(archive->ctx, &self->rejected, 1);
     archive->reals(archive->ctx, &control->h, 1);
-    archive->reals(archive->ctx, &control->root_old, 1);
+    archive->reals(archive->ctx, &control->last_error_root, 1);
     archive->reals(archive->ctx, self->k[0], self->length);
     return CS_STEP_OK;
 }

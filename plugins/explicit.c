@@ -63,8 +63,9 @@ static double velocity_verlet_limit(const struct fixed_step *loop, double w, dou
 }
 
 static double position_verlet_limit(const struct fixed_step *loop, double w, double delta) {
-    return leapfrog_limit(w, delta, 2,
-                          4 - 2 * ((const struct explicit_method *)(const void *)loop)->loss);
+    return leapfrog_limit(
+        w, delta, 2,
+        4 - 2 * ((const struct explicit_method *)(const void *)loop)->velocity_loss);
 }
 
 /* Radius of the half disc in the left half plane that lies in rk4's stability region: the
@@ -81,7 +82,7 @@ static double rk4_limit(const struct fixed_step *loop, double w, double delta) {
 static void choose_dt(struct fixed_step *loop, double limit) {
     const struct cs_host *host = loop->host;
     const struct cs_view *view = host->view;
-    loop->chosen = true;
+    loop->dt_automatic = true;
     loop->dt = 0.9 * limit;
     if (view->omega <= 0 && view->delta <= 0) {
         loop->dt = HUGE_VAL;
@@ -99,33 +100,33 @@ static void choose_dt(struct fixed_step *loop, double limit) {
 
 /* n_arrays: of (3,n) that the method keeps. */
 static enum cs_step create(const struct cs_host *host, const struct lossy_options *asked,
-                           step_limit *limit, fixed_step_taker *step, int n_arrays,
+                           step_limit *limit, fixed_step_callback *step, int n_arrays,
                            void **out) {
     const size_t bytes = 3 * sizeof(double) * (size_t)host->view->n;
     struct explicit_method *self = host->alloc(host->ctx, sizeof *self);
     if (!self)
         return CS_STEP_FAIL;
     *out = self;
-    self->loop = fixed_step_of(host, asked->dt, step);
-    self->loop.fresh = true;
-    self->loss = asked->loss;
+    self->fixed = fixed_step_of(host, asked->dt, step);
+    self->fixed.history_void = true;
+    self->velocity_loss = asked->loss;
     if (!(self->a = host->alloc(host->ctx, bytes)))
         return CS_STEP_FAIL;
-    self->n_kept = (size_t)n_arrays - 1;
-    if (n_arrays > 1 && !(self->kept = host->alloc(host->ctx, bytes * self->n_kept)))
+    self->n_history = (size_t)n_arrays - 1;
+    if (n_arrays > 1 && !(self->history = host->alloc(host->ctx, bytes * self->n_history)))
         return CS_STEP_FAIL;
     if (asked->dt <= 0)
-        choose_dt(&self->loop, limit(&self->loop, host->view->omega, host->view->delta));
+        choose_dt(&self->fixed, limit(&self->fixed, host->view->omega, host->view->delta));
     // without damping some methods have no stable step: then symplectic-euler's, as choose_dt
-    const bool stable = limit(&self->loop, host->view->omega, host->view->delta) > 0;
-    return fixed_step_guard(&self->loop, asked->dt > 0 ? NULL
-                                         : stable      ? limit
-                                                       : symplectic_euler_limit);
+    const bool stable = limit(&self->fixed, host->view->omega, host->view->delta) > 0;
+    return fixed_step_guard(&self->fixed, asked->dt > 0 ? NULL
+                                          : stable      ? limit
+                                                        : symplectic_euler_limit);
 }
 
 /* a method whose options are explicit_rows */
 static enum cs_step create_lossless(const struct cs_host *host, const void *options,
-                                    step_limit *limit, fixed_step_taker *step, int n_arrays,
+                                    step_limit *limit, fixed_step_callback *step, int n_arrays,
                                     void **self) {
     const struct lossy_options asked = {.dt = ((const struct explicit_options *)options)->dt};
     return create(host, &asked, limit, step, n_arrays, self);
@@ -164,10 +165,10 @@ static enum cs_step create_rk4(const struct cs_host *host, const void *options, 
 /* an evaluation, or a half step, is kept from step to step */
 static enum cs_step verlet_archive(void *object, const struct cs_archive *archive) {
     struct explicit_method *self = object;
-    const size_t n3 = 3 * (size_t)self->loop.host->view->n;
+    const size_t n3 = 3 * (size_t)self->fixed.host->view->n;
     archive->reals(archive->ctx, &self->h, 1);
     archive->reals(archive->ctx, self->a, n3);
-    archive->reals(archive->ctx, self->kept, n3);
+    archive->reals(archive->ctx, self->history, n3);
     return fixed_step_archive(self, archive);
 }
 

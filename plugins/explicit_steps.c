@@ -41,7 +41,7 @@ struct move {
 static void move_part(void *arg, size_t begin, size_t end) {
     const struct move *move = arg;
     const struct explicit_method *self = move->self;
-    const struct cs_view *view = self->loop.host->view;
+    const struct cs_view *view = self->fixed.host->view;
     const size_t n = view->n;
     for (size_t c = 0; c < 3; c++) {
         const size_t at = c * n + begin;
@@ -52,22 +52,22 @@ static void move_part(void *arg, size_t begin, size_t end) {
             .v = move->v + at,
             .a = self->a + at,
             .h = move->h,
-            .loss = self->loss,
+            .loss = self->velocity_loss,
             .weight = move->weight,
             .forth = move->forth,
         };
         /* the method's own arrays (3,n) lie one behind the other */
-        for (size_t k = 0; k < self->n_kept; k++)
-            row.kept[k] = self->kept + 3 * n * k + at;
+        for (size_t k = 0; k < self->n_history; k++)
+            row.kept[k] = self->history + 3 * n * k + at;
         move->row(&row);
     }
 }
 
 static void share(struct move *move) {
-    const struct cs_host *host = move->self->loop.host;
+    const struct cs_host *host = move->self->fixed.host;
     const struct cs_vector_kernels *vector = host->vector;
-    if (CS_HAS(vector, share))
-        vector->share(host->view->n, move_part, move);
+    if (CS_HAS(vector, parallel_for))
+        vector->parallel_for(host->view->n, move_part, move);
     else
         move_part(move, 0, host->view->n);
 }
@@ -81,7 +81,7 @@ static void move_all(const struct explicit_method *self, double h, double *x, do
 
 /* a is then the force, which the next loop divides by the mass */
 static void evaluate(struct explicit_method *self, double t, const double *x, const double *v) {
-    const struct cs_host *host = self->loop.host;
+    const struct cs_host *host = self->fixed.host;
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->a);
 }
 
@@ -164,7 +164,7 @@ CS_CLONES static void kick_row(const struct row *row) {
 enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v) {
     struct explicit_method *self = method_of(loop);
-    if (loop->fresh) {
+    if (loop->history_void) {
         evaluate(self, t, x, v);
         move_all(self, h, x, v, accelerate_row);
     }
@@ -202,10 +202,10 @@ enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, d
         evaluate(self, t, x, v);
         move_all(self, h, x, v, accelerate_row);
     }
-    if (loop->fresh || fabs(h - self->h) > 1e-9 * h)
+    if (loop->history_void || fabs(h - self->h) > 1e-9 * h)
         move_all(self, h, x, v, last_half_step_row);
     if (!start) {
-        evaluate(self, t, x, self->kept);
+        evaluate(self, t, x, self->history);
         move_all(self, h, x, v, accelerate_row);
     }
     move_all(self, h, x, v, position_verlet_row);
@@ -253,7 +253,7 @@ CS_CLONES static void rk4_end_row(const struct row *row) {
 enum cs_step step_rk4(struct fixed_step *loop, double t, double h, double *x, double *v) {
     static const double weight[] = {1, 2, 2, 1}, reach[] = {0.5, 0.5, 1, 0};
     struct explicit_method *self = method_of(loop);
-    const double *stage_x = self->kept, *stage_v = stage_x + 3 * (size_t)loop->host->view->n;
+    const double *stage_x = self->history, *stage_v = stage_x + 3 * (size_t)loop->host->view->n;
     move_all(self, h, x, v, rk4_begin_row);
     /* stage k + 1 lies at t + reach[k] h; after the last there is none */
     double stage_t = t;

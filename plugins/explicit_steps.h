@@ -5,13 +5,13 @@
 #include "fixed_step.h"
 
 struct explicit_method {
-    struct fixed_step loop; /* first: the loop's functions take it for the whole */
-    double *a;              /* (3,n) in m/s2 of the last evaluation, or still in N */
-    double *kept;  /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet;
-                    * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
-    size_t n_kept; /* arrays (3,n) in kept */
-    double h;      /* s, of the last step of position-verlet; 0: none since the restart */
-    double loss;
+    struct fixed_step fixed; /* first: the loop's functions take it for the whole */
+    double *a;               /* (3,n) in m/s2 of the last evaluation, or still in N */
+    double *history;  /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet;
+                       * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
+    size_t n_history; /* arrays (3,n) in kept */
+    double h;         /* s, of the last step of position-verlet; 0: none since the restart */
+    double velocity_loss;
 };
 
 /* Each moves (x, v) from t to t + h. */

@@ -55,8 +55,8 @@ static void difference(size_t n, const uint32_t ends[2], const double *x, double
 
 /* What spring s pulls its second end by, in kg m: h^2 k (L n - e_y), and of its damper
  * - h c (e_y - e_old), with h c (I - n n^T)(e - e_old) given back to an axial one. */
-static void pull_of(const struct local_global *self, size_t s, const double *x,
-                    double pull[3]) {
+static void spring_impulse(const struct local_global *self, size_t s, const double *x,
+                           double pull[3]) {
     const struct cs_view *view = self->loop.host->view;
     const size_t n = view->n;
     const uint32_t *ends = view->ends + 2 * s;
@@ -81,7 +81,7 @@ static void pull_of(const struct local_global *self, size_t s, const double *x,
 }
 
 /* the local half: all of the right-hand side */
-static void fill_right(struct local_global *self, const double *x) {
+static void fill_rhs(struct local_global *self, const double *x) {
     const struct cs_view *view = self->loop.host->view;
     const size_t n = view->n;
     for (size_t c = 0; c < 3; c++)
@@ -89,7 +89,7 @@ static void fill_right(struct local_global *self, const double *x) {
             self->b[k] = -self->matrix.h * self->matrix.drag[i] * (self->y[k] - self->old[k]);
     for (size_t s = 0; s < view->n_springs; s++) {
         double pull[3];
-        pull_of(self, s, x, pull);
+        spring_impulse(self, s, x, pull);
         for (size_t c = 0; c < 3; c++) {
             self->b[c * n + view->ends[2 * s]] -= pull[c];
             self->b[c * n + view->ends[2 * s + 1]] += pull[c];
@@ -121,7 +121,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double step_length, 
 
     const double *u = self->b;
     for (int64_t i = 0; i < self->iterations; i++) {
-        fill_right(self, x);
+        fill_rhs(self, x);
         status = constant_matrix_solve(&self->matrix, self->b, &u);
         if (status != CS_STEP_OK)
             return status;
@@ -174,14 +174,14 @@ static void destroy(void *object) {
 static enum cs_step save(void *object, const struct cs_archive *archive) {
     struct local_global *self = object;
     constant_matrix_archive(&self->matrix, archive);
-    archive->wholes(archive->ctx, &self->passes, 1);
+    archive->integers(archive->ctx, &self->passes, 1);
     return fixed_step_archive(self, archive);
 }
 
 static enum cs_step load(void *object, const struct cs_archive *archive) {
     struct local_global *self = object;
     const enum cs_step status = constant_matrix_load(&self->matrix, archive);
-    archive->wholes(archive->ctx, &self->passes, 1);
+    archive->integers(archive->ctx, &self->passes, 1);
     return status == CS_STEP_OK ? fixed_step_archive(self, archive) : status;
 }
 

@@ -15,18 +15,19 @@ static enum cs_step take(struct fixed_step *self, double t, double h, double *x,
                          bool *cut) {
     const struct cs_host *host = self->host;
     const size_t bytes = 6 * sizeof *x * host->view->n;
-    if (!self->saved)
+    if (!self->saved_state)
         return self->step(self, t, h, x, v);
-    memcpy(self->saved, x, bytes);
+    memcpy(self->saved_state, x, bytes);
     const enum cs_step status = self->step(self, t, h, x, v);
-    if (status == CS_STEP_OK && host->max_share(host->ctx, t, self->saved, t + h, x) < 1) {
-        memcpy(x, self->saved, bytes);
-        *cut = self->fresh = true;
+    if (status == CS_STEP_OK &&
+        host->max_step_fraction(host->ctx, t, self->saved_state, t + h, x) < 1) {
+        memcpy(x, self->saved_state, bytes);
+        *cut = self->history_void = true;
     }
     return status;
 }
 
-static enum cs_step give_up(struct fixed_step *self, double t, double h) {
+static enum cs_step fail_at_shortest_part(struct fixed_step *self, double t, double h) {
     return self->host->fail(
         self->host->ctx,
         "a step of %.3g s at t = %.9g s, halved %d times, still passes over "
@@ -34,29 +35,30 @@ static enum cs_step give_up(struct fixed_step *self, double t, double h) {
         h, t, MOST_CUTS);
 }
 
-struct fixed_step fixed_step_of(const struct cs_host *host, double dt, fixed_step_taker *step) {
+struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
+                                fixed_step_callback *step) {
     return (struct fixed_step){.host = host,
                                .dt = dt > 0 ? dt : HUGE_VAL,
-                               .chosen = dt <= 0,
+                               .dt_automatic = dt <= 0,
                                .step = step,
-                               .attempt = take,
-                               .give_up = give_up,
-                               .most_cuts = MOST_CUTS};
+                               .try_step = take,
+                               .report_failure = fail_at_shortest_part,
+                               .max_depth = MOST_CUTS};
 }
 
 enum cs_step fixed_step_guard(struct fixed_step *self,
                               double (*limit)(const struct fixed_step *, double, double)) {
     const struct cs_host *host = self->host;
-    if (!CS_HAS(host, max_share) || !host->max_share)
+    if (!CS_HAS(host, max_step_fraction) || !host->max_step_fraction)
         return CS_STEP_OK;
     self->limit = limit;
-    self->saved = (double *)host->alloc(host->ctx, 6 * sizeof(double) * host->view->n);
-    return self->saved ? CS_STEP_OK : CS_STEP_FAIL;
+    self->saved_state = (double *)host->alloc(host->ctx, 6 * sizeof(double) * host->view->n);
+    return self->saved_state ? CS_STEP_OK : CS_STEP_FAIL;
 }
 
 enum cs_step fixed_step_restart(void *self, double t, const double *x, const double *v) {
     (void)t, (void)x, (void)v;
-    ((struct fixed_step *)self)->fresh = true;
+    ((struct fixed_step *)self)->history_void = true;
     return CS_STEP_OK;
 }
 
@@ -66,13 +68,14 @@ void fixed_step_stats(const void *object, struct cs_stats *out) {
 
 enum cs_step fixed_step_archive(void *object, const struct cs_archive *archive) {
     struct fixed_step *self = object;
-    uint64_t marks[] = {self->fresh, self->told, self->cuts.depth, self->cuts.done};
-    archive->wholes(archive->ctx, marks, 4);
-    archive->wholes(archive->ctx, &self->rejected, 1);
-    self->fresh = marks[0] != 0;
-    self->told = marks[1] != 0;
-    self->cuts.depth = (uint32_t)marks[2];
-    self->cuts.done = (uint32_t)marks[3];
+    uint64_t marks[] = {self->history_void, self->noted, self->subdivision.depth,
+                        self->subdivision.accepted_in_row};
+    archive->integers(archive->ctx, marks, 4);
+    archive->integers(archive->ctx, &self->rejected, 1);
+    self->history_void = marks[0] != 0;
+    self->noted = marks[1] != 0;
+    self->subdivision.depth = (uint32_t)marks[2];
+    self->subdivision.accepted_in_row = (uint32_t)marks[3];
     return CS_STEP_OK;
 }
 
@@ -85,10 +88,10 @@ enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
     if (*n < 1)
         *n = 1;
     const double h = span / *n;
-    if (!self->told && !self->chosen && h < self->dt * (1 - 1e-9)) {
+    if (!self->noted && !self->dt_automatic && h < self->dt * (1 - 1e-9)) {
         self->host->note(self->host->ctx, "dt shortened from %.6g to %.6g s to meet the frame",
                          self->dt, h);
-        self->told = true;
+        self->noted = true;
     }
     return CS_STEP_OK;
 }
@@ -99,19 +102,20 @@ static double longest_at(const struct fixed_step *self, double t, const double *
     double omega, delta;
     if (!self->limit)
         return HUGE_VAL;
-    self->host->rate(self->host->ctx, t, x, v, &omega, &delta);
+    self->host->bounds_at(self->host->ctx, t, x, v, &omega, &delta);
     return 0.9 * self->limit(self, omega, delta);
 }
 
 /* Contact would let the way straight on pass: where it does not, it mostly refuses the step. */
-static bool looks_well(const struct fixed_step *self, double t, double h, const double *x,
-                       const double *v) {
+static bool is_growth_admissible(const struct fixed_step *self, double t, double h,
+                                 const double *x, const double *v) {
     const struct cs_host *host = self->host;
-    if (!self->saved || self->cuts.done >= STEP_CUTS_AT_LAST)
+    if (!self->saved_state ||
+        self->subdivision.accepted_in_row >= STEP_SUBDIVISION_GROW_ALWAYS_AFTER)
         return true;
     for (size_t i = 0; i < 3 * (size_t)host->view->n; i++)
-        self->saved[i] = x[i] + h * v[i];
-    return host->max_share(host->ctx, t, x, t + h, self->saved) >= 1;
+        self->saved_state[i] = x[i] + h * v[i];
+    return host->max_step_fraction(host->ctx, t, x, t + h, self->saved_state) >= 1;
 }
 
 /* How long a part to take from a state on: as the one before, twice as long where that may be
@@ -119,39 +123,42 @@ static bool looks_well(const struct fixed_step *self, double t, double h, const 
 static void choose_cuts(struct fixed_step *self, double t, double h, const double *x,
                         const double *v) {
     const double longest = longest_at(self, t, x, v);
-    struct step_cuts *cuts = &self->cuts;
-    const double twice = 2 * step_cuts_length(cuts, h);
-    if (step_cuts_may_grow(cuts) && twice <= longest && looks_well(self, t, twice, x, v))
-        step_cuts_grow(cuts);
-    while (step_cuts_length(cuts, h) > longest && cuts->depth <= self->most_cuts)
-        step_cuts_refuse(cuts);
+    struct step_subdivision *cuts = &self->subdivision;
+    const double twice = 2 * step_subdivision_length(cuts, h);
+    if (step_subdivision_may_grow(cuts) && twice <= longest &&
+        is_growth_admissible(self, t, twice, x, v))
+        step_subdivision_grow(cuts);
+    while (step_subdivision_length(cuts, h) > longest && cuts->depth <= self->max_depth)
+        step_subdivision_refuse(cuts);
 }
 
 /* One step of length h from t, whole or in parts; it ends at `end`. */
-static enum cs_step cross(struct fixed_step *self, double t, double h, double end, double *x,
-                          double *v) {
+static enum cs_step take_step_in_parts(struct fixed_step *self, double t, double h, double end,
+                                       double *x, double *v) {
     const struct cs_host *host = self->host;
-    struct step_cuts *cuts = &self->cuts;
+    struct step_subdivision *cuts = &self->subdivision;
     bool moved = true;
-    for (cuts->at = 0; !step_cuts_are_over(cuts);) {
-        const double begin = t + cuts->at * step_cuts_length(cuts, h);
+    for (cuts->parts_done = 0; !step_subdivision_are_over(cuts);) {
+        const double begin = t + cuts->parts_done * step_subdivision_length(cuts, h);
         bool cut = false, changed = false;
         if (moved)
             choose_cuts(self, begin, h, x, v);
-        if (cuts->depth > self->most_cuts)
-            return self->give_up(self, begin, 2 * step_cuts_length(cuts, h));
-        const double part = step_cuts_length(cuts, h), from = t + cuts->at * part;
-        enum cs_step status = self->attempt(self, from, part, x, v, &cut);
+        if (cuts->depth > self->max_depth)
+            return self->report_failure(self, begin, 2 * step_subdivision_length(cuts, h));
+        const double part = step_subdivision_length(cuts, h),
+                     from = t + cuts->parts_done * part;
+        enum cs_step status = self->try_step(self, from, part, x, v, &cut);
         moved = !cut;
         self->rejected += cut;
         if (cut)
-            step_cuts_refuse(cuts);
+            step_subdivision_refuse(cuts);
         else
-            step_cuts_accept(cuts);
+            step_subdivision_accept(cuts);
         if (status == CS_STEP_OK && !cut) {
-            const double to = step_cuts_are_over(cuts) ? end : t + cuts->at * part;
+            const double to =
+                step_subdivision_are_over(cuts) ? end : t + cuts->parts_done * part;
             status = host->commit(host->ctx, to, part, x, v, &changed);
-            self->fresh = changed;
+            self->history_void = changed;
         }
         if (status != CS_STEP_OK)
             return status;
@@ -166,6 +173,7 @@ enum cs_step fixed_step_advance(void *object, double t0, double t1, double *x, d
     const double h = (t1 - t0) / n;
     for (double i = 0; i < n && status == CS_STEP_OK; i++)
         // times from t0, not summed up: the last is t1 to the bit
-        status = cross(self, t0 + i * h, h, i + 1 == n ? t1 : t0 + (i + 1) * h, x, v);
+        status =
+            take_step_in_parts(self, t0 + i * h, h, i + 1 == n ? t1 : t0 + (i + 1) * h, x, v);
     return status;
 }

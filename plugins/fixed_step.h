@@ -3,47 +3,48 @@
  * A method's own struct starts with struct fixed_step and gives it the step. The span of an
  * advance is cut into the fewest equal steps that are not longer than dt.
  *
- * In scenes with contact by force (fixed_step_guard) a step may be cut (step_cuts.h): where it
- * would pass over contact that it cannot see (host->max_share), or where a method that chose dt
- * by its stability limit has a smaller limit in contact (host->rate). Each part is committed by
- * itself.
+ * In scenes with contact by force (fixed_step_guard) a step may be cut (step_subdivision.h):
+ * where it would pass over contact that it cannot see (host->max_share), or where a method that
+ * chose dt by its stability limit has a smaller limit in contact (host->rate). Each part is
+ * committed by itself.
  */
 #ifndef FIXED_STEP_H
 #define FIXED_STEP_H
 
-#include "step_cuts.h"
+#include "step_subdivision.h"
 
 struct fixed_step;
 
 /* from (x, v) at t to t + h, without the commit */
-typedef enum cs_step fixed_step_taker(struct fixed_step *self, double t, double h, double *x,
-                                      double *v);
+typedef enum cs_step fixed_step_callback(struct fixed_step *self, double t, double h, double *x,
+                                         double *v);
 /* the same; *cut: the step was not taken, x and v are as they were, it has to be shorter */
-typedef enum cs_step fixed_step_attempt(struct fixed_step *self, double t, double h, double *x,
-                                        double *v, bool *cut);
+typedef enum cs_step fixed_step_try_callback(struct fixed_step *self, double t, double h,
+                                             double *x, double *v, bool *cut);
 
 struct fixed_step {
     const struct cs_host *host;
-    double dt;   /* longest step in s; HUGE_VAL: one step an advance */
-    bool fresh;  /* the state was moved from outside: what the method remembers is void */
-    bool told;   /* that dt was shortened */
-    bool chosen; /* dt was chosen here, not asked for */
-    fixed_step_taker *step;
+    double dt;         /* longest step in s; HUGE_VAL: one step an advance */
+    bool history_void; /* the state was moved from outside: what the method remembers is void */
+    bool noted;        /* that dt was shortened */
+    bool dt_automatic; /* dt was chosen here, not asked for */
+    fixed_step_callback *step;
 
-    struct step_cuts cuts;
-    uint64_t rejected;           /* steps that were worked out and thrown away */
-    fixed_step_attempt *attempt; /* takes a step, or refuses it */
+    struct step_subdivision subdivision;
+    uint64_t rejected;                 /* steps that were worked out and thrown away */
+    fixed_step_try_callback *try_step; /* takes a step, or refuses it */
     /* says why a step cannot be cut any more, for host->fail */
-    enum cs_step (*give_up)(struct fixed_step *self, double t, double h);
-    uint32_t most_cuts; /* a step has 2^most_cuts parts at most */
+    enum cs_step (*report_failure)(struct fixed_step *self, double t, double h);
+    uint32_t max_depth; /* a step has 2^most_cuts parts at most */
 
     /* only in scenes with contact by force, see fixed_step_guard */
-    double *saved; /* (6n) the state before a step; NULL: none is judged */
+    double *saved_state; /* (6n) the state before a step; NULL: none is judged */
     double (*limit)(const struct fixed_step *self, double omega, double delta); /* s, or NULL */
 };
 
 /* dt as options have it: 0 is one step an advance. */
-struct fixed_step fixed_step_of(const struct cs_host *host, double dt, fixed_step_taker *step);
+struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
+                                fixed_step_callback *step);
 
 /* Lets steps be judged where the scene has contact by force; [create]. limit: the method's
  * largest stable step where it chose dt by it, else NULL. */

@@ -57,7 +57,7 @@ struct way {
 /* z = y + h sum of a_j k_j over the stages, in their order */
 static void combine(const struct method *self, const double *y, double h, const double *a,
                     double *const *k, double *z) {
-    const struct cs_host *host = self->base.base.loop.host;
+    const struct cs_host *host = self->base.base.fixed.host;
     const size_t n3 = 3 * (size_t)host->view->n;
     memcpy(z, y, n3 * sizeof *z);
     for (size_t j = 0; j < self->table.stages; j++)
@@ -65,14 +65,14 @@ static void combine(const struct method *self, const double *y, double h, const 
 }
 
 /* Stages for the first sweep: the accelerations of the step before, carried on, or none. */
-static void guess(struct method *self, double h, const double *v) {
-    const size_t n3 = 3 * (size_t)self->base.base.loop.host->view->n, s = self->table.stages;
-    const bool fresh = halving_is_fresh(&self->base.base, h);
+static void predict_stages(struct method *self, double h, const double *v) {
+    const size_t n3 = 3 * (size_t)self->base.base.fixed.host->view->n, s = self->table.stages;
+    const bool fresh = step_halving_is_fresh(&self->base.base, h);
     double *const *k = self->k.now, *const *next = self->k.change;
     for (size_t i = 0; i < s; i++) {
         memset(next[i], 0, n3 * sizeof **next);
         if (!fresh)
-            combine(self, next[i], 1, self->table.onward[i], k, next[i]);
+            combine(self, next[i], 1, self->table.extrapolate[i], k, next[i]);
     }
     for (size_t i = 0; i < s; i++)
         memcpy(k[i], next[i], n3 * sizeof **k);
@@ -82,20 +82,20 @@ static void guess(struct method *self, double h, const double *v) {
 
 /* What of stage i is known: y, the stages as they stand, and for those before it, which are
  * new, what L leaves of their change. */
-static void know(const struct method *self, size_t i, double h, const double *y,
-                 const struct slopes *slopes, double *known) {
+static void set_known_terms(const struct method *self, size_t i, double h, const double *y,
+                            const struct slopes *slopes, double *known) {
     const struct collocation *table = &self->table;
     double share[COLLOCATION_STAGES], left[COLLOCATION_STAGES] = {0};
     for (size_t j = 0; j < table->stages; j++) {
-        share[j] = table->a[i][j] - (j == i ? table->lower[i][i] : 0);
-        left[j] = j < i ? table->lower[i][j] - table->a[i][j] : 0;
+        share[j] = table->a[i][j] - (j == i ? table->crout_factor[i][i] : 0);
+        left[j] = j < i ? table->crout_factor[i][j] - table->a[i][j] : 0;
     }
     combine(self, y, h, share, slopes->now, known);
     combine(self, known, h, left, slopes->change, known);
 }
 
 /* sum of m z^2 */
-static double square(const struct cs_view *view, const double *z) {
+static double mass_norm_squared(const struct cs_view *view, const double *z) {
     const size_t n = view->n;
     double sum = 0;
     for (size_t c = 0; c < 3; c++)
@@ -110,9 +110,9 @@ struct sweep {
 };
 
 static void renew(struct method *self, size_t i, double h, struct sweep *sweep) {
-    const struct cs_host *host = self->base.base.loop.host;
+    const struct cs_host *host = self->base.base.fixed.host;
     const size_t n3 = 3 * (size_t)host->view->n;
-    const double s = h * self->table.lower[i][i];
+    const double s = h * self->table.crout_factor[i][i];
     for (size_t c = 0; c < n3; c++) {
         const double k = (self->u[c] - self->ub[c]) / s;
         self->k.change[i][c] = k - self->k.now[i][c];
@@ -120,8 +120,9 @@ static void renew(struct method *self, size_t i, double h, struct sweep *sweep) 
         self->k.now[i][c] = k;
         self->v.now[i][c] = self->u[c];
     }
-    sweep->change = fmax(sweep->change, sqrt(square(host->view, self->v.change[i])));
-    sweep->impulse = fmax(sweep->impulse, h * sqrt(square(host->view, self->k.now[i])));
+    sweep->change = fmax(sweep->change, sqrt(mass_norm_squared(host->view, self->v.change[i])));
+    sweep->impulse =
+        fmax(sweep->impulse, h * sqrt(mass_norm_squared(host->view, self->k.now[i])));
 }
 
 static enum cs_step sweep_once(struct method *self, const struct way *way, struct sweep *sweep,
@@ -131,38 +132,39 @@ static enum cs_step sweep_once(struct method *self, const struct way *way, struc
     const double h = way->h;
     *sweep = (struct sweep){0};
     for (size_t i = 0; i < self->table.stages; i++) {
-        const double s = h * self->table.lower[i][i];
+        const double s = h * self->table.crout_factor[i][i];
         const struct newton_stage stage = {.t = way->t + self->table.node[i] * h,
                                            .s = s,
                                            .gx = s,
                                            .gv = 1,
                                            .xb = self->xb,
                                            .ub = self->ub};
-        know(self, i, h, way->x, &self->v, self->xb);
-        know(self, i, h, way->v, &self->k, self->ub);
+        set_known_terms(self, i, h, way->x, &self->v, self->xb);
+        set_known_terms(self, i, h, way->v, &self->k, self->ub);
         memcpy(self->u, self->v.now[i], bytes);
         const enum cs_step status = newton_solve(newton, &stage, self->u, accepted);
         if (status != CS_STEP_OK || !*accepted)
             return status;
         renew(self, i, h, sweep);
-        sweep->noise = fmax(sweep->noise, newton_noise(newton, &stage, self->u));
+        sweep->noise = fmax(sweep->noise, newton_rounding_floor(newton, &stage, self->u));
     }
     return CS_STEP_OK;
 }
 
-static enum cs_step step(struct halving *object, double t, double h, double *x, double *v,
+static enum cs_step step(struct step_halving *object, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)object;
     const struct newton *newton = &self->base.newton;
     const struct way way = {.t = t, .h = h, .x = x, .v = v};
     struct sweep sweep;
     bool settled = false;
-    guess(self, h, v);
+    predict_stages(self, h, v);
     for (int64_t k = 0; k < newton->iterations && !settled; k++) {
         const enum cs_step status = sweep_once(self, &way, &sweep, accepted);
         if (status != CS_STEP_OK || !*accepted)
             return status;
-        settled = sweep.change <= newton->rtol * sweep.impulse + newton->floor * sweep.noise;
+        settled =
+            sweep.change <= newton->rtol * sweep.impulse + newton->residual_floor * sweep.noise;
     }
     *accepted = settled;
     if (settled) {
@@ -182,28 +184,28 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return host->fail(host->ctx, "order = %lld, expected 4, 6 or 8",
                           (long long)asked->order);
     struct method *self = (struct method *)base;
-    self->base.newton.floor = NOISE_SHARE;
+    self->base.newton.residual_floor = NOISE_SHARE;
     collocation_make(&self->table, (size_t)asked->order / 2);
     for (size_t i = 0; i < self->table.stages; i++) {
         double **const arrays[] = {self->v.now + i, self->v.change + i, self->k.now + i,
                                    self->k.change + i};
-        if (halving_take(host, arrays, 4) != CS_STEP_OK)
+        if (step_halving_alloc(host, arrays, 4) != CS_STEP_OK)
             return CS_STEP_FAIL;
     }
     double **const arrays[] = {&self->xb, &self->ub, &self->u};
-    return halving_take(host, arrays, 3);
+    return step_halving_alloc(host, arrays, 3);
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
     struct method *self = object;
     for (size_t i = 0; i < self->table.stages; i++)
         archive->reals(archive->ctx, self->k.now[i],
-                       3 * (size_t)self->base.base.loop.host->view->n);
-    return halving_archive(self, archive);
+                       3 * (size_t)self->base.base.fixed.host->view->n);
+    return step_halving_archive(self, archive);
 }
 
 const struct cs_integrator gauss = {
-    HALVING_METHOD(struct gauss_options, rows, archive),
+    STEP_HALVING_METHOD(struct gauss_options, rows, archive),
     .name = "gauss",
     .summary = "Gauss's collocation with 2, 3 or 4 stages by Newton: symplectic, many digits",
     .source = "Hairer, Lubich, Wanner 2006, sec. II.1.3; Houwen, Swart 1997",

@@ -95,7 +95,7 @@ CS_CLONES static void move(size_t n, double h, const double *dv, double *x, doub
 /* b = h (f + h K v) with h^2 K v = M v - h D v - A v, the K that is in A: the exact K of a
  * spring that is nearly closed would be huge here and clamped there, and throw the particles
  * apart. */
-CS_CLONES static void build_right_side(struct linearised *self) {
+CS_CLONES static void build_rhs(struct linearised *self) {
     const struct cs_host *host = self->loop.host;
     const double *mass = host->view->mass;
     const size_t n = host->view->n;
@@ -119,15 +119,15 @@ static enum cs_step step_linearised(struct fixed_step *loop, double t, double h,
 
     /* a second time where the host had to clamp an exact A after b was made with it */
     self->v = v;
-    host->apply(host->ctx, v, self->av);
+    host->matrix_product(host->ctx, v, self->av);
     for (bool same = false; !same && status == CS_STEP_OK;) {
-        build_right_side(self);
+        build_rhs(self);
         start_solve(self, h);
         status = host->solve(host->ctx, self->b, self->rtol, self->dv);
         same = true;
         if (!(self->flags & CS_SOLVE_PSD)) {
             memcpy(self->b, self->av, 3 * n * sizeof *self->b);
-            host->apply(host->ctx, v, self->av);
+            host->matrix_product(host->ctx, v, self->av);
             same = !memcmp(self->b, self->av, 3 * n * sizeof *self->b);
         }
     }

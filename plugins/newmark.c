@@ -56,20 +56,20 @@ struct method {
     double *xb, *ub, *vb; /* (3,n) known part of the stage */
 };
 
-static enum cs_step step(struct halving *object, double t, double h, double *x, double *v,
+static enum cs_step step(struct step_halving *object, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)object;
-    const struct cs_host *host = object->loop.host;
+    const struct cs_host *host = object->fixed.host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     const double beta = self->beta, gamma = self->gamma, am = self->am, af = self->af;
     double *a = self->a, *u = self->u;
-    if (object->loop.fresh) {
+    if (object->fixed.history_void) {
         host->force(host->ctx, t, x, v, CS_PART_ALL, a);
         for (size_t c = 0, k = 0; c < 3; c++)
             for (size_t i = 0; i < n; i++, k++)
                 a[k] *= view->inv_mass[i];
-        object->loop.fresh = false;
+        object->fixed.history_void = false;
     }
 
     // x' = x + d + (beta/gamma) h v', and the equation times s = gamma h / (1 - am)
@@ -100,9 +100,9 @@ static enum cs_step step(struct halving *object, double t, double h, double *x, 
     return CS_STEP_OK;
 }
 
-static enum cs_step choose(struct method *self, const struct newmark_options *asked) {
+static enum cs_step set_parameters(struct method *self, const struct newmark_options *asked) {
     const double r = asked->rho_inf;
-    const struct cs_host *host = self->base.base.loop.host;
+    const struct cs_host *host = self->base.base.fixed.host;
     if (asked->set == SET_HHT && r < 0.5)
         return host->fail(host->ctx, "rho_inf = %g, expected at least 0.5 with set=hht", r);
     switch (asked->set) {
@@ -135,19 +135,19 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     struct method *self = (struct method *)base;
     double **const arrays[] = {&self->a, &self->u, &self->xb, &self->ub, &self->vb};
-    if (halving_take(host, arrays, 5) != CS_STEP_OK)
+    if (step_halving_alloc(host, arrays, 5) != CS_STEP_OK)
         return CS_STEP_FAIL;
-    return choose(self, asked);
+    return set_parameters(self, asked);
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
     struct method *self = object;
-    archive->reals(archive->ctx, self->a, 3 * (size_t)self->base.base.loop.host->view->n);
-    return halving_archive(self, archive);
+    archive->reals(archive->ctx, self->a, 3 * (size_t)self->base.base.fixed.host->view->n);
+    return step_halving_archive(self, archive);
 }
 
 const struct cs_integrator newmark = {
-    HALVING_METHOD(struct newmark_options, rows, archive),
+    STEP_HALVING_METHOD(struct newmark_options, rows, archive),
     .uses = uses,
     .n_uses = sizeof uses / sizeof *uses,
     .name = "newmark",

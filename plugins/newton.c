@@ -18,9 +18,10 @@
 enum cs_step newton_init(struct newton *newton, const struct cs_host *host, double rtol,
                          int64_t iterations) {
     const size_t n = host->view->n;
-    *newton = (struct newton){.host = host, .rtol = rtol, .iterations = iterations, .floor = 1};
-    double **arrays[] = {&newton->x, &newton->v,  &newton->r,  &newton->f,
-                         &newton->b, &newton->du, &newton->u0, &newton->zero};
+    *newton = (struct newton){
+        .host = host, .rtol = rtol, .iterations = iterations, .residual_floor = 1};
+    double **arrays[] = {&newton->x,   &newton->v,  &newton->r,       &newton->f,
+                         &newton->rhs, &newton->du, &newton->u_start, &newton->zeros};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         if (!(*arrays[k] = host->alloc(host->ctx, 3 * n * sizeof(double))))
             return CS_STEP_FAIL;
@@ -29,11 +30,12 @@ enum cs_step newton_init(struct newton *newton, const struct cs_host *host, doub
     return CS_STEP_OK;
 }
 
-static void place(struct newton *newton, const struct newton_stage *stage, const double *u) {
+static void set_positions(struct newton *newton, const struct newton_stage *stage,
+                          const double *u) {
     const size_t n3 = 3 * (size_t)newton->host->view->n;
     const struct cs_vector_kernels *vector = newton->host->vector;
     vector->linear_sum(n3, 1, stage->xb, stage->gx, u, newton->x);
-    vector->linear_sum(n3, 1, stage->vb ? stage->vb : newton->zero, stage->gv, u, newton->v);
+    vector->linear_sum(n3, 1, stage->vb ? stage->vb : newton->zeros, stage->gv, u, newton->v);
 }
 
 /* X, V, r and the norms of u */
@@ -41,7 +43,7 @@ static void evaluate(struct newton *newton, const struct newton_stage *stage, co
     const struct cs_host *host = newton->host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
-    place(newton, stage, u);
+    set_positions(newton, stage, u);
     host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_ALL, newton->f);
     double squared = 0, impulse = 0;
     for (size_t c = 0; c < 3; c++)
@@ -57,15 +59,16 @@ static void evaluate(struct newton *newton, const struct newton_stage *stage, co
     newton->impulse = sqrt(impulse);
 }
 
-double newton_noise(const struct newton *newton, const struct newton_stage *stage,
-                    const double *u) {
+double newton_rounding_floor(const struct newton *newton, const struct newton_stage *stage,
+                             const double *u) {
     const struct cs_view *view = newton->host->view;
     const size_t n3 = 3 * (size_t)view->n;
     const double length = newton->host->vector->max_norm(n3, newton->x);
     const double speed = newton->host->vector->max_norm(n3, u);
     double omega = view->omega, delta = view->delta;
-    if (CS_HAS(newton->host, rate) && newton->host->rate)
-        newton->host->rate(newton->host->ctx, stage->t, newton->x, newton->v, &omega, &delta);
+    if (CS_HAS(newton->host, bounds_at) && newton->host->bounds_at)
+        newton->host->bounds_at(newton->host->ctx, stage->t, newton->x, newton->v, &omega,
+                                &delta);
     return 4 * DBL_EPSILON * sqrt(newton->mass) *
            (stage->s * omega * omega * length + (1 + 2 * stage->s * stage->gv * delta) * speed);
 }
@@ -85,19 +88,19 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
                           -stage->s * stage->gx, flags);
     if (status != CS_STEP_OK)
         return status;
-    newton->done++;
+    newton->converged++;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++) {
-            newton->b[c * n + i] = -newton->r[c * n + i];
-            newton->du[c * n + i] = view->inv_mass[i] * newton->b[c * n + i];
+            newton->rhs[c * n + i] = -newton->r[c * n + i];
+            newton->du[c * n + i] = view->inv_mass[i] * newton->rhs[c * n + i];
         }
     /* the free fall is kept if it halves the residual */
-    host->apply(host->ctx, newton->du, newton->f);
-    host->vector->linear_sum(3 * n, 1, newton->b, -1, newton->f, newton->f);
+    host->matrix_product(host->ctx, newton->du, newton->f);
+    host->vector->linear_sum(3 * n, 1, newton->rhs, -1, newton->f, newton->f);
     const double left = host->vector->dot(3 * n, newton->f, newton->f);
-    if (!(left < host->vector->dot(3 * n, newton->b, newton->b) / 4))
+    if (!(left < host->vector->dot(3 * n, newton->rhs, newton->rhs) / 4))
         memset(newton->du, 0, 3 * n * sizeof *newton->du);
-    return host->solve(host->ctx, newton->b, rtol, newton->du);
+    return host->solve(host->ctx, newton->rhs, rtol, newton->du);
 }
 
 /* P(u) + s w.(u - u0), and X, V of u */
@@ -105,7 +108,7 @@ static double potential(struct newton *newton, const struct newton_stage *stage,
                         const double *u) {
     const struct cs_host *host = newton->host;
     const size_t n = host->view->n;
-    place(newton, stage, u);
+    set_positions(newton, stage, u);
     double inertia = 0;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++) {
@@ -113,11 +116,11 @@ static double potential(struct newton *newton, const struct newton_stage *stage,
             inertia += 0.5 * host->view->mass[i] * du * du;
         }
     return inertia +
-           stage->s / stage->gx * host->energy(host->ctx, stage->t, newton->x, newton->zero);
+           stage->s / stage->gx * host->energy(host->ctx, stage->t, newton->x, newton->zeros);
 }
 
 static bool is_limited(const struct newton *newton) {
-    return CS_HAS(newton->host, max_share) && newton->host->max_share;
+    return CS_HAS(newton->host, max_step_fraction) && newton->host->max_step_fraction;
 }
 
 /* Where steps must not carry surfaces through each other: a start u from which nothing has
@@ -126,8 +129,9 @@ static void shorten_start(struct newton *newton, const struct newton_stage *stag
     const struct cs_host *host = newton->host;
     const size_t n = host->view->n;
     host->vector->linear_sum(3 * n, 1, stage->xb, stage->gx, u, newton->f);
-    const double share = host->max_share(host->ctx, stage->t, stage->xb, stage->t, newton->f);
-    newton->blocked = share < 1;
+    const double share =
+        host->max_step_fraction(host->ctx, stage->t, stage->xb, stage->t, newton->f);
+    newton->line_search_blocked = share < 1;
     for (size_t c = 0; share < 1 && c < 3; c++)
         for (size_t i = 0; i < n; i++)
             u[c * n + i] *= host->view->inv_mass[i] > 0 ? share : 1;
@@ -139,10 +143,11 @@ static double longest_move(struct newton *newton, const struct newton_stage *sta
     const size_t n3 = 3 * (size_t)host->view->n;
     if (!is_limited(newton))
         return 1;
-    host->vector->linear_sum(n3, 1, stage->xb, stage->gx, newton->u0, newton->b);
-    host->vector->linear_sum(n3, 1, newton->b, stage->gx, newton->du, newton->f);
-    const double share = host->max_share(host->ctx, stage->t, newton->b, stage->t, newton->f);
-    newton->blocked |= share < 1;
+    host->vector->linear_sum(n3, 1, stage->xb, stage->gx, newton->u_start, newton->rhs);
+    host->vector->linear_sum(n3, 1, newton->rhs, stage->gx, newton->du, newton->f);
+    const double share =
+        host->max_step_fraction(host->ctx, stage->t, newton->rhs, stage->t, newton->f);
+    newton->line_search_blocked |= share < 1;
     return share;
 }
 
@@ -153,16 +158,16 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
     const double norm = newton->norm;
     const double slope = host->vector->dot(n3, newton->r, newton->du);
     double start = (double)NAN, work = 0;
-    memcpy(newton->u0, u, n3 * sizeof *u);
+    memcpy(newton->u_start, u, n3 * sizeof *u);
     double a = longest_move(newton, stage);
     for (int k = 0; a > 0 && k <= LINE_HALVINGS; k++, a /= 2) {
-        host->vector->linear_sum(n3, 1, newton->u0, a, newton->du, u);
+        host->vector->linear_sum(n3, 1, newton->u_start, a, newton->du, u);
         evaluate(newton, stage, u);
         if (newton->norm <= (1 - LINE_DECREASE * a) * norm)
             return true;
         if (isnan(start)) {
             // only now, for most searches end above
-            start = potential(newton, stage, newton->u0);
+            start = potential(newton, stage, newton->u_start);
             host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_WITHOUT_ENERGY,
                         newton->f);
             work = stage->s * host->vector->dot(n3, newton->f, newton->du);
@@ -182,8 +187,8 @@ enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stag
     evaluate(newton, stage, u);
     double before = HUGE_VAL;
     for (int64_t k = 0; isfinite(newton->norm); k++) {
-        const double noise = newton_noise(newton, stage, u), rtol = newton->rtol;
-        const double goal = rtol * newton->impulse + newton->floor * noise;
+        const double noise = newton_rounding_floor(newton, stage, u), rtol = newton->rtol;
+        const double goal = rtol * newton->impulse + newton->residual_floor * noise;
         // below the noise an iteration that gains little is the last
         const bool ends =
             newton->norm <= rtol * newton->impulse + noise && newton->norm > before / 2;
@@ -216,7 +221,7 @@ enum cs_step newton_step(struct newton *newton, const struct newton_stage *stage
     if (status != CS_STEP_OK)
         return status;
     newton->host->vector->linear_sum(n3, 1, u, 1, newton->du, u);
-    place(newton, stage, u);
+    set_positions(newton, stage, u);
     *converged = isfinite(newton->host->vector->dot(n3, newton->x, newton->v));
     return CS_STEP_OK;
 }

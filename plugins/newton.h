@@ -48,15 +48,16 @@ struct newton {
     int64_t iterations;
     /* Share of newton_noise that a residual is brought below, 1 after newton_init: for methods
      * of many digits. Where rounding ends the search before, newton_noise itself is enough. */
-    double floor;
-    double *x, *v;        /* (3,n): X and V of the last u */
-    double *r, *f;        /* (3,n) */
-    double *b, *du, *u0;  /* (3,n) */
-    double *zero;         /* (3,n): stays 0 */
-    double norm, impulse; /* |r| and |M (u - ub)| of the last u, in sqrt(J) */
-    double mass;          /* kg, of the free particles */
-    bool blocked;  /* a move of the last solution was cut, for it went through a surface */
-    uint64_t done; /* iterations so far */
+    double residual_floor;
+    double *x, *v;              /* (3,n): X and V of the last u */
+    double *r, *f;              /* (3,n) */
+    double *rhs, *du, *u_start; /* (3,n) */
+    double *zeros;              /* (3,n): stays 0 */
+    double norm, impulse;       /* |r| and |M (u - ub)| of the last u, in sqrt(J) */
+    double mass;                /* kg, of the free particles */
+    bool line_search_blocked;   /* a move of the last solution was cut, for it went through a
+                                   surface */
+    uint64_t converged;         /* iterations so far */
 };
 
 /* Takes the memory; [create]. */
@@ -76,7 +77,7 @@ newton_solver newton_step;
 
 /* |r| in sqrt(J) that rounding causes: of x, times a stiffness of m omega^2, and of u. X and V
  * are those of the last stage that was solved. */
-double newton_noise(const struct newton *newton, const struct newton_stage *stage,
-                    const double *u);
+double newton_rounding_floor(const struct newton *newton, const struct newton_stage *stage,
+                             const double *u);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef NEWTON_METHODS_H
 #define NEWTON_METHODS_H
 
-#include "halving.h"
+#include "step_halving.h"
 
 extern const struct cs_integrator backward_euler, implicit_midpoint, bdf2, tr_bdf2, sdirk2,
     ros2, newmark, gauss;
@@ -13,7 +13,7 @@ struct sdirk2_arrays {
     double *u;       /* velocity of the running stage: the new velocity in the end */
     double *xb, *ub; /* known part of the second stage */
 };
-enum cs_step sdirk2_take(const struct cs_host *host, struct sdirk2_arrays *arrays);
+enum cs_step sdirk2_alloc(const struct cs_host *host, struct sdirk2_arrays *arrays);
 
 /* One step of SDIRK2 (see sdirk2.c) by `solve`, newton_solve or newton_step. */
 enum cs_step sdirk2_step(struct newton *newton, const struct sdirk2_arrays *arrays,

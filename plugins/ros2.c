@@ -35,7 +35,7 @@ static const struct cs_option rows[] = {
 };
 
 struct method {
-    struct halving base;
+    struct step_halving base;
     double rtol;
     double *k1, *k2; /* (3,n) in m/s2: kv of both stages, M^-1 b before */
     double *bx, *b;  /* (3,n) right-hand side */
@@ -45,12 +45,12 @@ struct method {
 /* b += g K bx, as (M bx - g D bx - A bx) / g; work: (3,n) */
 static void add_stiffness(struct method *self, double t, double g, const double *x,
                           const double *v, double *work) {
-    const struct cs_host *host = self->base.loop.host;
+    const struct cs_host *host = self->base.fixed.host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     host->jvp(host->ctx, t, x, v, CS_PART_LINEARISED, NULL, self->bx, work);
     host->vector->linear_sum(3 * n, 1, self->b, -1, work, self->b);
-    host->apply(host->ctx, self->bx, work);
+    host->matrix_product(host->ctx, self->bx, work);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             self->b[c * n + i] += (view->mass[i] * self->bx[c * n + i] - work[c * n + i]) / g;
@@ -58,7 +58,7 @@ static void add_stiffness(struct method *self, double t, double g, const double 
 
 /* kv from A kv = b, started from a free fall: kv = M^-1 b */
 static enum cs_step solve(struct method *self, double *kv) {
-    const struct cs_host *host = self->base.loop.host;
+    const struct cs_host *host = self->base.fixed.host;
     const struct cs_view *view = host->view;
     for (size_t c = 0, k = 0; c < 3; c++)
         for (size_t i = 0; i < view->n; i++, k++)
@@ -67,17 +67,17 @@ static enum cs_step solve(struct method *self, double *kv) {
 }
 
 /* Friction or damping by contact act at a state, and h is not below all rates there. */
-static bool rubs_unresolved(struct method *self, double t, double h, const double *x,
-                            const double *v) {
-    const struct cs_host *host = self->base.loop.host;
+static bool has_unresolved_friction(struct method *self, double t, double h, const double *x,
+                                    const double *v) {
+    const struct cs_host *host = self->base.fixed.host;
     double omega, delta;
     // no move of this scene is judged: it has no contact by force either
-    if (!self->base.loop.saved)
+    if (!self->base.fixed.saved_state)
         return false;
     host->force(host->ctx, t, x, v, CS_PART_DISSIPATIVE, self->b);
     if (!(host->vector->max_norm(3 * (size_t)host->view->n, self->b) > 0))
         return false;
-    host->rate(host->ctx, t, x, v, &omega, &delta);
+    host->bounds_at(host->ctx, t, x, v, &omega, &delta);
     return h * omega > 1;
 }
 
@@ -90,9 +90,9 @@ struct span {
 
 static enum cs_step take(struct method *self, struct span *span, double *x, double *v,
                          bool *accepted) {
-    struct halving *base = &self->base;
+    struct step_halving *base = &self->base;
     const double t = span->t, h = span->h, g = span->g;
-    const struct cs_host *host = base->loop.host;
+    const struct cs_host *host = base->fixed.host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
     double *k1 = self->k1, *k2 = self->k2, *bx = self->bx, *b = self->b;
@@ -110,12 +110,14 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
         self->xn[k] = x[k] + h * (v[k] + g * k1[k]);
         self->vn[k] = v[k] + h * k1[k];
     }
-    if ((base->turned = springs_turned(view, x, self->xn)))
+    if ((base->refused_by_rotation = springs_rotated_far(view, x, self->xn)))
         return CS_STEP_OK;
-    if ((span->rubs = span->narrow && rubs_unresolved(self, t + h, h, self->xn, self->vn)))
+    if ((span->rubs =
+             span->narrow && has_unresolved_friction(self, t + h, h, self->xn, self->vn)))
         return CS_STEP_OK;
-    if (base->loop.saved &&
-        (base->passed = host->max_share(host->ctx, t, x, t + h, self->xn) < 1))
+    if (base->fixed.saved_state &&
+        (base->refused_by_contact =
+             host->max_step_fraction(host->ctx, t, x, t + h, self->xn) < 1))
         return CS_STEP_OK;
 
     /* second stage: F(t + h, y + h k1) - 2 k1, where kx of the first is v + g k1 */
@@ -133,7 +135,7 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
         self->xn[k] = x[k] + h * (1.5 * (v[k] + g * k1[k]) + 0.5 * (bx[k] + g * k2[k]));
         self->vn[k] = v[k] + h * (1.5 * k1[k] + 0.5 * k2[k]);
     }
-    if ((base->turned = springs_turned(view, x, self->xn)))
+    if ((base->refused_by_rotation = springs_rotated_far(view, x, self->xn)))
         return CS_STEP_OK;
     memcpy(x, self->xn, 3 * n * sizeof *x);
     memcpy(v, self->vn, 3 * n * sizeof *v);
@@ -141,11 +143,11 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     return CS_STEP_OK;
 }
 
-static enum cs_step step(struct halving *base, double t, double h, double *x, double *v,
+static enum cs_step step(struct step_halving *base, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)base;
     struct span span = {t, h, (1 - 1 / sqrt(2)) * h, .narrow = true};
-    span.rubs = rubs_unresolved(self, t, h, x, v);
+    span.rubs = has_unresolved_friction(self, t, h, x, v);
     if (!span.rubs) {
         const enum cs_step status = take(self, &span, x, v, accepted);
         if (status != CS_STEP_OK || !span.rubs)
@@ -157,17 +159,18 @@ static enum cs_step step(struct halving *base, double t, double h, double *x, do
 
 static enum cs_step create(const struct cs_host *host, const void *options, void **out) {
     const struct ros2_options *asked = options;
-    struct halving *base = halving_create(host, sizeof(struct method), asked->dt, step);
+    struct step_halving *base =
+        step_halving_create(host, sizeof(struct method), asked->dt, step);
     if (!(*out = base))
         return CS_STEP_FAIL;
     struct method *self = (struct method *)base;
     self->rtol = asked->rtol;
     double **const arrays[] = {&self->k1, &self->k2, &self->bx, &self->b, &self->xn, &self->vn};
-    return halving_take(host, arrays, 6);
+    return step_halving_alloc(host, arrays, 6);
 }
 
 const struct cs_integrator ros2 = {
-    HALVING_METHOD(struct ros2_options, rows, halving_archive),
+    STEP_HALVING_METHOD(struct ros2_options, rows, step_halving_archive),
     .name = "ros2",
     .summary = "Rosenbrock method: two linear solves with one matrix, L-stable, no Newton",
     .source = "Verwer et al. 1999",

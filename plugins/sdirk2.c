@@ -21,9 +21,9 @@ struct method {
     struct sdirk2_arrays arrays;
 };
 
-enum cs_step sdirk2_take(const struct cs_host *host, struct sdirk2_arrays *arrays) {
+enum cs_step sdirk2_alloc(const struct cs_host *host, struct sdirk2_arrays *arrays) {
     double **const all[] = {&arrays->u, &arrays->xb, &arrays->ub};
-    return halving_take(host, all, 3);
+    return step_halving_alloc(host, all, 3);
 }
 
 enum cs_step sdirk2_step(struct newton *newton, const struct sdirk2_arrays *arrays,
@@ -54,7 +54,7 @@ enum cs_step sdirk2_step(struct newton *newton, const struct sdirk2_arrays *arra
     return CS_STEP_OK;
 }
 
-static enum cs_step step(struct halving *object, double t, double h, double *x, double *v,
+static enum cs_step step(struct step_halving *object, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)object;
     return sdirk2_step(&self->base.newton, &self->arrays, newton_solve, t, h, x, v, accepted);
@@ -66,11 +66,11 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
                                                       asked->rtol, asked->iterations, step);
     if (!(*out = base))
         return CS_STEP_FAIL;
-    return sdirk2_take(host, &((struct method *)base)->arrays);
+    return sdirk2_alloc(host, &((struct method *)base)->arrays);
 }
 
 const struct cs_integrator sdirk2 = {
-    HALVING_METHOD(struct sdirk2_options, rows, halving_archive),
+    STEP_HALVING_METHOD(struct sdirk2_options, rows, step_halving_archive),
     .name = "sdirk2",
     .summary = "two diagonally implicit stages by Newton, L-stable",
     .source = "Alexander 1977",

@@ -132,8 +132,8 @@ static void find_transformation(const struct shape *self, uint32_t k, const doub
 }
 
 /* Adds alpha times the displacement of each particle of a cluster to its goal to d (3,n). */
-static void add_ways(const struct shape *self, uint32_t k, double alpha, const double *x,
-                     double turn[4], double *d) {
+static void add_goal_displacements(const struct shape *self, uint32_t k, double alpha,
+                                   const double *x, double turn[4], double *d) {
     const struct cs_view *view = self->loop.host->view;
     const double *rest = self->clusters[k].centre;
     double centre[3], a_pq[9], t[9];
@@ -161,7 +161,7 @@ static void add_ways(const struct shape *self, uint32_t k, double alpha, const d
 static double alpha_of(const struct shape *self, uint32_t k, double h) {
     const struct cs_view *view = self->loop.host->view;
     const double alpha = view->cluster_alpha[k], own = view->cluster_step[k];
-    const uint32_t cuts = self->loop.cuts.depth;
+    const uint32_t cuts = self->loop.subdivision.depth;
     if (own == 0 && cuts == 0)
         return alpha;
     const double step = own > 0 ? own : h * (double)(1u << cuts);
@@ -174,7 +174,7 @@ static void match(struct shape *self, double h, double *x, double *v) {
     double *d = self->f;
     memset(d, 0, 3 * sizeof *d * view->n);
     for (uint32_t k = 0; k < view->n_clusters; k++)
-        add_ways(self, k, alpha_of(self, k, h), x, self->clusters[k].turn, d);
+        add_goal_displacements(self, k, alpha_of(self, k, h), x, self->clusters[k].turn, d);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0, at = c * view->n; i < view->n; i++, at++)
             if (self->held[i] > 0 && view->inv_mass[i] > 0) {
@@ -198,7 +198,7 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
 }
 
 /* the weights of a cluster's items, and their sum */
-static void weigh(struct shape *self, uint32_t k) {
+static void set_weights(struct shape *self, uint32_t k) {
     const struct cs_view *view = self->loop.host->view;
     const uint32_t begin = view->cluster_begin[k], end = view->cluster_begin[k + 1];
     double free = 0, pinned = 0;
@@ -222,7 +222,7 @@ static enum cs_step restart(void *object, double t, const double *x, const doubl
     for (uint32_t k = 0; k < view->n_clusters; k++) {
         struct cluster *cluster = self->clusters + k;
         double a_qq[9];
-        weigh(self, k);
+        set_weights(self, k);
         find_centre(self, k, view->start, cluster->centre);
         find_moments(self, k, view->start, cluster->centre, a_qq);
         shape_pseudo_inverse(a_qq, cluster->inverse, cluster->null);
@@ -239,7 +239,7 @@ static void goals(const void *object, const double *x, double *g) {
     for (uint32_t k = 0; k < view->n_clusters; k++) {
         double turn[4];
         memcpy(turn, self->clusters[k].turn, sizeof turn);
-        add_ways(self, k, 1, x, turn, g);
+        add_goal_displacements(self, k, 1, x, turn, g);
     }
     for (size_t i = 0; i < 3 * (size_t)view->n; i++)
         g[i] += x[i];
@@ -253,9 +253,9 @@ static double limit_of(const struct fixed_step *loop, double omega, double delta
 
 static void choose_dt(struct fixed_step *loop, double dt) {
     const double limit = limit_of(loop, loop->host->view->omega, loop->host->view->delta);
-    loop->chosen = dt <= 0;
+    loop->dt_automatic = dt <= 0;
     loop->dt = dt > 0 ? dt : 0.9 * limit;
-    if (loop->chosen && loop->dt < HUGE_VAL)
+    if (loop->dt_automatic && loop->dt < HUGE_VAL)
         loop->host->note(loop->host->ctx, "dt automatic: at most %.6g s, for springs and drag",
                          loop->dt);
 }

@@ -35,7 +35,7 @@ static void turn_rows(int n, double *m, int p, int q, double c, double s) {
 }
 
 /* makes a[p][q] zero; the smaller of the two angles that do */
-static void annihilate(int n, double *a, double *vectors, int p, int q) {
+static void jacobi_rotate(int n, double *a, double *vectors, int p, int q) {
     if (a[n * p + q] == 0)
         return;
     const double theta = (a[n * q + q] - a[n * p + p]) / (2 * a[n * p + q]);
@@ -56,7 +56,7 @@ void shape_eigen(int n, double *a, double *vectors) {
             return;
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)
-                annihilate(n, a, vectors, p, q);
+                jacobi_rotate(n, a, vectors, p, q);
     }
 }
 
@@ -70,7 +70,7 @@ void shape_rotation_of(const double quaternion[4], double r[9]) {
 }
 
 /* Horn's matrix: its value at a unit quaternion is trace(r^T a) */
-static void horn(const double a[9], double m[16]) {
+static void horn_matrix(const double a[9], double m[16]) {
     const double trace = a[0] + a[4] + a[8];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
@@ -83,7 +83,8 @@ static void horn(const double a[9], double m[16]) {
 
 /* the last quaternion's shadow among those of the largest eigenvalue; one of them where it has
  * none */
-static void choose(const double m[16], const double vectors[16], double same, double last[4]) {
+static void choose_eigenvector(const double m[16], const double vectors[16], double same,
+                               double last[4]) {
     int best = 0;
     double shadow[4] = {0}, squared = 0;
     for (int k = 1; k < LARGEST; k++)
@@ -108,9 +109,9 @@ static void choose(const double m[16], const double vectors[16], double same, do
 
 void shape_rotation(const double a[9], double size, double last[4], double r[9]) {
     double m[16], vectors[16];
-    horn(a, m);
+    horn_matrix(a, m);
     shape_eigen(LARGEST, m, vectors);
-    choose(m, vectors, SAME * (size + size_of(LARGEST, m, true)), last);
+    choose_eigenvector(m, vectors, SAME * (size + size_of(LARGEST, m, true)), last);
     shape_rotation_of(last, r);
 }
 

@@ -17,9 +17,9 @@
 #define STEP_SAFETY 0.9
 
 struct step_control {
-    double h;        /* s, the next step to try */
-    double root_old; /* r of the last accepted step of free length; 0: none */
-    bool rejected;   /* the last try was thrown away: the next step may not grow */
+    double h;               /* s, the next step to try */
+    double last_error_root; /* r of the last accepted step of free length; 0: none */
+    bool rejected;          /* the last try was thrown away: the next step may not grow */
 };
 
 /* e^(1/5) for e in 1e-12..1e12; outside the nearer end is taken. */
@@ -44,7 +44,7 @@ static inline bool step_control_judge(struct step_control *control, double h, do
         control->rejected = true;
         return false;
     }
-    const double old = control->root_old > 0 ? control->root_old : root;
+    const double old = control->last_error_root > 0 ? control->last_error_root : root;
     double factor = STEP_SAFETY * sqrt(sqrt(old / (root * root * root)));
     factor = factor < STEP_SHRINK ? STEP_SHRINK : factor > STEP_GROW ? STEP_GROW : factor;
     if (control->rejected && factor > 1)
@@ -53,7 +53,7 @@ static inline bool step_control_judge(struct step_control *control, double h, do
     if (cut && control->h > factor * h)
         return true;
     control->h = factor * h;
-    control->root_old = root;
+    control->last_error_root = root;
     return true;
 }
 

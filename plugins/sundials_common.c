@@ -2,7 +2,7 @@
  */
 #include "sundials_common.h"
 
-#include "sundials_pass.h"
+#include "sundials_overstep.h"
 #include "sundials_solver.h"
 
 #include <float.h>
@@ -11,8 +11,8 @@
 #include <string.h>
 
 #if SUNDIALS_VERSION_MAJOR >= 7
-static void keep_message(int line, const char *function, const char *file, const char *message,
-                         SUNErrCode code, void *object, SUNContext context) {
+static void store_message(int line, const char *function, const char *file, const char *message,
+                          SUNErrCode code, void *object, SUNContext context) {
     struct sundials *self = object;
     (void)line, (void)function, (void)file, (void)code, (void)context;
     strncpy(self->message, message, sizeof self->message - 1);
@@ -53,7 +53,7 @@ enum cs_step sundials_fail(struct sundials *self, int code, double t) {
  * force is left to error control. */
 static bool passes_through(const struct sundials *self, double t, const double *x) {
     const struct cs_host *host = self->host;
-    return self->from && host->max_share(host->ctx, t, self->from, t, x) < 1;
+    return self->y_before && host->max_step_fraction(host->ctx, t, self->y_before, t, x) < 1;
 }
 
 /* from forces; true where one is not a number, or infinite */
@@ -73,7 +73,7 @@ int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t p
     const size_t n = host->view->n;
     const double *x = sundials_data(y), *v = x + 3 * n;
     double *dx = sundials_data(slope), *dv = dx + 3 * n;
-    if (self->library->recovers && passes_through(self, t, x))
+    if (self->library->can_retry && passes_through(self, t, x))
         return 1;
     host->force(host->ctx, t, x, v, parts, dv);
     if (moves)
@@ -93,13 +93,13 @@ int sundials_whole_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object
 enum cs_step sundials_restart(void *object, double t, const double *x, const double *v) {
     (void)v; // is x + 3n
     struct sundials *self = object;
-    if (self->shown)
-        sundials_pass_restart(self, t, x);
+    if (self->interpolated)
+        sundials_overstep_restart(self, t, x);
     else
         sundials_wrap(self->state, (double *)x);
     self->status = CS_STEP_OK;
     self->message[0] = 0;
-    const int code = self->library->moved(self, t, 0);
+    const int code = self->library->on_state_changed(self, t, 0);
     return code < 0 ? sundials_fail(self, code, t) : CS_STEP_OK;
 }
 
@@ -114,21 +114,22 @@ static int set_stop(const struct sundials *self, bool limited, double t, double 
 }
 
 /* Parts of a frame below which a step is not shortened. */
-#define PARTS_MOST 65536
+#define PARTS_MAX 65536
 
 /* The end of a step need not have been asked about: the step from t to `reached` is taken back,
  * and the library starts anew with a small one. Steps of equal length would only be repeated.
  */
-static int take_back(struct sundials *self, double t, double reached, double frame, double *x) {
+static int restore_state(struct sundials *self, double t, double reached, double frame,
+                         double *x) {
     const struct cs_host *host = self->host;
-    memcpy(x, self->from, 6 * sizeof *x * host->view->n);
-    if (self->equal_steps || (reached - t) * PARTS_MOST < frame) {
+    memcpy(x, self->y_before, 6 * sizeof *x * host->view->n);
+    if (self->equal_steps || (reached - t) * PARTS_MAX < frame) {
         self->status =
             host->fail(host->ctx, "a step of %.3g s at t = %.9g s passes through a surface",
                        reached - t, t);
         return -1;
     }
-    return self->library->moved(self, t, 0);
+    return self->library->on_state_changed(self, t, 0);
 }
 
 enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v) {
@@ -137,8 +138,8 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
     const struct sundials_library *library = self->library;
     self->status = CS_STEP_OK;
     self->message[0] = 0;
-    if (self->shown)
-        return sundials_pass_advance(self, t0, t1, x, v);
+    if (self->interpolated)
+        return sundials_overstep_advance(self, t0, t1, x, v);
     sundials_wrap(self->state, x);
     const bool limited = !self->equal_steps && CS_HAS(host, longest_step) && host->longest_step;
     int code = set_stop(self, limited, t0, t1, x);
@@ -151,13 +152,13 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
                               (long long)self->max_steps, t0, t);
         const double before = t;
         bool changed = false;
-        if (self->from)
-            memcpy(self->from, x, 6 * sizeof *x * host->view->n);
+        if (self->y_before)
+            memcpy(self->y_before, x, 6 * sizeof *x * host->view->n);
         code = library->evolve(self->memory, t1, self->state, &t, library->one_step);
         if (code < 0 || self->status != CS_STEP_OK)
             return sundials_fail(self, code, before);
         if (passes_through(self, t, x)) {
-            if ((code = take_back(self, before, t, t1 - t0, x)) < 0 ||
+            if ((code = restore_state(self, before, t, t1 - t0, x)) < 0 ||
                 (code = set_stop(self, limited, before, t1, x)) < 0)
                 return sundials_fail(self, code, before);
             t = before;
@@ -166,7 +167,7 @@ enum cs_step sundials_advance(void *object, double t0, double t1, double *x, dou
         const enum cs_step status = host->commit(host->ctx, t, t - before, x, v, &changed);
         if (status != CS_STEP_OK)
             return status;
-        if (changed && (code = library->moved(self, t, t - before)) < 0)
+        if (changed && (code = library->on_state_changed(self, t, t - before)) < 0)
             return sundials_fail(self, code, t);
         // with its history a library can forget where to stop
         if ((changed || limited) && t < t1 && (code = set_stop(self, limited, t, t1, x)) < 0)
@@ -185,9 +186,9 @@ enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
         return host->fail(host->ctx, "SUNDIALS made no context: out of memory");
     if (sundials_vectors_init(&self->vectors, host, n_vectors, self->context) != CS_STEP_OK)
         return CS_STEP_FAIL;
-    self->state = sundials_vectors_take(&self->vectors);
-    if (CS_HAS(host, max_share) && host->max_share &&
-        !(self->from = host->alloc(host->ctx, 6 * sizeof(double) * host->view->n)))
+    self->state = sundials_vectors_acquire(&self->vectors);
+    if (CS_HAS(host, max_step_fraction) && host->max_step_fraction &&
+        !(self->y_before = host->alloc(host->ctx, 6 * sizeof(double) * host->view->n)))
         return CS_STEP_FAIL;
     return linear_rtol > 0 ? sundials_solver_init(self) : CS_STEP_OK;
 }

@@ -3,7 +3,7 @@
  *
  * y = (x, v), y' = (v, f/m). A library is driven step by step, and after each step comes the
  * commit. Where something acts between steps the frame time is its stop time; where nothing
- * does it steps as it likes, and frames are interpolated: see sundials_pass.h. It keeps its
+ * does it steps as it likes, and frames are interpolated: see sundials_overstep.h. It keeps its
  * history across frames, and hears of it where the state was moved from outside.
  */
 #ifndef SUNDIALS_COMMON_H
@@ -24,14 +24,14 @@ struct sundials_library {
     char *(*code_name)(long code); /* to be freed */
     int (*set_stop)(void *memory, sunrealtype t);
     int (*evolve)(void *memory, sunrealtype t, N_Vector y, sunrealtype *reached, int task);
-    int one_step;  /* the task */
-    bool recovers; /* from a right-hand side that fails at a stage: by a smaller step */
+    int one_step;   /* the task */
+    bool can_retry; /* from a right-hand side that fails at a stage: by a smaller step */
     /* the k-th derivative of the last step's interpolant at t; NULL: never asked */
     int (*interpolate)(void *memory, sunrealtype t, int k, N_Vector y);
     /* where the nonlinear solver stands, and its g: see solve_reduced */
     int (*system)(void *memory, double *t, N_Vector *y, double *g);
     /* the state was moved at t after a step of dt; 0: from outside, forget all */
-    int (*moved)(struct sundials *self, double t, double dt);
+    int (*on_state_changed)(struct sundials *self, double t, double dt);
 };
 
 struct sundials {
@@ -40,15 +40,16 @@ struct sundials {
     SUNContext context; /* owned */
     void *memory;       /* owned by the method */
     struct sundials_vectors vectors;
-    N_Vector state; /* wraps the host's x and v, unless steps pass frames */
-    N_Vector shown; /* that wraps them then; NULL: steps end at frames */
-    double reached; /* s, where the state is then */
+    N_Vector state;        /* wraps the host's x and v, unless steps pass frames */
+    N_Vector interpolated; /* that wraps them then; NULL: steps end at frames */
+    double t_internal;     /* s, where the state is then */
     struct _generic_SUNLinearSolver solver;
     struct _generic_SUNLinearSolver_Ops solver_ops;
     double linear_rtol; /* relative residual of the linear solves */
     double *b;          /* (3,n), right-hand side of the reduced system */
     int64_t max_steps;  /* in a frame */
-    double *from; /* (6n) the state before the step; NULL: no step is refused for its move */
+    double
+        *y_before; /* (6n) the state before the step; NULL: no step is refused for its move */
     bool equal_steps;    /* without error control: no step is cut but to meet a frame */
     enum cs_step status; /* of the host's solver within the running call */
     char message[256];   /* the library's last */

@@ -24,11 +24,11 @@ static sunindextype get_length(N_Vector vector) {
 }
 
 static N_Vector clone(N_Vector vector) {
-    return sundials_vectors_take(pool_of(vector));
+    return sundials_vectors_acquire(pool_of(vector));
 }
 
-static void give_back(N_Vector vector) {
-    ((struct sundials_slot *)vector->content)->taken = false;
+static void release_vector(N_Vector vector) {
+    ((struct sundials_slot *)vector->content)->in_use = false;
 }
 
 static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z) {
@@ -71,7 +71,7 @@ CS_CLONES static void scale(sunrealtype c, N_Vector x, N_Vector z) {
     }
 }
 
-CS_CLONES static void absolute(N_Vector x, N_Vector z) {
+CS_CLONES static void vector_abs(N_Vector x, N_Vector z) {
     const double *a = sundials_data(x);
     double *out = sundials_data(z);
     CS_INDEPENDENT
@@ -135,9 +135,9 @@ static sunrealtype max_norm(N_Vector x) {
 
 static sunrealtype weighted_norm(N_Vector x, N_Vector w) {
     const size_t n = length_of(x);
-    return sqrt(
-        pool_of(x)->host->vector->weighted_square(n, sundials_data(x), sundials_data(w)) /
-        (double)n);
+    return sqrt(pool_of(x)->host->vector->weighted_sum_of_squares(n, sundials_data(x),
+                                                                  sundials_data(w)) /
+                (double)n);
 }
 
 static sunrealtype smallest(N_Vector x) {
@@ -153,14 +153,14 @@ static const struct _generic_N_Vector_Ops operations = {
     .nvgetvectorid = get_id,
     .nvclone = clone,
     .nvcloneempty = clone,
-    .nvdestroy = give_back,
+    .nvdestroy = release_vector,
     .nvgetlength = get_length,
     .nvlinearsum = linear_sum,
     .nvconst = set_constant,
     .nvprod = multiply,
     .nvdiv = divide,
     .nvscale = scale,
-    .nvabs = absolute,
+    .nvabs = vector_abs,
     .nvinv = invert,
     .nvaddconst = add_constant,
     .nvdotprod = dot,
@@ -190,10 +190,10 @@ enum cs_step sundials_vectors_init(struct sundials_vectors *pool, const struct c
     return CS_STEP_OK;
 }
 
-N_Vector sundials_vectors_take(struct sundials_vectors *pool) {
+N_Vector sundials_vectors_acquire(struct sundials_vectors *pool) {
     for (int i = 0; i < pool->n; i++)
-        if (!pool->slots[i].taken) {
-            pool->slots[i].taken = true;
+        if (!pool->slots[i].in_use) {
+            pool->slots[i].in_use = true;
             return &pool->slots[i].vector;
         }
     return NULL;

@@ -15,7 +15,7 @@ struct sundials_slot {
     struct _generic_N_Vector vector;
     double *data;                  /* 6n: x (3,n), then v (3,n) */
     struct sundials_vectors *pool; /* borrowed */
-    bool taken;
+    bool in_use;
 };
 
 struct sundials_vectors {
@@ -31,7 +31,7 @@ enum cs_step sundials_vectors_init(struct sundials_vectors *pool, const struct c
                                    int n, SUNContext context);
 
 /* A free vector, or NULL. */
-N_Vector sundials_vectors_take(struct sundials_vectors *pool);
+N_Vector sundials_vectors_acquire(struct sundials_vectors *pool);
 
 static inline double *sundials_data(N_Vector vector) {
     return ((struct sundials_slot *)vector->content)->data;

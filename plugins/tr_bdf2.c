@@ -25,7 +25,7 @@ struct method {
     double *xb, *ub; /* (3,n) known part of the running stage */
 };
 
-static enum cs_step step(struct halving *object, double t, double h, double *x, double *v,
+static enum cs_step step(struct step_halving *object, double t, double h, double *x, double *v,
                          bool *accepted) {
     const double c = 2 - sqrt(2), g = c * h / 2, share = 1 / (c * (2 - c));
     struct method *self = (struct method *)object;
@@ -71,11 +71,11 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         return CS_STEP_FAIL;
     struct method *self = (struct method *)base;
     double **const arrays[] = {&self->u, &self->xb, &self->ub};
-    return halving_take(host, arrays, 3);
+    return step_halving_alloc(host, arrays, 3);
 }
 
 const struct cs_integrator tr_bdf2 = {
-    HALVING_METHOD(struct tr_bdf2_options, rows, halving_archive),
+    STEP_HALVING_METHOD(struct tr_bdf2_options, rows, step_halving_archive),
     .name = "tr-bdf2",
     .summary = "trapezoidal rule, then BDF2, by Newton: accurate at large steps, L-stable",
     .source = "Bank et al. 1985; Hosea, Shampine 1996",

@@ -154,7 +154,7 @@ static void touch(struct xpbd *self, double t, double h, double *x) {
     for (size_t k = 0; k < 3 * n; k++)
         self->speed[k] = (x[k] - self->old[k]) / h;
     host->force(host->ctx, t, x, self->speed, CONTACT, self->f);
-    host->blocks(host->ctx, t, x, self->speed, h, self->blocks);
+    host->contact_blocks(host->ctx, t, x, self->speed, h, self->blocks);
     for (size_t i = 0; i < n; i++) {
         const double mass = host->view->mass[i];
         double b[6], r[3], dx[3];
@@ -210,12 +210,12 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
     const enum cs_step status = fixed_step_count(&self->loop, t1 - t0, &n);
     if (status != CS_STEP_OK)
         return status;
-    const bool told = self->loop.told;
+    const bool told = self->loop.noted;
     self->loop.dt = (t1 - t0) / n / (double)self->substeps;
-    self->loop.chosen = true;
+    self->loop.dt_automatic = true;
     const enum cs_step end = fixed_step_advance(self, t0, t1, x, v);
     self->loop = asked;
-    self->loop.told = told;
+    self->loop.noted = told;
     return end;
 }
 
@@ -229,7 +229,7 @@ static bool has_relative_dampers(const struct cs_view *view) {
 /* what contact by force needs, which only some scenes and hosts have */
 static enum cs_step take_contact(struct xpbd *self, size_t vectors) {
     const struct cs_host *host = self->loop.host;
-    if (!CS_HAS(host, blocks) || !host->blocks)
+    if (!CS_HAS(host, contact_blocks) || !host->contact_blocks)
         return CS_STEP_OK;
     if (!(self->impulse = host->alloc(host->ctx, vectors)) ||
         !(self->blocks = host->alloc(host->ctx, 2 * vectors)) ||
@@ -269,7 +269,7 @@ static void stats(const void *object, struct cs_stats *out) {
 }
 
 static enum cs_step archive(void *object, const struct cs_archive *archive) {
-    archive->wholes(archive->ctx, &((struct xpbd *)object)->passes, 1);
+    archive->integers(archive->ctx, &((struct xpbd *)object)->passes, 1);
     return fixed_step_archive(object, archive);
 }
 

@@ -207,7 +207,7 @@ struct cs_host {
 
     /* [advance] y (3,n) = A p with the A of the last solve_setup. Rows of pinned particles
      * become 0. Counted as a Jacobian product. */
-    void (*apply)(void *ctx, const double *p, double *y);
+    void (*matrix_product)(void *ctx, const double *p, double *y);
 
     /* [advance] You MUST call it after every accepted internal step, of length dt, that ended
      * at time t. It limits strains, resolves contact, takes the velocity loss, looks for a
@@ -224,14 +224,15 @@ struct cs_host {
     /* [restart, advance] Bounds at a state, for automatic steps: omega in 1/s on the angular
      * frequency, delta in 1/s on half the damping rate. Those of the view hold for the springs
      * alone. */
-    void (*rate)(void *ctx, double t, const double *x, const double *v, double *omega,
-                 double *delta);
+    void (*bounds_at)(void *ctx, double t, const double *x, const double *v, double *omega,
+                      double *delta);
     /* [advance] The share of the move from x0 (3,n) at t0 to x1 at t1 that a step may take: 1,
      * or less where it passes over contact that a step cannot see from where it begins, or
      * carries surfaces through each other. Then a method takes the step back and takes a
      * shorter one. 0: no share is good. Within an iteration t1 is t0: surfaces
      * alone are looked at. */
-    double (*max_share)(void *ctx, double t0, const double *x0, double t1, const double *x1);
+    double (*max_step_fraction)(void *ctx, double t0, const double *x0, double t1,
+                                const double *x1);
 
     /* [advance] Only where contact follows each step in commit (contact by projection), else
      * NULL; and not in hosts whose size ends before it. For methods that choose their step: the
@@ -244,22 +245,22 @@ struct cs_host {
      * CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and CS_SOLVE_BOUND have it: xx,
      * xy, xz, yy, yz, zz. For methods that move particles one after the other: with h h f they
      * make a step towards where contact and the rest are in balance. */
-    void (*blocks)(void *ctx, double t, const double *x, const double *v, double h,
-                   double *blocks);
+    void (*contact_blocks)(void *ctx, double t, const double *x, const double *v, double h,
+                           double *contact_blocks);
 
     /* [restart, advance] force with CS_PART_ALL and diagonal in one call, to the same bits and
      * in less time, which counts as one of each; not in hosts whose size ends before it: ask
      * CS_HAS(host, force_diagonal) first. blocks (12,n) is kxx and then dvv. Needs
      * CS_NEED_DIAGONAL. */
     void (*force_diagonal)(void *ctx, double t, const double *x, const double *v, double *f,
-                           double *blocks);
+                           double *contact_blocks);
 
     /* For the whole run: nothing acts between steps, and no event comes (no contact, strain
      * limit, velocity loss or crossings). Then a step may end behind t1: the method gives the
      * state at t1 by interpolation, commits it as if the step had ended there, and commits the
      * rest of the step in the next advance. commit leaves its own state alone, unless it sets
      * *changed. Not in hosts whose size ends before it: ask CS_HAS(host, may_pass) first. */
-    bool may_pass;
+    bool may_overstep;
 };
 
 /* What only the method can count. */
@@ -290,7 +291,7 @@ struct cs_archive {
     void *ctx;
     /* n values: save has them read, load has them written. */
     void (*reals)(void *ctx, double *values, size_t n);
-    void (*wholes)(void *ctx, uint64_t *values, size_t n);
+    void (*integers)(void *ctx, uint64_t *values, size_t n);
 };
 
 /* A method: what it claims, and its calls. The host calls them in the order

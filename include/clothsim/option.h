@@ -88,7 +88,7 @@ struct cs_table {
     bool optional;
     /* Exactly one of the optional rows must be given, but for the first `uncounted` rows. */
     bool one_of;
-    uint32_t uncounted;
+    uint32_t n_always_optional;
     /* The row that a plain text, a plain number, or a plain list in place of the object
      * stands for; or NULL. */
     const char *shorthand_text;

@@ -34,7 +34,7 @@ struct cs_vector_kernels {
     double (*dot)(size_t n, const double *x, const double *y);
 
     /* The sum of (x w)^2. The root of an n-th of it is the weighted RMS norm. */
-    double (*weighted_square)(size_t n, const double *x, const double *w);
+    double (*weighted_sum_of_squares)(size_t n, const double *x, const double *w);
 
     /* The largest |x|. */
     double (*max_norm)(size_t n, const double *x);
@@ -43,7 +43,8 @@ struct cs_vector_kernels {
      * that together are the items 0..n-1, each once, and returns when all are done. Several
      * parts run at the same time. A part may write only what belongs to its items, and must not
      * call the host. Later than the first release: ask CS_HAS(vector, share). */
-    void (*share)(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg);
+    void (*parallel_for)(size_t n, void (*part)(void *arg, size_t begin, size_t end),
+                         void *arg);
 };
 
 /* What stays the same during a run, or changes only at a restart. */

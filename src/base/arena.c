@@ -28,7 +28,7 @@ static struct cs_arena_block *block_create(size_t capacity) {
     return block;
 }
 
-void *cs_arena_take(struct cs_arena *arena, size_t bytes, struct cs_error *error) {
+void *cs_arena_alloc(struct cs_arena *arena, size_t bytes, struct cs_error *error) {
     /* an overflow saturates, and block_create refuses it */
     const size_t size = bytes <= SIZE_MAX - ALIGNMENT
                             ? (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT
@@ -50,16 +50,17 @@ void *cs_arena_take(struct cs_arena *arena, size_t bytes, struct cs_error *error
     return taken;
 }
 
-void *cs_arena_take_n(struct cs_arena *arena, size_t n, size_t size, struct cs_error *error) {
+void *cs_arena_alloc_array(struct cs_arena *arena, size_t n, size_t size,
+                           struct cs_error *error) {
     size_t bytes;
     if (__builtin_mul_overflow(n, size, &bytes))
         bytes = SIZE_MAX;
-    return cs_arena_take(arena, bytes, error);
+    return cs_arena_alloc(arena, bytes, error);
 }
 
-char *cs_arena_take_text(struct cs_arena *arena, const char *text, struct cs_error *error) {
+char *cs_arena_copy_text(struct cs_arena *arena, const char *text, struct cs_error *error) {
     const size_t bytes = strlen(text) + 1;
-    char *copy = cs_arena_take(arena, bytes, error);
+    char *copy = cs_arena_alloc(arena, bytes, error);
     return copy ? memcpy(copy, text, bytes) : NULL;
 }
 
@@ -69,16 +70,16 @@ struct cs_arena_owned {
     void *object;
 };
 
-void cs_arena_own(struct cs_arena *arena, void (*finish)(void *object), void *object,
-                  struct cs_error *error) {
-    struct cs_arena_owned *owned = cs_arena_take(arena, sizeof *owned, error);
+void cs_arena_adopt(struct cs_arena *arena, void (*finish)(void *object), void *object,
+                    struct cs_error *error) {
+    struct cs_arena_owned *owned = cs_arena_alloc(arena, sizeof *owned, error);
     if (!owned)
         return;
-    *owned = (struct cs_arena_owned){arena->owned, finish, object};
-    arena->owned = owned;
+    *owned = (struct cs_arena_owned){arena->adopted, finish, object};
+    arena->adopted = owned;
 }
 
-void *cs_arena_grow(void *items, size_t *room, size_t needed, size_t size) {
+void *cs_arena_realloc(void *items, size_t *room, size_t needed, size_t size) {
     if (needed <= *room)
         return items;
     const size_t larger = needed > 2 * *room ? needed : 2 * *room;
@@ -89,8 +90,8 @@ void *cs_arena_grow(void *items, size_t *room, size_t needed, size_t size) {
 }
 
 void cs_arena_finish(struct cs_arena *arena) {
-    for (; arena->owned; arena->owned = arena->owned->next)
-        arena->owned->finish(arena->owned->object);
+    for (; arena->adopted; arena->adopted = arena->adopted->next)
+        arena->adopted->finish(arena->adopted->object);
     while (arena->blocks) {
         struct cs_arena_block *next = arena->blocks->next;
         free(arena->blocks);

@@ -116,7 +116,7 @@ static int open_temporary(const char *path) {
 enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
                               struct cs_error *error) {
     out->file = NULL;
-    out->lasting = false;
+    out->durable = false;
     const enum cs_status status = check_target(path, error);
     if (status)
         return status;
@@ -159,7 +159,7 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
         failed = true;
         reason = errno;
     }
-    if (!failed && out->lasting && fsync(fileno(out->file))) {
+    if (!failed && out->durable && fsync(fileno(out->file))) {
         failed = true;
         reason = errno;
     }
@@ -169,7 +169,7 @@ enum cs_status cs_file_finish(struct cs_file_out *out, struct cs_error *error) {
     }
     out->file = NULL;
     if (!failed && !rename(out->temporary, out->path)) {
-        if (out->lasting)
+        if (out->durable)
             sync_folder(out->path);
         return CS_OK;
     }
@@ -193,7 +193,7 @@ static enum cs_status write_whole(const char *path, const void *bytes, size_t le
     const enum cs_status status = cs_file_create(&out, path, error);
     if (status)
         return status;
-    out.lasting = lasting;
+    out.durable = lasting;
     /* a short write sets the error flag, which finish looks at */
     fwrite(bytes, 1, length, out.file);
     return cs_file_finish(&out, error);
@@ -204,7 +204,7 @@ enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
     return write_whole(path, bytes, length, false, error);
 }
 
-enum cs_status cs_file_write_lasting(const char *path, const void *bytes, size_t length,
+enum cs_status cs_file_write_durable(const char *path, const void *bytes, size_t length,
                                      struct cs_error *error) {
     return write_whole(path, bytes, length, true, error);
 }
@@ -222,7 +222,7 @@ static bool make_one(const char *path) {
     return false;
 }
 
-enum cs_status cs_folder_make(const char *path, struct cs_error *error) {
+enum cs_status cs_folder_create(const char *path, struct cs_error *error) {
     char part[4096];
     const size_t length = strlen(path);
     if (!length || length >= sizeof part)

@@ -17,7 +17,7 @@ enum cs_status cs_file_read(const char *path, size_t max, char **bytes, size_t *
 /* A file under way: written to `path.tmp.PID` and renamed by finish. */
 struct cs_file_out {
     FILE *file;   /* NULL: not open */
-    bool lasting; /* set after create: finish waits until the disk has it */
+    bool durable; /* set after create: finish waits until the disk has it */
     char path[4096], temporary[4160];
 };
 enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
@@ -35,7 +35,7 @@ enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
                              struct cs_error *error);
 
 /* The same, and the disk has it when the call returns. */
-enum cs_status cs_file_write_lasting(const char *path, const void *bytes, size_t length,
+enum cs_status cs_file_write_durable(const char *path, const void *bytes, size_t length,
                                      struct cs_error *error);
 
 /* Adds whole lines to a file, which is made where there is none. A last line without its end,
@@ -44,6 +44,6 @@ enum cs_status cs_file_append(const char *path, const char *lines, size_t length
                               struct cs_error *error);
 
 /* Makes a folder and its parents; one that is there already is fine. */
-enum cs_status cs_folder_make(const char *path, struct cs_error *error);
+enum cs_status cs_folder_create(const char *path, struct cs_error *error);
 
 #endif

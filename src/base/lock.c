@@ -7,7 +7,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-enum cs_status cs_lock_take(struct cs_lock *lock, const char *path, struct cs_error *error) {
+enum cs_status cs_lock_acquire(struct cs_lock *lock, const char *path, struct cs_error *error) {
     *lock = (struct cs_lock){0};
     const int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0)
@@ -20,7 +20,7 @@ enum cs_status cs_lock_take(struct cs_lock *lock, const char *path, struct cs_er
     return CS_OK;
 }
 
-void cs_lock_give(struct cs_lock *lock) {
+void cs_lock_release(struct cs_lock *lock) {
     if (lock->descriptor > 0)
         close(lock->descriptor);
     *lock = (struct cs_lock){0};

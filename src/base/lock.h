@@ -10,8 +10,8 @@ struct cs_lock {
 
 /* Waits until no other process holds the lock on the file, which is made where there is none.
  * CS_ERR_FILE. */
-enum cs_status cs_lock_take(struct cs_lock *lock, const char *path, struct cs_error *error);
+enum cs_status cs_lock_acquire(struct cs_lock *lock, const char *path, struct cs_error *error);
 /* Safe on a zeroed one. */
-void cs_lock_give(struct cs_lock *lock);
+void cs_lock_release(struct cs_lock *lock);
 
 #endif

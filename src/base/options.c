@@ -77,7 +77,7 @@ bool cs_option_is_optional(const struct cs_option *row) {
     }
 }
 
-bool cs_option_is_given(const struct cs_option *row, const void *object) {
+bool cs_option_is_set(const struct cs_option *row, const void *object) {
     const void *field = const_field_of(row, object);
     /* absence is coded in the value: NaN, below the range, negative or empty */
     switch (row->type) {
@@ -104,7 +104,7 @@ bool cs_option_is_default(const struct cs_option *row, const void *object) {
     /* a vector without defaults must be given, and so is never at its default */
     bool same = row->defs;
     if (cs_option_is_optional(row))
-        return !cs_option_is_given(row, object);
+        return !cs_option_is_set(row, object);
     switch (row->type) {
     case CS_REAL:
         return *(const double *)field == row->def;
@@ -140,7 +140,7 @@ const char *cs_option_nearest(const struct cs_table *table, const char *name) {
     for (; n < table->n && n < 64; n++)
         names[n] = table->rows[n].name;
     names[n] = NULL;
-    return cs_nearest(name, names);
+    return cs_nearest_word(name, names);
 }
 
 enum cs_status cs_option_check_range(const struct cs_option *row, double value, int index,
@@ -186,7 +186,7 @@ enum cs_status cs_option_set_choice(const struct cs_option *row, void *object, c
         }
     struct cs_text range = {0};
     cs_option_print_range(row, &range);
-    const char *nearest = cs_nearest(text, row->choices);
+    const char *nearest = cs_nearest_word(text, row->choices);
     if (nearest)
         cs_fail(error, status, "%s: unknown choice \"%.60s\"; did you mean \"%s\"? (%s)", where,
                 text, nearest, cs_text_get(&range));

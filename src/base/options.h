@@ -15,7 +15,7 @@ void cs_options_default(const struct cs_table *table, void *object);
 bool cs_option_is_optional(const struct cs_option *row);
 
 /* true if the value of an optional row was given. */
-bool cs_option_is_given(const struct cs_option *row, const void *object);
+bool cs_option_is_set(const struct cs_option *row, const void *object);
 
 /* true if a value stands at its default, also where that is to be absent; a VECTOR or COUNTS
  * that must be given never does. Not for TABLE and LIST. */

@@ -24,9 +24,9 @@ struct share {
 };
 
 struct pool {
-    struct share shares[CS_POOL_MOST];
+    struct share shares[CS_POOL_THREADS_MAX];
     uint32_t n; /* threads, the caller among them */
-    pthread_t threads[CS_POOL_MOST];
+    pthread_t threads[CS_POOL_THREADS_MAX];
     atomic_uint numbered; /* threads that know which share is theirs */
 
     atomic_bool busy; /* a loop is under way: another one is its caller's alone */
@@ -44,16 +44,16 @@ struct pool {
 
 static struct pool *pool; /* NULL: one thread */
 
-static void relax(void) {
+static void cpu_relax(void) {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
 #endif
 }
 
 /* waits a moment for *word to be something else, or to become 0 */
-static void look(atomic_uint *word, uint32_t old) {
+static void spin_wait(atomic_uint *word, uint32_t old) {
     for (int k = 0; k < LOOKS && atomic_load_explicit(word, memory_order_relaxed) == old; k++)
-        relax();
+        cpu_relax();
 }
 
 /* the own share first, then what the others have not come to */
@@ -93,14 +93,14 @@ static void *serve(void *argument) {
             pthread_cond_signal(&p->left);
         pthread_mutex_unlock(&p->lock);
         /* the next loop often follows at once: look for it before sleeping */
-        look(&p->loops, seen);
+        spin_wait(&p->loops, seen);
         pthread_mutex_lock(&p->lock);
     }
     pthread_mutex_unlock(&p->lock);
     return NULL;
 }
 
-static void share_out(struct pool *p, uint32_t blocks) {
+static void distribute(struct pool *p, uint32_t blocks) {
     for (uint32_t k = 0; k < p->n; k++) {
         p->shares[k].next = (uint32_t)((uint64_t)blocks * k / p->n);
         p->shares[k].end = (uint32_t)((uint64_t)blocks * (k + 1) / p->n);
@@ -119,7 +119,7 @@ static void open_loop(struct pool *p) {
 /* all blocks are taken: waits for those who have one, and for no one else */
 static void close_loop(struct pool *p) {
     for (uint32_t inside; (inside = p->inside) > 0;) {
-        look(&p->inside, inside);
+        spin_wait(&p->inside, inside);
         if (p->inside == inside)
             break;
     }
@@ -139,7 +139,7 @@ void cs_pool_run(uint32_t blocks, void (*task)(void *arg, uint32_t block), void 
     }
     p->task = task;
     p->arg = arg;
-    share_out(p, blocks);
+    distribute(p, blocks);
     open_loop(p);
     do_blocks(p, 0);
     close_loop(p);
@@ -195,7 +195,7 @@ static enum cs_status start(uint32_t threads, struct cs_error *error) {
 }
 
 enum cs_status cs_pool_start(uint32_t threads, struct cs_error *error) {
-    CS_ASSERT(threads >= 1 && threads <= CS_POOL_MOST);
+    CS_ASSERT(threads >= 1 && threads <= CS_POOL_THREADS_MAX);
     cs_pool_stop();
     return threads == 1 ? CS_OK : start(threads, error);
 }

@@ -15,11 +15,11 @@
 
 #include <stdint.h>
 
-enum { CS_POOL_MOST = 64 };
+enum { CS_POOL_THREADS_MAX = 64 };
 
-/* From now on loops are shared by `threads` (1..CS_POOL_MOST), the caller among them; 1 makes
- * no thread. Threads of before are stopped. Signals stay the caller's. On failure there is one
- * thread, and CS_ERR_MEMORY. Not from within a loop, nor beside one. */
+/* From now on loops are shared by `threads` (1..CS_POOL_THREADS_MAX), the caller among them; 1
+ * makes no thread. Threads of before are stopped. Signals stay the caller's. On failure there
+ * is one thread, and CS_ERR_MEMORY. Not from within a loop, nor beside one. */
 enum cs_status cs_pool_start(uint32_t threads, struct cs_error *error);
 
 /* Ends the threads; loops are the caller's alone again. Allowed without a pool. */

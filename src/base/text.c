@@ -90,7 +90,7 @@ bool cs_parse_real(const char *s, double *value) {
     return true;
 }
 
-static size_t least_of(size_t a, size_t b) {
+static size_t min_of(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
@@ -115,15 +115,15 @@ static size_t distance(const char *a, const char *b) {
         row[0] = i + 1;
         for (size_t j = 0; j < n; j++) {
             row[j + 1] =
-                least_of(above[j] + !is_same(a[i], b[j]), least_of(above[j + 1], row[j]) + 1);
+                min_of(above[j] + !is_same(a[i], b[j]), min_of(above[j + 1], row[j]) + 1);
             if (i && j && is_same(a[i], b[j - 1]) && is_same(a[i - 1], b[j]))
-                row[j + 1] = least_of(row[j + 1], second[j - 1] + 1);
+                row[j + 1] = min_of(row[j + 1], second[j - 1] + 1);
         }
     }
     return row[n];
 }
 
-const char *cs_nearest(const char *word, const char *const *candidates) {
+const char *cs_nearest_word(const char *word, const char *const *candidates) {
     const char *nearest = NULL;
     size_t least = SIZE_MAX;
     for (; *candidates; candidates++) {

@@ -31,6 +31,6 @@ bool cs_parse_real(const char *s, double *value);
 
 /* The candidate (list closed by NULL) nearest to word, or NULL if none is: edits, of which a
  * swap of neighbours is one, of at most a third of the letters, or a beginning. */
-const char *cs_nearest(const char *word, const char *const *candidates);
+const char *cs_nearest_word(const char *word, const char *const *candidates);
 
 #endif

@@ -31,7 +31,8 @@ static void do_part(void *arg, uint32_t block) {
     shared->part(shared->arg, begin, left < shared->size ? shared->n : begin + shared->size);
 }
 
-void cs_vector_share(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg) {
+void cs_vector_parallel_for(size_t n, void (*part)(void *arg, size_t begin, size_t end),
+                            void *arg) {
     struct shared shared = {part, arg, n, cs_pool_threads() > 1 ? PART : BLOCK};
     cs_pool_run((uint32_t)((n + shared.size - 1) / shared.size), do_part, &shared);
 }
@@ -142,7 +143,7 @@ CS_CLONES static void linear_part(void *arg, size_t begin, size_t end) {
 static void linear_sum(size_t n, double a, const double *x, double b, const double *y,
                        double *z) {
     struct arrays arrays = {x, y, a, b, z};
-    cs_vector_share(n, linear_part, &arrays);
+    cs_vector_parallel_for(n, linear_part, &arrays);
 }
 
 static double max_norm(size_t n, const double *x) {
@@ -157,7 +158,7 @@ const struct cs_vector_kernels cs_vector_kernels = {
     .size = sizeof(struct cs_vector_kernels),
     .linear_sum = linear_sum,
     .dot = cs_vector_dot,
-    .weighted_square = weighted_square,
+    .weighted_sum_of_squares = weighted_square,
     .max_norm = max_norm,
-    .share = cs_vector_share,
+    .parallel_for = cs_vector_parallel_for,
 };

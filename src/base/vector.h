@@ -11,7 +11,8 @@ double cs_vector_dot(size_t n, const double *x, const double *y);
 
 /* Calls part(arg, begin, end) for every block of 0..n-1, several at the same time: a part may
  * write only what belongs to its items, and blocks are smaller where threads share them. */
-void cs_vector_share(size_t n, void (*part)(void *arg, size_t begin, size_t end), void *arg);
+void cs_vector_parallel_for(size_t n, void (*part)(void *arg, size_t begin, size_t end),
+                            void *arg);
 
 /* The sum of part(arg, begin, end) over the blocks, one after the other; parts are made at the
  * same time and only look. 0 where n is 0. */

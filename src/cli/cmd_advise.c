@@ -4,11 +4,11 @@
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
+#include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
-#include "study/compare/sweep_list.h"
 #include "study/compare/verdict.h"
+#include "study/process_pool.h"
 #include "study/stability/advise_print.h"
-#include "study/workers.h"
 
 enum {
     ADVISE_INTEGRATORS,
@@ -63,10 +63,10 @@ static void join(const struct cs_advise *study, struct cs_text *list) {
 /* files that stand in the place of methods */
 static enum cs_status add_modules(struct cs_args *args, struct cs_compare_settings *settings,
                                   struct cs_error *error) {
-    struct cs_session_settings *session = &settings->course.session;
+    struct cs_session_settings *session = &settings->run.session;
     return settings->methods
-               ? cs_sweep_add_modules(settings->methods, &args->arena, &session->plugins,
-                                      &session->n_plugins, error)
+               ? cs_cell_list_add_modules(settings->methods, &args->arena, &session->plugins,
+                                          &session->n_plugins, error)
                : CS_OK;
 }
 
@@ -78,7 +78,7 @@ static enum cs_status advise_for_error(struct cs_args *args, const struct cs_adv
     struct cs_text list = {0}, out = {0};
     join(study, &list);
     folder = folder ? folder : "advise";
-    struct cs_compare_settings settings = {.course = {.session = study->session},
+    struct cs_compare_settings settings = {.run = {.session = study->session},
                                            .methods =
                                                study->n_methods ? cs_text_get(&list) : NULL,
                                            .accuracy = bound < 1e-6 ? bound : 1e-6,
@@ -89,7 +89,7 @@ static enum cs_status advise_for_error(struct cs_args *args, const struct cs_adv
     if (list.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
     else if (!add_modules(args, &settings, error) &&
-             !cs_course_count_frames(&settings.course, seconds, error) &&
+             !cs_recorded_run_count_frames(&settings.run, seconds, error) &&
              !cs_compare_run(&compare, &settings, error)) {
         cs_verdict_print_at(&compare, bound, &out);
         cs_compare_warn(&compare, "warning: ", &out);
@@ -107,8 +107,8 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         .session = {.scene = args->operands[0]},
         .seconds = 10,
         .budget = 20,
-        .check = cs_args_get(args, ADVISE_CHECK),
-        .workers = cs_pool_processors(CS_WORKERS_MOST),
+        .bisect_too = cs_args_get(args, ADVISE_CHECK),
+        .workers = cs_pool_processors(CS_PROCESS_POOL_MAX),
         .progress = show_progress,
         .ctx = &progress,
     };
@@ -118,17 +118,17 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     if (cs_args_real(args, ADVISE_ERROR, &bound, error) ||
         cs_args_real(args, ADVISE_TIME, &study.seconds, error) ||
         cs_args_real(args, ADVISE_BUDGET, &study.budget, error) ||
-        cs_args_whole(args, ADVISE_JOBS, 1, CS_WORKERS_MOST, &study.workers, error) ||
+        cs_args_integer(args, ADVISE_JOBS, 1, CS_PROCESS_POOL_MAX, &study.workers, error) ||
         cs_args_methods(args, ADVISE_INTEGRATORS, &study.methods, &study.n_methods, error) ||
         cs_args_overrides(args, ADVISE_SET, &study.session.overrides,
                           &study.session.n_overrides, error) ||
-        cs_args_all(args, ADVISE_PLUGIN, &study.session.plugins, &study.session.n_plugins,
-                    error))
+        cs_args_get_all(args, ADVISE_PLUGIN, &study.session.plugins, &study.session.n_plugins,
+                        error))
         return error->status;
     if (cs_args_get(args, ADVISE_ERROR))
         return advise_for_error(args, &study, bound, error);
     cs_progress_begin(&progress, cs_args_get(args, ADVISE_QUIET));
-    progress.what = "method";
+    progress.label = "method";
     cs_advise_run(&study, error);
     /* the line goes before anything is printed below it */
     cs_progress_end(&progress);
@@ -147,7 +147,7 @@ const struct cs_command cs_command_advise = {
     .notes = "Example: clothsim advise scenes/hang.json -i velocity-verlet\n",
     .rows = rows,
     .n_rows = ADVISE_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = advise,
 };

@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 #include "study/bisect.h"
 
 #include <stdio.h>
@@ -58,7 +58,7 @@ static enum cs_status add_named(struct line *line, const char *key, size_t lengt
                                 const char *value, struct cs_error *error) {
     char option[32];
     snprintf(option, sizeof option, "--%.*s", (int)length, key);
-    const char *kept = cs_arena_take_text(&line->args->arena, option, error);
+    const char *kept = cs_arena_copy_text(&line->args->arena, option, error);
     add(line, kept);
     add(line, value);
     return error->status;
@@ -105,9 +105,9 @@ static enum cs_status add_common(struct line *line, const struct own *own,
         const char *const *values;
         const struct cs_arg *row = rows + options[k];
         uint32_t n;
-        if (cs_args_all(line->args, (uint32_t)options[k], &values, &n, error))
+        if (cs_args_get_all(line->args, (uint32_t)options[k], &values, &n, error))
             return error->status;
-        for (uint32_t i = 0; i < n && (row->many || !has_own(own, row->name)); i++)
+        for (uint32_t i = 0; i < n && (row->repeatable || !has_own(own, row->name)); i++)
             add_named(line, row->name, strlen(row->name), values[i], error);
     }
     return error->status;
@@ -115,10 +115,10 @@ static enum cs_status add_common(struct line *line, const struct own *own,
 
 static enum cs_status make_line(struct line *line, int row, struct cs_error *error) {
     struct own own;
-    if (cs_args_all(line->args, (uint32_t)row, &own.items, &own.n, error))
+    if (cs_args_get_all(line->args, (uint32_t)row, &own.items, &own.n, error))
         return error->status;
-    line->words = cs_arena_take_n(&line->args->arena, 8 + 2 * (size_t)line->args->n_given,
-                                  sizeof *line->words, error);
+    line->words = cs_arena_alloc_array(&line->args->arena, 8 + 2 * (size_t)line->args->n_given,
+                                       sizeof *line->words, error);
     if (!line->words)
         return error->status;
     add(line, cs_program_path());
@@ -144,17 +144,18 @@ static void add_lines(const char *left, const struct cs_bisect_difference *found
 
 /* The numbers of one frame tell more than the states at its end, where they differ too. */
 static void print(const struct cs_bisect *bisect, struct cs_text *out) {
-    const struct cs_bisect_difference *states = &bisect->states, *within = &bisect->within;
+    const struct cs_bisect_difference *states = &bisect->state_difference,
+                                      *within = &bisect->first_difference;
     char left[24];
-    cs_text_add(out, "%-*s%u frame%s\n", VALUE_COLUMN, "equal", bisect->equal,
-                bisect->equal == 1 ? "" : "s");
-    if (!states->found)
+    cs_text_add(out, "%-*s%u frame%s\n", VALUE_COLUMN, "equal", bisect->n_equal_frames,
+                bisect->n_equal_frames == 1 ? "" : "s");
+    if (!states->exists)
         return;
     snprintf(left, sizeof left, states->frame ? "frame %u" : "start", states->frame);
     add_lines(left, states, out);
     if (!states->frame)
         return;
-    if (!within->found) {
+    if (!within->exists) {
         cs_print_hanging("again",
                          "both came to the same when this frame was made again: one of "
                          "them does not repeat itself",
@@ -168,12 +169,12 @@ static void print(const struct cs_bisect *bisect, struct cs_text *out) {
 
 static enum cs_status report(const struct cs_bisect *bisect, bool quiet,
                              struct cs_error *error) {
-    const struct cs_bisect_difference *states = &bisect->states;
+    const struct cs_bisect_difference *states = &bisect->state_difference;
     struct cs_text out = {0};
-    if (quiet && !states->found)
+    if (quiet && !states->exists)
         return CS_OK;
     print(bisect, &out);
-    if (cs_print_out(stdout, &out, error) || !states->found)
+    if (cs_print_out(stdout, &out, error) || !states->exists)
         return error->status;
     return states->frame
                ? cs_fail(error, CS_ERR_CHECK, "A and B differ from frame %u on", states->frame)
@@ -206,7 +207,7 @@ const struct cs_command cs_command_bisect = {
              "Example: clothsim bisect scenes/hang.json --b program=../old/build/clothsim\n",
     .rows = rows,
     .n_rows = BISECT_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = bisect,
 };

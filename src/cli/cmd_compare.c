@@ -1,15 +1,15 @@
 /* clothsim compare: measures error against run time for integrators on a scene. */
 #include "cli/commands.h"
-#include "cli/inputs.h"
+#include "cli/external_modules.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
-#include "cli/outside.h"
+#include "cli/study_file_conflicts.h"
+#include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"
 #include "study/compare/compare_report.h"
 #include "study/compare/compare_sheet.h"
 #include "study/compare/compare_table.h"
-#include "study/compare/sweep_list.h"
 #include "study/compare/verdict.h"
 #include "study/isolate.h"
 
@@ -114,7 +114,7 @@ static void show(struct screen *screen, struct cs_text *text) {
 static void show_reference(void *ctx, uint32_t done, uint32_t total, const char *what) {
     struct screen *screen = ctx;
     (void)what;
-    screen->progress.what = "reference, run";
+    screen->progress.label = "reference, run";
     cs_progress_show(&screen->progress, done, total);
     if (done == total)
         cs_progress_end(&screen->progress);
@@ -130,7 +130,7 @@ static void show_begin(void *ctx) {
     }
     show(screen, &text);
     cs_progress_begin(&screen->progress, screen->quiet);
-    screen->progress.what = "cell";
+    screen->progress.label = "cell";
 }
 
 static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
@@ -141,12 +141,12 @@ static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
     cs_table_add_row(&screen->compare, cell, &text);
     show(screen, &text);
     if (!taken)
-        cs_progress_show(&screen->progress, screen->compare.done, screen->compare.sweep.n);
+        cs_progress_show(&screen->progress, screen->compare.n_done, screen->compare.cells.n);
 }
 
 static void show_round(void *ctx, uint32_t done, uint32_t most) {
     struct screen *screen = ctx;
-    screen->progress.what = "round";
+    screen->progress.label = "round";
     cs_progress_show(&screen->progress, done, most);
 }
 
@@ -154,7 +154,7 @@ static enum cs_status read_reference(struct cs_args *args, struct cs_compare_set
                                      struct cs_error *error) {
     const char *const *methods;
     uint32_t n;
-    if (cs_args_all(args, COMPARE_REFERENCE, &methods, &n, error))
+    if (cs_args_get_all(args, COMPARE_REFERENCE, &methods, &n, error))
         return error->status;
     if (n != 0 && n != 2)
         return cs_fail(error, CS_ERR_USAGE,
@@ -168,13 +168,13 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
                                     struct cs_error *error) {
     const char *folder = cs_args_get(args, COMPARE_OUT),
                *cache = cs_args_get(args, COMPARE_CACHE);
-    struct cs_session_settings *session = &settings->course.session;
+    struct cs_session_settings *session = &settings->run.session;
     *settings = (struct cs_compare_settings){
         .methods = cs_args_get(args, COMPARE_INTEGRATORS),
         .accuracy = 1e-6,
         .runs = 40,
         .folder = folder ? folder : "compare",
-        .fresh = cs_args_get(args, COMPARE_FRESH),
+        .overwrite = cs_args_get(args, COMPARE_FRESH),
         .ledger = cs_args_get(args, COMPARE_LEDGER),
     };
     settings->cache = cache ? cache : settings->folder;
@@ -183,27 +183,27 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_compare_sett
     session->scene = args->operands[0];
     session->run.stop = cs_interrupt_catch();
     if (cs_args_choice(args, COMPARE_RANK, cs_norm_names, &rank, error) ||
-        cs_args_whole(args, COMPARE_RUNS, 1, CS_ROUNDS_MOST, &settings->runs, error) ||
+        cs_args_integer(args, COMPARE_RUNS, 1, CS_ROUNDS_MAX, &settings->runs, error) ||
         cs_args_real(args, COMPARE_BUDGET, &settings->budget, error) ||
         cs_args_shard(args, COMPARE_SHARD, &settings->shard, error) ||
         cs_args_real(args, COMPARE_ACCURACY, &settings->accuracy, error) ||
         read_reference(args, settings, error) ||
         cs_args_overrides(args, COMPARE_SET, &session->overrides, &session->n_overrides,
                           error) ||
-        cs_args_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error) ||
+        cs_args_get_all(args, COMPARE_PLUGIN, &session->plugins, &session->n_plugins, error) ||
         (settings->methods &&
-         cs_sweep_add_modules(settings->methods, &args->arena, &session->plugins,
-                              &session->n_plugins, error)))
+         cs_cell_list_add_modules(settings->methods, &args->arena, &session->plugins,
+                                  &session->n_plugins, error)))
         return error->status;
     static const char *const files[] = {"compare.csv",  "compare.json", "compare.md",
                                         "compare.html", "origin.json",  NULL};
-    if (cs_inputs_keep(session, settings->folder, files, error))
+    if (cs_study_files_check(session, settings->folder, files, error))
         return error->status;
-    settings->rank = (enum cs_norm)rank;
+    settings->ranking_norm = (enum cs_norm)rank;
     /* last: the length of a frame may come from --set */
     return cs_args_real(args, COMPARE_TIME, &seconds, error)
                ? error->status
-               : cs_course_count_frames(&settings->course, seconds, error);
+               : cs_recorded_run_count_frames(&settings->run, seconds, error);
 }
 
 static enum cs_status print_verdict(struct screen *screen, struct cs_error *error) {
@@ -248,11 +248,11 @@ static void add_command(const struct cs_args *args, struct cs_text *out) {
 
 static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
     uint32_t bad = 0;
-    for (uint32_t k = 0; k < compare->sweep.n; k++)
-        bad += !strcmp(compare->sweep.cells[k].outcome, "failed") ||
-               !strncmp(compare->sweep.cells[k].outcome, "blew up", 7);
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        bad += !strcmp(compare->cells.cells[k].outcome, "failed") ||
+               !strncmp(compare->cells.cells[k].outcome, "blew up", 7);
     return bad ? cs_fail(error, CS_ERR_UNSTABLE, "%u of %u cells blew up or failed", bad,
-                         compare->sweep.n)
+                         compare->cells.n)
                : CS_OK;
 }
 
@@ -269,9 +269,9 @@ static enum cs_status compare_here(void *ctx, struct cs_error *error) {
     settings.command = cs_text_get(&command);
     settings.html = cs_args_get(args, COMPARE_REPORT);
     settings.reference_progress = show_reference;
-    settings.begun = show_begin;
+    settings.on_begin = show_begin;
     settings.row = show_row;
-    settings.round = show_round;
+    settings.on_round = show_round;
     settings.ctx = &screen;
     cs_progress_begin(&screen.progress, screen.quiet);
     if (!cs_compare_run(&screen.compare, &settings, error)) {
@@ -279,7 +279,7 @@ static enum cs_status compare_here(void *ctx, struct cs_error *error) {
         /* files first: they must not be lost because printing failed */
         if (!cs_compare_write_report(&screen.compare, error) &&
             !print_verdict(&screen, error) && cs_args_get(args, COMPARE_PICTURES))
-            cs_sheet_write(&screen.compare, (enum cs_renderer_kind)kind, error);
+            cs_compare_contact_sheet_write(&screen.compare, (enum cs_renderer_kind)kind, error);
         if (!error->status && cs_args_get(args, COMPARE_STRICT))
             check_cells(&screen.compare, error);
     }
@@ -297,7 +297,7 @@ static enum cs_status compare(struct cs_args *args, struct cs_error *error) {
     const char *methods = cs_args_get(args, COMPARE_INTEGRATORS);
     struct cs_isolate isolate = {
         .seconds = PATIENCE_SECONDS, .task = compare_here, .ctx = args};
-    if (!cs_outside_is_named(args, COMPARE_PLUGIN, &methods, 1))
+    if (!cs_external_modules_requested(args, COMPARE_PLUGIN, &methods, 1))
         return compare_here(args, error);
     isolate.stop = cs_interrupt_catch();
     return cs_isolate_run(&isolate, error);
@@ -313,7 +313,7 @@ const struct cs_command cs_command_compare = {
              "Example: clothsim compare scenes/drum.json -i rk4,tr-bdf2:dt=1e-3..2e-2 -o cmp\n",
     .rows = rows,
     .n_rows = COMPARE_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = compare,
 };

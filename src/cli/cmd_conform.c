@@ -1,8 +1,8 @@
 /* clothsim conform: prints a method's conformance card as text or JSON. */
 #include "base/file.h"
 #include "cli/commands.h"
+#include "cli/external_modules.h"
 #include "cli/line/print.h"
-#include "cli/outside.h"
 #include "sim/method.h"
 #include "study/conform/conform.h"
 #include "study/conform/conform_cache.h"
@@ -103,7 +103,7 @@ static void report(void *ctx, const struct cs_conform_row *row) {
 static enum cs_status print_card(struct output *output, struct cs_registry *registry,
                                  const struct cs_integrator *method, const void *options,
                                  struct cs_error *error) {
-    const struct cs_registered *euler = NULL;
+    const struct cs_registry_entry *euler = NULL;
     struct cs_error ignored = {0};
     /* not finding it is no failure: the check that needs it is then skipped */
     if (method->fidelity != CS_FIDELITY_ODE)
@@ -112,7 +112,7 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .method = method,
         .options = options,
         .implicit_euler = euler ? euler->integrator : NULL,
-        .only = cs_args_get(output->args, CONFORM_ONLY),
+        .only_check = cs_args_get(output->args, CONFORM_ONLY),
         .cache = &output->cache,
         .report = report,
         .ctx = output,
@@ -171,7 +171,7 @@ static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *regi
                                   struct cs_error *error) {
     const char *const *files;
     uint32_t n;
-    if (cs_args_all(args, CONFORM_PLUGIN, &files, &n, error))
+    if (cs_args_get_all(args, CONFORM_PLUGIN, &files, &n, error))
         return error->status;
     for (uint32_t i = 0; i < n; i++)
         if (cs_registry_add_file(registry, files[i], error))
@@ -239,7 +239,7 @@ static enum cs_status conform_here(void *ctx, struct cs_error *error) {
 static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
     const struct cs_isolate isolate = {
         .seconds = PATIENCE_SECONDS, .task = conform_here, .ctx = args};
-    return cs_outside_is_named(args, CONFORM_PLUGIN, args->operands, args->n_operands)
+    return cs_external_modules_requested(args, CONFORM_PLUGIN, args->operands, args->n_operands)
                ? cs_isolate_run(&isolate, error)
                : conform_here(args, error);
 }
@@ -252,7 +252,7 @@ const struct cs_command cs_command_conform = {
         "A claim that fails is expected where the integrator's descriptor names the check.\n",
     .rows = rows,
     .n_rows = CONFORM_ROWS,
-    .least = 0,
-    .most = 64,
+    .operands_min = 0,
+    .operands_max = 64,
     .main = conform,
 };

@@ -3,7 +3,7 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 #include "study/golden/golden.h"
 
 #include <stdio.h>
@@ -115,18 +115,18 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     uint32_t threads = 1;
     struct sink sink = {.args = args};
     if (cs_args_choices(args, GOLDEN_RENDERER, cs_renderer_names, &renderers, error) ||
-        cs_args_whole(args, GOLDEN_THREADS, 1, CS_POOL_MOST, &threads, error))
+        cs_args_integer(args, GOLDEN_THREADS, 1, CS_POOL_THREADS_MAX, &threads, error))
         return error->status;
     struct cs_golden check = {
         /* the installed tables are there to be compared with, and never written to */
         .folder = folder   ? folder
                   : accept ? "golden"
                            : cs_data_find("golden", installed, sizeof installed),
-        .only = cs_args_get(args, GOLDEN_ONLY),
+        .only_rows = cs_args_get(args, GOLDEN_ONLY),
         /* without a flag both are checked, as with both flags */
         .hashes = hashes || !images,
         .images = images || !hashes,
-        .accept = accept,
+        .accept_all = accept,
         .renderers = renderers,
         .threads = threads,
         .stop = cs_interrupt_catch(),
@@ -162,7 +162,7 @@ const struct cs_command cs_command_golden = {
              "difference as *.difference.png.\n",
     .rows = rows,
     .n_rows = GOLDEN_ROWS,
-    .least = 0,
-    .most = 0,
+    .operands_min = 0,
+    .operands_max = 0,
     .main = golden,
 };

@@ -69,7 +69,7 @@ static void add_listed(const struct cs_integrator *integrator, struct cs_text *o
     cs_text_finish(&source);
 }
 
-static void add_refused(const struct cs_registered *entry, struct cs_text *out) {
+static void add_refused(const struct cs_registry_entry *entry, struct cs_text *out) {
     cs_text_add(out, "refused: %s: %s\n", entry->file, entry->refusal);
 }
 
@@ -78,7 +78,7 @@ static enum cs_status print_list(struct cs_registry *registry, struct cs_error *
     if (cs_registry_open_all(registry, error))
         return error->status;
     for (uint32_t i = 0; i < registry->n; i++) {
-        const struct cs_registered *entry = registry->entries + i;
+        const struct cs_registry_entry *entry = registry->entries + i;
         if (entry->integrator)
             add_listed(entry->integrator, &out);
         else
@@ -90,7 +90,7 @@ static enum cs_status print_list(struct cs_registry *registry, struct cs_error *
 /* A row's default and range, each in its column, then what it means. */
 static void add_option(const struct cs_option *row, const void *defaults, struct cs_text *out) {
     struct cs_text left = {0}, value = {0}, range = {0};
-    const bool given = !cs_option_is_optional(row) || cs_option_is_given(row, defaults);
+    const bool given = !cs_option_is_optional(row) || cs_option_is_set(row, defaults);
     if (!given)
         cs_text_add(&value, "not set");
     else if (row->type == CS_CHOICE)
@@ -133,7 +133,7 @@ static enum cs_status add_options(const struct cs_integrator *integrator, struct
 
 static enum cs_status print_one(struct cs_registry *registry, const char *name,
                                 struct cs_error *error) {
-    const struct cs_registered *found;
+    const struct cs_registry_entry *found;
     if (cs_registry_find(registry, name, &found, error))
         return error->status;
     const struct cs_integrator *integrator = found->integrator;
@@ -170,7 +170,7 @@ static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *regi
                                   struct cs_error *error) {
     const char *const *files;
     uint32_t n;
-    if (cs_args_all(args, LIST_PLUGIN, &files, &n, error))
+    if (cs_args_get_all(args, LIST_PLUGIN, &files, &n, error))
         return error->status;
     for (uint32_t i = 0; i < n; i++)
         if (cs_registry_add_file(registry, files[i], error))
@@ -198,7 +198,7 @@ const struct cs_command cs_command_integrators = {
              "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n",
     .rows = rows,
     .n_rows = LIST_ROWS,
-    .least = 0,
-    .most = 1,
+    .operands_min = 0,
+    .operands_max = 1,
     .main = list,
 };

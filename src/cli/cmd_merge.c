@@ -1,8 +1,8 @@
 /* clothsim merge: joins the folders of studies that several processes filled. */
 #include "base/file.h"
 #include "cli/commands.h"
-#include "study/compare/compare_ledger.h"
-#include "study/product.h"
+#include "study/compare/compare_results.h"
+#include "study/parameter_sweep.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -76,9 +76,9 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     for (uint32_t k = 0; k < args->n_operands; k++)
         if (!strcmp(args->operands[k], out))
             return cs_fail(error, CS_ERR_USAGE, "%s is both a part and the whole", out);
-    if (cs_folder_make(out, error) ||
-        cs_ledger_merge(args->operands, args->n_operands, out, &cells, error) ||
-        cs_product_merge(args->operands, args->n_operands, out, &rows_of_sweep, error))
+    if (cs_folder_create(out, error) ||
+        cs_compare_results_merge(args->operands, args->n_operands, out, &cells, error) ||
+        cs_parameter_sweep_merge(args->operands, args->n_operands, out, &rows_of_sweep, error))
         return error->status;
     cells += rows_of_sweep;
     for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
@@ -103,7 +103,7 @@ const struct cs_command cs_command_merge = {
         "Example: clothsim merge part1 part2 -o whole\n",
     .rows = rows,
     .n_rows = MERGE_ROWS,
-    .least = 1,
-    .most = 10000,
+    .operands_min = 1,
+    .operands_max = 10000,
     .main = merge,
 };

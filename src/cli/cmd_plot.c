@@ -76,8 +76,8 @@ static void split(const char *path, char folder[4096], const char **name) {
     snprintf(folder, 4096, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
 }
 
-static enum cs_status tell(const struct cs_args *args, const char *path, bool drawn,
-                           struct cs_error *error) {
+static enum cs_status print_files(const struct cs_args *args, const char *path, bool drawn,
+                                  struct cs_error *error) {
     struct cs_text text = {0};
     if (cs_args_get(args, PLOT_QUIET))
         return CS_OK;
@@ -113,7 +113,7 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a name without its ending");
     if (cs_plot_write(settings, folder, &drawn, error))
         return error->status;
-    return tell(args, path, drawn, error);
+    return print_files(args, path, drawn, error);
 }
 
 /* a diagram of nothing is a mistake in the name of the family */
@@ -150,7 +150,7 @@ const struct cs_command cs_command_plot = {
     .notes = "Example: clothsim plot compare/compare.csv --x evals --y max_error\n",
     .rows = rows,
     .n_rows = PLOT_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = plot,
 };

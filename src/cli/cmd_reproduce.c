@@ -5,8 +5,8 @@
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "cli/manifest.h"
-#include "study/again.h"
-#include "study/compare/compare_again.h"
+#include "study/compare/compare_reproduce.h"
+#include "study/reproduce.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +36,7 @@ static bool ends_in(const char *text, const char *ending) {
 }
 
 /* The number behind FILE.csv:, which is cut off; 0: none. */
-static uint32_t cut_row(char *path) {
+static uint32_t split_row(char *path) {
     char *colon = strrchr(path, ':');
     const size_t digits = colon ? strspn(colon + 1, "0123456789") : 0;
     if (!digits || digits > 9 || colon[1 + digits])
@@ -49,7 +49,7 @@ static uint32_t cut_row(char *path) {
 }
 
 /* Which files of the folder are not as the run left them. */
-static void tell_manifest(const char *folder, struct cs_text *notes) {
+static void print_manifest(const char *folder, struct cs_text *notes) {
     struct cs_error unread = {0};
     uint32_t n, differing;
     if (cs_manifest_check(folder, notes, &n, &differing, &unread))
@@ -57,20 +57,21 @@ static void tell_manifest(const char *folder, struct cs_text *notes) {
 }
 
 /* What a file is, by its name; a folder stands for the report in it. */
-static enum cs_status make_again(struct cs_again *again, struct cs_again_settings *settings,
-                                 char path[PATH_BYTES], struct cs_error *error) {
+static enum cs_status reproduce_file(struct cs_reproduction *again,
+                                     struct cs_reproduction_settings *settings,
+                                     char path[PATH_BYTES], struct cs_error *error) {
     struct stat info;
-    const uint32_t row = cut_row(path);
+    const uint32_t row = split_row(path);
     if (!stat(path, &info) && S_ISDIR(info.st_mode)) {
-        tell_manifest(path, &again->notes);
+        print_manifest(path, &again->notes);
         strncat(path, "/run.json", PATH_BYTES - strlen(path) - 1);
     }
     settings->file = path;
-    return row ? cs_compare_again(again, settings, row, error)
+    return row ? cs_compare_reproduce_row(again, settings, row, error)
            : ends_in(path, ".csv")
                ? cs_fail(error, CS_ERR_USAGE, "%s: expected a row, as in %s:1", path, path)
-           : ends_in(path, ".png") ? cs_again_picture(again, settings, error)
-                                   : cs_again_run(again, settings, error);
+           : ends_in(path, ".png") ? cs_reproduction_of_picture(again, settings, error)
+                                   : cs_reproduction_of_run(again, settings, error);
 }
 
 static void show(void *ctx, uint32_t done, uint32_t total) {
@@ -83,39 +84,40 @@ static void print_notes(char *notes, struct cs_text *out) {
         cs_print_hanging(left, line, VALUE_COLUMN, out);
 }
 
-static enum cs_status print(struct cs_again *again, struct cs_error *error) {
+static enum cs_status print(struct cs_reproduction *again, struct cs_error *error) {
     struct cs_text out = {0};
-    cs_print_hanging("again", cs_text_get(&again->what), VALUE_COLUMN, &out);
+    cs_print_hanging("again", cs_text_get(&again->description), VALUE_COLUMN, &out);
     if (again->notes.length)
         print_notes(again->notes.bytes, &out);
-    cs_print_hanging("equal", again->equal.length ? cs_text_get(&again->equal) : "nothing",
+    cs_print_hanging("equal",
+                     again->equal_items.length ? cs_text_get(&again->equal_items) : "nothing",
                      VALUE_COLUMN, &out);
     return cs_print_out(stdout, &out, error);
 }
 
 static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     char path[PATH_BYTES];
-    struct cs_again again = {0};
+    struct cs_reproduction again = {0};
     struct cs_progress progress;
     const bool quiet = cs_args_get(args, REPRODUCE_QUIET);
     snprintf(path, sizeof path, "%s", args->operands[0]);
-    struct cs_again_settings settings = {.folder = cs_args_get(args, REPRODUCE_FOLDER),
-                                         .session = {.threads = CS_THREADS_AUTO},
-                                         .progress = show,
-                                         .ctx = &progress};
+    struct cs_reproduction_settings settings = {.folder = cs_args_get(args, REPRODUCE_FOLDER),
+                                                .session = {.threads = CS_THREADS_AUTO},
+                                                .progress = show,
+                                                .ctx = &progress};
     settings.session.run.stop = cs_interrupt_catch();
-    if (cs_args_whole(args, REPRODUCE_THREADS, 1, CS_POOL_MOST, &settings.session.threads,
-                      error) ||
-        cs_args_all(args, REPRODUCE_PLUGIN, &settings.session.plugins,
-                    &settings.session.n_plugins, error))
+    if (cs_args_integer(args, REPRODUCE_THREADS, 1, CS_POOL_THREADS_MAX,
+                        &settings.session.threads, error) ||
+        cs_args_get_all(args, REPRODUCE_PLUGIN, &settings.session.plugins,
+                        &settings.session.n_plugins, error))
         return error->status;
     cs_progress_begin(&progress, quiet);
-    make_again(&again, &settings, path, error);
+    reproduce_file(&again, &settings, path, error);
     cs_progress_end(&progress);
-    if (!error->status && (quiet || !print(&again, error)) && again.difference.length)
+    if (!error->status && (quiet || !print(&again, error)) && again.first_difference.length)
         cs_fail(error, CS_ERR_CHECK, "%s: %s", args->operands[0],
-                cs_text_get(&again.difference));
-    cs_again_finish(&again);
+                cs_text_get(&again.first_difference));
+    cs_reproduction_finish(&again);
     return error->status;
 }
 
@@ -129,7 +131,7 @@ const struct cs_command cs_command_reproduce = {
         "Example: clothsim reproduce out/frame_00060.png\n",
     .rows = rows,
     .n_rows = REPRODUCE_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = reproduce,
 };

@@ -1,13 +1,13 @@
 /* clothsim scene: checks a scene file and prints its plan, its values or the schema. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "io/scene_write.h"
 #include "model/plan.h"
-#include "scene/pairs.h"
-#include "study/coarse.h"
-#include "study/company.h"
+#include "scene/body_pairs.h"
+#include "scene/file/scene_write.h"
+#include "study/containment_warning.h"
+#include "study/overlap_warning.h"
+#include "study/sampling_warning.h"
 #include "study/session.h"
-#include "study/within.h"
 
 #include <string.h>
 
@@ -56,10 +56,10 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     add_count(out, ", ", scene->colliders.n, "collider");
     cs_text_add(out, ", %s\n", session->method.integrator->name);
     struct cs_text warning = {0};
-    if (!cs_company_print(scene, 1, &warning, error) && !warning.length)
-        cs_coarse_print(&session->system, &warning);
+    if (!cs_overlap_warning_print(scene, 1, &warning, error) && !warning.length)
+        cs_sampling_warning_print(&session->system, &warning);
     if (!error->status && !warning.length)
-        cs_within_print(&session->system, &warning);
+        cs_containment_warning_print(&session->system, &warning);
     if (!error->status && warning.length)
         cs_text_add(out, "warning: %s\n", cs_text_get(&warning));
     cs_text_finish(&warning);
@@ -102,14 +102,14 @@ static enum cs_status open_scene(struct cs_args *args, struct cs_error *error) {
         .threads = cs_args_get(args, SCENE_PLAN) ? CS_THREADS_AUTO : 0,
     };
     if (cs_args_overrides(args, SCENE_SET, &settings.overrides, &settings.n_overrides, error) ||
-        cs_args_all(args, SCENE_PLUGIN, &settings.plugins, &settings.n_plugins, error))
+        cs_args_get_all(args, SCENE_PLUGIN, &settings.plugins, &settings.n_plugins, error))
         return error->status;
     enum cs_status (*const open)(struct cs_session *, const struct cs_session_settings *,
                                  struct cs_error *) =
         cs_args_get(args, SCENE_PLAN) ? cs_session_open : cs_session_open_plan;
     /* what starts inside a collider, or through or inside a body, shows in a system alone */
     if (!open(&session, &settings, error) &&
-        ((session.scene.colliders.n == 0 && !cs_scene_any_meet(&session.scene)) ||
+        ((session.scene.colliders.n == 0 && !cs_scene_has_body_contact(&session.scene)) ||
          session.system.arena.used || !cs_session_build(&session, error)))
         print_scene(args, &session, error);
     cs_session_close(&session);
@@ -147,7 +147,7 @@ const struct cs_command cs_command_scene = {
         "Without an option: one line that says that the scene is fine and what is in it.\n",
     .rows = rows,
     .n_rows = SCENE_ROWS,
-    .least = 0,
-    .most = 1,
+    .operands_min = 0,
+    .operands_max = 1,
     .main = scene,
 };

@@ -73,14 +73,14 @@ static enum cs_status prepare(const struct cs_args *args, const struct cs_soft *
     snprintf(path, sizeof path, "%s/soft.csv", folder);
     if (!cs_args_get(args, SOFT_OVERWRITE) && cs_output_check_file(path, error))
         return error->status;
-    return cs_soft_check(soft, error) ? error->status : cs_folder_make(folder, error);
+    return cs_soft_check(soft, error) ? error->status : cs_folder_create(folder, error);
 }
 
 static enum cs_status measure(struct cs_args *args, struct cs_soft *soft,
                               struct cs_error *error) {
     struct cs_progress progress;
     cs_progress_begin(&progress, cs_args_get(args, SOFT_QUIET));
-    progress.what = "body";
+    progress.label = "body";
     soft->progress = show_progress;
     soft->ctx = &progress;
     cs_soft_run(soft, error);
@@ -97,7 +97,8 @@ static enum cs_status soft_bench(struct cs_args *args, struct cs_error *error) {
     if (cs_args_real(args, SOFT_TIME, &soft.seconds, error) ||
         cs_args_overrides(args, SOFT_SET, &soft.session.overrides, &soft.session.n_overrides,
                           error) ||
-        cs_args_all(args, SOFT_PLUGIN, &soft.session.plugins, &soft.session.n_plugins, error) ||
+        cs_args_get_all(args, SOFT_PLUGIN, &soft.session.plugins, &soft.session.n_plugins,
+                        error) ||
         prepare(args, &soft, folder, error))
         return error->status;
     measure(args, &soft, error);
@@ -120,7 +121,7 @@ const struct cs_command cs_command_soft_bench = {
              "Example: clothsim soft-bench scenes/bear_springs.json -o soft\n",
     .rows = rows,
     .n_rows = SOFT_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = soft_bench,
 };

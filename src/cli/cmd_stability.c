@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/stability_map.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 #include "study/stability/extreme.h"
 
 #include <stdio.h>
@@ -32,18 +32,20 @@ static void add_json(const struct cs_extreme_row *row, struct cs_text *out) {
     add_member(out, "expected", row->expected);
     add_member(out, "verdict", cs_stability_word(row->verdict));
     add_member(out, "message", row->message);
-    cs_text_add(out, "\"met\": %s, \"seconds\": %.3g}", row->met ? "true" : "false",
+    cs_text_add(out, "\"met\": %s, \"seconds\": %.3g}", row->as_expected ? "true" : "false",
                 row->seconds);
 }
 
 static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
     struct sink *sink = ctx;
     add_json(row, &sink->json);
-    if ((row->met && cs_args_get(sink->args, STABILITY_QUIET)) || takes_stdout(sink->args))
+    if ((row->as_expected && cs_args_get(sink->args, STABILITY_QUIET)) ||
+        takes_stdout(sink->args))
         return;
-    printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n", row->met ? "ok" : "MISSED",
-           row->scene, row->method, cs_stability_word(row->verdict), row->expected,
-           row->seconds, *row->message ? "  " : "", row->message);
+    printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n",
+           row->as_expected ? "ok" : "MISSED", row->scene, row->method,
+           cs_stability_word(row->verdict), row->expected, row->seconds,
+           *row->message ? "  " : "", row->message);
     fflush(stdout);
 }
 
@@ -55,7 +57,7 @@ static void write_json(const struct cs_extreme *extreme, struct sink *sink,
     struct cs_error failure = {0};
     if (path) {
         cs_text_add(&out, "{\n  \"met\": %u, \"missed\": %u,\n  \"rows\": [%s\n  ]\n}\n",
-                    extreme->met, extreme->missed, cs_text_get(&sink->json));
+                    extreme->n_met, extreme->n_missed, cs_text_get(&sink->json));
         out.failed |= sink->json.failed;
         if (cs_print_file(path, &out, &failure))
             *error = failure;
@@ -90,7 +92,7 @@ static enum cs_status run_extreme(struct cs_args *args,
         write_json(&extreme, &sink, error);
     cs_text_finish(&sink.json);
     if ((!error->status || error->status == CS_ERR_CHECK) && !takes_stdout(args))
-        printf("%u as expected, %u not\n", extreme.met, extreme.missed);
+        printf("%u as expected, %u not\n", extreme.n_met, extreme.n_missed);
     return error->status;
 }
 
@@ -101,8 +103,8 @@ static enum cs_status check_apart(const char *const *methods, uint32_t n,
         for (uint32_t i = 0; i < k; i++) {
             char names[2][CS_SERIES_BYTES];
             const char *of[] = {methods[i], methods[k]};
-            if (cs_series_take_name(of, names[0], error) ||
-                cs_series_take_name(of + 1, names[1], error))
+            if (cs_series_parse_name(of, names[0], error) ||
+                cs_series_parse_name(of + 1, names[1], error))
                 return error->status;
             if (*names[0] && !strcmp(names[0], names[1]) && strcmp(of[0], of[1]) != 0)
                 return cs_fail(error, CS_ERR_USAGE,
@@ -117,7 +119,7 @@ static enum cs_status check_apart(const char *const *methods, uint32_t n,
 static enum cs_status map(const struct cs_args *args, struct cs_stability_settings *settings,
                           const char *method, const char *folder, struct cs_error *error) {
     char series[CS_SERIES_BYTES];
-    if (cs_series_take_name(&method, series, error))
+    if (cs_series_parse_name(&method, series, error))
         return error->status;
     settings->session.integrator = method;
     settings->series = series;
@@ -157,7 +159,7 @@ const struct cs_command cs_command_stability = {
              "Example: clothsim stability scenes/hang.json -i symplectic-euler\n",
     .rows = cs_stability_rows,
     .n_rows = STABILITY_ROWS,
-    .least = 0,
-    .most = 1,
+    .operands_min = 0,
+    .operands_max = 1,
     .main = stability,
 };

@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/progress.h"
-#include "study/product.h"
+#include "study/parameter_sweep.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -55,7 +55,7 @@ static char *cut_value(char **rest) {
 }
 
 /* "PATH=VALUE,VALUE": the text is the arena's, and is cut. */
-static enum cs_status read_key(struct cs_args *args, char *text, struct cs_product_key *key,
+static enum cs_status read_key(struct cs_args *args, char *text, struct cs_parameter_axis *key,
                                struct cs_error *error) {
     char *equals = strchr(text, '=');
     if (!equals || equals == text || !equals[1])
@@ -65,24 +65,24 @@ static enum cs_status read_key(struct cs_args *args, char *text, struct cs_produ
     uint32_t commas = 1;
     for (const char *c = equals + 1; *c; c++)
         commas += *c == ',';
-    *key = (struct cs_product_key){.path = text};
-    key->values = cs_arena_take_n(&args->arena, commas, sizeof *key->values, error);
+    *key = (struct cs_parameter_axis){.path = text};
+    key->values = cs_arena_alloc_array(&args->arena, commas, sizeof *key->values, error);
     for (char *rest = equals + 1; key->values && rest;)
         key->values[key->n++] = cut_value(&rest);
     return error->status;
 }
 
-static enum cs_status read_keys(struct cs_args *args, struct cs_product *product,
+static enum cs_status read_keys(struct cs_args *args, struct cs_parameter_sweep *product,
                                 struct cs_error *error) {
     const char *const *texts;
-    if (cs_args_all(args, SWEEP_SET, &texts, &product->n_keys, error))
+    if (cs_args_get_all(args, SWEEP_SET, &texts, &product->n_keys, error))
         return error->status;
-    if (product->n_keys > CS_PRODUCT_KEYS)
+    if (product->n_keys > CS_PARAMETER_AXES_MAX)
         return cs_fail(error, CS_ERR_USAGE, "--set: found %u keys, expected at most %d",
-                       product->n_keys, CS_PRODUCT_KEYS);
+                       product->n_keys, CS_PARAMETER_AXES_MAX);
     for (uint32_t k = 0; k < product->n_keys && !error->status; k++) {
         const size_t bytes = strlen(texts[k]) + 1;
-        char *copy = cs_arena_take_n(&args->arena, bytes, 1, error);
+        char *copy = cs_arena_alloc_array(&args->arena, bytes, 1, error);
         if (copy)
             read_key(args, memcpy(copy, texts[k], bytes), product->keys + k, error);
         for (uint32_t other = 0; other < k && !error->status; other++)
@@ -96,30 +96,30 @@ static enum cs_status read_keys(struct cs_args *args, struct cs_product *product
 static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     struct cs_progress progress;
     const char *folder = cs_args_get(args, SWEEP_OUT);
-    struct cs_product product = {.session = {.scene = args->operands[0]},
-                                 .frames = 60,
-                                 .folder = folder ? folder : "sweep",
-                                 .progress = show_progress,
-                                 .ctx = &progress};
+    struct cs_parameter_sweep product = {.session = {.scene = args->operands[0]},
+                                         .frames = 60,
+                                         .folder = folder ? folder : "sweep",
+                                         .progress = show_progress,
+                                         .ctx = &progress};
     const bool quiet = cs_args_get(args, SWEEP_QUIET);
     product.session.run.stop = cs_interrupt_catch();
     if (read_keys(args, &product, error) ||
-        cs_args_whole(args, SWEEP_FRAMES, 1, 10000000, &product.frames, error) ||
+        cs_args_integer(args, SWEEP_FRAMES, 1, 10000000, &product.frames, error) ||
         cs_args_shard(args, SWEEP_SHARD, &product.shard, error) ||
         cs_args_methods(args, SWEEP_INTEGRATORS, &product.methods, &product.n_methods, error) ||
-        cs_args_all(args, SWEEP_PLUGIN, &product.session.plugins, &product.session.n_plugins,
-                    error))
+        cs_args_get_all(args, SWEEP_PLUGIN, &product.session.plugins,
+                        &product.session.n_plugins, error))
         return error->status;
     cs_progress_begin(&progress, quiet);
-    progress.what = "cell";
-    cs_product_run(&product, error);
+    progress.label = "cell";
+    cs_parameter_sweep_run(&product, error);
     cs_progress_end(&progress);
     if (!error->status && !quiet)
-        printf("%u of %u cells are in %s/sweep.csv, %u of them from before\n", product.done,
-               product.cells, product.folder, product.taken);
-    if (!error->status && !quiet && product.refused)
-        printf("warning: %u of them refused or failed, the first by: %s\n", product.refused,
-               product.why.message);
+        printf("%u of %u cells are in %s/sweep.csv, %u of them from before\n", product.n_done,
+               product.cells, product.folder, product.n_reused);
+    if (!error->status && !quiet && product.n_refused)
+        printf("warning: %u of them refused or failed, the first by: %s\n", product.n_refused,
+               product.first_refusal.message);
     return error->status;
 }
 
@@ -133,7 +133,7 @@ const struct cs_command cs_command_sweep = {
              "\\\n             -i rk4 -i newmark:dt=0.005 -n 30 -o sweep\n",
     .rows = rows,
     .n_rows = SWEEP_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = sweep,
 };

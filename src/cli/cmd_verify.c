@@ -42,7 +42,7 @@ const struct cs_command cs_command_verify = {
     .notes = "Example: clothsim verify out\n",
     .rows = rows,
     .n_rows = VERIFY_ROWS,
-    .least = 1,
-    .most = 10000,
+    .operands_min = 1,
+    .operands_max = 10000,
     .main = verify,
 };

@@ -38,8 +38,8 @@ static void add_names(const struct cs_command *command, bool all, enum source so
     for (const struct cs_arg *row = command->rows; row < command->rows + command->n_rows; row++)
         if (row->help && (all || (row->value && source_of(row->value) == source))) {
             cs_text_add(out, " --%s", row->name);
-            if (row->letter)
-                cs_text_add(out, " -%c", row->letter);
+            if (row->short_name)
+                cs_text_add(out, " -%c", row->short_name);
         }
 }
 
@@ -92,7 +92,7 @@ static const char *zsh_action(enum source source) {
 /* one argument of _arguments; attached is what lets the value follow without a blank */
 static void add_zsh_option(const struct cs_arg *row, const char *dashes, const char *name,
                            const char *attached, struct cs_text *out) {
-    cs_text_add(out, " \\\n            '%s%s%s%s[", row->many ? "*" : "", dashes, name,
+    cs_text_add(out, " \\\n            '%s%s%s%s[", row->repeatable ? "*" : "", dashes, name,
                 row->value ? attached : "");
     add_quoted(row->help, "'\\''", "[]:\\", out);
     cs_text_add(out, "]");
@@ -112,8 +112,8 @@ static void add_zsh_command(const struct cs_command *command, struct cs_text *ou
         if (!row->help)
             continue;
         add_zsh_option(row, "--", row->name, "=", out);
-        if (row->letter)
-            add_zsh_option(row, "-", (const char[]){row->letter, 0}, "+", out);
+        if (row->short_name)
+            add_zsh_option(row, "-", (const char[]){row->short_name, 0}, "+", out);
     }
     if (*command->operands) {
         cs_text_add(out, " \\\n            '*:");
@@ -170,8 +170,8 @@ static void add_fish_command(const struct cs_command *command, struct cs_text *o
         if (!row->help)
             continue;
         cs_text_add(out, "%s%s'", seen, command->name);
-        if (row->letter)
-            cs_text_add(out, " -s %c", row->letter);
+        if (row->short_name)
+            cs_text_add(out, " -s %c", row->short_name);
         cs_text_add(out, " -l %s%s -d '", row->name,
                     row->value ? fish_action(source_of(row->value)) : "");
         add_quoted(row->help, "\\'", "\\", out);

@@ -1,5 +1,5 @@
 /* Picks the command, prints its error and sets the exit code. */
-#include "base/arithmetic.h"
+#include "base/ieee_check.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/line/print.h"
@@ -32,7 +32,7 @@ static enum cs_status unknown_command(const char *word, struct cs_error *error) 
         return cs_fail(error, CS_ERR_USAGE,
                        "unknown option \"%.60s\"; a command comes first (see: clothsim help)",
                        word);
-    const char *nearest = cs_nearest(word, names);
+    const char *nearest = cs_nearest_word(word, names);
     if (nearest)
         return cs_fail(error, CS_ERR_USAGE,
                        "unknown command \"%.60s\"; did you mean \"%s\"? (see: clothsim help)",
@@ -118,7 +118,7 @@ static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
 
 int main(int argc, char **argv) {
     struct cs_error error = {0};
-    const char *fault = cs_arithmetic_fault();
+    const char *fault = cs_ieee_check();
     if (fault)
         cs_print_message(fault);
     /* a file that grew too long comes back from the write as an error, and is reported */

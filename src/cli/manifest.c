@@ -52,7 +52,8 @@ static int by_name(const void *a, const void *b) {
 }
 
 /* the names that are there */
-static enum cs_status look(const char *folder, struct list *list, struct cs_error *error) {
+static enum cs_status list_names(const char *folder, struct list *list,
+                                 struct cs_error *error) {
     DIR *entries = opendir(folder);
     if (!entries)
         return cs_fail(error, cs_file_status(errno), "cannot read the folder \"%s\": %s",
@@ -84,14 +85,14 @@ static enum cs_status write_text(const char *folder, struct cs_text *text,
     cs_hash_bytes(text->bytes, text->length, digits);
     cs_text_add(text, "%s%s\n", tail, digits);
     return text->failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory for a manifest")
-                        : cs_file_write_lasting(path, text->bytes, text->length, error);
+                        : cs_file_write_durable(path, text->bytes, text->length, error);
 }
 
 enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
     struct list list = {0};
     struct cs_text text = {0};
     cs_text_add(&text, "%s", head);
-    look(folder, &list, error);
+    list_names(folder, &list, error);
     for (size_t k = 0; k < list.n && !error->status; k++) {
         struct entry *entry = list.entries + k;
         if (!hash(folder, entry->name, entry, error))
@@ -148,7 +149,8 @@ static enum cs_status read_list(const char *folder, struct list *list, struct cs
                           "\"%s\": it is damaged, or no manifest of this form", path);
 }
 
-static void tell(struct cs_text *out, const char *name, const char *what, uint32_t *differing) {
+static void print_difference(struct cs_text *out, const char *name, const char *what,
+                             uint32_t *differing) {
     cs_text_add(out, "%s %s\n", name, what);
     ++*differing;
 }
@@ -158,9 +160,9 @@ static void check_file(const char *folder, const struct entry *entry, struct cs_
     struct entry now = {.size = 0};
     struct cs_error unread = {0};
     if (hash(folder, entry->name, &now, &unread))
-        tell(out, entry->name, "cannot be read", differing);
+        print_difference(out, entry->name, "cannot be read", differing);
     else if (now.size != entry->size || strcmp(now.hash, entry->hash) != 0)
-        tell(out, entry->name, "has changed", differing);
+        print_difference(out, entry->name, "has changed", differing);
 }
 
 /* both lists are by name */
@@ -174,8 +176,8 @@ static void check_lists(const char *folder, const struct list *written,
         if (order == 0)
             check_file(folder, written->entries + w, out, differing);
         else
-            tell(out, (order < 0 ? written->entries + w : there->entries + t)->name,
-                 order < 0 ? "is not there" : "is not in the manifest", differing);
+            print_difference(out, (order < 0 ? written->entries + w : there->entries + t)->name,
+                             order < 0 ? "is not there" : "is not in the manifest", differing);
         w += order <= 0;
         t += order >= 0;
     }
@@ -185,7 +187,7 @@ enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32
                                  uint32_t *differing, struct cs_error *error) {
     struct list written = {0}, there = {0};
     *n = *differing = 0;
-    if (!read_list(folder, &written, error) && !look(folder, &there, error)) {
+    if (!read_list(folder, &written, error) && !list_names(folder, &there, error)) {
         check_lists(folder, &written, &there, out, differing);
         *n = (uint32_t)written.n;
     }

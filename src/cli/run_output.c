@@ -115,8 +115,9 @@ static enum cs_status sweep(const char *folder, cs_output_kind *is_ours, bool wh
 
 static bool is_same_folder(int lock, const struct cs_output *other) {
     struct stat mine, theirs;
-    return other && other->lock && !fstat(lock, &mine) && !fstat(other->lock - 1, &theirs) &&
-           mine.st_dev == theirs.st_dev && mine.st_ino == theirs.st_ino;
+    return other && other->folder_lock && !fstat(lock, &mine) &&
+           !fstat(other->folder_lock - 1, &theirs) && mine.st_dev == theirs.st_dev &&
+           mine.st_ino == theirs.st_ino;
 }
 
 /* The lock is on the folder itself: it leaves no file behind, and ends with the process. */
@@ -135,15 +136,15 @@ static enum cs_status lock_folder(struct cs_output *output, const struct cs_outp
         close(lock);
         return cs_fail(error, CS_ERR_FILE, "another run is writing into \"%s\"", folder);
     }
-    output->lock = lock + 1;
+    output->folder_lock = lock + 1;
     return CS_OK;
 }
 
-enum cs_status cs_output_own(struct cs_output *output, const struct cs_output *other,
-                             const char *folder, cs_output_kind *is_ours,
-                             enum cs_output_earlier earlier, struct cs_error *error) {
+enum cs_status cs_output_lock_folders(struct cs_output *output, const struct cs_output *other,
+                                      const char *folder, cs_output_kind *is_ours,
+                                      enum cs_output_earlier earlier, struct cs_error *error) {
     *output = (struct cs_output){0};
-    if ((earlier != CS_OUTPUT_KEEP && cs_folder_make(folder, error)) ||
+    if ((earlier != CS_OUTPUT_KEEP && cs_folder_create(folder, error)) ||
         lock_folder(output, other, folder, error))
         return error->status;
     /* looked at again by the owner: a run may have ended here since */
@@ -152,9 +153,9 @@ enum cs_status cs_output_own(struct cs_output *output, const struct cs_output *o
     return sweep(folder, is_ours, earlier == CS_OUTPUT_REMOVE, error);
 }
 
-void cs_output_release(struct cs_output *output) {
-    if (output->lock)
-        close(output->lock - 1);
+void cs_output_unlock_folders(struct cs_output *output) {
+    if (output->folder_lock)
+        close(output->folder_lock - 1);
     *output = (struct cs_output){0};
 }
 

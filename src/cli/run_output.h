@@ -28,17 +28,17 @@ enum cs_output_earlier { CS_OUTPUT_REFUSE, CS_OUTPUT_REMOVE, CS_OUTPUT_KEEP };
 
 /* A folder that this process writes into, alone. */
 struct cs_output {
-    int lock; /* file descriptor + 1; 0: none, or the other output has it */
+    int folder_lock; /* file descriptor + 1; 0: none, or the other output has it */
 };
 
 /* Makes the folder (but where earlier files are kept), becomes its owner until release or the
  * end of the process, and does with earlier files as told; what killed runs left half written
  * is removed in any case. other: an output of this run that may be the same folder, or NULL.
  * CS_ERR_FILE where another run is at work there. */
-enum cs_status cs_output_own(struct cs_output *output, const struct cs_output *other,
-                             const char *folder, cs_output_kind *is_ours,
-                             enum cs_output_earlier earlier, struct cs_error *error);
-void cs_output_release(struct cs_output *output);
+enum cs_status cs_output_lock_folders(struct cs_output *output, const struct cs_output *other,
+                                      const char *folder, cs_output_kind *is_ours,
+                                      enum cs_output_earlier earlier, struct cs_error *error);
+void cs_output_unlock_folders(struct cs_output *output);
 
 /* Writes the rows of all frames, whole or failed run, and frees them: the first failure wins.
  * path NULL: none; "-": standard output. */

@@ -3,7 +3,7 @@
 
 #include "base/pool.h"
 #include "cli/line/interrupt.h"
-#include "study/workers.h"
+#include "study/process_pool.h"
 
 #include <string.h>
 
@@ -103,17 +103,20 @@ static enum cs_status read_axis(const struct cs_args *args,
 
 enum cs_status cs_stability_read(struct cs_args *args, struct cs_stability_settings *settings,
                                  struct cs_error *error) {
-    *settings = (struct cs_stability_settings){.columns = 9,
-                                               .rows = 15,
-                                               .seconds = 0.5,
-                                               .budget = 5,
-                                               .workers = cs_pool_processors(CS_WORKERS_MOST)};
+    *settings =
+        (struct cs_stability_settings){.columns = 9,
+                                       .rows = 15,
+                                       .seconds = 0.5,
+                                       .budget = 5,
+                                       .workers = cs_pool_processors(CS_PROCESS_POOL_MAX)};
     settings->session.run.stop = cs_interrupt_catch();
     /* no scene is no mistake here: --extreme needs none */
     settings->session.scene = args->n_operands ? args->operands[0] : NULL;
-    if (cs_args_whole(args, STABILITY_COLUMNS, 1, CS_MAP_MOST, &settings->columns, error) ||
-        cs_args_whole(args, STABILITY_STEPS, 1, CS_MAP_MOST, &settings->rows, error) ||
-        cs_args_whole(args, STABILITY_JOBS, 1, CS_WORKERS_MOST, &settings->workers, error) ||
+    if (cs_args_integer(args, STABILITY_COLUMNS, 1, CS_MAP_CELLS_MAX, &settings->columns,
+                        error) ||
+        cs_args_integer(args, STABILITY_STEPS, 1, CS_MAP_CELLS_MAX, &settings->rows, error) ||
+        cs_args_integer(args, STABILITY_JOBS, 1, CS_PROCESS_POOL_MAX, &settings->workers,
+                        error) ||
         cs_args_real(args, STABILITY_TIME, &settings->seconds, error) ||
         cs_args_real(args, STABILITY_BUDGET, &settings->budget, error) ||
         cs_args_shard(args, STABILITY_SHARD, &settings->shard, error) ||
@@ -122,6 +125,6 @@ enum cs_status cs_stability_read(struct cs_args *args, struct cs_stability_setti
         cs_args_overrides(args, STABILITY_SET, &settings->session.overrides,
                           &settings->session.n_overrides, error))
         return error->status;
-    return cs_args_all(args, STABILITY_PLUGIN, &settings->session.plugins,
-                       &settings->session.n_plugins, error);
+    return cs_args_get_all(args, STABILITY_PLUGIN, &settings->session.plugins,
+                           &settings->session.n_plugins, error);
 }

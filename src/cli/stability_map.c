@@ -2,10 +2,10 @@
 #include "cli/stability_map.h"
 
 #include "base/file.h"
-#include "cli/inputs.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
 #include "cli/run_output.h"
+#include "cli/study_file_conflicts.h"
 #include "io/gnuplot.h"
 #include "study/stability/stability_report.h"
 
@@ -45,8 +45,8 @@ static bool draw(const char *folder, const char *name) {
 }
 
 /* A scene that is called as a map is no place for one. */
-static enum cs_status keep_inputs(const struct cs_stability *map, const char *folder,
-                                  struct cs_error *error) {
+static enum cs_status store_inputs(const struct cs_stability *map, const char *folder,
+                                   struct cs_error *error) {
     static const char *const endings[] = {".csv", "_border.csv", ".json", ".gp"};
     enum { FILES = sizeof endings / sizeof *endings };
     char name[CS_SERIES_BYTES], files[FILES][CS_SERIES_BYTES + 16];
@@ -56,7 +56,7 @@ static enum cs_status keep_inputs(const struct cs_stability *map, const char *fo
         snprintf(files[k], sizeof files[k], "%s%s", name, endings[k]);
         list[k] = files[k];
     }
-    return cs_inputs_keep(&map->settings->session, folder, list, error);
+    return cs_study_files_check(&map->settings->session, folder, list, error);
 }
 
 static enum cs_status write_files(const struct cs_args *args, const struct cs_stability *map,
@@ -84,10 +84,10 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
 }
 
 /* A share of the columns is no map yet. */
-static void tell_shard(const struct cs_stability *map, bool quiet) {
+static void print_shard(const struct cs_stability *map, bool quiet) {
     if (!quiet)
         printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,
-               map->settings->shard.number, map->settings->shard.of, map->journal.path);
+               map->settings->shard.index, map->settings->shard.count, map->journal.path);
 }
 
 static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
@@ -111,7 +111,7 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
     asked.progress = show_progress;
     asked.ctx = &screen;
     cs_progress_begin(&screen.progress, quiet);
-    screen.progress.what = "cell";
+    screen.progress.label = "cell";
     asked.folder = folder;
     cs_stability_run(&map, &asked, error);
     cs_progress_end(&screen.progress);
@@ -121,10 +121,10 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
                 "interrupted; what was found is in %s, and the same command goes on from it",
                 map.journal.path);
     }
-    if (!error->status && !map.complete)
-        tell_shard(&map, quiet);
-    else if (!error->status && !cs_folder_make(folder, error) &&
-             !keep_inputs(&map, folder, error) &&
+    if (!error->status && !map.is_complete)
+        print_shard(&map, quiet);
+    else if (!error->status && !cs_folder_create(folder, error) &&
+             !store_inputs(&map, folder, error) &&
              !write_files(args, &map, folder, &drawn, error) && !quiet) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];

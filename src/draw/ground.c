@@ -2,7 +2,7 @@
 #include "draw/ground.h"
 
 #include "draw/colour.h"
-#include "draw/reach.h"
+#include "draw/lowest_point.h"
 
 #include <math.h>
 
@@ -17,43 +17,45 @@ static double power_of_ten(double length) {
 }
 
 /* the visible floor, or plane that serves as one; NULL: there is none */
-static const struct cs_obstacle *floor_of(const struct cs_scene *scene,
-                                          const struct cs_obstacle *obstacles) {
+static const struct cs_posed_collider *floor_of(const struct cs_scene *scene,
+                                                const struct cs_posed_collider *obstacles) {
     for (uint32_t i = 0; i < scene->colliders.n; i++)
-        if (obstacles[i].collider->visible && obstacles[i].kind == CS_OBSTACLE_PLANE &&
+        if (obstacles[i].collider->visible && obstacles[i].kind == CS_COLLIDER_PLANE &&
             obstacles[i].axes[1][1] > 0.5)
             return obstacles + i;
     return NULL;
 }
 
-static double height_of(const struct cs_system *system, const struct cs_obstacle *obstacles,
-                        const struct cs_ball *extent) {
-    const struct cs_obstacle *floor = floor_of(system->scene, obstacles);
+static double height_of(const struct cs_system *system,
+                        const struct cs_posed_collider *obstacles,
+                        const struct cs_bounding_sphere *extent) {
+    const struct cs_posed_collider *floor = floor_of(system->scene, obstacles);
     if (!isnan(system->scene->render.ground_height))
         return system->scene->render.ground_height;
     // a little below what hangs, so that it does not touch
     return floor ? floor->centre[1]
-                 : cs_reach_lowest(system, obstacles) - 0.05 * extent->radius;
+                 : cs_lowest_point(system, obstacles) - 0.05 * extent->radius;
 }
 
 void cs_ground_make(struct cs_ground *ground, const struct cs_system *system,
-                    const struct cs_obstacle *obstacles, const struct cs_ball *extent) {
+                    const struct cs_posed_collider *obstacles,
+                    const struct cs_bounding_sphere *extent) {
     const struct cs_render *render = &system->scene->render;
     const bool has_floor = floor_of(system->scene, obstacles);
     if (render->ground == CS_GROUND_NONE || (render->ground == CS_GROUND_AUTO && has_floor))
         return;
     ground->height = height_of(system, obstacles, extent);
-    ground->sinks = isnan(render->ground_height) && !has_floor;
+    ground->follows_lowest = isnan(render->ground_height) && !has_floor;
     ground->present = render->ground != CS_GROUND_AUTO || !isnan(ground->height);
     // what falls without end is followed by it
     if (isnan(ground->height))
         ground->height = extent->low[1];
-    ground->span[0] = (float)extent->centre[0];
-    ground->span[2] = (float)extent->centre[2];
-    ground->span[3] = (float)(6 * extent->radius);
+    ground->fade_disc[0] = (float)extent->centre[0];
+    ground->fade_disc[2] = (float)extent->centre[2];
+    ground->fade_disc[3] = (float)(6 * extent->radius);
     if (render->ground == CS_GROUND_GRID)
-        ground->pitch = (float)power_of_ten(0.3 * extent->radius);
-    cs_colour_ink(render->background.colour, ground->ink);
+        ground->line_spacing = (float)power_of_ten(0.3 * extent->radius);
+    cs_colour_ink(render->background.colour, ground->line_colour);
     // a floor shows the shadow itself
     ground->shadow = has_floor ? 0.0f : 0.4f;
 }
@@ -67,7 +69,7 @@ static void grow(float box[4], const double place[2]) {
 
 /* Where light carries the corners of a box around `solid`; false where one is above a lamp, so
  * that there is no end to its shadow. */
-static bool cast(const struct cs_ball *solid, const float light[4], double height,
+static bool cast(const struct cs_bounding_sphere *solid, const float light[4], double height,
                  float box[4]) {
     const bool is_lamp = light[3] > 0;
     for (int corner = 0; corner < 8; corner++) {
@@ -85,15 +87,15 @@ static bool cast(const struct cs_ball *solid, const float light[4], double heigh
 }
 
 void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
-                   const struct cs_ball *solid) {
-    const float *span = ground->span;
+                   const struct cs_bounding_sphere *solid) {
+    const float *span = ground->fade_disc;
     const double below = solid->low[1] - 0.02 * solid->radius;
-    const double height = ground->sinks ? fmin(ground->height, below) : ground->height;
+    const double height = ground->follows_lowest ? fmin(ground->height, below) : ground->height;
     const float whole[4] = {span[0] - span[3], span[2] - span[3], span[0] + span[3],
                             span[2] + span[3]};
     float box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    ground->span[1] = (float)height;
-    const bool bounded = ground->pitch <= 0 && cast(solid, block->light, height, box);
+    ground->fade_disc[1] = (float)height;
+    const bool bounded = ground->line_spacing <= 0 && cast(solid, block->light, height, box);
     // edges are blurred by some texels
     const float soft = (float)(0.08 * solid->radius);
     for (int c = 0; c < 4; c++) {
@@ -104,6 +106,6 @@ void cs_ground_aim(struct cs_ground *ground, const struct cs_view_block *block,
     // shadows are not seen from below, nor made by light from there
     const bool seen = (double)block->eye[1] > (block->eye[3] > 0 ? height : 0.0) &&
                       (double)block->light[1] > (block->light[3] > 0 ? height : 0.0);
-    if (ground->pitch <= 0 && !seen)
+    if (ground->line_spacing <= 0 && !seen)
         ground->box[2] = ground->box[0];
 }

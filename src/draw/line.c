@@ -4,7 +4,7 @@
 enum cs_status cs_lines_init(struct cs_lines *lines, uint32_t capacity, struct cs_arena *arena,
                              struct cs_error *error) {
     lines->capacity = capacity;
-    lines->ends = cs_arena_take_n(arena, capacity, sizeof *lines->ends, error);
+    lines->ends = cs_arena_alloc_array(arena, capacity, sizeof *lines->ends, error);
     return error->status;
 }
 

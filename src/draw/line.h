@@ -10,10 +10,10 @@
 struct cs_line_style {
     float colour[3]; /* linear RGB */
     double alpha;
-    double half_width; /* pixels */
-    double lift;       /* m by which the lines show through surfaces in front of them */
-    bool flat;         /* ends are pixels from the top left, not m */
-    bool over;         /* in front of everything, as flat ones are */
+    double half_width;   /* pixels */
+    double depth_offset; /* m by which the lines show through surfaces in front of them */
+    bool flat;           /* ends are pixels from the top left, not m */
+    bool on_top;         /* in front of everything, as flat ones are */
 };
 
 /* The first member of what a renderer keeps of its lines. */

@@ -32,7 +32,8 @@ static inline void cs_normalise(double a[3]) {
 
 /* A unit vector across `along`, and the third one that makes (across, third, along)
  * right-handed. */
-static inline void cs_frame_across(const double along[3], double across[3], double third[3]) {
+static inline void cs_frame_from_direction(const double along[3], double across[3],
+                                           double third[3]) {
     const double axis[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
     cs_cross(axis, along, across);
     cs_normalise(across);
@@ -59,7 +60,7 @@ static inline void cs_matrix_look(const double eye[3], const double target[3],
     cs_cross(up, axes[2], axes[0]);
     // looking straight along up: any turn will do
     if (cs_length(axes[0]) < 1e-9 * cs_length(up))
-        cs_frame_across(axes[2], axes[0], unused);
+        cs_frame_from_direction(axes[2], axes[0], unused);
     cs_normalise(axes[0]);
     cs_cross(axes[2], axes[0], axes[1]);
     memset(out, 0, 16 * sizeof *out);

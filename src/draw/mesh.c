@@ -9,7 +9,7 @@
 // drawing a particle farther away than this only upsets the rasteriser
 static const double bound = 1e5;
 
-void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]) {
+void cs_mesh_position(uint32_t n, const double *x, uint32_t i, double place[3]) {
     for (uint32_t axis = 0; axis < 3; axis++) {
         const double c = x[(size_t)axis * n + i];
         // a comparison with NAN is false, which leaves 0
@@ -40,7 +40,7 @@ static bool is_box(const struct cs_body *body) {
 static uint8_t side_of(const struct cs_trimesh *box, uint32_t triangle) {
     double normal[3];
     int axis = 0;
-    cs_trimesh_normal(box, triangle, box->places, box->n, 0, normal);
+    cs_trimesh_normal(box, triangle, box->positions, box->n, 0, normal);
     for (int i = 1; i < 3; i++)
         if (fabs(normal[i]) > fabs(normal[axis]))
             axis = i;
@@ -50,10 +50,10 @@ static uint8_t side_of(const struct cs_trimesh *box, uint32_t triangle) {
 static enum cs_status init_creases(struct cs_mesh *mesh, struct cs_arena *arena,
                                    struct cs_error *error) {
     const uint32_t n = mesh->n_indices / 3;
-    mesh->faces = cs_arena_take_n(arena, n, 3 * sizeof *mesh->faces, error);
-    mesh->sides = cs_arena_take_n(arena, n, sizeof *mesh->sides, error);
+    mesh->face_normals = cs_arena_alloc_array(arena, n, 3 * sizeof *mesh->face_normals, error);
+    mesh->box_faces = cs_arena_alloc_array(arena, n, sizeof *mesh->box_faces, error);
     for (uint32_t t = 0; error->status == CS_OK && t < n; t++)
-        mesh->sides[t] = side_of(mesh->range.mesh, t);
+        mesh->box_faces[t] = side_of(mesh->range.mesh, t);
     return error->status;
 }
 
@@ -62,31 +62,37 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
     const struct cs_body_range *range = system->bodies + body;
     const bool marked = system->scene->render.look == CS_LOOK_CROSSINGS;
     mesh->range = *range;
-    mesh->flat = cs_scene_bodies(system->scene)[body].material.shading == CS_SHADING_FLAT;
-    mesh->creased = !mesh->flat && is_box(cs_scene_bodies(system->scene) + body);
-    mesh->split =
-        mesh->flat || mesh->creased || marked || (textured && range->mesh && range->mesh->uv);
-    mesh->folds = system->scene->render.look == CS_LOOK_LIT && !mesh->flat && !mesh->creased;
-    mesh->reach = reach_of(system, range);
-    if (mesh->folds)
-        mesh->ways = cs_arena_take_n(arena, range->count, 4 * sizeof *mesh->ways, error);
+    mesh->flat_shading =
+        cs_scene_bodies(system->scene)[body].material.shading == CS_SHADING_FLAT;
+    mesh->has_creases = !mesh->flat_shading && is_box(cs_scene_bodies(system->scene) + body);
+    mesh->split_vertices = mesh->flat_shading || mesh->has_creases || marked ||
+                           (textured && range->mesh && range->mesh->uv);
+    mesh->has_curvature =
+        system->scene->render.look == CS_LOOK_LIT && !mesh->flat_shading && !mesh->has_creases;
+    mesh->curvature_radius = reach_of(system, range);
+    if (mesh->has_curvature)
+        mesh->neighbour_sums =
+            cs_arena_alloc_array(arena, range->count, 4 * sizeof *mesh->neighbour_sums, error);
     mesh->first_triangle = marked ? system->surfaces->first_triangle[body] : 0;
     mesh->n_indices = 3 * cs_faces_count(range);
-    mesh->n_vertices = mesh->split ? mesh->n_indices : range->count;
-    mesh->vertices = cs_arena_take_n(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
-    mesh->indices = cs_arena_take_n(arena, mesh->n_indices, sizeof *mesh->indices, error);
-    mesh->normals = cs_arena_take_n(arena, mesh->creased ? mesh->n_indices : range->count,
-                                    3 * sizeof *mesh->normals, error);
+    mesh->n_vertices = mesh->split_vertices ? mesh->n_indices : range->count;
+    mesh->vertices =
+        cs_arena_alloc_array(arena, mesh->n_vertices, sizeof *mesh->vertices, error);
+    mesh->indices = cs_arena_alloc_array(arena, mesh->n_indices, sizeof *mesh->indices, error);
+    mesh->normals =
+        cs_arena_alloc_array(arena, mesh->has_creases ? mesh->n_indices : range->count,
+                             3 * sizeof *mesh->normals, error);
     for (uint32_t t = 0; error->status == CS_OK && 3 * t < mesh->n_indices; t++)
         cs_face_corners(range, t, mesh->indices + 3 * (size_t)t);
-    return error->status || !mesh->creased ? error->status : init_creases(mesh, arena, error);
+    return error->status || !mesh->has_creases ? error->status
+                                               : init_creases(mesh, arena, error);
 }
 
 static void triangle_normal(const struct cs_mesh *mesh, uint32_t n, const double *x,
                             const uint32_t *corner, double normal[3]) {
     double p[3][3], along[3], across[3];
     for (int i = 0; i < 3; i++)
-        cs_mesh_place(n, x, mesh->range.first + corner[i], p[i]);
+        cs_mesh_position(n, x, mesh->range.first + corner[i], p[i]);
     cs_subtract(p[1], p[0], along);
     cs_subtract(p[2], p[0], across);
     cs_cross(along, across, normal);
@@ -100,23 +106,23 @@ static void set_vertex(struct cs_vertex *vertex, const double place[3], const do
     if (cs_dot(unit, unit) == 0)
         unit[2] = 1;
     for (int i = 0; i < 3; i++) {
-        vertex->place[i] = (float)place[i];
+        vertex->position[i] = (float)place[i];
         vertex->normal[i] = (float)unit[i];
     }
     vertex->value = (float)value;
 }
 
 /* The ways from each particle to its neighbours, and their squares, summed over triangles. */
-static void sum_ways(const struct cs_mesh *mesh, uint32_t n, const double *x) {
-    memset(mesh->ways, 0, 4 * sizeof *mesh->ways * mesh->range.count);
+static void sum_neighbour_offsets(const struct cs_mesh *mesh, uint32_t n, const double *x) {
+    memset(mesh->neighbour_sums, 0, 4 * sizeof *mesh->neighbour_sums * mesh->range.count);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3) {
         double p[3][3];
         for (uint32_t c = 0; c < 3; c++)
-            cs_mesh_place(n, x, mesh->range.first + mesh->indices[k + c], p[c]);
+            cs_mesh_position(n, x, mesh->range.first + mesh->indices[k + c], p[c]);
         // each side of the triangle is a way for both of its ends
         for (uint32_t c = 0; c < 3; c++) {
-            double *from = mesh->ways + 4 * (size_t)mesh->indices[k + c];
-            double *to = mesh->ways + 4 * (size_t)mesh->indices[k + (c + 1) % 3];
+            double *from = mesh->neighbour_sums + 4 * (size_t)mesh->indices[k + c];
+            double *to = mesh->neighbour_sums + 4 * (size_t)mesh->indices[k + (c + 1) % 3];
             for (int i = 0; i < 3; i++) {
                 const double way = p[(c + 1) % 3][i] - p[c][i];
                 from[i] += way;
@@ -130,10 +136,11 @@ static void sum_ways(const struct cs_mesh *mesh, uint32_t n, const double *x) {
 
 /* Of a groove z = k s^2 / 2 neighbours lie k L^2 / 4 above its bottom, in the mean over all
  * ways there; its slope at the reach is k reach / 2. */
-static double fold_of(const struct cs_mesh *mesh, uint32_t i) {
-    const double *normal = mesh->normals + 3 * (size_t)i, *ways = mesh->ways + 4 * (size_t)i;
+static double groove_slope(const struct cs_mesh *mesh, uint32_t i) {
+    const double *normal = mesh->normals + 3 * (size_t)i,
+                 *ways = mesh->neighbour_sums + 4 * (size_t)i;
     const double length = cs_length(normal) * ways[3];
-    return length > 0 ? 2 * mesh->reach * cs_dot(normal, ways) / length : 0;
+    return length > 0 ? 2 * mesh->curvature_radius * cs_dot(normal, ways) / length : 0;
 }
 
 static double scaled(const double *values, uint32_t i, const double range[2]) {
@@ -158,14 +165,14 @@ static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
     const struct cs_trimesh *box = mesh->range.mesh;
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->n_indices);
     for (uint32_t k = 0; k < mesh->n_indices; k += 3)
-        triangle_normal(mesh, n, x, mesh->indices + k, mesh->faces + k);
+        triangle_normal(mesh, n, x, mesh->indices + k, mesh->face_normals + k);
     for (uint32_t k = 0; k < mesh->n_indices; k++) {
         const uint32_t vertex = mesh->indices[k];
-        for (uint32_t a = vertex ? box->around_end[vertex - 1] : 0; a < box->around_end[vertex];
-             a++) {
-            const uint32_t t = box->around[a];
-            for (size_t i = 0; i < 3 && mesh->sides[t] == mesh->sides[k / 3]; i++)
-                mesh->normals[3 * (size_t)k + i] += mesh->faces[3 * (size_t)t + i];
+        for (uint32_t a = vertex ? box->vertex_triangles_end[vertex - 1] : 0;
+             a < box->vertex_triangles_end[vertex]; a++) {
+            const uint32_t t = box->vertex_triangles[a];
+            for (size_t i = 0; i < 3 && mesh->box_faces[t] == mesh->box_faces[k / 3]; i++)
+                mesh->normals[3 * (size_t)k + i] += mesh->face_normals[3 * (size_t)t + i];
         }
     }
 }
@@ -173,23 +180,25 @@ static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
 void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *frame) {
     const double *x = frame->x;
     double normal[3];
-    if (mesh->creased)
+    if (mesh->has_creases)
         sum_creased(mesh, n, x);
-    else if (!mesh->flat)
+    else if (!mesh->flat_shading)
         sum_normals(mesh, n, x);
-    if (mesh->folds)
-        sum_ways(mesh, n, x);
+    if (mesh->has_curvature)
+        sum_neighbour_offsets(mesh, n, x);
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
-        const uint32_t i = mesh->split ? mesh->indices[k] : k, particle = mesh->range.first + i;
+        const uint32_t i = mesh->split_vertices ? mesh->indices[k] : k,
+                       particle = mesh->range.first + i;
         double place[3];
-        cs_mesh_place(n, x, particle, place);
-        if (mesh->flat && k % 3 == 0)
+        cs_mesh_position(n, x, particle, place);
+        if (mesh->flat_shading && k % 3 == 0)
             triangle_normal(mesh, n, x, mesh->indices + k, normal);
         set_vertex(mesh->vertices + k, place,
-                   mesh->flat ? normal : mesh->normals + 3 * (size_t)(mesh->creased ? k : i),
-                   mesh->folds    ? fold_of(mesh, i)
-                   : frame->marks ? frame->marks[mesh->first_triangle + k / 3]
-                                  : scaled(frame->scalar, particle, frame->range));
+                   mesh->flat_shading ? normal
+                                      : mesh->normals + 3 * (size_t)(mesh->has_creases ? k : i),
+                   mesh->has_curvature     ? groove_slope(mesh, i)
+                   : frame->triangle_marks ? frame->triangle_marks[mesh->first_triangle + k / 3]
+                                           : scaled(frame->scalar, particle, frame->range));
     }
 }
 
@@ -203,7 +212,7 @@ static void grid_uv(const struct cs_mesh *mesh, uint32_t i, double uv[2]) {
 static void front_uv(const struct cs_trimesh *mesh, uint32_t i, const double low[2],
                      const double high[2], double uv[2]) {
     for (int c = 0; c < 2; c++) {
-        const double width = high[c] - low[c], at = mesh->places[(size_t)c * mesh->n + i];
+        const double width = high[c] - low[c], at = mesh->positions[(size_t)c * mesh->n + i];
         uv[c] = width > 0 ? (c ? high[c] - at : at - low[c]) / width : 0;
     }
 }
@@ -214,11 +223,11 @@ void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv) {
     /* the box that a mesh without coordinates of its own is projected onto */
     for (size_t c = 0; from && c < 2; c++)
         for (uint32_t i = 0; i < from->n; i++) {
-            low[c] = fmin(low[c], from->places[c * from->n + i]);
-            high[c] = fmax(high[c], from->places[c * from->n + i]);
+            low[c] = fmin(low[c], from->positions[c * from->n + i]);
+            high[c] = fmax(high[c], from->positions[c * from->n + i]);
         }
     for (uint32_t k = 0; k < mesh->n_vertices; k++) {
-        const uint32_t i = mesh->split ? mesh->indices[k] : k;
+        const uint32_t i = mesh->split_vertices ? mesh->indices[k] : k;
         double at[2];
         if (!from)
             grid_uv(mesh, i, at);

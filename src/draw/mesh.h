@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 struct cs_vertex {
-    float place[3], normal[3], value;
+    float position[3], normal[3], value;
 };
 
 /* A grid has two triangles a cell, counter-clockwise seen from +z for a hanging cloth; a mesh
@@ -17,17 +17,17 @@ struct cs_vertex {
  * (creased), texture coordinates of corners, or marks of triangles. */
 struct cs_mesh {
     struct cs_body_range range;
-    bool flat, creased, split;
+    bool flat_shading, has_creases, split_vertices;
     uint32_t first_triangle; /* of the body among the system's */
-    bool folds;              /* values of vertices tell how deep in a fold they lie */
-    double reach;            /* m: how far around a vertex folds take light away */
+    bool has_curvature;      /* values of vertices tell how deep in a fold they lie */
+    double curvature_radius; /* m: how far around a vertex folds take light away */
     uint32_t n_vertices, n_indices;
     struct cs_vertex *vertices; /* (n_vertices), owned by the arena like the others */
     uint32_t *indices;          /* (n_indices) particles of the body, three a triangle */
     double *normals;            /* (count, 3) work; creased: (n_indices, 3) */
-    double *ways;               /* (count, 4) work: ways to neighbours, and their squares */
-    double *faces;              /* (triangles, 3) normals, work; NULL unless creased */
-    uint8_t *sides;             /* (triangles) of the box; NULL likewise */
+    double *neighbour_sums;     /* (count, 4) work: ways to neighbours, and their squares */
+    double *face_normals;       /* (triangles, 3) normals, work; NULL unless creased */
+    uint8_t *box_faces;         /* (triangles) of the box; NULL likewise */
 };
 
 /* Of a body, as its material and the scene's look have it. textured: texture coordinates will
@@ -50,6 +50,6 @@ void cs_mesh_update(struct cs_mesh *mesh, uint32_t n, const struct cs_frame *fra
 void cs_mesh_uv(const struct cs_mesh *mesh, const double repeat[2], float *uv);
 
 /* Position i of x (3,n) as it is drawn. */
-void cs_mesh_place(uint32_t n, const double *x, uint32_t i, double place[3]);
+void cs_mesh_position(uint32_t n, const double *x, uint32_t i, double place[3]);
 
 #endif

@@ -1,8 +1,8 @@
 /* Draws everything of a picture that consists of lines. */
 #include "draw/overlay.h"
 
-#include "draw/extent.h"
-#include "draw/style.h"
+#include "draw/scene_extent.h"
+#include "draw/surface_style.h"
 #include "draw/viewpoint_forces.h"
 
 #include <math.h>
@@ -11,19 +11,21 @@ enum cs_status cs_overlay_init(struct cs_overlay *overlay, const struct cs_syste
                                double pixels_per_m, struct cs_lines *lines,
                                struct cs_arena *arena, struct cs_error *error) {
     const struct cs_render *render = &system->scene->render;
-    const double cell = cs_extent_cell(system);
-    const uint32_t most = cs_net_capacity(system);
+    const double cell = cs_scene_extent_cell(system);
+    const uint32_t most = cs_wireframe_capacity(system);
     overlay->lines = lines;
-    overlay->net = (struct cs_net){.system = system,
-                                   .unit = fmax((double)render->size[1] / 480, 0.5),
-                                   .lift = 0.12 * cell};
+    overlay->wireframe =
+        (struct cs_wireframe){.system = system,
+                              .line_unit = fmax((double)render->size[1] / 480, 0.5),
+                              .depth_offset = 0.12 * cell};
     cs_overlay_aim(overlay, pixels_per_m);
-    cs_bar_init(&overlay->bar, render);
-    return cs_lines_init(lines, most > CS_BAR_LINES ? most : CS_BAR_LINES, arena, error);
+    cs_colour_bar_init(&overlay->colour_bar, render);
+    return cs_lines_init(lines, most > CS_COLOUR_BAR_LINES ? most : CS_COLOUR_BAR_LINES, arena,
+                         error);
 }
 
 void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m) {
-    overlay->net.cell = cs_extent_cell(overlay->net.system) * pixels_per_m;
+    overlay->wireframe.cell = cs_scene_extent_cell(overlay->wireframe.system) * pixels_per_m;
 }
 
 bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
@@ -32,20 +34,20 @@ bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
 }
 
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
-    const struct cs_render *render = &overlay->net.system->scene->render;
-    const struct cs_net *net = &overlay->net;
+    const struct cs_render *render = &overlay->wireframe.system->scene->render;
+    const struct cs_wireframe *net = &overlay->wireframe;
     struct cs_lines *lines = overlay->lines;
-    cs_net_draw_threads(net, lines, frame->x);
+    cs_wireframe_draw_threads(net, lines, frame->x);
     if (render->look == CS_LOOK_WIREFRAME)
-        cs_net_draw_edges(net, lines, frame->x);
+        cs_wireframe_draw_edges(net, lines, frame->x);
     if (render->look == CS_LOOK_SPRINGS) {
-        cs_net_draw_springs(net, lines, frame->x);
-        cs_net_draw_pins(net, lines, frame->x, frame->inv_mass);
+        cs_wireframe_draw_springs(net, lines, frame->x);
+        cs_wireframe_draw_pins(net, lines, frame->x, frame->inv_mass);
     }
     if (render->look == CS_LOOK_GOALS && frame->goals)
-        cs_net_draw_goals(net, lines, frame->x, frame->goals);
+        cs_wireframe_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
         cs_viewpoint_forces_draw(net, lines, frame);
     if (frame->title)
-        cs_bar_draw(&overlay->bar, lines, frame);
+        cs_colour_bar_draw(&overlay->colour_bar, lines, frame);
 }

@@ -2,13 +2,13 @@
 #ifndef CS_DRAW_OVERLAY_H
 #define CS_DRAW_OVERLAY_H
 
-#include "draw/bar.h"
-#include "draw/net.h"
+#include "draw/colour_bar.h"
 #include "draw/render.h"
+#include "draw/wireframe.h"
 
 struct cs_overlay {
-    struct cs_net net;
-    struct cs_bar bar;
+    struct cs_wireframe wireframe;
+    struct cs_colour_bar colour_bar;
     struct cs_lines *lines; /* borrowed: a renderer's, with its calls set */
 };
 

@@ -12,7 +12,7 @@
 
 #include "base/image.h"
 #include "base/status.h"
-#include "model/contact/obstacle.h"
+#include "model/contact/posed_collider.h"
 #include "model/system/system.h"
 
 #include <stdbool.h>
@@ -24,13 +24,13 @@ struct cs_canvas_settings {
     const struct cs_system *system; /* borrowed while the canvas lives */
     const struct cs_image
         *textures; /* (scene->bodies.n), width 0: none; needed by create only */
-    const struct cs_obstacle
-        *obstacles; /* (scene->colliders.n), at the start; needed by create only */
-    bool fast; /* of OpenGL: do not pin the CPU capabilities: 1.4 times faster, pixels depend on
-                  the machine */
+    const struct cs_posed_collider
+        *colliders;   /* (scene->colliders.n), at the start; needed by create only */
+    bool fast_render; /* of OpenGL: do not pin the CPU capabilities: 1.4 times faster, pixels
+                  depend on the machine */
     uint32_t threads; /* that may draw at the same time; they do not change the picture */
     /* shares out the blocks of a loop among them, as cs_pool_run does; NULL: in order */
-    void (*share)(uint32_t blocks, void (*task)(void *arg, uint32_t block), void *arg);
+    void (*parallel_for)(uint32_t blocks, void (*task)(void *arg, uint32_t block), void *arg);
 };
 
 /* What one picture shows beside the scene itself. */
@@ -40,12 +40,13 @@ struct cs_frame {
     const double
         *scalar;     /* (n) force in N or strain, for the looks that colour by it; else NULL */
     double range[2]; /* values at the ends of the colours; lowest first */
-    const char *title;      /* of the bar of colours: quantity and unit; NULL: no bar */
-    double factor;          /* of its figures, such as 100 for % */
-    const double *goals;    /* (3,n) m, of look goals; else NULL */
-    const uint8_t *marks;   /* (n_triangles of the surfaces), of look crossings; else NULL */
+    const char *title;   /* of the bar of colours: quantity and unit; NULL: no bar */
+    double factor;       /* of its figures, such as 100 for % */
+    const double *goals; /* (3,n) m, of look goals; else NULL */
+    const uint8_t
+        *triangle_marks;    /* (n_triangles of the surfaces), of look crossings; else NULL */
     const double *inv_mass; /* (n) in 1/kg; 0: held, which some looks mark */
-    const struct cs_obstacle *obstacles; /* (scene->colliders.n) where they are at t */
+    const struct cs_posed_collider *colliders; /* (scene->colliders.n) where they are at t */
 };
 
 #define CS_RENDERER_ABI 7u

@@ -1,8 +1,8 @@
 /* Sets up the camera, light, background and colour map that all shaders share. */
 #include "draw/view.h"
 
+#include "draw/camera_fit.h"
 #include "draw/colour.h"
-#include "draw/fit.h"
 #include "draw/matrix.h"
 
 static void copy3(const double from[3], double last, float to[4]) {
@@ -35,7 +35,7 @@ static struct cs_camera camera_at(const struct cs_camera *camera, double t) {
 }
 
 /* bodies may fall or be blown away: four times as far as anything is now */
-static void set_depth(struct cs_view_state *view, const struct cs_ball *extent) {
+static void set_depth(struct cs_view_state *view, const struct cs_bounding_sphere *extent) {
     const struct cs_camera *camera = &view->camera;
     double to_target[3], to_centre[3];
     cs_subtract(camera->target, camera->eye, to_target);
@@ -48,7 +48,7 @@ static void set_depth(struct cs_view_state *view, const struct cs_ball *extent) 
 }
 
 static void set_camera(struct cs_view_state *view, const struct cs_render *render,
-                       const struct cs_ball *extent) {
+                       const struct cs_bounding_sphere *extent) {
     const struct cs_camera *camera = &view->camera;
     const double width = (double)render->size[0], height = (double)render->size[1];
     const double slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
@@ -74,12 +74,13 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
 }
 
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_ball *extent, double t, size_t n, const double *x) {
-    struct cs_fit fit = {.slope = 0};
+                  const struct cs_bounding_sphere *extent, double t, size_t n,
+                  const double *x) {
+    struct cs_camera_fit fit = {.slope = 0};
     view->camera = camera_at(&scene->camera, t);
     if (scene->camera.frame == CS_FRAME_AUTO) {
-        cs_fit_begin(&fit, &scene->camera, scene->render.size);
-        cs_fit_camera(&fit, n, x, 0.62, &view->camera);
+        cs_camera_fit_begin(&fit, &scene->camera, scene->render.size);
+        cs_camera_fit_solve(&fit, n, x, 0.62, &view->camera);
     }
     set_camera(view, &scene->render, extent);
 }
@@ -116,16 +117,16 @@ static void set_background(struct cs_view_block *block,
         }
     }
     copy3(background->colour, 1, block->sky);
-    copy3(above, background->kind != CS_BACKGROUND_NONE, block->above);
-    copy3(below, background->kind != CS_BACKGROUND_NONE, block->below);
+    copy3(above, background->kind != CS_BACKGROUND_NONE, block->top_colour);
+    copy3(below, background->kind != CS_BACKGROUND_NONE, block->bottom_colour);
 }
 
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_ball *extent) {
+                  const struct cs_bounding_sphere *extent) {
     memset(view, 0, sizeof *view);
     view->camera = camera_at(&scene->camera, 0);
     set_camera(view, &scene->render, extent);
     set_light(&view->block, &scene->light);
     set_background(&view->block, &scene->render.background);
-    cs_colour_stops(scene->render.look, view->block.stops);
+    cs_colour_stops(scene->render.look, view->block.colour_stops);
 }

@@ -15,11 +15,13 @@ struct cs_view_block {
     float eye[4];   /* w 1: where it stands; w 0: the direction to an orthographic one */
     float light[4]; /* w 1: position of a lamp; w 0: direction to the sun */
     float ambient[4], diffuse[4], specular[4];
-    float size[4];  /* width, height in pixels; near plane in m */
-    float shade[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a shadow */
-    float sky[4];   /* what surfaces of some looks are tinted by */
-    float above[4], below[4]; /* background at the upper and the lower edge; 1: it covers */
-    float stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
+    float size[4];          /* width, height in pixels; near plane in m */
+    float shadow_params[4]; /* size of a shadow texel in 0..1 and in m; 1 where there is a
+                               shadow */
+    float sky[4];           /* what surfaces of some looks are tinted by */
+    float top_colour[4],
+        bottom_colour[4]; /* background at the upper and the lower edge; 1: it covers */
+    float colour_stops[CS_VIEW_STOPS][4]; /* the colour map, linear RGB, lowest first */
 };
 
 struct cs_view_state {
@@ -31,14 +33,14 @@ struct cs_view_state {
 };
 
 /* A ball around what is drawn. */
-struct cs_ball {
+struct cs_bounding_sphere {
     double centre[3], radius;
     double low[3], high[3]; /* m: of the box that it was put around */
 };
 
 /* Fills the block from the scene; everything in `extent` lies between near and far plane. */
 void cs_view_init(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_ball *extent);
+                  const struct cs_bounding_sphere *extent);
 
 /* The camera moves, or frames what a picture shows: it may be another one in each frame. */
 static inline bool cs_view_varies(const struct cs_scene *scene) {
@@ -48,7 +50,7 @@ static inline bool cs_view_varies(const struct cs_scene *scene) {
 /* Moves a camera that varies to where it is at time t, or frames the places x (3,n) of the
  * bodies. */
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
-                  const struct cs_ball *extent, double t, size_t n, const double *x);
+                  const struct cs_bounding_sphere *extent, double t, size_t n, const double *x);
 
 /* Hands the block to the shaders. */
 void cs_view_upload(struct cs_view_state *view);

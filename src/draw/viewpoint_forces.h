@@ -4,13 +4,13 @@
 #ifndef CS_DRAW_VIEWPOINT_FORCES_H
 #define CS_DRAW_VIEWPOINT_FORCES_H
 
-#include "draw/net.h"
 #include "draw/render.h"
+#include "draw/wireframe.h"
 
 /* Of each viewpoint force that acted in the frame that ends now: dots on the particles that it
  * saw last, its rectangle at the distance of its target, in front of all, and the lines to its
  * corners from the eye. On a picture from the same viewpoint that is the rectangle alone. */
-void cs_viewpoint_forces_draw(const struct cs_net *net, struct cs_lines *lines,
+void cs_viewpoint_forces_draw(const struct cs_wireframe *net, struct cs_lines *lines,
                               const struct cs_frame *frame);
 
 #endif

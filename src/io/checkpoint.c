@@ -17,37 +17,37 @@
 #endif
 enum { LINE = 128, SHOWN = 60 };
 
-static void add_item(struct cs_record *file, const char *name, const void *bytes,
+static void add_item(struct cs_serialiser *file, const char *name, const void *bytes,
                      size_t length) {
     char line[LINE];
     const int size = snprintf(line, sizeof line, "%s %zu\n", name, length);
-    cs_record_bytes(file, line, (size_t)size);
+    cs_serialiser_bytes(file, line, (size_t)size);
     /* only written from, as the record is not loading */
-    cs_record_bytes(file, (void *)bytes, length);
-    cs_record_bytes(file, "\n", 1);
+    cs_serialiser_bytes(file, (void *)bytes, length);
+    cs_serialiser_bytes(file, "\n", 1);
 }
 
-enum cs_status cs_checkpoint_write(const char *path, const struct cs_fact *facts,
-                                   uint32_t n_facts, const struct cs_record *record,
+enum cs_status cs_checkpoint_write(const char *path, const struct cs_checkpoint_key *facts,
+                                   uint32_t n_facts, const struct cs_serialiser *record,
                                    struct cs_error *error) {
-    struct cs_record file = {0};
+    struct cs_serialiser file = {0};
     char digits[CS_HASH_DIGITS];
-    cs_record_bytes(&file, FIRST_LINE, sizeof FIRST_LINE - 1);
+    cs_serialiser_bytes(&file, FIRST_LINE, sizeof FIRST_LINE - 1);
     for (uint32_t k = 0; k < n_facts; k++)
         add_item(&file, facts[k].name, facts[k].value, strlen(facts[k].value));
     add_item(&file, "record", record->bytes, record->length);
     cs_hash_bytes(file.bytes, file.length, digits);
     digits[CS_HASH_DIGITS - 1] = '\n';
-    cs_record_bytes(&file, digits, sizeof digits);
+    cs_serialiser_bytes(&file, digits, sizeof digits);
     if (file.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
     else
-        cs_file_write_lasting(path, file.bytes, file.length, error);
-    cs_record_finish(&file);
+        cs_file_write_durable(path, file.bytes, file.length, error);
+    cs_serialiser_finish(&file);
     return error->status;
 }
 
-static enum cs_status check_whole(const char *path, const struct cs_record *file,
+static enum cs_status check_whole(const char *path, const struct cs_serialiser *file,
                                   struct cs_error *error) {
     char digits[CS_HASH_DIGITS];
     if (file->length < sizeof FIRST_LINE - 1 + CS_HASH_DIGITS ||
@@ -63,9 +63,9 @@ static enum cs_status check_whole(const char *path, const struct cs_record *file
 }
 
 /* The next item, which must have this name: its bytes, or NULL. */
-static const char *take_item(struct cs_record *file, const char *name, size_t *length) {
-    const char *line = file->bytes + file->at;
-    const size_t left = file->length - CS_HASH_DIGITS - file->at;
+static const char *take_item(struct cs_serialiser *file, const char *name, size_t *length) {
+    const char *line = file->bytes + file->position;
+    const size_t left = file->length - CS_HASH_DIGITS - file->position;
     const char *end = memchr(line, '\n', left < LINE ? left : LINE);
     const size_t size = strlen(name);
     if (!end || (size_t)(end - line) <= size || strncmp(line, name, size) != 0 ||
@@ -76,7 +76,7 @@ static const char *take_item(struct cs_record *file, const char *name, size_t *l
     if (found >= left - begin)
         return NULL;
     *length = (size_t)found;
-    file->at += begin + *length + 1;
+    file->position += begin + *length + 1;
     return line + begin;
 }
 
@@ -98,8 +98,8 @@ static const char *next_line(const char *line, const char *end) {
 }
 
 /* names the first line that differs */
-static enum cs_status refuse(const char *path, const struct cs_fact *fact, const char *there,
-                             size_t length, struct cs_error *error) {
+static enum cs_status refuse(const char *path, const struct cs_checkpoint_key *fact,
+                             const char *there, size_t length, struct cs_error *error) {
     const char *here = fact->value, *end = here + strlen(here), *stop = there + length;
     while (there < stop && here < end) {
         const char *after = next_line(there, stop), *next = next_line(here, end);
@@ -113,8 +113,8 @@ static enum cs_status refuse(const char *path, const struct cs_fact *fact, const
                    path, fact->name, shown_there, there, shown_here, here);
 }
 
-static enum cs_status check_facts(const char *path, const struct cs_fact *facts,
-                                  uint32_t n_facts, struct cs_record *file,
+static enum cs_status check_facts(const char *path, const struct cs_checkpoint_key *facts,
+                                  uint32_t n_facts, struct cs_serialiser *file,
                                   struct cs_error *error) {
     for (uint32_t k = 0; k < n_facts; k++) {
         size_t length;
@@ -128,23 +128,23 @@ static enum cs_status check_facts(const char *path, const struct cs_fact *facts,
     return CS_OK;
 }
 
-enum cs_status cs_checkpoint_read(const char *path, const struct cs_fact *facts,
-                                  uint32_t n_facts, struct cs_record *record,
+enum cs_status cs_checkpoint_read(const char *path, const struct cs_checkpoint_key *facts,
+                                  uint32_t n_facts, struct cs_serialiser *record,
                                   struct cs_error *error) {
     size_t length;
-    *record = (struct cs_record){0};
+    *record = (struct cs_serialiser){0};
     if (cs_file_read(path, BYTES_MAX, &record->bytes, &record->length, error))
         return error->status;
-    record->loading = true;
+    record->is_reading = true;
     if (check_whole(path, record, error))
         return error->status;
-    record->at = sizeof FIRST_LINE - 1;
+    record->position = sizeof FIRST_LINE - 1;
     if (check_facts(path, facts, n_facts, record, error))
         return error->status;
     const char *bytes = take_item(record, "record", &length);
     if (!bytes)
         return cs_fail(error, CS_ERR_FILE, "\"%s\": it holds no record", path);
-    record->at = (size_t)(bytes - record->bytes);
-    record->length = record->at + length;
+    record->position = (size_t)(bytes - record->bytes);
+    record->length = record->position + length;
     return CS_OK;
 }

@@ -2,7 +2,7 @@
 #include "io/npy.h"
 
 #include "base/file.h"
-#include "base/little.h"
+#include "base/little_endian.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -44,7 +44,7 @@ enum cs_status cs_npy_write(const char *path, const double *a, uint32_t n,
         uint32_t count = 0;
         for (; count < BLOCK && i < n; count++, i++)
             for (size_t c = 0; c < 3; c++)
-                rows[count][c] = cs_little_double(a[c * n + i]);
+                rows[count][c] = cs_double_to_le64(a[c * n + i]);
         fwrite(rows, sizeof *rows, count, out.file);
     }
     return cs_file_finish(&out, error);

@@ -15,7 +15,7 @@ struct cs_png_text {
 
 /* Memory that pictures of a run use one after another: new memory for each would cost as much
  * as a third of the packing. */
-struct cs_png_work {
+struct cs_png_encoder {
     int level;     /* 0..9 (1: fast, 6: archive); the rest zeroed before the first picture */
     size_t length; /* of rows */
     uint8_t *rows, *packed; /* owned */
@@ -23,11 +23,11 @@ struct cs_png_work {
 };
 
 /* As cs_png_write, at the level of the work. */
-enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
+enum cs_status cs_png_write_next(struct cs_png_encoder *work, const char *path,
                                  const struct cs_image *image, const struct cs_png_text *texts,
                                  uint32_t n_texts, struct cs_error *error);
 
-void cs_png_work_finish(struct cs_png_work *work);
+void cs_png_encoder_finish(struct cs_png_encoder *work);
 
 /* Bytes of a pixel in the file: 3, or 4 with alpha. */
 static inline size_t cs_png_channels(const struct cs_image *image) {
@@ -48,9 +48,9 @@ static inline void cs_png_join(const struct cs_image *image, size_t y, uint8_t *
 static inline enum cs_status cs_png_write(const char *path, const struct cs_image *image,
                                           int level, const struct cs_png_text *texts,
                                           uint32_t n_texts, struct cs_error *error) {
-    struct cs_png_work work = {.level = level};
+    struct cs_png_encoder work = {.level = level};
     const enum cs_status status = cs_png_write_next(&work, path, image, texts, n_texts, error);
-    cs_png_work_finish(&work);
+    cs_png_encoder_finish(&work);
     return status;
 }
 

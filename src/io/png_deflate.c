@@ -63,7 +63,7 @@ static void filter(const struct cs_image *image, uint8_t *out) {
 }
 
 /* Memory for so many bytes of rows. */
-static enum cs_status take(struct cs_png_work *work, size_t length, const char *path,
+static enum cs_status take(struct cs_png_encoder *work, size_t length, const char *path,
                            struct cs_error *error) {
     if (!work->packer)
         work->packer = libdeflate_alloc_compressor(work->level);
@@ -76,15 +76,15 @@ static enum cs_status take(struct cs_png_work *work, size_t length, const char *
     }
     if (work->packer && work->rows && work->packed)
         return CS_OK;
-    cs_png_work_finish(work);
+    cs_png_encoder_finish(work);
     return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", path);
 }
 
-void cs_png_work_finish(struct cs_png_work *work) {
+void cs_png_encoder_finish(struct cs_png_encoder *work) {
     free(work->rows);
     free(work->packed);
     libdeflate_free_compressor(work->packer);
-    *work = (struct cs_png_work){.level = work->level};
+    *work = (struct cs_png_encoder){.level = work->level};
 }
 
 static void add_all(FILE *file, const struct cs_image *image, const struct cs_png_text *texts,
@@ -102,7 +102,7 @@ static void add_all(FILE *file, const struct cs_image *image, const struct cs_pn
     add_chunk(file, "IEND", "", 0, "", 0);
 }
 
-enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
+enum cs_status cs_png_write_next(struct cs_png_encoder *work, const char *path,
                                  const struct cs_image *image, const struct cs_png_text *texts,
                                  uint32_t n_texts, struct cs_error *error) {
     CS_ASSERT(image->width && image->height && image->rgb);

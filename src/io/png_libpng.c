@@ -72,11 +72,11 @@ static bool encode(struct writer *writer, const struct cs_image *image, int leve
     return true;
 }
 
-void cs_png_work_finish(struct cs_png_work *work) {
-    *work = (struct cs_png_work){0}; // libpng has its own memory
+void cs_png_encoder_finish(struct cs_png_encoder *work) {
+    *work = (struct cs_png_encoder){0}; // libpng has its own memory
 }
 
-enum cs_status cs_png_write_next(struct cs_png_work *work, const char *path,
+enum cs_status cs_png_write_next(struct cs_png_encoder *work, const char *path,
                                  const struct cs_image *image, const struct cs_png_text *texts,
                                  uint32_t n_texts, struct cs_error *error) {
     CS_ASSERT(image->width && image->height && image->rgb);

@@ -10,10 +10,11 @@
 enum cs_status cs_trimesh_init(struct cs_trimesh *mesh, uint32_t n, uint32_t n_triangles,
                                bool uv, struct cs_arena *arena, struct cs_error *error) {
     *mesh = (struct cs_trimesh){.n = n, .n_triangles = n_triangles};
-    mesh->places = cs_arena_take_n(arena, 3 * (size_t)n, sizeof(double), error);
-    mesh->triangles = cs_arena_take_n(arena, 3 * (size_t)n_triangles, sizeof(uint32_t), error);
+    mesh->positions = cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof(double), error);
+    mesh->triangles =
+        cs_arena_alloc_array(arena, 3 * (size_t)n_triangles, sizeof(uint32_t), error);
     if (uv)
-        mesh->uv = cs_arena_take_n(arena, 6 * (size_t)n_triangles, sizeof(float), error);
+        mesh->uv = cs_arena_alloc_array(arena, 6 * (size_t)n_triangles, sizeof(float), error);
     return error->status;
 }
 
@@ -37,7 +38,7 @@ struct work {
 
 /* where triangle t stands: "x.obj:12" or "x.obj: triangle 3" */
 #define PLACE_MAX 320
-static void place_of(const struct work *work, uint32_t t, char place[PLACE_MAX]) {
+static void position_of(const struct work *work, uint32_t t, char place[PLACE_MAX]) {
     if (work->lines)
         snprintf(place, PLACE_MAX, "%.256s:%u", work->name, work->lines[t]);
     else
@@ -49,7 +50,7 @@ static enum cs_status check_triangle(const struct work *work, uint32_t t) {
     const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
     char place[PLACE_MAX];
     double longest = 0, normal[3];
-    place_of(work, t, place);
+    position_of(work, t, place);
     for (int k = 0; k < 3; k++)
         if (corner[k] >= mesh->n)
             return cs_fail(work->error, CS_ERR_FILE, "%s: vertex %u does not exist (1..%u)",
@@ -57,13 +58,13 @@ static enum cs_status check_triangle(const struct work *work, uint32_t t) {
     for (int k = 0; k < 3; k++) {
         double squared = 0;
         for (size_t c = 0; c < 3; c++) {
-            const double d = mesh->places[c * mesh->n + corner[(k + 1) % 3]] -
-                             mesh->places[c * mesh->n + corner[k]];
+            const double d = mesh->positions[c * mesh->n + corner[(k + 1) % 3]] -
+                             mesh->positions[c * mesh->n + corner[k]];
             squared += d * d;
         }
         longest = fmax(longest, squared);
     }
-    cs_trimesh_normal(mesh, t, mesh->places, mesh->n, 0, normal);
+    cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, normal);
     const double doubled =
         sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     /* relative to the longest side: the unit of the mesh does not matter; NaN fails too */
@@ -101,7 +102,7 @@ static void fill_sides(struct work *work) {
 static enum cs_status check_edge(const struct work *work, const struct side *side,
                                  uint32_t count) {
     char place[PLACE_MAX];
-    place_of(work, side[count - 1].triangle, place);
+    position_of(work, side[count - 1].triangle, place);
     if (count > 2)
         return cs_fail(work->error, CS_ERR_FILE,
                        "%s: the edge of vertices %u and %u has %u triangles, expected 1 or 2",
@@ -150,11 +151,11 @@ static int by_pair(const void *left, const void *right) {
 }
 
 /* each pair once, and none that an edge joins already: a tetrahedron has none at all */
-static enum cs_status keep_hinges(struct work *work) {
+static enum cs_status store_hinges(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
     const size_t pair = 2 * sizeof *work->hinges;
     qsort(work->hinges, work->n_hinges, pair, by_pair);
-    mesh->hinges = cs_arena_take_n(work->arena, work->n_hinges, pair, work->error);
+    mesh->hinges = cs_arena_alloc_array(work->arena, work->n_hinges, pair, work->error);
     for (uint32_t h = 0; mesh->hinges && h < work->n_hinges; h++) {
         const uint32_t *hinge = work->hinges + 2 * (size_t)h;
         if ((h && !by_pair(hinge - 2, hinge)) || hinge[0] == hinge[1] ||
@@ -168,7 +169,7 @@ static enum cs_status keep_hinges(struct work *work) {
 /* triangles at vertices, areas; a vertex without triangles would float alone */
 static enum cs_status fill_vertices(struct work *work) {
     struct cs_trimesh *mesh = work->mesh;
-    uint32_t *end = mesh->around_end;
+    uint32_t *end = mesh->vertex_triangles_end;
     for (size_t k = 0; k < 3 * (size_t)mesh->n_triangles; k++)
         end[mesh->triangles[k]]++;
     for (uint32_t i = 0, before = 0; i < mesh->n; i++) {
@@ -182,12 +183,12 @@ static enum cs_status fill_vertices(struct work *work) {
     }
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
         double normal[3];
-        cs_trimesh_normal(mesh, t, mesh->places, mesh->n, 0, normal);
+        cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, normal);
         const double area =
             0.5 * sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
         for (int k = 0; k < 3; k++) {
             const uint32_t i = mesh->triangles[3 * (size_t)t + k];
-            mesh->around[end[i]++] = t;
+            mesh->vertex_triangles[end[i]++] = t;
             mesh->area[i] += area / 3;
         }
     }
@@ -198,8 +199,8 @@ static void measure_edges(struct cs_trimesh *mesh) {
     for (uint32_t e = 0; e < mesh->n_edges; e++) {
         double squared = 0;
         for (size_t c = 0; c < 3; c++) {
-            const double d = mesh->places[c * mesh->n + mesh->edges[2 * (size_t)e + 1]] -
-                             mesh->places[c * mesh->n + mesh->edges[2 * (size_t)e]];
+            const double d = mesh->positions[c * mesh->n + mesh->edges[2 * (size_t)e + 1]] -
+                             mesh->positions[c * mesh->n + mesh->edges[2 * (size_t)e]];
             squared += d * d;
         }
         mesh->edge += sqrt(squared) / mesh->n_edges;
@@ -214,10 +215,11 @@ static enum cs_status take(struct work *work) {
     if (!work->sides)
         return cs_fail(work->error, CS_ERR_MEMORY, "out of memory for a mesh of %u triangles",
                        mesh->n_triangles);
-    mesh->around = cs_arena_take_n(work->arena, corners, sizeof *mesh->around, work->error);
-    mesh->around_end =
-        cs_arena_take_n(work->arena, mesh->n, sizeof *mesh->around_end, work->error);
-    mesh->area = cs_arena_take_n(work->arena, mesh->n, sizeof *mesh->area, work->error);
+    mesh->vertex_triangles =
+        cs_arena_alloc_array(work->arena, corners, sizeof *mesh->vertex_triangles, work->error);
+    mesh->vertex_triangles_end = cs_arena_alloc_array(
+        work->arena, mesh->n, sizeof *mesh->vertex_triangles_end, work->error);
+    mesh->area = cs_arena_alloc_array(work->arena, mesh->n, sizeof *mesh->area, work->error);
     return work->error->status;
 }
 
@@ -235,11 +237,11 @@ static enum cs_status build(struct work *work) {
         return work->error->status;
     /* the first walk has counted edges and hinges, the second writes them */
     mesh->edges =
-        cs_arena_take_n(work->arena, mesh->n_edges, 2 * sizeof *mesh->edges, work->error);
+        cs_arena_alloc_array(work->arena, mesh->n_edges, 2 * sizeof *mesh->edges, work->error);
     work->hinges = calloc((size_t)work->n_hinges + 1, 2 * sizeof *work->hinges);
     if (!work->hinges)
         cs_fail(work->error, CS_ERR_MEMORY, "out of memory for %u edges", mesh->n_edges);
-    if (work->error->status || walk_edges(work) || keep_hinges(work))
+    if (work->error->status || walk_edges(work) || store_hinges(work))
         return work->error->status;
     measure_edges(mesh);
     return CS_OK;

@@ -19,21 +19,21 @@ enum cs_mesh_shape {
 enum { CS_MESH_DETAIL_MAX = 256 };
 
 struct cs_trimesh {
-    uint32_t n, n_triangles, n_edges, n_hinges, n_inner;
-    double *places;      /* (3,n) m, positions before the placement */
+    uint32_t n, n_triangles, n_edges, n_hinges, n_network_springs;
+    double *positions;   /* (3,n) m, positions before the placement */
     uint32_t *triangles; /* (n_triangles, 3), counter-clockwise from outside */
     float *uv;           /* (n_triangles, 3, 2) texture coordinates of corners; NULL: none */
 
     /* made by cs_trimesh_finish */
     uint32_t *edges;  /* (n_edges, 2), first < second, ascending */
     uint32_t *hinges; /* (n_hinges, 2) vertices across an edge, not joined by one */
-    uint32_t *around,
-        *around_end; /* triangles at vertex i: around[around_end[i - 1]..end[i]) */
-    double *area;    /* (n) m2, a third of every triangle at the vertex */
-    double edge;     /* m, mean length of an edge */
-    uint32_t n_open; /* edges of one triangle only; 0: the mesh is closed */
+    uint32_t *vertex_triangles,
+        *vertex_triangles_end; /* triangles at vertex i: around[around_end[i - 1]..end[i]) */
+    double *area;              /* (n) m2, a third of every triangle at the vertex */
+    double edge;               /* m, mean length of an edge */
+    uint32_t n_open;           /* edges of one triangle only; 0: the mesh is closed */
 
-    uint32_t *inner;                /* (n_inner, 2) springs of a network (network.h) */
+    uint32_t *network_springs;      /* (n_inner, 2) springs of a network (spring_network.h) */
     char file_hash[CS_HASH_DIGITS]; /* of the bytes of its file; empty: a shape */
     size_t bytes; /* of this struct and its arrays, set by the reader of the scene */
 };
@@ -55,8 +55,8 @@ enum cs_status cs_trimesh_finish(struct cs_trimesh *mesh, const char *name,
 enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape,
                                uint32_t detail, struct cs_arena *arena, struct cs_error *error);
 /* One of them: the limbed body, as the surface of a field of blobs. */
-enum cs_status cs_trimesh_make_limbs(struct cs_trimesh *mesh, uint32_t detail,
-                                     struct cs_arena *arena, struct cs_error *error);
+enum cs_status cs_trimesh_make_metaballs(struct cs_trimesh *mesh, uint32_t detail,
+                                         struct cs_arena *arena, struct cs_error *error);
 
 /* Normal of triangle t of a mesh at positions x (of n particles, the mesh's from `first` on),
  * as long as twice the triangle's area. One number after the other: loops over the axes become
@@ -75,7 +75,7 @@ static inline void cs_trimesh_normal(const struct cs_trimesh *mesh, uint32_t t, 
 
 /* The first triangle of vertex i in around. */
 static inline uint32_t cs_trimesh_around_begin(const struct cs_trimesh *mesh, uint32_t i) {
-    return i ? mesh->around_end[i - 1] : 0;
+    return i ? mesh->vertex_triangles_end[i - 1] : 0;
 }
 
 #endif

@@ -1,16 +1,16 @@
 /* Generated meshes: box, sphere and torus. Only + - * / and sqrt, so that the vertices have the
  * same bits on every machine. */
-#include "base/sine.h"
+#include "base/portable_sine.h"
 #include "mesh/trimesh.h"
 
 #include <math.h>
 #include <string.h>
 
-static void set_place(struct cs_trimesh *mesh, uint32_t i, double x, double y, double z) {
+static void set_position(struct cs_trimesh *mesh, uint32_t i, double x, double y, double z) {
     const size_t n = mesh->n;
-    mesh->places[i] = x;
-    mesh->places[n + i] = y;
-    mesh->places[2 * n + i] = z;
+    mesh->positions[i] = x;
+    mesh->positions[n + i] = y;
+    mesh->positions[2 * n + i] = z;
 }
 
 static uint32_t *add_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c) {
@@ -57,8 +57,8 @@ static enum cs_status make_box(struct cs_trimesh *mesh, uint32_t d, struct cs_ar
                     p[(axis + 1) % 3] = i + step[0];
                     p[(axis + 2) % 3] = j + step[1];
                     quad[c] = box_index(p, d);
-                    set_place(mesh, quad[c], (double)p[0] / d - 0.5, (double)p[1] / d - 0.5,
-                              (double)p[2] / d - 0.5);
+                    set_position(mesh, quad[c], (double)p[0] / d - 0.5, (double)p[1] / d - 0.5,
+                                 (double)p[2] / d - 0.5);
                 }
                 out = add_quad(out, quad, (i + j) % 2);
             }
@@ -132,7 +132,7 @@ static enum cs_status make_sphere(struct cs_trimesh *mesh, uint32_t d, struct cs
                     squared += p[c] * p[c];
                 }
                 const double to_radius = 0.5 / sqrt(squared);
-                set_place(mesh, at, p[0] * to_radius, p[1] * to_radius, p[2] * to_radius);
+                set_position(mesh, at, p[0] * to_radius, p[1] * to_radius, p[2] * to_radius);
                 if (w[0] == 0)
                     continue;
                 const uint32_t right[3] = {w[0] - 1, i + 1, j}, up[3] = {w[0] - 1, i, j + 1};
@@ -148,7 +148,7 @@ static enum cs_status make_sphere(struct cs_trimesh *mesh, uint32_t d, struct cs
 }
 
 /* cosine and sine of k m-ths of a turn */
-static void turn(uint32_t k, uint32_t m, double out[2]) {
+static void cos_sin_turn(uint32_t k, uint32_t m, double out[2]) {
     const uint32_t quarter = 4 * k / m;
     const double r = (double)(4 * k % m) / m;
     const double c = cs_quarter_sine(1 - r), s = cs_quarter_sine(r);
@@ -166,10 +166,11 @@ static enum cs_status make_torus(struct cs_trimesh *mesh, uint32_t d, struct cs_
     for (uint32_t i = 0; i < m; i++)
         for (uint32_t j = 0; j < d; j++) {
             double along[2], around[2];
-            turn(i, m, along);
-            turn(j, d, around);
+            cos_sin_turn(i, m, along);
+            cos_sin_turn(j, d, around);
             const double radius = 0.35 + 0.15 * around[0];
-            set_place(mesh, i * d + j, radius * along[0], radius * along[1], 0.15 * around[1]);
+            set_position(mesh, i * d + j, radius * along[0], radius * along[1],
+                         0.15 * around[1]);
             const uint32_t next = (i + 1) % m * d, above = (j + 1) % d;
             const uint32_t quad[4] = {i * d + j, next + j, next + above, i * d + above};
             out = add_quad(out, quad, (i + j) % 2);
@@ -182,6 +183,6 @@ enum cs_status cs_trimesh_make(struct cs_trimesh *mesh, enum cs_mesh_shape shape
                                struct cs_error *error) {
     static enum cs_status (*const makers[CS_MESH_SHAPES])(
         struct cs_trimesh *, uint32_t, struct cs_arena *,
-        struct cs_error *) = {make_box, make_sphere, make_torus, cs_trimesh_make_limbs};
+        struct cs_error *) = {make_box, make_sphere, make_torus, cs_trimesh_make_metaballs};
     return makers[shape](mesh, detail, arena, error);
 }

@@ -3,20 +3,20 @@
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
-#include "model/commit/contact.h"
-#include "model/contact/points.h"
-#include "model/cross/crossings.h"
+#include "model/contact/ccd/crossings.h"
+#include "model/contact/surface_points.h"
 #include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
-#include "model/shares.h"
+#include "model/post_step/contact_projection.h"
 #include "model/solver/multigrid.h"
 #include "model/spring/springs.h"
-#include "model/system/clusters.h"
+#include "model/system/shape_clusters.h"
 #include "model/system/system.h"
-#include "scene/crossings.h"
+#include "model/thread_partition.h"
+#include "scene/body_pairs.h"
+#include "scene/crossing_policy.h"
 #include "scene/event_key.h"
-#include "scene/pairs.h"
 #include "scene/shape.h"
 
 #include <clothsim/integrator.h>
@@ -31,7 +31,7 @@ static const char *const feature_names[CS_FEATURES] = {
 static void decide(struct cs_plan *plan, enum cs_feature feature, bool built, size_t bytes,
                    const char *why, const char *why_not) {
     plan->rows[feature] = (struct cs_plan_row){
-        .built = built, .bytes = built ? bytes : 0, .why = built ? why : why_not};
+        .built = built, .bytes = built ? bytes : 0, .reason = built ? why : why_not};
 }
 
 static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uint32_t *n_runs) {
@@ -44,9 +44,9 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uin
         if (!bodies[b].mesh.present)
             continue;
         const uint32_t inner =
-            bodies[b].springs.stretch > 0 ? bodies[b].mesh.geometry->n_inner : 0;
-        plan->n_inner += inner;
-        plan->n_surface += plan->n_springs - before - inner;
+            bodies[b].springs.stretch > 0 ? bodies[b].mesh.geometry->n_network_springs : 0;
+        plan->n_network_springs += inner;
+        plan->n_surface_springs += plan->n_springs - before - inner;
     }
 }
 
@@ -111,7 +111,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     plan->state_bytes = (6 + 3 + 2) * n * real + scene->bodies.n * sizeof(struct cs_body_range);
 
     /* springs of meshes have a length and a stiffness of their own */
-    const size_t n_listed = (size_t)plan->n_surface + plan->n_inner;
+    const size_t n_listed = (size_t)plan->n_surface_springs + plan->n_network_springs;
     const bool bodies_are = any_body(scene, is_mesh);
     decide(plan, CS_FEATURE_MESHES, bodies_are || cs_scene_surfaces(scene) > scene->bodies.n,
            mesh_bytes(scene), bodies_are ? "bodies are meshes" : "colliders are meshes",
@@ -146,7 +146,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const bool clusters =
         needs & CS_NEED_CLUSTERS && cs_scene_first_matched(scene) < plan->n_bodies;
     size_t n_clusters, n_items;
-    cs_clusters_count(scene, &n_clusters, &n_items);
+    cs_shape_clusters_count(scene, &n_clusters, &n_items);
     decide(plan, CS_FEATURE_CLUSTERS, clusters,
            (n_clusters + 1 + n_items) * sizeof(uint32_t) + 3 * n_clusters * real,
            "bodies have shape_matching, and the integrator asks for it",
@@ -157,12 +157,12 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
     const size_t levels = cs_multigrid_bytes(scene, forced);
     decide(plan, CS_FEATURE_CONTACT,
            scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
-           cs_contact_bytes(scene, n, s, forced), "the scene has colliders",
+           cs_contact_projection_bytes(scene, n, s, forced), "the scene has colliders",
            scene->colliders.n > 0 ? "contact is a force" : "no colliders");
     const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
     const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
     decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
-           cs_points_bytes(scene) + cs_crossings_bytes(scene),
+           cs_surface_points_bytes(scene) + cs_crossings_bytes(scene),
            cs_scene_crossings_by_pairs(scene) ? "bodies keep off each other or themselves"
            : wanted                           ? "crossings is not ignore"
                                               : "they are drawn",
@@ -174,7 +174,7 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
            "the integrator does not ask for it");
     decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
     decide(plan, CS_FEATURE_THREADS, cs_pool_threads() > 1,
-           cs_shares_bytes(scene, cs_pool_threads()), "several share the work",
+           cs_thread_partition_bytes(scene, cs_pool_threads()), "several share the work",
            "one does all the work");
 }
 
@@ -193,19 +193,19 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
                        "nothing to match",
                        method->name);
     if (scene->contact.law == CS_CONTACT_FORCE &&
-        (scene->colliders.n > 0 || cs_scene_any_meet(scene)) &&
+        (scene->colliders.n > 0 || cs_scene_has_body_contact(scene)) &&
         method->traits & CS_EXPLICIT_OUTER)
         return cs_fail(
             error, CS_ERR_SCENE,
             "contact.law: integrator \"%s\" takes contact as it is where a step "
             "begins and cannot follow a force as stiff; expected %sanother integrator",
-            method->name, cs_scene_any_meet(scene) ? "" : "project, or ");
+            method->name, cs_scene_has_body_contact(scene) ? "" : "project, or ");
     return CS_OK;
 }
 
 static void print_row(const char *name, const struct cs_plan_row *row, struct cs_text *out) {
     cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", name, row->built ? "built" : "left out",
-                row->bytes, row->why);
+                row->bytes, row->reason);
 }
 
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
@@ -213,13 +213,13 @@ void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
         out,
         "particles      %u\nbodies         %u\nsprings        %u\nstate          %zu bytes\n",
         plan->n, plan->n_bodies, plan->n_springs, plan->state_bytes);
-    if (plan->n_surface)
-        cs_text_add(out, "on surfaces    %u springs\n", plan->n_surface);
-    if (plan->n_inner)
-        cs_text_add(out, "inside         %u springs\n", plan->n_inner);
+    if (plan->n_surface_springs)
+        cs_text_add(out, "on surfaces    %u springs\n", plan->n_surface_springs);
+    if (plan->n_network_springs)
+        cs_text_add(out, "inside         %u springs\n", plan->n_network_springs);
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
         for (uint32_t k = 0; f == CS_FEATURE_AREA && k < cs_n_terms; k++)
-            if (plan->forces[k].why)
+            if (plan->forces[k].reason)
                 print_row(cs_terms[k]->name, plan->forces + k, out);
         print_row(feature_names[f], plan->rows + f, out);
     }

@@ -1,12 +1,12 @@
 /* A scene made into arrays: counted, taken from one arena, filled, by the plan. */
 #include "model/system_build.h"
 
-#include "model/cross/crossings.h"
+#include "model/contact/ccd/crossings.h"
 #include "model/event/events.h"
-#include "model/force/bounds.h"
+#include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
-#include "model/shares.h"
-#include "model/system/clusters.h"
+#include "model/system/shape_clusters.h"
+#include "model/thread_partition.h"
 #include "scene/shape.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static bool is_built(const struct cs_plan *plan, enum cs_feature feature) {
 
 /* doubles from the system's arena; NULL with the error set */
 static double *take(struct cs_system *system, size_t n, struct cs_error *error) {
-    return cs_arena_take_n(&system->arena, n, sizeof(double), error);
+    return cs_arena_alloc_array(&system->arena, n, sizeof(double), error);
 }
 
 static void build_springs(struct cs_system *system, struct cs_error *error) {
@@ -28,7 +28,8 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
         n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL,
                                      bodies[b].mesh.present ? &n_listed : &n_springs);
-    struct cs_spring_run *runs = cs_arena_take_n(&system->arena, n_runs, sizeof *runs, error);
+    struct cs_spring_run *runs =
+        cs_arena_alloc_array(&system->arena, n_runs, sizeof *runs, error);
     double *lists = take(system, 2 * (size_t)n_listed, error);
     if (error->status)
         return;
@@ -46,11 +47,11 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
 /* the runs written out, for methods that want springs one by one */
 static void build_spring_list(struct cs_system *system, struct cs_error *error) {
     const uint32_t n = system->springs.n;
-    uint32_t *ends = cs_arena_take_n(&system->arena, 2 * (size_t)n, sizeof *ends, error);
+    uint32_t *ends = cs_arena_alloc_array(&system->arena, 2 * (size_t)n, sizeof *ends, error);
     double *length = take(system, n, error), *stiffness = take(system, n, error);
     double *damping = take(system, n, error);
-    uint32_t *kind = cs_arena_take_n(&system->arena, n, sizeof *kind, error);
-    uint8_t *axial = cs_arena_take_n(&system->arena, n, sizeof *axial, error);
+    uint32_t *kind = cs_arena_alloc_array(&system->arena, n, sizeof *kind, error);
+    uint8_t *axial = cs_arena_alloc_array(&system->arena, n, sizeof *axial, error);
     if (error->status)
         return;
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
@@ -107,7 +108,7 @@ static void fill_state(struct cs_system *system, bool *pinned) {
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
         const struct cs_body_range *range = system->bodies + b;
         const double *velocity = cs_shape_velocity(bodies + b);
-        cs_shape_place(bodies + b, n, range->first, system->state);
+        cs_shape_position(bodies + b, n, range->first, system->state);
         cs_shape_pin(bodies + b, n, range->first, system->state, pinned + range->first);
         for (uint32_t i = range->first; i < range->first + range->count; i++)
             for (size_t c = 0; c < 3; c++)
@@ -121,7 +122,7 @@ static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_er
     uint32_t count = 0;
     for (uint32_t i = 0; i < n; i++)
         count += pinned[i];
-    system->pinned = cs_arena_take_n(&system->arena, count, sizeof *system->pinned, error);
+    system->pinned = cs_arena_alloc_array(&system->arena, count, sizeof *system->pinned, error);
     if (!system->pinned)
         return;
     for (uint32_t i = 0; i < n; i++) {
@@ -137,19 +138,19 @@ static void choose_terms(struct cs_system *system, struct cs_error *error) {
             continue;
         if (cs_terms[k]->build)
             cs_terms[k]->build(system, error);
-        const char *idle = cs_terms[k]->idle_why ? cs_terms[k]->idle_why(system) : NULL;
+        const char *idle = cs_terms[k]->reason_idle ? cs_terms[k]->reason_idle(system) : NULL;
         if (idle)
-            system->plan.forces[k] = (struct cs_plan_row){.why = idle};
+            system->plan.forces[k] = (struct cs_plan_row){.reason = idle};
         else
             system->terms[system->n_terms++] = cs_terms[k];
     }
 }
 
-static void take_arrays(struct cs_system *system, struct cs_error *error) {
+static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     const size_t n = system->view.n;
     uint32_t first = 0;
-    system->bodies =
-        cs_arena_take_n(&system->arena, system->scene->bodies.n, sizeof *system->bodies, error);
+    system->bodies = cs_arena_alloc_array(&system->arena, system->scene->bodies.n,
+                                          sizeof *system->bodies, error);
     system->mass = take(system, n, error);
     system->inv_mass = take(system, n, error);
     system->state = take(system, 6 * n, error);
@@ -174,20 +175,20 @@ static void take_arrays(struct cs_system *system, struct cs_error *error) {
 }
 
 static void build(struct cs_system *system, void *work, struct cs_error *error) {
-    take_arrays(system, error);
+    alloc_arrays(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_SPRINGS))
         build_springs(system, error);
     if (!error->status)
-        cs_shares_build(system, error);
+        cs_thread_partition_build(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_SPRING_LIST))
         build_spring_list(system, error);
     if (!error->status && is_built(&system->plan, CS_FEATURE_CLUSTERS))
-        cs_clusters_build(system, error);
+        cs_shape_clusters_build(system, error);
     if (error->status)
         return;
     bool *pinned = work;
     /* masses may depend on the springs at a particle, which are there now */
-    cs_system_weigh(system);
+    cs_system_set_masses(system);
     if (system->area)
         fill_area(system);
     fill_state(system, pinned);
@@ -202,7 +203,7 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     if (error->status)
         return;
     if (!is_built(&system->plan, CS_FEATURE_EVENTS))
-        cs_bounds_set(system, work);
+        cs_spectral_bounds_set(system, work);
     else if (!cs_events_build(system, error))
         cs_events_set_bounds(system, work);
 }
@@ -213,7 +214,7 @@ enum cs_status cs_system_build(struct cs_system *system, const struct cs_scene *
     system->view.size = sizeof system->view;
     system->view.n = plan->n;
 
-    /* pin marks first, then the Gershgorin sums of cs_bounds_set */
+    /* pin marks first, then the Gershgorin sums of cs_spectral_bounds_set */
     void *work = calloc(plan->n, 2 * sizeof(double));
     if (!work)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %u particles", plan->n);

@@ -70,7 +70,7 @@ static enum cs_status check_times(const struct look *at, const struct cs_event *
 }
 
 static enum cs_status check_particles(const struct look *at, const char *part,
-                                      const struct cs_aim *aim, uint32_t body) {
+                                      const struct cs_event_target *aim, uint32_t body) {
     const struct cs_pin *pins = aim->particles.items;
     char place[64], fault[160];
     for (uint32_t p = 0; p < aim->particles.n; p++) {
@@ -83,7 +83,7 @@ static enum cs_status check_particles(const struct look *at, const char *part,
 }
 
 static enum cs_status check_aim(const struct look *at, const char *part,
-                                const struct cs_aim *aim) {
+                                const struct cs_event_target *aim) {
     const uint32_t n = at->scene->bodies.n;
     char place[64];
     snprintf(place, sizeof place, "%s.body", part);
@@ -106,7 +106,7 @@ static bool has_direction(const struct look *at) {
     return has;
 }
 
-static enum cs_status check_wind(const struct look *at, struct cs_gust *gust) {
+static enum cs_status check_wind(const struct look *at, struct cs_wind_change *gust) {
     const bool turns = !isnan(gust->direction[0]);
     if (!turns && isnan(gust->strength))
         return refuse(at, ".wind", "found neither direction nor strength");
@@ -182,7 +182,7 @@ static enum cs_status check_ramp(const struct look *at, const struct cs_event *e
     if (cs_option_check_range(key.row, ramp->value, -1, "", CS_ERR_SCENE, &said))
         return refuse(at, ".ramp.value", "%s", said.message + 2);
     /* methods take a mass for constant within an advance */
-    if (cs_event_weighs(event) && isnan(event->at))
+    if (cs_event_changes_mass(event) && isnan(event->at))
         return refuse(at, "", "found from and to, expected at: masses change at once");
     return CS_OK;
 }
@@ -212,7 +212,7 @@ static enum cs_status check_grab(const struct look *at, const struct cs_grab *gr
     if (grab->path.n == 0)
         return refuse(at, ".grab.path", "found no point, expected at least one");
     return check_path(at, "grab", &grab->path) ? at->error->status
-                                               : check_aim(at, ".grab", &grab->aim);
+                                               : check_aim(at, ".grab", &grab->target);
 }
 
 static enum cs_status check_move(const struct look *at, const struct cs_move *move) {
@@ -256,7 +256,7 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
     if (event->impact.present)
         return make_unit(at, ".impact.direction", event->impact.direction)
                    ? at->error->status
-                   : check_aim(at, ".impact", &event->impact.aim);
+                   : check_aim(at, ".impact", &event->impact.target);
     if (event->wind.present)
         return check_wind(at, &event->wind);
     if (event->viewpoint_force.present)
@@ -267,8 +267,8 @@ static enum cs_status check_event(const struct look *at, struct cs_event *event)
         return check_grab(at, &event->grab);
     if (event->move.present)
         return check_move(at, &event->move);
-    return event->pin.present ? check_aim(at, ".pin", &event->pin.aim)
-                              : check_aim(at, ".release", &event->release.aim);
+    return event->pin.present ? check_aim(at, ".pin", &event->pin.target)
+                              : check_aim(at, ".release", &event->release.target);
 }
 
 enum cs_status cs_events_check(struct cs_scene *scene, char *path_out, struct cs_error *error) {

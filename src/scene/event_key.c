@@ -199,6 +199,6 @@ bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *k
     return value != 0 || cs_event_key_changes(scene, key);
 }
 
-bool cs_event_weighs(const struct cs_event *event) {
+bool cs_event_changes_mass(const struct cs_event *event) {
     return event->ramp.present && strstr(event->ramp.key, "].mass.");
 }

@@ -24,6 +24,6 @@ bool cs_event_key_changes(const struct cs_scene *scene, const char *key);
 bool cs_event_key_acts(const struct cs_scene *scene, double value, const char *key);
 
 /* Whether an event of a checked scene changes masses. */
-bool cs_event_weighs(const struct cs_event *event);
+bool cs_event_changes_mass(const struct cs_event *event);
 
 #endif

@@ -11,14 +11,14 @@ static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
      .help = "number of the body from 0; absent: every body",                                  \
      .type = CS_INT,                                                                           \
      .count = 1,                                                                               \
-     .offset = offsetof(s, aim.body),                                                          \
+     .offset = offsetof(s, target.body),                                                       \
      .def = -1,                                                                                \
      .min = 0,                                                                                 \
      .max = 4294967295.0},                                                                     \
     {                                                                                          \
         .name = "particles", .unit = "",                                                       \
         .help = "of the body, named as in its pins; absent: all of them", .type = CS_LIST,     \
-        .count = 1, .offset = offsetof(s, aim.particles), .table = &cs_pin_table               \
+        .count = 1, .offset = offsetof(s, target.particles), .table = &cs_pin_table            \
     }
 
 static const struct cs_option impact_rows[] = {
@@ -32,13 +32,13 @@ static const struct cs_table impact_table = {
     ROWS(impact_rows), .size = sizeof(struct cs_impact), .optional = true};
 
 static const struct cs_option gust_rows[] = {
-    VECTOR(struct cs_gust, direction, 3, "", absent3, -BIG, BIG,
+    VECTOR(struct cs_wind_change, direction, 3, "", absent3, -BIG, BIG,
            "to which the wind then blows; absent: as before"),
-    REAL(struct cs_gust, strength, "Pa or N", ABSENT, 0, BIG,
+    REAL(struct cs_wind_change, strength, "Pa or N", ABSENT, 0, BIG,
          "in the unit of forces.wind; 0 turns it off; absent: as before"),
 };
-static const struct cs_table gust_table = {ROWS(gust_rows), .size = sizeof(struct cs_gust),
-                                           .optional = true};
+static const struct cs_table gust_table = {
+    ROWS(gust_rows), .size = sizeof(struct cs_wind_change), .optional = true};
 
 static const struct cs_option viewpoint_rows[] = {
     VECTOR(struct cs_viewpoint, eye, 3, "m", absent3, -BIG, BIG,
@@ -104,9 +104,9 @@ static const struct cs_option grab_rows[] = {
 static const struct cs_table grab_table = {ROWS(grab_rows), .size = sizeof(struct cs_grab),
                                            .optional = true};
 
-static const struct cs_option hold_rows[] = {AIM_ROWS(struct cs_hold)};
-static const struct cs_table hold_table = {ROWS(hold_rows), .size = sizeof(struct cs_hold),
-                                           .optional = true};
+static const struct cs_option hold_rows[] = {AIM_ROWS(struct cs_pin_change)};
+static const struct cs_table hold_table = {
+    ROWS(hold_rows), .size = sizeof(struct cs_pin_change), .optional = true};
 
 static const double zero3[3] = {0, 0, 0};
 static const struct cs_option shift_rows[] = {
@@ -150,4 +150,4 @@ static const struct cs_option event_rows[] = {
           "a collider moves along a path and turns, until to or another move"),
 };
 const struct cs_table cs_event_table = {ROWS(event_rows), .size = sizeof(struct cs_event),
-                                        .one_of = true, .uncounted = 3};
+                                        .one_of = true, .n_always_optional = 3};

@@ -5,15 +5,15 @@
 #include <clothsim/option.h>
 
 /* two bodies that keep off each other */
-struct cs_pair_keys {
+struct cs_body_pair_keys {
     int64_t bodies[2];
     double friction; /* Coulomb coefficient */
 };
 enum cs_pairs_among { CS_PAIRS_LISTED, CS_PAIRS_ALL };
-struct cs_pairs_keys {
+struct cs_body_pairs_keys {
     int32_t among;       /* enum cs_pairs_among */
     double friction;     /* of pairs that are not in the list */
-    struct cs_list list; /* struct cs_pair_keys */
+    struct cs_list list; /* struct cs_body_pair_keys */
 };
 
 #endif

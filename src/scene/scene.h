@@ -8,7 +8,7 @@
 
 #include "base/arena.h"
 #include "base/status.h"
-#include "mesh/network.h"
+#include "mesh/spring_network.h"
 #include "scene/pair_keys.h"
 #include "scene/picture_keys.h"
 
@@ -17,7 +17,7 @@
 /* where the cloth's plane lies before `place` is applied */
 enum cs_start { CS_START_HANGING, CS_START_FLAT };
 
-struct cs_place {
+struct cs_pose {
     double translate[3]; /* m */
     double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
     double matrix[9];    /* rows of a rotation matrix, used where present */
@@ -30,7 +30,7 @@ struct cs_cloth {
     int32_t start;     /* enum cs_start */
     double stretch[2]; /* size at time 0 over the rest size, along a row and from row to row */
     double bump;       /* m, height of the middle over the edges at time 0 */
-    struct cs_place place;
+    struct cs_pose place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
     double spin[3];     /* rad/s, about place.translate */
 };
@@ -42,7 +42,7 @@ struct cs_mesh_source {
     int32_t shape;          /* enum cs_mesh_shape, -1: none */
     int64_t detail;         /* how finely a shape is divided */
     double scale[3];        /* times the coordinates of file or shape */
-    struct cs_place place;
+    struct cs_pose place;
     double velocity[3]; /* m/s, of every free particle at time 0 */
     double spin[3];     /* rad/s, about place.translate */
 
@@ -50,7 +50,7 @@ struct cs_mesh_source {
     const struct cs_trimesh *geometry;
 };
 
-struct cs_clusters;
+struct cs_shape_clusters;
 /* a body that is drawn back to its shape (Mueller et al. 2005), not held by springs */
 struct cs_shape_matching {
     bool present;
@@ -62,7 +62,7 @@ struct cs_shape_matching {
     bool springs;      /* the body's springs act too */
 
     /* not in the tables: made by the reader, owned by the scene's arena */
-    const struct cs_clusters *parts;
+    const struct cs_shape_clusters *parts;
 };
 
 /* exactly one is not NAN */
@@ -123,7 +123,7 @@ struct cs_material {
 struct cs_body {
     struct cs_cloth cloth; /* either this or the mesh */
     struct cs_mesh_source mesh;
-    struct cs_network network;
+    struct cs_spring_network network;
     struct cs_shape_matching shape_matching;
     struct cs_mass mass;
     struct cs_spring_law springs;
@@ -177,7 +177,7 @@ struct cs_collider {
 };
 
 enum cs_contact_law { CS_CONTACT_PROJECT, CS_CONTACT_FORCE };
-enum cs_contact_start { CS_CONTACT_START_REFUSE, CS_CONTACT_START_MOVE_OUT };
+enum cs_contact_projection_start { CS_CONTACT_START_REFUSE, CS_CONTACT_START_MOVE_OUT };
 /* between particles and all colliders */
 struct cs_contact_keys {
     int32_t law;   /* enum cs_contact_law */
@@ -212,18 +212,18 @@ struct cs_forces {
 };
 
 /* what an event acts on */
-struct cs_aim {
+struct cs_event_target {
     int64_t body;             /* -1: every body */
     struct cs_list particles; /* struct cs_pin; none: all of them */
 };
 
 struct cs_impact {
     bool present;
-    struct cs_aim aim;
+    struct cs_event_target target;
     double direction[3]; /* made a unit vector by cs_scene_check */
     double impulse;      /* N s, on all of them together */
 };
-struct cs_gust {
+struct cs_wind_change {
     bool present;
     double direction[3]; /* first component NAN: as it was */
     double strength;     /* NAN: as it was */
@@ -257,14 +257,14 @@ struct cs_path_point {
 enum cs_motion { CS_MOTION_LINEAR, CS_MOTION_SMOOTH };
 struct cs_grab {
     bool present;
-    struct cs_aim aim;
+    struct cs_event_target target;
     struct cs_list path; /* struct cs_path_point, at least one */
     int32_t motion;      /* enum cs_motion */
     bool relative;       /* points are shifts from where it was grabbed */
 };
-struct cs_hold {
+struct cs_pin_change {
     bool present;
-    struct cs_aim aim;
+    struct cs_event_target target;
 };
 
 struct cs_move {
@@ -279,11 +279,11 @@ struct cs_move {
 struct cs_event {
     double at, from, to; /* s; NAN: absent */
     struct cs_impact impact;
-    struct cs_gust wind;
+    struct cs_wind_change wind;
     struct cs_viewpoint_force viewpoint_force;
     struct cs_ramp ramp;
     struct cs_grab grab;
-    struct cs_hold pin, release;
+    struct cs_pin_change pin, release;
     struct cs_move move;
 };
 
@@ -301,8 +301,8 @@ struct cs_scene {
     struct cs_list bodies;    /* struct cs_body, at least one */
     struct cs_list colliders; /* struct cs_collider */
     struct cs_contact_keys contact;
-    int32_t crossings; /* enum cs_crossings_policy, -1: absent: see crossings.h */
-    struct cs_pairs_keys pairs;
+    int32_t crossings; /* enum cs_crossings_policy, -1: absent: see crossing_policy.h */
+    struct cs_body_pairs_keys pairs;
     struct cs_forces forces;
     struct cs_list events; /* struct cs_event */
     struct cs_time time;

@@ -1,6 +1,6 @@
 /* What single ranges cannot say about a scene. */
+#include "scene/body_pairs.h"
 #include "scene/event_check.h"
-#include "scene/pairs.h"
 #include "scene/shape.h"
 #include "scene/viewpoint.h"
 
@@ -69,7 +69,7 @@ static enum cs_status check_matrix(const struct place *at, const char *path, con
 }
 
 static enum cs_status check_place(const struct place *at, const char *body, const char *shape,
-                                  struct cs_place *place) {
+                                  struct cs_pose *place) {
     char path[128];
     if (!isnan(place->matrix[0])) {
         snprintf(path, sizeof path, "%s.%s.place.matrix", body, shape);
@@ -219,7 +219,7 @@ static enum cs_status check_colliders(const struct place *at, struct cs_scene *s
 }
 
 /* the first pair of the list with the bodies of pair p */
-static uint32_t find_pair(const struct cs_pair_keys *pairs, uint32_t p) {
+static uint32_t find_pair(const struct cs_body_pair_keys *pairs, uint32_t p) {
     const int64_t *of = pairs[p].bodies;
     uint32_t k = 0;
     while (!(pairs[k].bodies[0] == of[0] && pairs[k].bodies[1] == of[1]) &&
@@ -229,7 +229,7 @@ static uint32_t find_pair(const struct cs_pair_keys *pairs, uint32_t p) {
 }
 
 static enum cs_status check_pairs(const struct place *at, const struct cs_scene *scene) {
-    const struct cs_pair_keys *pairs = scene->pairs.list.items;
+    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
     char path[64];
     for (uint32_t p = 0; p < scene->pairs.list.n; p++) {
         snprintf(path, sizeof path, "pairs.list[%u].bodies", p);
@@ -253,7 +253,7 @@ static enum cs_status check_meetings(const struct place *at, const struct cs_sce
     char path[64] = "pairs";
     if (check_pairs(at, scene))
         return at->error->status;
-    if (scene->contact.law == CS_CONTACT_FORCE || !cs_scene_any_meet(scene))
+    if (scene->contact.law == CS_CONTACT_FORCE || !cs_scene_has_body_contact(scene))
         return CS_OK;
     for (uint32_t b = scene->bodies.n; b--;)
         if (cs_scene_bodies(scene)[b].self_contact)

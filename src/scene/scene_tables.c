@@ -13,13 +13,13 @@ static const double absent9[9] = {ABSENT, ABSENT, ABSENT, ABSENT, ABSENT,
 
 static const char *const start_names[] = {"hanging", "flat", NULL};
 static const struct cs_option place_rows[] = {
-    VECTOR(struct cs_place, translate, 3, "m", zero3, -BIG, BIG, "shift, after the rotation"),
-    VECTOR(struct cs_place, rotate, 4, "", no_turn, -BIG, BIG,
+    VECTOR(struct cs_pose, translate, 3, "m", zero3, -BIG, BIG, "shift, after the rotation"),
+    VECTOR(struct cs_pose, rotate, 4, "", no_turn, -BIG, BIG,
            "rotation as a quaternion x, y, z, w of any length"),
-    VECTOR(struct cs_place, matrix, 9, "", absent9, -1, 1,
+    VECTOR(struct cs_pose, matrix, 9, "", absent9, -1, 1,
            "rotation as the rows of a matrix, instead of rotate"),
 };
-static const struct cs_table place_table = {ROWS(place_rows), .size = sizeof(struct cs_place)};
+static const struct cs_table place_table = {ROWS(place_rows), .size = sizeof(struct cs_pose)};
 
 static const struct cs_option cloth_rows[] = {
     COUNTS(struct cs_cloth, grid, 2, "particles", NULL, 1, 65535, "columns and rows"),
@@ -74,22 +74,22 @@ static const struct cs_table collider_mesh_table = {.rows = mesh_rows,
 
 static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
 static const struct cs_option network_rows[] = {
-    CHOICE(struct cs_network, placement, placement_names, CS_PLACEMENT_NEAREST,
+    CHOICE(struct cs_spring_network, placement, placement_names, CS_PLACEMENT_NEAREST,
            "random: any two particles; opposed-normals: only where their normals point away "
            "from each other; nearest: the nearest of some such candidates"),
-    INT(struct cs_network, springs, "", 6, 0, 1000,
+    INT(struct cs_spring_network, springs, "", 6, 0, 1000,
         "inner springs tried for each particle; 0: springs on the surface only"),
-    INT(struct cs_network, candidates, "", 4, 1, 1000,
+    INT(struct cs_spring_network, candidates, "", 4, 1, 1000,
         "of placement nearest, from which the nearest is taken"),
-    INT(struct cs_network, tries, "", 64, 1, 100000,
+    INT(struct cs_spring_network, tries, "", 64, 1, 100000,
         "draws for one spring; where none of them suits, there is none"),
-    INT(struct cs_network, seed, "", 1, 0, 4294967295.0, "of the draws"),
-    REAL(struct cs_network, surface, "", 4, 1e-6, 1e6,
+    INT(struct cs_spring_network, seed, "", 1, 0, 4294967295.0, "of the draws"),
+    REAL(struct cs_spring_network, surface, "", 4, 1e-6, 1e6,
          "stiffness of the springs on the surface over that of the inner ones, which is "
          "springs.stretch"),
 };
 static const struct cs_table network_table = {
-    ROWS(network_rows), .size = sizeof(struct cs_network), .optional = true};
+    ROWS(network_rows), .size = sizeof(struct cs_spring_network), .optional = true};
 
 static const struct cs_option matching_rows[] = {
     REAL(struct cs_shape_matching, alpha, "", 0.5, 0, 1,
@@ -270,21 +270,23 @@ static const struct cs_table contact_table = {
 
 static const char *const crossings_names[] = {"ignore", "count", "limit", "stop", NULL};
 static const struct cs_option pair_rows[] = {
-    COUNTS(struct cs_pair_keys, bodies, 2, "", NULL, 0, 65535, "numbers of two bodies"),
-    REAL(struct cs_pair_keys, friction, "", 0, 0, 1000, "Coulomb coefficient between them"),
+    COUNTS(struct cs_body_pair_keys, bodies, 2, "", NULL, 0, 65535, "numbers of two bodies"),
+    REAL(struct cs_body_pair_keys, friction, "", 0, 0, 1000,
+         "Coulomb coefficient between them"),
 };
 static const struct cs_table pair_table = {ROWS(pair_rows),
-                                           .size = sizeof(struct cs_pair_keys)};
+                                           .size = sizeof(struct cs_body_pair_keys)};
 static const char *const among_names[] = {"listed", "all", NULL};
 static const struct cs_option pairs_rows[] = {
-    CHOICE(struct cs_pairs_keys, among, among_names, CS_PAIRS_LISTED,
+    CHOICE(struct cs_body_pairs_keys, among, among_names, CS_PAIRS_LISTED,
            "listed: those of the list; all: every two bodies"),
-    REAL(struct cs_pairs_keys, friction, "", 0, 0, 1000,
+    REAL(struct cs_body_pairs_keys, friction, "", 0, 0, 1000,
          "of all: Coulomb coefficient between two bodies that are not in the list"),
-    LIST(struct cs_pairs_keys, list, pair_table, "pairs of bodies, each with its own friction"),
+    LIST(struct cs_body_pairs_keys, list, pair_table,
+         "pairs of bodies, each with its own friction"),
 };
 static const struct cs_table pairs_table = {
-    ROWS(pairs_rows), .size = sizeof(struct cs_pairs_keys), .shorthand_text = "among"};
+    ROWS(pairs_rows), .size = sizeof(struct cs_body_pairs_keys), .shorthand_text = "among"};
 
 static const char *const wind_units[] = {"Pa", "N", NULL};
 static const struct cs_option wind_rows[] = {

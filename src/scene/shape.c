@@ -1,7 +1,7 @@
 /* Turns bodies into particles: positions, shares of area, pins. */
 #include "scene/shape.h"
 
-#include "base/sine.h"
+#include "base/portable_sine.h"
 #include "mesh/trimesh.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ int64_t cs_shape_count(const struct cs_body *body) {
                               : body->cloth.grid[0] * body->cloth.grid[1];
 }
 
-const struct cs_place *cs_shape_placement(const struct cs_body *body) {
+const struct cs_pose *cs_shape_placement(const struct cs_body *body) {
     return body->mesh.present ? &body->mesh.place : &body->cloth.place;
 }
 
@@ -30,7 +30,7 @@ void cs_quaternion_matrix(const double q[4], double r[9]) {
     memcpy(r, turned, sizeof turned);
 }
 
-void cs_place_rotation(const struct cs_place *place, double r[9]) {
+void cs_pose_rotation(const struct cs_pose *place, double r[9]) {
     if (isnan(place->matrix[0]))
         cs_quaternion_matrix(place->rotate, r);
     else
@@ -38,20 +38,20 @@ void cs_place_rotation(const struct cs_place *place, double r[9]) {
 }
 
 /* place of particle i between the edges, 0 to 1; 0.5 for a single one */
-static double share_of(uint32_t i, uint32_t count) {
+static double fraction_of(uint32_t i, uint32_t count) {
     return count > 1 ? (double)i / (count - 1) : 0.5;
 }
 
 /* sin(pi a) for a in 0..1, 0 at both ends */
-static double arch(double a) {
+static double half_sine(double a) {
     return cs_quarter_sine(2 * (a > 0.5 ? 1 - a : a));
 }
 
 static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
     const struct cs_trimesh *mesh = body->mesh.geometry;
-    const double *p = mesh->places, *shift = body->mesh.place.translate;
+    const double *p = mesh->positions, *shift = body->mesh.place.translate;
     double r[9];
-    cs_place_rotation(&body->mesh.place, r);
+    cs_pose_rotation(&body->mesh.place, r);
     for (size_t i = 0; i < mesh->n; i++)
         for (size_t c = 0; c < 3; c++)
             x[c * n + first + i] = r[3 * c] * p[i] + r[3 * c + 1] * p[mesh->n + i] +
@@ -62,14 +62,14 @@ static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, d
     const struct cs_cloth *cloth = &body->cloth;
     const uint32_t columns = (uint32_t)cloth->grid[0], rows = (uint32_t)cloth->grid[1];
     double r[9];
-    cs_place_rotation(&cloth->place, r);
+    cs_pose_rotation(&cloth->place, r);
     for (uint32_t i = 0; i < rows; i++)
         for (uint32_t j = 0; j < columns; j++) {
-            const double a = share_of(j, columns), b = share_of(i, rows);
+            const double a = fraction_of(j, columns), b = fraction_of(i, rows);
             // from -size/2 to size/2 in equal steps (cloth thesis, eq. 4.1)
             const double across = (a - 0.5) * (cloth->size[0] * cloth->stretch[0]);
             const double up = -((b - 0.5) * (cloth->size[1] * cloth->stretch[1]));
-            const double out = cloth->bump * arch(a) * arch(b);
+            const double out = cloth->bump * half_sine(a) * half_sine(b);
             const bool flat = cloth->start == CS_START_FLAT;
             const double p[3] = {across, flat ? out : up, flat ? -up : out};
             const size_t at = first + (size_t)i * columns + j;
@@ -79,7 +79,7 @@ static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, d
         }
 }
 
-void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
+void cs_shape_position(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
     if (body->mesh.present)
         place_mesh(body, n, first, x);
     else

@@ -6,24 +6,24 @@
 
 /* Particles of a body, its placement and its velocity at time 0. */
 int64_t cs_shape_count(const struct cs_body *body);
-const struct cs_place *cs_shape_placement(const struct cs_body *body);
+const struct cs_pose *cs_shape_placement(const struct cs_body *body);
 const double *cs_shape_velocity(const struct cs_body *body);
 
 /* Rows of the rotation by a unit quaternion x, y, z, w. */
 void cs_quaternion_matrix(const double q[4], double r[9]);
 
 /* Rows of the rotation of a place: its matrix, or that of its unit quaternion. */
-void cs_place_rotation(const struct cs_place *place, double r[9]);
+void cs_pose_rotation(const struct cs_pose *place, double r[9]);
 
 /* Positions of a body's particles, placed rigidly: written to x[first..] of x (3,n). */
-void cs_shape_place(const struct cs_body *body, uint32_t n, uint32_t first, double *x);
+void cs_shape_position(const struct cs_body *body, uint32_t n, uint32_t first, double *x);
 
 /* Share of the rest area of the body's particle i in m2: a quarter of each cell at it, a third
  * of each triangle. */
 double cs_shape_area(const struct cs_body *body, uint32_t i);
 
-/* Marks the body's pinned particles: pinned[0..count) = true. x as from cs_shape_place. No pin
- * is at fault. */
+/* Marks the body's pinned particles: pinned[0..count) = true. x as from cs_shape_position. No
+ * pin is at fault. */
 void cs_shape_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
                   bool *pinned);
 

@@ -4,22 +4,23 @@
 #include "base/clock.h"
 
 void cs_budget_start(struct cs_budget *budget, double cpu_seconds) {
-    *budget = (struct cs_budget){
-        .end = cs_clock_cpu() + cpu_seconds, .last = cs_clock_wall(), .between = 1};
+    *budget = (struct cs_budget){.end = cs_clock_cpu() + cpu_seconds,
+                                 .last_check = cs_clock_wall(),
+                                 .check_interval = 1};
 }
 
 /* The clock of the process is a system call: it is read about once a millisecond. */
 bool cs_budget_is_over(struct cs_budget *budget) {
     enum { MOST_BETWEEN = 1024 };
-    if (budget->end == 0 || ++budget->steps < budget->between)
+    if (budget->end == 0 || ++budget->steps < budget->check_interval)
         return false;
     const double now = cs_clock_wall();
-    const bool seldom = now - budget->last > 1e-3;
-    budget->between = seldom ? budget->between / 2 : budget->between * 2;
-    budget->between = budget->between < 1              ? 1
-                      : budget->between > MOST_BETWEEN ? MOST_BETWEEN
-                                                       : budget->between;
-    budget->last = now;
+    const bool seldom = now - budget->last_check > 1e-3;
+    budget->check_interval = seldom ? budget->check_interval / 2 : budget->check_interval * 2;
+    budget->check_interval = budget->check_interval < 1              ? 1
+                             : budget->check_interval > MOST_BETWEEN ? MOST_BETWEEN
+                                                                     : budget->check_interval;
+    budget->last_check = now;
     budget->steps = 0;
     return cs_clock_cpu() > budget->end;
 }

@@ -7,10 +7,10 @@
 
 /* Zeroed: no limit. */
 struct cs_budget {
-    double end;       /* cs_clock_cpu; 0: none */
-    double last;      /* cs_clock_wall of the last look */
-    uint32_t steps;   /* since then */
-    uint32_t between; /* steps from one look to the next */
+    double end;              /* cs_clock_cpu; 0: none */
+    double last_check;       /* cs_clock_wall of the last look */
+    uint32_t steps;          /* since then */
+    uint32_t check_interval; /* steps from one look to the next */
 };
 
 void cs_budget_start(struct cs_budget *budget, double cpu_seconds);

@@ -2,17 +2,17 @@
 #include "sim/commit.h"
 
 #include "base/vector.h"
-#include "model/commit/limit.h"
-#include "model/pair/pairs.h"
-#include "sim/account.h"
-#include "sim/passage.h"
+#include "model/contact/ccd/step_limit.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/post_step/strain_limit.h"
+#include "sim/energy_ledger.h"
 #include "sim/trace.h"
 
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
     const double begin = cs_stage_begin(host);
-    const uint64_t moves = cs_limit_apply(host->run->system, dt, x, v);
-    host->run->counts.limit_moves += moves;
+    const uint64_t moves = cs_strain_limit_apply(host->run->system, dt, x, v);
+    host->run->counts.strain_limit_moves += moves;
     *changed |= moves > 0;
     cs_stage_end(host, CS_STAGE_LIMIT, begin);
 }
@@ -20,26 +20,27 @@ static void limit_strain(struct cs_run_host *host, double dt, double *x, double 
 static void resolve_contact(struct cs_run_host *host, double t, double dt, double *x, double *v,
                             bool *changed) {
     const double begin = cs_stage_begin(host);
-    *changed |= cs_contact_resolve(&host->contact, t, dt, x, v);
+    *changed |= cs_contact_projection_resolve(&host->contact, t, dt, x, v);
     host->run->counts.contact_tests = host->contact.counts.tests;
-    host->run->counts.contacts = host->contact.counts.pushed;
+    host->run->counts.projected_particles = host->contact.counts.projected;
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
 void cs_host_pin(struct cs_run_host *host, bool held) {
     if (host->run->system->plan.rows[CS_FEATURE_CONTACT].built)
-        (held ? cs_stick_pin : cs_stick_unpin)(&host->contact.stick);
+        (held ? cs_static_friction_pin
+              : cs_static_friction_unpin)(&host->contact.static_friction);
 }
 
 /* who is held in the next step, and where it starts; true: others are held */
-static bool keep_contact(struct cs_run_host *host, double t, const double *x, const double *v,
-                         bool observed, bool moved) {
-    struct cs_contact *contact = &host->contact;
+static bool store_contact(struct cs_run_host *host, double t, const double *x, const double *v,
+                          bool observed, bool moved) {
+    struct cs_contact_projection *contact = &host->contact;
     const double begin = cs_stage_begin(host);
-    cs_contact_keep(contact, x, v, !moved);
+    cs_contact_projection_store(contact, x, v, !moved);
     if (observed)
-        cs_stick_forget(&contact->stick);
-    const bool others = cs_contact_hold(contact, t, x, v);
+        cs_static_friction_clear(&contact->static_friction);
+    const bool others = cs_contact_projection_update_sticking(contact, t, x, v);
     cs_host_pin(host, true);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return others;
@@ -49,7 +50,7 @@ struct loss {
     double *v, kept;
 };
 
-static void lose_part(void *arg, size_t begin, size_t end) {
+static void apply_velocity_loss(void *arg, size_t begin, size_t end) {
     const struct loss *loss = arg;
     for (size_t i = begin; i < end; i++)
         loss->v[i] *= loss->kept;
@@ -57,7 +58,7 @@ static void lose_part(void *arg, size_t begin, size_t end) {
 
 static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
     struct loss loss = {v, 1 - host->run->system->scene->forces.velocity_loss};
-    cs_vector_share(3 * (size_t)host->run->system->view.n, lose_part, &loss);
+    cs_vector_parallel_for(3 * (size_t)host->run->system->view.n, apply_velocity_loss, &loss);
     *changed = true;
 }
 
@@ -65,7 +66,7 @@ static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
 static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
                           const double *v) {
     const volatile sig_atomic_t *stop = host->settings.stop;
-    if (cs_bound_is_passed(&host->bound, host->run, t, x, v))
+    if (cs_blow_up_check_step(&host->blow_up, host->run, t, x, v))
         return CS_STEP_HALT;
     if (stop && *stop) {
         host->run->outcome = CS_INTERRUPTED;
@@ -83,20 +84,20 @@ static enum cs_step stop_crossings(struct cs_run_host *host, double t, const dou
     const double begin = cs_stage_begin(host);
     struct cs_text why = {0};
     enum cs_step step = CS_STEP_OK;
-    if (cs_passage_stops(host->run->system, t, x, &why))
-        step = host->calls.fail(host, "%s", cs_text_get(&why));
+    if (cs_step_limit_ends_run(host->run->system, t, x, &why))
+        step = host->table.fail(host, "%s", cs_text_get(&why));
     cs_text_finish(&why);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     return step;
 }
 
 /* what a correction left, if there was one, and what energy it took */
-static void look(const struct cs_run_host *host, enum cs_work work, const char *phase, double t,
-                 const double *x, const double *v) {
+static void book_correction(const struct cs_run_host *host, enum cs_ledger_work work,
+                            const char *phase, double t, const double *x, const double *v) {
     if (phase)
         cs_trace_state(host, phase, t, x, v);
-    if (host->settings.account)
-        cs_account_change(host->settings.account, work, t, x, v);
+    if (host->settings.ledger)
+        cs_energy_ledger_book_correction(host->settings.ledger, work, t, x, v);
 }
 
 /* The limit may move particles into obstacles, so contact comes after it; last are the grabbed
@@ -109,15 +110,15 @@ static void correct(struct cs_run_host *host, double t, double dt, double *x, do
     const bool loss = rows[CS_FEATURE_VELOCITY_LOSS].built;
     if (limit)
         limit_strain(host, dt, x, v, changed);
-    look(host, CS_WORK_LIMIT, limit ? "strain limit" : NULL, t, x, v);
+    book_correction(host, CS_WORK_LIMIT, limit ? "strain limit" : NULL, t, x, v);
     if (contact)
         resolve_contact(host, t, dt, x, v, changed);
-    look(host, CS_WORK_PROJECTION, contact ? "contact" : NULL, t, x, v);
+    book_correction(host, CS_WORK_PROJECTION, contact ? "contact" : NULL, t, x, v);
     if (loss)
         lose_velocity(host, v, changed);
-    look(host, CS_WORK_LOSS, loss ? "velocity loss" : NULL, t, x, v);
+    book_correction(host, CS_WORK_LOSS, loss ? "velocity loss" : NULL, t, x, v);
     if (rows[CS_FEATURE_EVENTS].built) {
-        cs_events_place(host->run->system, t, x, v);
+        cs_events_apply_paths(host->run->system, t, x, v);
         cs_trace_state(host, "paths", t, x, v);
     }
 }
@@ -129,26 +130,27 @@ enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v
     const struct cs_run_settings *settings = &host->settings;
     *changed = false;
     host->run->counts.steps++;
-    host->left.committed = t;
+    host->advance_check.last_commit = t;
     cs_move_values(host, t);
     cs_host_pin(host, false);
     cs_trace_state(host, "step", t, x, v);
-    if (settings->account)
-        cs_account_step(settings->account, t, x, v);
+    if (settings->ledger)
+        cs_energy_ledger_book_step(settings->ledger, t, x, v);
     correct(host, t, dt, x, v, changed);
-    if (cs_passage_has_failed(host->run->system))
-        return host->calls.fail(ctx, "out of memory for the pairs of contact");
+    if (cs_step_limit_failed(host->run->system))
+        return host->table.fail(ctx, "out of memory for the pairs of contact");
     enum cs_step step = judge(host, t, x, v);
     if (step == CS_STEP_OK && rows[CS_FEATURE_CROSSINGS].built)
         step = stop_crossings(host, t, x);
     bool moved = rows[CS_FEATURE_VELOCITY_LOSS].built || rows[CS_FEATURE_EVENTS].built;
     // a step that ends the run is observed too
-    const bool observed = settings->observe && settings->observe(settings->ctx, t, dt, x, v);
+    const bool observed =
+        settings->after_commit && settings->after_commit(settings->ctx, t, dt, x, v);
     moved |= observed;
     *changed |= observed;
-    if (settings->account)
-        cs_account_keep(settings->account, t, x, v);
+    if (settings->ledger)
+        cs_energy_ledger_store_state(settings->ledger, t, x, v);
     if (rows[CS_FEATURE_CONTACT].built)
-        *changed |= keep_contact(host, t, x, v, observed, moved);
+        *changed |= store_contact(host, t, x, v, observed, moved);
     return step;
 }

@@ -31,7 +31,7 @@ static void add(char text[TEXT], const char *part) {
 
 static void describe(const struct cs_crash_call *call, const char *how, const char *what,
                      char text[TEXT]) {
-    const char *const parts[] = {call->starved ? "out of memory: " : "",
+    const char *const parts[] = {call->out_of_memory ? "out of memory: " : "",
                                  call->kind,
                                  " \"",
                                  call->name,
@@ -44,13 +44,13 @@ static void describe(const struct cs_crash_call *call, const char *how, const ch
 }
 
 static enum cs_status status_of(const struct cs_crash_call *call) {
-    return call->starved ? CS_ERR_MEMORY : CS_ERR_MODULE;
+    return call->out_of_memory ? CS_ERR_MEMORY : CS_ERR_MODULE;
 }
 
 /* Only what is safe in a handler: write and _exit. Whoever watches from outside tells it there.
  */
-static _Noreturn void tell(const struct cs_crash_call *call, const char *how,
-                           const char *what) {
+static _Noreturn void write_report(const struct cs_crash_call *call, const char *how,
+                                   const char *what) {
     char text[TEXT] = "clothsim: ";
     describe(call, how, what, text);
     add(text, "\n");
@@ -93,9 +93,9 @@ static void report(int number) {
         raise(number);
         return;
     }
-    call->starved |= starved;
+    call->out_of_memory |= starved;
     call->signal = number;
-    tell(call, "crashed ", signal_text(number));
+    write_report(call, "crashed ", signal_text(number));
 }
 
 /* a module that calls exit would else end a run as if it had finished */
@@ -103,8 +103,8 @@ static void report_exit(void) {
     struct cs_crash_call *call = find_call();
     if (!call)
         return;
-    call->starved |= errno == ENOMEM;
-    tell(call, "ended the program ", "");
+    call->out_of_memory |= errno == ENOMEM;
+    write_report(call, "ended the program ", "");
 }
 
 /* a handler on the stack that has overflowed could not run */
@@ -131,7 +131,7 @@ void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
     call->place = place;
     call->thread = pthread_self();
     call->process = getpid();
-    atomic_fetch_add(&call->edges, 1);
+    atomic_fetch_add(&call->call_parity, 1);
     errno = 0;
 }
 
@@ -141,16 +141,16 @@ void cs_crash_forget(enum cs_crash_side side) {
     /* a module that forks would else have every file written twice */
     if (call->process != getpid())
         _exit(cs_status_exit_code(CS_ERR_MODULE));
-    call->starved |= starved;
-    atomic_fetch_add(&call->edges, 1);
+    call->out_of_memory |= starved;
+    atomic_fetch_add(&call->call_parity, 1);
 }
 
 void cs_crash_begin(enum cs_crash_side side) {
-    calls->calls[side].starved = false;
+    calls->calls[side].out_of_memory = false;
 }
 
 bool cs_crash_was_starved(enum cs_crash_side side) {
-    return calls->calls[side].starved;
+    return calls->calls[side].out_of_memory;
 }
 
 void cs_crash_log_to(struct cs_crash_log *log) {
@@ -158,7 +158,7 @@ void cs_crash_log_to(struct cs_crash_log *log) {
 }
 
 /* The call that crashed, or is under way, or else was the last one. */
-static const struct cs_crash_call *find_culprit(const struct cs_crash_log *log) {
+static const struct cs_crash_call *find_faulting_call(const struct cs_crash_log *log) {
     const struct cs_crash_call *best = NULL;
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         const struct cs_crash_call *call = log->calls + k;
@@ -178,8 +178,9 @@ static void print_end(int end, char text[TEXT]) {
         snprintf(text, TEXT, "code %d", WEXITSTATUS(end));
 }
 
-enum cs_status cs_crash_tell(const struct cs_crash_log *log, int end, struct cs_error *error) {
-    const struct cs_crash_call *call = find_culprit(log);
+enum cs_status cs_crash_report_print(const struct cs_crash_log *log, int end,
+                                     struct cs_error *error) {
+    const struct cs_crash_call *call = find_faulting_call(log);
     char how[TEXT] = "", what[TEXT + 32], text[TEXT] = "";
     print_end(end, how);
     if (!call)

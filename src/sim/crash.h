@@ -22,9 +22,9 @@ struct cs_crash_call {
     const char *kind, *place; /* texts that do not change */
     pthread_t thread;
     pid_t process;
-    atomic_uint edges; /* begins and ends of calls: odd while one is under way */
-    int signal;        /* that it crashed by; 0: none */
-    bool starved;      /* memory ran out in it */
+    atomic_uint call_parity; /* begins and ends of calls: odd while one is under way */
+    int signal;              /* that it crashed by; 0: none */
+    bool out_of_memory;      /* memory ran out in it */
 };
 
 /* Zeroed: no calls yet. */
@@ -52,12 +52,13 @@ bool cs_crash_was_starved(enum cs_crash_side side);
 void cs_crash_log_to(struct cs_crash_log *log);
 
 static inline bool cs_crash_is_under_way(const struct cs_crash_call *call) {
-    return atomic_load(&call->edges) % 2;
+    return atomic_load(&call->call_parity) % 2;
 }
 
 /* Tells how a process ended by the log that it noted its calls in. end: as of wait, and no
  * success. CS_ERR_MODULE; CS_ERR_MEMORY where an allocation had failed; CS_ERR_INTERNAL: it
  * made no calls. */
-enum cs_status cs_crash_tell(const struct cs_crash_log *log, int end, struct cs_error *error);
+enum cs_status cs_crash_report_print(const struct cs_crash_log *log, int end,
+                                     struct cs_error *error);
 
 #endif

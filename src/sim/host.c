@@ -2,13 +2,13 @@
 #include "sim/host.h"
 
 #include "base/vector.h"
-#include "model/force/bounds.h"
-#include "model/force/measure.h"
+#include "model/contact/ccd/step_limit.h"
+#include "model/force/diagnostics.h"
 #include "model/force/normals.h"
+#include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
-#include "sim/account.h"
 #include "sim/commit.h"
-#include "sim/passage.h"
+#include "sim/energy_ledger.h"
 #include "sim/trace.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static void *host_alloc(void *ctx, size_t bytes) {
         cs_fail(&host->error, CS_ERR_MODULE, "the method asked for memory outside create");
         return NULL;
     }
-    return cs_arena_take(&host->arena, bytes, &host->error);
+    return cs_arena_alloc(&host->arena, bytes, &host->error);
 }
 
 static enum cs_step host_fail(void *ctx, const char *format, ...) {
@@ -33,7 +33,7 @@ static enum cs_step host_fail(void *ctx, const char *format, ...) {
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
     struct cs_text where = {0};
-    cs_blocked_print(&host->blocked, host->run->system, &where);
+    cs_blocked_step_print(&host->blocked_step, host->run->system, &where);
     cs_fail(&host->error, CS_ERR_MODULE, "%s%s", message, cs_text_get(&where));
     cs_text_finish(&where);
     return CS_STEP_FAIL;
@@ -80,10 +80,10 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
     struct cs_run_host *host = ctx;
     cs_move_values(host, t);
     host->run->counts.energies++;
-    const struct cs_energy energy = cs_measure_energy(host->run->system, t, x, v);
+    const struct cs_energy energy = cs_diagnostics_energy(host->run->system, t, x, v);
     cs_trace_state(host, "energy", t, x, v);
-    cs_trace_number(host, "energy", "E", t, cs_energy_whole(&energy));
-    return cs_energy_whole(&energy);
+    cs_trace_number(host, "energy", "E", t, cs_energy_total(&energy));
+    return cs_energy_total(&energy);
 }
 
 static void host_jvp(void *ctx, double t, const double *x, const double *v, uint32_t parts,
@@ -134,7 +134,7 @@ static bool clamp(struct cs_run_host *host) {
     struct cs_matrix matrix = host->linear.matrix;
     if (matrix.psd && matrix.bound)
         return false;
-    host->run->counts.clamped++;
+    host->run->counts.clamped_setups++;
     matrix.bound = matrix.psd;
     matrix.psd = true;
     cs_linear_setup(&host->linear, &matrix);
@@ -155,12 +155,12 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     const double begin = cs_stage_begin(host);
     host->run->counts.solve_setups++;
     // kept, since a solve may have to set up again, and the method may have moved on by then
-    memcpy(host->kept_x, x, bytes);
-    if (host->kept_v)
-        memcpy(host->kept_v, v, bytes);
+    memcpy(host->setup_x, x, bytes);
+    if (host->setup_v)
+        memcpy(host->setup_v, v, bytes);
     const struct cs_matrix matrix = {.t = t,
-                                     .x = host->kept_x,
-                                     .v = host->kept_v,
+                                     .x = host->setup_x,
+                                     .v = host->setup_v,
                                      .cm = cm,
                                      .cd = cd,
                                      .ck = ck,
@@ -189,8 +189,8 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
         host->run->counts.solve_iterations += iterations;
     }
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
-    cs_trace_vector(host, "solve", "b", host->left.committed, b);
-    cs_trace_vector(host, "solve", "u", host->left.committed, u);
+    cs_trace_vector(host, "solve", "b", host->advance_check.last_commit, b);
+    cs_trace_vector(host, "solve", "u", host->advance_check.last_commit, u);
     if (end == CS_LINEAR_LIMIT)
         return host_fail(
             ctx, "the linear solver stopped after %llu iterations at a residual of %.3g",
@@ -214,7 +214,7 @@ static void host_rate(void *ctx, double t, const double *x, const double *v, dou
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     cs_move_values(host, t);
     const double begin = cs_stage_begin(host);
-    cs_bounds_rate(host->run->system, &at, host->rate_work, omega, delta);
+    cs_spectral_bounds_rate(host->run->system, &at, host->bounds_work, omega, delta);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
@@ -222,10 +222,10 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
                              const double *x1) {
     struct cs_run_host *host = ctx;
     const double begin = cs_stage_begin(host);
-    const double share = cs_passage_share(host->run->system, t0, x0, t1, x1);
-    host->run->counts.cut_steps += share < 1;
-    cs_blocked_keep(&host->blocked, host->run->system, (const double[2]){t0, t1},
-                    (const double *const[2]){x0, x1}, share);
+    const double share = cs_step_limit_fraction(host->run->system, t0, x0, t1, x1);
+    host->run->counts.subdivided_steps += share < 1;
+    cs_blocked_step_store(&host->blocked_step, host->run->system, (const double[2]){t0, t1},
+                          (const double *const[2]){x0, x1}, share);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     cs_trace_vector(host, "longest move", "x", t1, x1);
     cs_trace_number(host, "longest move", "share", t1, share);
@@ -248,29 +248,30 @@ static void host_blocks(void *ctx, double t, const double *x, const double *v, d
 /* only where it is asked for: methods leave out what is NULL */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
-    const bool judged = cs_passage_is_judged(system);
+    const bool judged = cs_step_limit_applies(system);
     if (judged)
-        host->calls.max_share = host_max_share;
-    if (cs_blocked_init(&host->blocked, system, &host->arena, error))
+        host->table.max_step_fraction = host_max_share;
+    if (cs_blocked_step_init(&host->blocked_step, system, &host->arena, error))
         return error->status;
     // who asks for one may ask for the other
-    if (!judged && !cs_bounds_have_rate(system))
+    if (!judged && !cs_spectral_bounds_depend_on_state(system))
         return CS_OK;
-    host->rate_work =
-        cs_arena_take_n(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
-    host->calls.rate = host_rate;
-    if (system->pairings || system->pairs)
-        host->calls.blocks = host_blocks;
+    host->bounds_work =
+        cs_arena_alloc_array(&host->arena, 2 * (size_t)system->view.n, sizeof(double), error);
+    host->table.bounds_at = host_rate;
+    if (system->collider_params || system->pairs)
+        host->table.contact_blocks = host_blocks;
     return error->status;
 }
 
 static double host_longest_step(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
-    struct cs_contact *contact = &host->contact;
+    struct cs_contact_projection *contact = &host->contact;
     const double begin = cs_stage_begin(host);
     cs_move_values(host, t);
-    cs_obstacles_at(contact->system, t, contact->obstacles);
-    const double step = cs_reach_step(contact->system, contact->obstacles, host->reach, x, v);
+    cs_posed_colliders_at(contact->system, t, contact->colliders);
+    const double step =
+        cs_step_bound_step(contact->system, contact->colliders, host->penetration_max, x, v);
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
     cs_trace_state(host, "longest step", t, x, v);
     cs_trace_number(host, "longest step", "h", t, step);
@@ -281,13 +282,14 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
     struct cs_system *system = host->run->system;
     if (!system->plan.rows[CS_FEATURE_CONTACT].built)
         return CS_OK;
-    if (cs_contact_init(&host->contact, system, &host->arena, error))
+    if (cs_contact_projection_init(&host->contact, system, &host->arena, error))
         return error->status;
-    host->contact.stick.off = host->run->integrator->fidelity == CS_FIDELITY_OTHER;
+    host->contact.static_friction.disabled =
+        host->run->integrator->fidelity == CS_FIDELITY_OTHER;
     cs_contact_start(&host->contact, 0, host->run->x, host->run->v);
-    host->reach = cs_reach_depth(system);
-    if (host->reach < HUGE_VAL)
-        host->calls.longest_step = host_longest_step;
+    host->penetration_max = cs_step_bound_depth(system);
+    if (host->penetration_max < HUGE_VAL)
+        host->table.longest_step = host_longest_step;
     return CS_OK;
 }
 
@@ -296,7 +298,7 @@ static bool may_pass(const struct cs_system *system) {
     static const enum cs_feature acting[] = {CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,
                                              CS_FEATURE_CROSSINGS, CS_FEATURE_STRAIN_LIMIT,
                                              CS_FEATURE_EVENTS};
-    bool acts = cs_passage_is_judged(system);
+    bool acts = cs_step_limit_applies(system);
     for (size_t k = 0; k < sizeof acting / sizeof *acting; k++)
         acts |= system->plan.rows[acting[k]].built;
     return !acts;
@@ -306,8 +308,8 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error) {
     struct cs_system *system = run->system;
     host->run = run;
-    host->calls = (struct cs_host){
-        .size = sizeof host->calls,
+    host->table = (struct cs_host){
+        .size = sizeof host->table,
         .ctx = host,
         .view = &system->view,
         .vector = &cs_vector_kernels,
@@ -321,20 +323,20 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
         .force_diagonal = host_force_diagonal,
         .solve_setup = host_solve_setup,
         .solve = host_solve,
-        .apply = host_apply,
+        .matrix_product = host_apply,
         .commit = cs_host_commit,
-        .may_pass = may_pass(system),
+        .may_overstep = may_pass(system),
     };
-    cs_bound_set(&host->bound, system, 0);
+    cs_blow_up_check_set(&host->blow_up, system, 0);
     if (add_rate(host, error) || add_contact(host, error))
         return error->status;
     // only methods that solve pay for the solver's memory and the copies of the state
     if (!system->plan.rows[CS_FEATURE_SOLVER].built)
         return CS_OK;
     const size_t n3 = 3 * (size_t)system->view.n;
-    host->kept_x = cs_arena_take_n(&host->arena, n3, sizeof(double), error);
+    host->setup_x = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
     if (cs_terms_have_blocks(system))
-        host->kept_v = cs_arena_take_n(&host->arena, n3, sizeof(double), error);
+        host->setup_v = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);
     return cs_linear_init(&host->linear, system, &host->arena, error);
 }
 
@@ -344,16 +346,16 @@ static enum cs_step failing_solve(void *ctx, const double *b, double rtol, doubl
 }
 
 void cs_run_host_fail_solves(struct cs_run_host *host) {
-    host->calls.solve = failing_solve;
+    host->table.solve = failing_solve;
 }
 
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
     const bool changed = cs_events_apply(system, t);
     if (changed)
-        cs_bound_follow_events(&host->bound, system, t);
-    if (changed && host->settings.account)
-        cs_account_keep(host->settings.account, t, host->run->x, host->run->v);
+        cs_blow_up_check_after_events(&host->blow_up, system, t);
+    if (changed && host->settings.ledger)
+        cs_energy_ledger_store_state(host->settings.ledger, t, host->run->x, host->run->v);
     if (changed)
         cs_trace_state(host, "events", t, host->run->x, host->run->v);
     if (changed && system->plan.rows[CS_FEATURE_CONTACT].built)

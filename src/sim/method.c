@@ -32,7 +32,7 @@ void cs_method_finish(struct cs_method *method) {
 enum cs_status cs_method_find(struct cs_method *method, struct cs_registry *registry,
                               const char *text, const char **pairs, struct cs_error *error) {
     const size_t length = strcspn(text, ":");
-    const struct cs_registered *found;
+    const struct cs_registry_entry *found;
     *method = (struct cs_method){0};
     *pairs = text[length] ? text + length + 1 : NULL;
     if (length == 0 || strcspn(text, "=,") < length)
@@ -63,7 +63,8 @@ enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
     if (pairs && !copy)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the options of %s",
                        method->integrator->name);
-    while (rest && !cs_method_take_pair(method->integrator->name, &rest, &key, &value, error) &&
+    while (rest &&
+           !cs_method_parse_pair(method->integrator->name, &rest, &key, &value, error) &&
            !cs_method_set(method, key, value, NULL, CS_ERR_USAGE, error))
         ;
     free(copy);
@@ -149,14 +150,14 @@ enum cs_status cs_method_check(const struct cs_method *method, const char *place
     return CS_OK;
 }
 
-const char *cs_method_behind_series(const char *token) {
+const char *cs_method_after_series(const char *token) {
     const size_t name = strcspn(token, ",:=");
     const char *method = token + name + 1;
     return token[name] == '=' && method[strcspn(method, ",:=")] == ':' ? method : NULL;
 }
 
 static bool is_option(const char *token) {
-    return token[strcspn(token, ",:=")] == '=' && !cs_method_behind_series(token);
+    return token[strcspn(token, ",:=")] == '=' && !cs_method_after_series(token);
 }
 
 char *cs_method_split(char **list) {
@@ -169,8 +170,8 @@ char *cs_method_split(char **list) {
     return method;
 }
 
-enum cs_status cs_method_take_pair(const char *name, char **pairs, const char **key,
-                                   const char **value, struct cs_error *error) {
+enum cs_status cs_method_parse_pair(const char *name, char **pairs, const char **key,
+                                    const char **value, struct cs_error *error) {
     char *pair = strsep(pairs, ","), *equals = strchr(pair, '=');
     if (!equals)
         return cs_fail(error, CS_ERR_USAGE,
@@ -204,7 +205,7 @@ void cs_method_describe(const struct cs_method *method, struct cs_text *out) {
     char mark = ':';
     for (uint32_t r = 0; r < method->table.n; r++) {
         const struct cs_option *row = method->table.rows + r;
-        if (cs_option_is_optional(row) && !cs_option_is_given(row, method->options))
+        if (cs_option_is_optional(row) && !cs_option_is_set(row, method->options))
             continue;
         cs_text_add(out, "%c%s=", mark, row->name);
         if (row->type == CS_CHOICE) {

@@ -51,7 +51,7 @@ bool cs_method_is_given(const struct cs_method *method, const struct cs_option *
 int32_t cs_method_choice(const struct cs_method *method, const struct cs_option *choice);
 
 /* Where NAME begins in "SERIES=NAME:..."; NULL: there is no SERIES. */
-const char *cs_method_behind_series(const char *text);
+const char *cs_method_after_series(const char *text);
 
 /* Adds "NAME:key=value,..." with every option that has a value. */
 void cs_method_describe(const struct cs_method *method, struct cs_text *out);
@@ -62,8 +62,8 @@ void cs_method_describe(const struct cs_method *method, struct cs_text *out);
 char *cs_method_split(char **list);
 
 /* Cuts the next key=value off *pairs, which becomes NULL behind the last; name: whose. */
-enum cs_status cs_method_take_pair(const char *name, char **pairs, const char **key,
-                                   const char **value, struct cs_error *error);
+enum cs_status cs_method_parse_pair(const char *name, char **pairs, const char **key,
+                                    const char **value, struct cs_error *error);
 
 /* Whether it steps by an option `dt` that can be set. */
 bool cs_method_takes_dt(const struct cs_integrator *integrator);

@@ -2,7 +2,7 @@
 #include "sim/module.h"
 
 #include "sim/crash.h"
-#include "sim/guard.h"
+#include "sim/process_state.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -152,7 +152,7 @@ static enum cs_status check_file(const char *file, struct cs_error *error) {
 enum cs_status cs_module_open(const char *file, const struct cs_module **module,
                               struct cs_error *error) {
     *module = NULL;
-    const struct cs_guard guard = cs_guard_take();
+    const struct cs_process_state guard = cs_process_state_save();
     if (check_file(file, error))
         return error->status;
     cs_crash_begin(CS_CRASH_METHOD);
@@ -160,13 +160,14 @@ enum cs_status cs_module_open(const char *file, const struct cs_module **module,
     void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     cs_crash_forget(CS_CRASH_METHOD);
     const bool starved = cs_crash_was_starved(CS_CRASH_METHOD);
-    const char *changed = cs_guard_restore(&guard);
+    const char *changed = cs_process_state_restore(&guard);
     if (!handle)
         return cs_fail(error, starved ? CS_ERR_MEMORY : CS_ERR_MODULE, "%scannot be loaded: %s",
                        starved ? "out of memory: " : "", dlerror());
     if (changed)
         return cs_fail(error, CS_ERR_MODULE, "changes %s when it is loaded%s", changed,
-                       changed == cs_guard_mode ? " (was it linked with -ffast-math?)" : "");
+                       changed == cs_process_state_mode ? " (was it linked with -ffast-math?)"
+                                                        : "");
     const struct cs_module *found = dlsym(handle, "clothsim_module");
     if (!found)
         return cs_fail(error, CS_ERR_MODULE, "has no symbol clothsim_module");

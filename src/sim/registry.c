@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 #include "sim/module.h"
 
 #include <dirent.h>
@@ -22,8 +22,8 @@ static enum cs_status add_entry(struct cs_registry *registry, const char *file,
     if (registry->n == registry->capacity) {
         const uint32_t capacity = 2 * registry->capacity + 32;
         /* an arena cannot grow an array: the old one stays until finish */
-        struct cs_registered *entries =
-            cs_arena_take_n(&registry->arena, capacity, sizeof *entries, error);
+        struct cs_registry_entry *entries =
+            cs_arena_alloc_array(&registry->arena, capacity, sizeof *entries, error);
         if (!entries)
             return error->status;
         if (registry->n > 0)
@@ -31,17 +31,17 @@ static enum cs_status add_entry(struct cs_registry *registry, const char *file,
         registry->entries = entries;
         registry->capacity = capacity;
     }
-    const struct cs_registered entry = {
-        .file = cs_arena_take_text(&registry->arena, file, error),
+    const struct cs_registry_entry entry = {
+        .file = cs_arena_copy_text(&registry->arena, file, error),
         .integrator = integrator,
-        .refusal = refusal ? cs_arena_take_text(&registry->arena, refusal, error) : NULL,
+        .refusal = refusal ? cs_arena_copy_text(&registry->arena, refusal, error) : NULL,
     };
     registry->entries[registry->n++] = entry;
     return error->status;
 }
 
-static const struct cs_registered *find_entry(const struct cs_registry *registry,
-                                              const char *name) {
+static const struct cs_registry_entry *find_entry(const struct cs_registry *registry,
+                                                  const char *name) {
     for (uint32_t k = 0; k < registry->n; k++)
         if (registry->entries[k].integrator &&
             !strcmp(registry->entries[k].integrator->name, name))
@@ -71,7 +71,7 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
         return add_entry(registry, file, NULL, refusal.message, error);
     for (uint32_t k = 0; k < module->n && !error->status; k++) {
         const struct cs_integrator *integrator = module->integrators[k];
-        const struct cs_registered *first = find_entry(registry, integrator->name);
+        const struct cs_registry_entry *first = find_entry(registry, integrator->name);
         char why[PATH_MAX + 128];
         snprintf(why, sizeof why, "integrator \"%s\" is already in %s", integrator->name,
                  first ? first->file : "");
@@ -96,7 +96,7 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
 
 /* Whether the file's bytes hold the name as a whole string: a module that could have the
  * integrator is opened, and no other (opening one loads its libraries). */
-static bool may_hold(const char *file, const char *name) {
+static bool may_contain_name(const char *file, const char *name) {
     struct cs_error ignored = {0};
     char *bytes;
     size_t length;
@@ -125,7 +125,7 @@ static enum cs_status open_folder(struct cs_registry *registry, const char *fold
         const int length = snprintf(file, sizeof file, "%s/%s", folder, entries[k]->d_name);
         const bool found = name && find_entry(registry, name);
         if (!error->status && length < (int)sizeof file && !found &&
-            (!name || may_hold(file, name)))
+            (!name || may_contain_name(file, name)))
             open_module(registry, file, error);
         free(entries[k]);
     }
@@ -193,7 +193,7 @@ static enum cs_status open_folders(struct cs_registry *registry, const char *nam
 
 /* refused ones last, else by name */
 static int by_name(const void *left, const void *right) {
-    const struct cs_registered *a = left, *b = right;
+    const struct cs_registry_entry *a = left, *b = right;
     if (!a->integrator != !b->integrator)
         return a->integrator ? -1 : 1;
     return a->integrator ? strcmp(a->integrator->name, b->integrator->name)
@@ -215,7 +215,7 @@ static const char *find_left_out(struct cs_registry *registry, const char *name,
     char *text = read_list("left-out.txt"), *rest = text;
     const char *words, *library = NULL;
     if (next_words(&rest, name, &words))
-        library = cs_arena_take_text(&registry->arena, words, error);
+        library = cs_arena_copy_text(&registry->arena, words, error);
     free(text);
     return library;
 }
@@ -230,7 +230,7 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
         if (registry->entries[k].integrator)
             names[n++] = registry->entries[k].integrator->name;
     names[n] = NULL;
-    const char *nearest = cs_nearest(name, names);
+    const char *nearest = cs_nearest_word(name, names);
     const char *library = find_left_out(registry, name, error);
     if (library)
         return cs_fail(error, CS_ERR_USAGE,
@@ -242,7 +242,8 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
 }
 
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
-                                const struct cs_registered **found, struct cs_error *error) {
+                                const struct cs_registry_entry **found,
+                                struct cs_error *error) {
     *found = find_entry(registry, name);
     if (!*found && open_folders(registry, name, error))
         return error->status;
@@ -251,14 +252,15 @@ enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
     if (*found)
         return CS_OK;
     for (uint32_t k = 0; k < registry->n; k++)
-        if (registry->entries[k].refusal && may_hold(registry->entries[k].file, name))
+        if (registry->entries[k].refusal && may_contain_name(registry->entries[k].file, name))
             return cs_fail(error, CS_ERR_MODULE, "%s: %s", registry->entries[k].file,
                            registry->entries[k].refusal);
     return unknown_name(registry, name, error);
 }
 
 enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *file,
-                                   const struct cs_registered **found, struct cs_error *error) {
+                                   const struct cs_registry_entry **found,
+                                   struct cs_error *error) {
     char absolute[PATH_MAX];
     if (cs_registry_add_file(registry, file, error))
         return error->status;

@@ -4,12 +4,12 @@
 
 #include "base/arena.h"
 #include "base/status.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 
 #include <clothsim/integrator.h>
 
 /* One integrator that can be used, or one module file that cannot. */
-struct cs_registered {
+struct cs_registry_entry {
     const char *file;                       /* absolute path of the module */
     const struct cs_integrator *integrator; /* NULL: refused */
     const char *refusal;                    /* why; NULL: it can be used */
@@ -17,7 +17,7 @@ struct cs_registered {
 
 /* Zeroed: empty. */
 struct cs_registry {
-    struct cs_registered *entries; /* sorted by integrator name, refused ones last */
+    struct cs_registry_entry *entries; /* sorted by integrator name, refused ones last */
     uint32_t n, capacity;
     struct cs_arena arena;
 };
@@ -34,11 +34,12 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
  * there is none, or with the library that the build was made without; CS_ERR_MODULE with the
  * reason where it was refused. */
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
-                                const struct cs_registered **found, struct cs_error *error);
+                                const struct cs_registry_entry **found, struct cs_error *error);
 
 /* Adds a module file as cs_registry_add_file does and gives its first integrator. */
 enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *file,
-                                   const struct cs_registered **found, struct cs_error *error);
+                                   const struct cs_registry_entry **found,
+                                   struct cs_error *error);
 
 /* Opens every module of the folders, for the list. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);

@@ -28,7 +28,8 @@ const char *cs_outcome_text(enum cs_outcome outcome) {
 
 /* What a call into the method came to: its result, or what it changed in the process. */
 static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_error *error) {
-    const char *name = run->integrator->name, *changed = cs_guard_restore(&run->host->guard);
+    const char *name = run->integrator->name,
+               *changed = cs_process_state_restore(&run->host->process_state);
     const bool starved = cs_crash_was_starved(CS_CRASH_METHOD);
     if (changed)
         return cs_fail(error, CS_ERR_MODULE, "integrator \"%s\" changed %s", name, changed);
@@ -62,15 +63,16 @@ static enum cs_step check_left(struct cs_run *run, double to) {
     struct cs_run_host *host = run->host;
     struct cs_text why = {0};
     enum cs_step step = CS_STEP_OK;
-    if (!host->settings.unchecked && !cs_left_is_right(&host->left, to, &why))
-        step = host->calls.fail(host, "%s", cs_text_get(&why));
+    if (!host->settings.skip_advance_check &&
+        !cs_advance_check_passes(&host->advance_check, to, &why))
+        step = host->table.fail(host, "%s", cs_text_get(&why));
     cs_text_finish(&why);
     return step;
 }
 
 static enum cs_step advance(struct cs_run *run, double from, double to) {
-    if (!run->host->settings.unchecked)
-        cs_left_begin(&run->host->left, run->system, from);
+    if (!run->host->settings.skip_advance_check)
+        cs_advance_check_begin(&run->host->advance_check, run->system, from);
     watch(run, "in advance");
     cs_host_pin(run->host, true);
     const enum cs_step step =
@@ -83,11 +85,11 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
     const size_t before = host->arena.used;
-    host->guard = cs_guard_take();
+    host->process_state = cs_process_state_save();
     cs_crash_begin(CS_CRASH_METHOD);
     host->creating = true;
     watch(run, "in create");
-    const enum cs_step step = run->integrator->create(&host->calls, options, &host->self);
+    const enum cs_step step = run->integrator->create(&host->table, options, &host->self);
     cs_crash_forget(CS_CRASH_METHOD);
     host->creating = false;
     run->method_bytes = host->arena.used - before;
@@ -147,7 +149,7 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
 
 /* what the method has counted, here and before a checkpoint that it knows nothing of */
 static void count_method(struct cs_run *run) {
-    const struct cs_stats *before = &run->host->before;
+    const struct cs_stats *before = &run->host->stats_before;
     struct cs_stats *found = &run->counts.method;
     if (!run->integrator->stats)
         return;
@@ -176,7 +178,7 @@ enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
 }
 
 const struct cs_host *cs_run_calls(const struct cs_run *run) {
-    return &run->host->calls;
+    return &run->host->table;
 }
 
 void cs_run_fail_solves(struct cs_run *run) {
@@ -207,7 +209,7 @@ void cs_run_note(struct cs_run *run, const char *format, ...) {
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    run->host->calls.note(run->host, "%s", message);
+    run->host->table.note(run->host, "%s", message);
 }
 
 void cs_run_finish(struct cs_run *run) {

@@ -2,7 +2,7 @@
 #ifndef CS_RUN_H
 #define CS_RUN_H
 
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "sim/run_state.h"
 
 const char *cs_outcome_text(enum cs_outcome outcome);

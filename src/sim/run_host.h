@@ -3,36 +3,38 @@
 #define CS_RUN_HOST_H
 
 #include "base/clock.h"
-#include "model/commit/contact.h"
-#include "model/commit/reach.h"
+#include "model/contact/ccd/blocked_step.h"
 #include "model/event/events.h"
+#include "model/post_step/contact_projection.h"
+#include "model/post_step/step_bound.h"
 #include "model/solver/linear.h"
-#include "sim/blocked.h"
-#include "sim/bound.h"
+#include "sim/advance_check.h"
+#include "sim/blow_up_check.h"
 #include "sim/budget.h"
-#include "sim/guard.h"
-#include "sim/left.h"
+#include "sim/process_state.h"
 #include "sim/run_state.h"
 
 struct cs_run_host {
-    struct cs_host calls;    /* what the method sees */
+    struct cs_host table;    /* what the method sees */
     struct cs_run *run;      /* borrowed: counts, outcome, notes */
     struct cs_linear linear; /* only with CS_NEED_SOLVE */
-    double *kept_x; /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
-    double *kept_v; /* (3,n) its velocity; NULL: no force's share of the matrix depends on it */
-    double *rate_work;         /* (2n); NULL where no force has bounds at a state alone */
-    struct cs_contact contact; /* only with contact by projection */
-    double reach;  /* m, to which a step may go behind a surface, of contact by projection */
-    bool creating; /* the method may take memory */
-    struct cs_guard guard; /* the process as it was before the first call */
+    double *setup_x; /* (3,n) where solve_setup was, for the fall-back to CS_SOLVE_PSD */
+    double
+        *setup_v; /* (3,n) its velocity; NULL: no force's share of the matrix depends on it */
+    double *bounds_work; /* (2n); NULL where no force has bounds at a state alone */
+    struct cs_contact_projection contact; /* only with contact by projection */
+    double penetration_max; /* m, to which a step may go behind a surface, of contact by
+                               projection */
+    bool creating;          /* the method may take memory */
+    struct cs_process_state process_state; /* the process as it was before the first call */
     struct cs_run_settings settings;
     struct cs_budget budget;
-    void *self;             /* the method's own */
-    struct cs_stats before; /* counted before the checkpoint that the run goes on from */
-    struct cs_error error;  /* the method's first message */
-    struct cs_bound bound;
-    struct cs_blocked blocked;
-    struct cs_left left;
+    void *self;                   /* the method's own */
+    struct cs_stats stats_before; /* counted before the checkpoint that the run goes on from */
+    struct cs_error error;        /* the method's first message */
+    struct cs_blow_up_check blow_up;
+    struct cs_blocked_step blocked_step;
+    struct cs_advance_check advance_check;
     struct cs_arena arena; /* the method's memory and the solver's */
 };
 

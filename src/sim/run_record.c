@@ -1,49 +1,49 @@
 /* Writes or reads a run between two frames. */
 #include "sim/run_record.h"
 
-#include "model/event/event_record.h"
+#include "model/event/event_serialise.h"
 #include "sim/host.h"
 
 #include <string.h>
 
-bool cs_run_remembers(const struct cs_integrator *integrator) {
+bool cs_run_method_has_history(const struct cs_integrator *integrator) {
     // a module that was built before the calls were there has a shorter struct
     return CS_HAS(integrator, load) && integrator->save && integrator->load;
 }
 
 static void record_reals(void *ctx, double *values, size_t n) {
-    cs_record_bytes(ctx, values, n * sizeof *values);
+    cs_serialiser_bytes(ctx, values, n * sizeof *values);
 }
 
 static void record_wholes(void *ctx, uint64_t *values, size_t n) {
-    cs_record_bytes(ctx, values, n * sizeof *values);
+    cs_serialiser_bytes(ctx, values, n * sizeof *values);
 }
 
-static struct cs_archive archive_of(struct cs_record *record) {
+static struct cs_archive archive_of(struct cs_serialiser *record) {
     return (struct cs_archive){.size = sizeof(struct cs_archive),
                                .ctx = record,
                                .reals = record_reals,
-                               .wholes = record_wholes};
+                               .integers = record_wholes};
 }
 
 /* what the model has changed since the run began */
-static void record_system(struct cs_run *run, struct cs_record *record) {
+static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     struct cs_run_host *host = run->host;
     struct cs_system *system = run->system;
-    cs_record_bytes(record, run->x, 6 * (size_t)system->view.n * sizeof *run->x);
-    CS_RECORD(record, run->t);
-    CS_RECORD(record, run->frame);
-    CS_RECORD(record, host->bound);
-    cs_events_record(system, record);
+    cs_serialiser_bytes(record, run->x, 6 * (size_t)system->view.n * sizeof *run->x);
+    CS_SERIALISER(record, run->t);
+    CS_SERIALISER(record, run->frame);
+    CS_SERIALISER(record, host->blow_up);
+    cs_events_serialise(system, record);
     if (system->plan.rows[CS_FEATURE_CONTACT].built)
-        cs_contact_record(&host->contact, record);
+        cs_contact_projection_serialise(&host->contact, record);
 }
 
 /* what only reports show: taken back last, since making the method and restarting it counts */
-static void record_counts(struct cs_run *run, struct cs_record *record) {
-    CS_RECORD(record, run->counts);
-    CS_RECORD(record, run->notes);
-    CS_RECORD(record, run->n_notes);
+static void record_counts(struct cs_run *run, struct cs_serialiser *record) {
+    CS_SERIALISER(record, run->counts);
+    CS_SERIALISER(record, run->notes);
+    CS_SERIALISER(record, run->n_notes);
     if (run->n_notes > CS_NOTES_MAX)
         record->failed = true;
 }
@@ -53,10 +53,10 @@ static enum cs_status restart_silent(struct cs_run *run, struct cs_error *error)
     return cs_run_restart(run, run->t, error);
 }
 
-enum cs_status cs_run_save(struct cs_run *run, struct cs_record *record,
+enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *record,
                            struct cs_error *error) {
     const struct cs_archive archive = archive_of(record);
-    const bool remembers = cs_run_remembers(run->integrator);
+    const bool remembers = cs_run_method_has_history(run->integrator);
     record_system(run, record);
     record_counts(run, record);
     if (remembers && cs_run_archive(run, run->integrator->save, &archive, error))
@@ -67,16 +67,16 @@ enum cs_status cs_run_save(struct cs_run *run, struct cs_record *record,
 }
 
 /* Its own counts begin at 0 again in a method that does not save them. */
-static void keep_counts(struct cs_run *run) {
-    run->host->before = run->counts.method;
+static void store_counts(struct cs_run *run) {
+    run->host->stats_before = run->counts.method;
 }
 
-enum cs_status cs_run_load(struct cs_run *run, struct cs_record *record,
+enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *record,
                            struct cs_error *error) {
     const struct cs_archive archive = archive_of(record);
-    const bool remembers = cs_run_remembers(run->integrator);
+    const bool remembers = cs_run_method_has_history(run->integrator);
     struct cs_run counted = {0};
-    CS_ASSERT(run->frame == 0 && record->loading);
+    CS_ASSERT(run->frame == 0 && record->is_reading);
     record_system(run, record);
     record_counts(&counted, record);
     if (record->failed)
@@ -91,6 +91,6 @@ enum cs_status cs_run_load(struct cs_run *run, struct cs_record *record,
     run->n_notes = counted.n_notes;
     if (remembers)
         return CS_OK;
-    keep_counts(run);
+    store_counts(run);
     return restart_silent(run, error);
 }

@@ -2,7 +2,7 @@
 #ifndef CS_RUN_STATE_H
 #define CS_RUN_STATE_H
 
-#include "base/trail.h"
+#include "base/trace_stream.h"
 #include "model/system/system.h"
 
 #include <clothsim/integrator.h>
@@ -34,13 +34,14 @@ enum cs_stage {
 /* Exact counts, the same on every machine. */
 struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
-    uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD or CS_SOLVE_BOUND */
-    uint64_t contacts;      /* particles pushed out */
-    uint64_t cut_steps;     /* moves that were too long for contact or crossings */
-    uint64_t contact_tests; /* particle-collider pairs tested */
-    uint64_t limit_moves;   /* springs shortened by the strain limit */
-    uint64_t normals;       /* times that normals were computed in a step */
-    struct cs_stats method; /* what the method counted itself */
+    uint64_t
+        clamped_setups; /* solver set-ups that fell back to CS_SOLVE_PSD or CS_SOLVE_BOUND */
+    uint64_t projected_particles; /* particles pushed out */
+    uint64_t subdivided_steps;    /* moves that were too long for contact or crossings */
+    uint64_t contact_tests;       /* particle-collider pairs tested */
+    uint64_t strain_limit_moves;  /* springs shortened by the strain limit */
+    uint64_t normals;             /* times that normals were computed in a step */
+    struct cs_stats method;       /* what the method counted itself */
 };
 
 struct cs_blow_up {
@@ -51,7 +52,7 @@ struct cs_blow_up {
 
 enum { CS_NOTES_MAX = 8 };
 
-struct cs_account;
+struct cs_energy_ledger;
 struct cs_run_host;
 
 /* Must stay where it is between begin and finish. */
@@ -75,26 +76,26 @@ struct cs_run {
 /* Is told each array that a method and the host hand each other, and each state that a
  * correction after a step leaves: see sim/trace.h. */
 struct cs_trace {
-    void (*take)(void *ctx, const struct cs_trail_point *point);
+    void (*emit)(void *ctx, const struct cs_trace_record *point);
     void *ctx;
-    bool on; /* may be set and cleared between frames */
+    bool enabled; /* may be set and cleared between frames */
 };
 
 /* How a run is begun. Zeroed: as the system stands, without clock, limit or observer. */
 struct cs_run_settings {
     bool timed; /* stage times too */
     /* what the method leaves behind is not looked at: for checks that measure it themselves */
-    bool unchecked;
+    bool skip_advance_check;
     const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
     /* s of processor time from the first step on, after which the run ends as CS_OVER_BUDGET;
      * 0: no limit. The clock is read between steps and never reaches the state. */
     double budget;
     /* Called at the end of every commit, and may move the state: returns whether it did. May be
      * NULL. */
-    bool (*observe)(void *ctx, double t, double dt, double *x, double *v);
-    void *ctx;                  /* of observe */
-    struct cs_account *account; /* kept step by step, see account.h; NULL: none */
-    struct cs_trace *trace;     /* NULL: none */
+    bool (*after_commit)(void *ctx, double t, double dt, double *x, double *v);
+    void *ctx;                       /* of observe */
+    struct cs_energy_ledger *ledger; /* kept step by step, see energy_ledger.h; NULL: none */
+    struct cs_trace *trace;          /* NULL: none */
 };
 
 #endif

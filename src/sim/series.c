@@ -6,11 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum cs_status cs_series_take_name(const char **text, char name[CS_SERIES_BYTES],
-                                   struct cs_error *error) {
+enum cs_status cs_series_parse_name(const char **text, char name[CS_SERIES_BYTES],
+                                    struct cs_error *error) {
     static const char letters[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_+-";
-    const char *method = cs_method_behind_series(*text);
+    const char *method = cs_method_after_series(*text);
     const size_t length = method ? (size_t)(method - *text) - 1 : 0;
     *name = 0;
     if (!method)
@@ -26,7 +26,7 @@ enum cs_status cs_series_take_name(const char **text, char name[CS_SERIES_BYTES]
 
 enum cs_status cs_series_check_name(struct cs_registry *registry, const char *name,
                                     const struct cs_method *method, struct cs_error *error) {
-    const struct cs_registered *found;
+    const struct cs_registry_entry *found;
     struct cs_error unknown = {0};
     if (*name && strcmp(name, method->integrator->name) != 0 &&
         !cs_registry_find(registry, name, &found, &unknown))

@@ -9,8 +9,8 @@ enum { CS_SERIES_BYTES = 256 };
 
 /* Takes SERIES off "SERIES=NAME:key=value": *text then begins with NAME, and name is "" where
  * there is no SERIES. CS_ERR_USAGE where it is none that a file can have. */
-enum cs_status cs_series_take_name(const char **text, char name[CS_SERIES_BYTES],
-                                   struct cs_error *error);
+enum cs_status cs_series_parse_name(const char **text, char name[CS_SERIES_BYTES],
+                                    struct cs_error *error);
 
 /* Refuses the name of a series that is the name of another method: it would be taken for it. */
 enum cs_status cs_series_check_name(struct cs_registry *registry, const char *name,

@@ -1,14 +1,14 @@
 /* Tells who traces a run what it computes. */
 #include "sim/trace.h"
 
-void cs_trace_tell(const struct cs_run_host *host, const struct cs_trail_point *named, double t,
-                   const double *values, size_t n) {
+void cs_trace_emit(const struct cs_run_host *host, const struct cs_trace_record *named,
+                   double t, const double *values, size_t n) {
     const struct cs_trace *trace = host->settings.trace;
-    struct cs_trail_point point = *named;
+    struct cs_trace_record point = *named;
     point.frame = host->run->frame + 1;
     point.step = host->run->counts.steps;
     point.t = t;
     point.values = values;
     point.n = n;
-    trace->take(trace->ctx, &point);
+    trace->emit(trace->ctx, &point);
 }

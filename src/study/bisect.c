@@ -1,7 +1,7 @@
 /* Runs two programs side by side and finds the first number that differs. */
 #include "study/bisect.h"
 
-#include "io/program.h"
+#include "io/subprocess.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -11,8 +11,8 @@
 /* One program under way. */
 struct side {
     const struct cs_bisect_side *asked;
-    struct cs_program program;
-    struct cs_trail trail;
+    struct cs_subprocess program;
+    struct cs_trace_stream trail;
     bool there; /* the trail has a point */
 };
 
@@ -25,8 +25,8 @@ static enum cs_status start(struct side *side, const struct cs_bisect_side *aske
     memcpy(arguments, asked->arguments, asked->n_arguments * sizeof *arguments);
     arguments[asked->n_arguments] = "--trace";
     arguments[asked->n_arguments + 1] = trace;
-    if (!cs_program_open(&side->program, arguments, false, error))
-        side->trail.file = side->program.out;
+    if (!cs_subprocess_open(&side->program, arguments, false, error))
+        side->trail.file = side->program.output;
     free(arguments);
     return error->status;
 }
@@ -48,15 +48,15 @@ static void compare_values(struct cs_bisect_difference *found, const double *a, 
             found->count++;
             found->largest = fmax(found->largest, fabs(a[k] - b[k]));
         }
-    found->found = found->numbers = found->count > 0;
-    if (found->found) {
+    found->exists = found->values_differ = found->count > 0;
+    if (found->exists) {
         found->values[0] = a[found->first];
         found->values[1] = b[found->first];
     }
 }
 
-static void tell_point(const struct side *side, char out[120]) {
-    const struct cs_trail_point *point = &side->trail.point;
+static void print_point(const struct side *side, char out[120]) {
+    const struct cs_trace_record *point = &side->trail.point;
     if (!side->there)
         snprintf(out, 120, "nothing more");
     else if (!strcmp(point->phase, "start") || !strcmp(point->phase, "frame"))
@@ -69,7 +69,7 @@ static void tell_point(const struct side *side, char out[120]) {
 }
 
 static bool is_same_point(const struct side sides[2], double tolerance) {
-    const struct cs_trail_point *a = &sides[0].trail.point, *b = &sides[1].trail.point;
+    const struct cs_trace_record *a = &sides[0].trail.point, *b = &sides[1].trail.point;
     return sides[0].there == sides[1].there && a->frame == b->frame && a->step == b->step &&
            is_same(a->t, b->t, tolerance) && a->n == b->n && !strcmp(a->phase, b->phase) &&
            !strcmp(a->name, b->name);
@@ -78,7 +78,7 @@ static bool is_same_point(const struct side sides[2], double tolerance) {
 static void compare(const struct side sides[2], double tolerance,
                     struct cs_bisect_difference *found) {
     const struct side *side = sides + !sides[0].there;
-    const struct cs_trail_point *point = &side->trail.point;
+    const struct cs_trace_record *point = &side->trail.point;
     *found = (struct cs_bisect_difference){
         .frame = point->frame, .step = point->step, .t = point->t, .n = point->n};
     snprintf(found->phase, sizeof found->phase, "%s", point->phase);
@@ -87,15 +87,15 @@ static void compare(const struct side sides[2], double tolerance,
         compare_values(found, sides[0].trail.values, sides[1].trail.values, tolerance);
         return;
     }
-    found->found = true;
+    found->exists = true;
     for (int k = 0; k < 2; k++)
-        tell_point(sides + k, found->other[k]);
+        print_point(sides + k, found->value_b[k]);
 }
 
 /* The number of steps is a thing of the method: states of frames are compared without it. */
 static void take_point(struct side *side, bool states, struct cs_error *error) {
     struct cs_error said = {0};
-    side->there = !error->status && cs_trail_next(&side->trail, &said);
+    side->there = !error->status && cs_trace_stream_next(&side->trail, &said);
     if (said.status)
         cs_fail(error, said.status, "%s: %s", side->asked->name, said.message);
     if (states && side->there)
@@ -107,41 +107,42 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
                 struct cs_error *error) {
     const bool wrote = side->trail.values;
     const bool ended = !side->there;
-    if (!side->program.id)
+    if (!side->program.pid)
         return;
-    const int code = cs_program_close(&side->program);
+    const int code = cs_subprocess_close(&side->program);
     if (!wrote && !error->status)
         cs_fail(error, CS_ERR_FILE, "%s: %s wrote no trail, exit code %d", side->asked->name,
                 side->asked->arguments[0], code);
-    else if (ended && code != 0 && !found->found)
+    else if (ended && code != 0 && !found->exists)
         cs_fail(error, CS_ERR_MODULE,
                 "%s ended with exit code %d behind frame %" PRIu32
                 ": up to there both are equal",
                 side->asked->name, code, side->trail.point.frame);
-    else if (found->found && !found->numbers && ended)
-        snprintf(found->other[k], sizeof found->other[k], "its end, with exit code %d", code);
-    cs_trail_finish(&side->trail);
+    else if (found->exists && !found->values_differ && ended)
+        snprintf(found->value_b[k], sizeof found->value_b[k], "its end, with exit code %d",
+                 code);
+    cs_trace_stream_finish(&side->trail);
 }
 
 /* Both, once: up to the first difference. */
-static enum cs_status pass(const struct cs_bisect_settings *settings, const char *trace,
-                           struct cs_bisect *bisect, struct cs_bisect_difference *found,
-                           struct cs_error *error) {
+static enum cs_status run_both(const struct cs_bisect_settings *settings, const char *trace,
+                               struct cs_bisect *bisect, struct cs_bisect_difference *found,
+                               struct cs_error *error) {
     struct side sides[2] = {{0}};
-    const bool states = found == &bisect->states;
+    const bool states = found == &bisect->state_difference;
     for (int k = 0; k < 2 && !error->status; k++)
         start(sides + k, settings->sides + k, trace, error);
-    while (!error->status && !found->found) {
+    while (!error->status && !found->exists) {
         take_point(&sides[0], states, error);
         take_point(&sides[1], states, error);
         if (error->status || (!sides[0].there && !sides[1].there))
             break;
         compare(sides, settings->tolerance, found);
-        if (states && !found->found)
-            bisect->equal = found->frame;
+        if (states && !found->exists)
+            bisect->n_equal_frames = found->frame;
         if (settings->stop && *settings->stop)
             cs_fail(error, CS_ERR_INTERRUPT, "interrupted; equal up to frame %" PRIu32,
-                    bisect->equal);
+                    bisect->n_equal_frames);
     }
     end(&sides[0], found, 0, error);
     end(&sides[1], found, 1, error);
@@ -153,13 +154,14 @@ enum cs_status cs_bisect_run(struct cs_bisect *bisect,
                              struct cs_error *error) {
     char frame[16];
     *bisect = (struct cs_bisect){0};
-    if (pass(settings, "frames", bisect, &bisect->states, error) || !bisect->states.found)
+    if (run_both(settings, "frames", bisect, &bisect->state_difference, error) ||
+        !bisect->state_difference.exists)
         return error->status;
     /* the start is not computed, and an end that came early lies in the frame behind */
-    if (!bisect->states.frame)
+    if (!bisect->state_difference.frame)
         return CS_OK;
-    snprintf(frame, sizeof frame, "%" PRIu32, bisect->states.frame);
-    return pass(settings, frame, bisect, &bisect->within, error);
+    snprintf(frame, sizeof frame, "%" PRIu32, bisect->state_difference.frame);
+    return run_both(settings, frame, bisect, &bisect->first_difference, error);
 }
 
 /* "0.1 and 0.2: 3 units in the last place apart" */
@@ -174,7 +176,7 @@ static void print_values(const double values[2], struct cs_text *out) {
                     apart == 1 ? "" : "s");
 }
 
-static void print_place(const struct cs_bisect_difference *d, struct cs_text *out) {
+static void print_position(const struct cs_bisect_difference *d, struct cs_text *out) {
     const size_t particles = d->n / 3;
     /* a single number, or weights, belong to no particle */
     if (d->n % 3 || d->n <= 3) {
@@ -186,11 +188,11 @@ static void print_place(const struct cs_bisect_difference *d, struct cs_text *ou
 }
 
 void cs_bisect_print(const struct cs_bisect_difference *d, struct cs_text *out) {
-    if (!d->numbers) {
-        cs_text_add(out, "A comes to %s\nB comes to %s\n", d->other[0], d->other[1]);
+    if (!d->values_differ) {
+        cs_text_add(out, "A comes to %s\nB comes to %s\n", d->value_b[0], d->value_b[1]);
         return;
     }
-    print_place(d, out);
+    print_position(d, out);
     print_values(d->values, out);
     cs_text_add(out, "\n%zu of %zu numbers differ there, by at most %.3g\n", d->count, d->n,
                 d->largest);

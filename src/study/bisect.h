@@ -8,7 +8,7 @@
 #define CS_BISECT_H
 
 #include "base/text.h"
-#include "base/trail.h"
+#include "base/trace_stream.h"
 
 #include <signal.h>
 #include <stdbool.h>
@@ -28,21 +28,24 @@ struct cs_bisect_settings {
 
 /* What differs between two records that should be the same. */
 struct cs_bisect_difference {
-    bool found, numbers; /* numbers: the values differ, and not only what is computed when */
+    bool exists,
+        values_differ; /* numbers: the values differ, and not only what is computed when */
     uint32_t frame;
     uint64_t step;
     double t;
     char phase[80], name[16];
     size_t first, count, n; /* the first number that differs, of how many, of all */
     double values[2];
-    double largest;     /* difference */
-    char other[2][120]; /* unless numbers: what each computed there instead, or how it ended */
+    double largest; /* difference */
+    char value_b[2]
+                [120]; /* unless numbers: what each computed there instead, or how it ended */
 };
 
 struct cs_bisect {
-    uint32_t equal;                     /* frames */
-    struct cs_bisect_difference states; /* the first at the end of a frame, or at the start */
-    struct cs_bisect_difference within; /* the first of all, in that frame */
+    uint32_t n_equal_frames; /* frames */
+    struct cs_bisect_difference
+        state_difference; /* the first at the end of a frame, or at the start */
+    struct cs_bisect_difference first_difference; /* the first of all, in that frame */
 };
 
 /* CS_ERR_FILE where a program cannot be run, or writes no trail; CS_ERR_INTERRUPT. */

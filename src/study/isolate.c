@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "sim/crash.h"
-#include "study/workers.h"
+#include "study/process_pool.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -55,16 +55,16 @@ static _Noreturn void serve(const struct cs_isolate *isolate, struct shared *sha
 }
 
 /* The side whose call has lasted too long, or NULL. */
-static const struct cs_crash_call *find_hung(const struct cs_isolate *isolate,
-                                             const struct shared *shared,
-                                             struct patience *patience) {
+static const struct cs_crash_call *find_timed_out_call(const struct cs_isolate *isolate,
+                                                       const struct shared *shared,
+                                                       struct patience *patience) {
     const double now = cs_clock_wall(), passed = now - patience->looked;
     /* while both were stopped, nobody waited */
     const double step = passed < LONGEST_LOOK ? passed : LONGEST_LOOK;
     patience->looked = now;
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
         const struct cs_crash_call *call = shared->log.calls + k;
-        const unsigned edges = atomic_load(&call->edges);
+        const unsigned edges = atomic_load(&call->call_parity);
         patience->waited[k] = edges == patience->edges[k] ? patience->waited[k] + step : 0;
         patience->edges[k] = edges;
         if (edges % 2 && patience->waited[k] > isolate->seconds)
@@ -88,7 +88,7 @@ static int wait_for(const struct cs_isolate *isolate, const struct shared *share
     struct patience patience = {0};
     int end = 0;
     while (waitpid(child, &end, WNOHANG) != child) {
-        const struct cs_crash_call *hung = find_hung(isolate, shared, &patience);
+        const struct cs_crash_call *hung = find_timed_out_call(isolate, shared, &patience);
         if (hung) {
             cs_fail(error, CS_ERR_MODULE, "%s \"%s\" hung %s: it was ended after %g s",
                     hung->kind, hung->name, hung->place, isolate->seconds);
@@ -126,15 +126,15 @@ static enum cs_status run(const struct cs_isolate *isolate, struct shared *share
     if (error->status)
         return error->status;
     if (!atomic_load(&shared->done))
-        return cs_crash_tell(&shared->log, end, error);
+        return cs_crash_report_print(&shared->log, end, error);
     *error = shared->error;
     return error->status;
 }
 
 enum cs_status cs_isolate_run(const struct cs_isolate *isolate, struct cs_error *error) {
-    struct shared *shared = cs_workers_take(sizeof *shared, error);
+    struct shared *shared = cs_process_pool_shared_alloc(sizeof *shared, error);
     if (shared)
         run(isolate, shared, error);
-    cs_workers_give_back(shared, sizeof *shared);
+    cs_process_pool_shared_free(shared, sizeof *shared);
     return error->status;
 }

@@ -20,7 +20,7 @@ static void read_processor(char *name, size_t size) {
         fclose(file);
 }
 
-void cs_machine_look(struct cs_machine *machine) {
+void cs_machine_detect(struct cs_machine *machine) {
     *machine = (struct cs_machine){.version = CS_VERSION,
 #ifdef __clang__
                                    .compiler = "clang " __clang_version__,
@@ -43,6 +43,6 @@ void cs_machine_look(struct cs_machine *machine) {
 
 void cs_machine_name(char name[CS_MACHINE_NAME]) {
     struct cs_machine machine;
-    cs_machine_look(&machine);
+    cs_machine_detect(&machine);
     snprintf(name, CS_MACHINE_NAME, "%s: %s", machine.host, machine.processor);
 }

@@ -9,7 +9,7 @@ struct cs_machine {
     const char *version, *compiler, *flags;
 };
 
-void cs_machine_look(struct cs_machine *machine);
+void cs_machine_detect(struct cs_machine *machine);
 
 enum { CS_MACHINE_NAME = 200 };
 /* "host: processor": times that bear the same name can be held against each other. */

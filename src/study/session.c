@@ -4,10 +4,10 @@
 #include "base/pool.h"
 #include "model/plan.h"
 #include "model/system_build.h"
-#include "scene/crossings.h"
-#include "scene/pairs.h"
+#include "scene/body_pairs.h"
+#include "scene/crossing_policy.h"
 #include "scene/shape.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 #include "study/perturb.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
                           CS_ERR_SCENE, error))
             return error->status;
     // what the command line gives may make an option of the scene idle: that is no mistake
-    if (pairs || session->settings.resolved)
+    if (pairs || session->settings.has_all_values)
         session->method.given = 0;
     return cs_method_check(&session->method, place, CS_ERR_SCENE, error);
 }
@@ -105,12 +105,13 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
 
 /* pairs of surfaces are most of the work where there are any */
 static uint32_t threads_of(const struct cs_scene *scene) {
-    const size_t least =
-        cs_scene_any_meet(scene) ? CS_THREADS_AUTO_LEAST_MEETING : CS_THREADS_AUTO_LEAST;
+    const size_t least = cs_scene_has_body_contact(scene)
+                             ? CS_THREADS_AUTO_CONTACT_PARTICLES_MIN
+                             : CS_THREADS_AUTO_PARTICLES_MIN;
     size_t n = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         n += (size_t)cs_shape_count(cs_scene_bodies(scene) + b);
-    return n < least ? 1 : cs_pool_processors(CS_THREADS_AUTO_MOST);
+    return n < least ? 1 : cs_pool_processors(CS_THREADS_AUTO_MAX);
 }
 
 /* before the plan, which says what they take */
@@ -122,10 +123,11 @@ static enum cs_status start_threads(struct cs_session *session, struct cs_error 
     struct cs_error refused = {0};
     if (chosen)
         threads = threads_of(&session->scene);
-    session->pooled = !cs_pool_start(threads, &refused);
+    session->started_pool = !cs_pool_start(threads, &refused);
     /* one thread gives the same bits: a failure only where more were asked for */
-    return session->pooled || chosen ? CS_OK
-                                     : cs_fail(error, refused.status, "%s", refused.message);
+    return session->started_pool || chosen
+               ? CS_OK
+               : cs_fail(error, refused.status, "%s", refused.message);
 }
 
 /* Contact by projection, strain limit and velocity loss are no part of the equation of motion;
@@ -140,14 +142,14 @@ static void make_smooth(struct cs_scene *scene) {
 
 static void change_scene(struct cs_session *session) {
     const struct cs_session_settings *settings = &session->settings;
-    if (settings->smooth)
+    if (settings->switch_off_corrections)
         make_smooth(&session->scene);
-    if (settings->only_count && cs_scene_crossings_by_pairs(&session->scene))
+    if (settings->count_crossings_only && cs_scene_crossings_by_pairs(&session->scene))
         session->scene.crossings = CS_CROSSINGS_COUNT;
     if (settings->fps > 0)
         session->scene.time.fps = settings->fps;
-    if (settings->change)
-        settings->change(&session->scene, settings->ctx);
+    if (settings->edit_scene)
+        settings->edit_scene(&session->scene, settings->ctx);
 }
 
 static enum cs_status open_plan(struct cs_session *session,
@@ -172,7 +174,7 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
         return said.status == CS_ERR_SCENE
                    ? cs_fail(error, said.status, "%s: %s", session->scene.path, said.message)
                    : cs_fail(error, said.status, "%s", said.message);
-    if (cs_inside_clear(&session->system, &session->inside, error))
+    if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))
         return error->status;
     if (session->settings.perturbation > 0)
         cs_perturb_random(&session->system, session->settings.perturbation, 0);
@@ -185,7 +187,7 @@ enum cs_status cs_session_begin(struct cs_session *session, const double *start,
     cs_run_finish(&session->run);
     if (start)
         memcpy(system->state, start, 6 * (size_t)system->view.n * sizeof *start);
-    const struct cs_inside *inside = &session->inside;
+    const struct cs_initial_penetration *inside = &session->initial_penetration;
     if (!cs_run_begin(&session->run, system, session->method.integrator,
                       session->method.options, &session->settings.run, error) &&
         inside->n && !start)
@@ -227,7 +229,7 @@ void cs_session_close(struct cs_session *session) {
     cs_registry_finish(&session->registry);
     cs_scene_finish(&session->scene);
     cs_method_finish(&session->method);
-    if (session->pooled)
+    if (session->started_pool)
         cs_pool_stop();
     *session = (struct cs_session){0};
 }

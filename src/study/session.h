@@ -5,8 +5,8 @@
 #ifndef CS_SESSION_H
 #define CS_SESSION_H
 
-#include "io/scene_read.h"
-#include "model/commit/inside.h"
+#include "model/post_step/initial_penetration.h"
+#include "scene/file/scene_read.h"
 #include "sim/method.h"
 #include "sim/run.h"
 
@@ -17,13 +17,14 @@ struct cs_session_settings {
     const struct cs_override *overrides; /* (n_overrides) */
     uint32_t n_overrides;
     /* changes the scene once it was checked; may be NULL */
-    void (*change)(struct cs_scene *scene, void *ctx);
-    void *ctx;       /* of change */
-    bool smooth;     /* leaves out what acts after steps: contact by projection, strain limit,
-                        velocity loss */
-    bool only_count; /* crossings that the scene says nothing about: no step is cut for them */
-    bool resolved;   /* the scene was printed with every value: those without effect too */
-    double fps;      /* frames a second; 0: the scene's */
+    void (*edit_scene)(struct cs_scene *scene, void *ctx);
+    void *ctx;                   /* of change */
+    bool switch_off_corrections; /* leaves out what acts after steps: contact by projection,
+                    strain limit, velocity loss */
+    bool count_crossings_only;   /* crossings that the scene says nothing about: no step is cut
+                                    for them */
+    bool has_all_values; /* the scene was printed with every value: those without effect too */
+    double fps;          /* frames a second; 0: the scene's */
 
     const char *integrator;     /* "NAME:key=value,key=value", NULL: the scene's own */
     const char *const *plugins; /* (n_plugins) module files */
@@ -48,9 +49,9 @@ struct cs_session_settings {
  * many. */
 enum {
     CS_THREADS_AUTO = UINT16_MAX,
-    CS_THREADS_AUTO_MOST = 16,
-    CS_THREADS_AUTO_LEAST = 16384,
-    CS_THREADS_AUTO_LEAST_MEETING = 1024
+    CS_THREADS_AUTO_MAX = 16,
+    CS_THREADS_AUTO_PARTICLES_MIN = 16384,
+    CS_THREADS_AUTO_CONTACT_PARTICLES_MIN = 1024
 };
 
 /* Zeroed: closed. Must stay where it is while open. */
@@ -61,9 +62,10 @@ struct cs_session {
     struct cs_method method;
     struct cs_plan plan;
     struct cs_system system;
-    struct cs_inside inside; /* what was moved out of obstacles when the system was built */
+    struct cs_initial_penetration
+        initial_penetration; /* what was moved out of obstacles when the system was built */
     struct cs_run run;
-    bool pooled; /* started threads */
+    bool started_pool; /* started threads */
 };
 
 /* The whole way. On failure everything is closed and *error says where and why. */

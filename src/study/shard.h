@@ -7,11 +7,11 @@
 
 /* The number-th of so many, from 1 on; zeroed: all. */
 struct cs_shard {
-    uint32_t number, of;
+    uint32_t index, count;
 };
 
 static inline bool cs_shard_holds(const struct cs_shard *shard, uint32_t k) {
-    return shard->of == 0 || k % shard->of == shard->number - 1;
+    return shard->count == 0 || k % shard->count == shard->index - 1;
 }
 
 #endif

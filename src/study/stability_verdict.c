@@ -28,29 +28,32 @@ char cs_stability_letter(enum cs_stability_verdict verdict) {
     return verdicts[verdict].letter;
 }
 
-struct cs_trial_limits cs_stability_limits(const struct cs_trial *reference) {
-    const double held = fmax(reference->held, LEAST_ENERGY);
-    return (struct cs_trial_limits){
-        .speed = 5 * fmax(reference->speed, LEAST_SPEED),
+struct cs_sampled_run_limits cs_stability_limits(const struct cs_sampled_run *reference) {
+    const double held = fmax(reference->energy_max, LEAST_ENERGY);
+    return (struct cs_sampled_run_limits){
+        .speed = 5 * fmax(reference->speed_max, LEAST_SPEED),
         .energy = 2 * held,
-        .gain = reference->gained + held / 2,
+        .energy_gain = reference->energy_gain_max + held / 2,
     };
 }
 
-static bool is_growing(const struct cs_trial *trial, const struct cs_trial *reference) {
-    return trial->late > 1.5 * trial->early ||
+static bool is_growing(const struct cs_sampled_run *trial,
+                       const struct cs_sampled_run *reference) {
+    return trial->energy_max_second_half > 1.5 * trial->energy_max_first_half ||
            trial->mean_kinetic > 10 * fmax(reference->mean_kinetic, LEAST_ENERGY);
 }
 
-enum cs_stability_verdict cs_stability_judge(const struct cs_trial *trial,
-                                             const struct cs_trial *reference, bool whole) {
+enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
+                                             const struct cs_sampled_run *reference,
+                                             bool whole) {
     if (trial->outcome == CS_NOT_FINITE)
         return CS_STABILITY_NOT_FINITE;
-    if (trial->outcome == CS_UNBOUNDED || (trial->beyond && is_growing(trial, reference)))
+    if (trial->outcome == CS_UNBOUNDED ||
+        (trial->exceeded_limit && is_growing(trial, reference)))
         return CS_STABILITY_GLOBAL;
     if (trial->failed)
         return CS_STABILITY_FAILED;
-    if (trial->excess.found)
+    if (trial->speed_excess.exists)
         return CS_STABILITY_LOCAL;
     if (trial->outcome == CS_OVER_BUDGET)
         return CS_STABILITY_OVER_BUDGET;
@@ -62,6 +65,8 @@ enum cs_stability_verdict cs_stability_judge(const struct cs_trial *trial,
     return CS_STABILITY_BOUNDED;
 }
 
-double cs_stability_drift(const struct cs_trial *trial, const struct cs_trial *reference) {
-    return (trial->end_energy - reference->end_energy) / fmax(reference->held, LEAST_ENERGY);
+double cs_stability_drift(const struct cs_sampled_run *trial,
+                          const struct cs_sampled_run *reference) {
+    return (trial->end_energy - reference->end_energy) /
+           fmax(reference->energy_max, LEAST_ENERGY);
 }

@@ -2,7 +2,7 @@
 #ifndef CS_STABILITY_VERDICT_H
 #define CS_STABILITY_VERDICT_H
 
-#include "study/trial.h"
+#include "study/sampled_run.h"
 
 /* X(name, word, letter of maps, what it means) from best to worst */
 #define CS_STABILITY_LIST(X)                                                                   \
@@ -41,17 +41,19 @@ static inline bool cs_stability_is_sound(enum cs_stability_verdict verdict) {
 
 /* What a run may reach, from a trusted run of the same scene over the same time: speed 5 times
  * its fastest, energy 2 times what it held, gain half of that above what it gained. */
-struct cs_trial_limits cs_stability_limits(const struct cs_trial *reference);
+struct cs_sampled_run_limits cs_stability_limits(const struct cs_sampled_run *reference);
 
 /* Judges a run that had those limits. Energy beyond them makes a global instability where it
  * grew by half from the first half of the run to the second, or where the mean kinetic energy
  * is ten times the reference's: a symplectic method near its limit makes a fast motion larger
  * and yet stays there for ever. whole: the run was to last as long as the reference; else
  * CS_STABILITY_SHORT stands in place of the stable ones. */
-enum cs_stability_verdict cs_stability_judge(const struct cs_trial *trial,
-                                             const struct cs_trial *reference, bool whole);
+enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
+                                             const struct cs_sampled_run *reference,
+                                             bool whole);
 
 /* Energy at the end less the reference's there, in shares of what the reference held. */
-double cs_stability_drift(const struct cs_trial *trial, const struct cs_trial *reference);
+double cs_stability_drift(const struct cs_sampled_run *trial,
+                          const struct cs_sampled_run *reference);
 
 #endif

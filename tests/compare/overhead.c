@@ -2,7 +2,7 @@
  * watch for a blow-up, and the clocks, against the force itself. Prints shares in percent. */
 #include "base/clock.h"
 #include "model/force/terms.h"
-#include "study/course.h"
+#include "study/recorded_run.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,11 +53,11 @@ static double measure(const struct bench *bench, void (*call)(const struct bench
 
 int main(int argc, char **argv) {
     struct cs_error error = {0};
-    struct cs_course course;
-    const struct cs_course_settings settings = {
+    struct cs_recorded_run recording;
+    const struct cs_recorded_run_settings settings = {
         .session = {.scene = argc > 1 ? argv[1] : "scenes/drum.json"}, .frames = 1};
-    struct cs_session *session = &course.session;
-    if (!cs_course_open(&course, &settings, "velocity-verlet", &error))
+    struct cs_session *session = &recording.session;
+    if (!cs_recorded_run_open(&recording, &settings, "velocity-verlet", &error))
         session->settings.run.budget = 1e6;
     if (error.status || cs_session_begin(session, NULL, &error)) {
         fprintf(stderr, "%s\n", error.message);
@@ -76,6 +76,6 @@ int main(int argc, char **argv) {
            1e6 * force, 100 * (table / force - 1), 100 * commit / force,
            100 * 2 * clock / (240 * force));
     free(bench.f);
-    cs_course_close(&course);
+    cs_recorded_run_close(&recording);
     return EXIT_SUCCESS;
 }

@@ -45,7 +45,7 @@ static inline enum cs_status run_in(struct cs_compare *compare,
     const bool large = unit > 1;
     struct cs_error error = {0};
     *settings = (struct cs_compare_settings){
-        .course = {.session = {.scene = place->scene, .run = {.stop = &stop}}, .frames = 6},
+        .run = {.session = {.scene = place->scene, .run = {.stop = &stop}}, .frames = 6},
         .methods = methods,
         .reference = {"rk4:dt=2e-4",
                       large ? "dopri5:rtol=1e-12,atol=1e-9" : "dopri5:rtol=1e-12,atol=1e-12"},

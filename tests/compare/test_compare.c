@@ -1,10 +1,10 @@
 /* A whole comparison: rows, orders, the file, the verdict. */
 #include "place.h"
+#include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_csv.h"
 #include "study/compare/compare_plot.h"
 #include "study/compare/compare_svg.h"
 #include "study/compare/ranking.h"
-#include "study/compare/sweep_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,19 +21,19 @@ START_TEST(orders_are_seen) {
     static const double orders[] = {1, 2, 4};
     place_make(&place, "0.02");
     run(&compare, &settings, &place, METHODS, &watch);
-    ck_assert_uint_eq(compare.sweep.n, 4 + 4 + 4 + 1 + 9);
-    ck_assert_uint_eq(watch.rows, compare.sweep.n);
+    ck_assert_uint_eq(compare.cells.n, 4 + 4 + 4 + 1 + 9);
+    ck_assert_uint_eq(watch.rows, compare.cells.n);
     for (uint32_t m = 0; m < 3; m++)
-        ck_assert_msg(fabs(compare.sweep.cells[4 * m + 3].order - orders[m]) < 0.1,
-                      "%s: order %g", compare.sweep.cells[4 * m].method,
-                      compare.sweep.cells[4 * m + 3].order);
-    const struct cs_cell *blown = compare.sweep.cells + 12;
+        ck_assert_msg(fabs(compare.cells.cells[4 * m + 3].order - orders[m]) < 0.1,
+                      "%s: order %g", compare.cells.cells[4 * m].method,
+                      compare.cells.cells[4 * m + 3].order);
+    const struct cs_cell *blown = compare.cells.cells + 12;
     ck_assert_msg(!strncmp(blown->outcome, "blew up", 7), "explicit Euler %s", blown->outcome);
     ck_assert(isnan(blown->error) && blown->cpu > 0);
     // tolerances are asked for and kept within reason
-    for (uint32_t k = 13; k < compare.sweep.n; k++)
-        ck_assert(compare.sweep.cells[k].achieved > 1e-4 &&
-                  compare.sweep.cells[k].achieved < 100);
+    for (uint32_t k = 13; k < compare.cells.n; k++)
+        ck_assert(compare.cells.cells[k].achieved > 1e-4 &&
+                  compare.cells.cells[k].achieved < 100);
     cs_compare_finish(&compare);
     place_remove(&place);
 }
@@ -52,18 +52,18 @@ START_TEST(file_reads_back) {
     run(&compare, &settings, &place, METHODS, &watch);
     snprintf(path, sizeof path, "%s/compare.csv", place.folder);
     ck_assert(!cs_csv_read(path, &cells, &n, &error));
-    ck_assert_uint_eq(n, compare.sweep.n);
+    ck_assert_uint_eq(n, compare.cells.n);
     for (uint32_t k = 0; k < n; k++)
         for (uint32_t c = 0; c < cs_n_columns; c++) {
             const size_t at = cs_columns[c].offset;
             const char *a = (const char *)(cells + k) + at,
-                       *b = (const char *)(compare.sweep.cells + k) + at;
+                       *b = (const char *)(compare.cells.cells + k) + at;
             const bool nan = cs_columns[c].type == CS_CELL_NUMBER &&
                              isnan(cs_cell_number(cells + k, cs_columns + c));
             if (cs_columns[c].type == CS_CELL_TEXT)
                 ck_assert_str_eq(a, b);
             else if (nan)
-                ck_assert(isnan(cs_cell_number(compare.sweep.cells + k, cs_columns + c)));
+                ck_assert(isnan(cs_cell_number(compare.cells.cells + k, cs_columns + c)));
             else
                 ck_assert_mem_eq(a, b, cs_columns[c].size);
         }
@@ -114,14 +114,14 @@ START_TEST(ranking_takes_the_cheapest) {
     for (uint32_t r = 0; r < ranking.n; r++) {
         const struct cs_rank *rank = ranking.ranks + r;
         ck_assert_double_le(rank->best->error, pow(10, rank->exponent));
-        for (uint32_t k = 0; k < compare.sweep.n; k++) {
-            const struct cs_cell *cell = compare.sweep.cells + k;
+        for (uint32_t k = 0; k < compare.cells.n; k++) {
+            const struct cs_cell *cell = compare.cells.cells + k;
             ck_assert(!(cell->error <= pow(10, rank->exponent)) ||
                       !(cell->cpu < rank->best->cpu));
         }
-        ck_assert(!rank->next || rank->ratio.factor >= 1);
-        ck_assert(!rank->next || strcmp(rank->next->series, rank->best->series) != 0);
-        ck_assert(ranking.front[rank->best - compare.sweep.cells]);
+        ck_assert(!rank->runner_up || rank->ratio.median >= 1);
+        ck_assert(!rank->runner_up || strcmp(rank->runner_up->series, rank->best->series) != 0);
+        ck_assert(ranking.on_pareto_front[rank->best - compare.cells.cells]);
     }
     cs_ranking_finish(&ranking);
     cs_compare_finish(&compare);
@@ -130,37 +130,37 @@ START_TEST(ranking_takes_the_cheapest) {
 END_TEST
 
 START_TEST(list_is_read) {
-    struct cs_sweep sweep;
+    struct cs_cell_list sweep;
     struct cs_error error = {0};
-    const struct cs_sweep_settings settings = {
+    const struct cs_cell_list_settings settings = {
         .list = "rk4:dt=1e-3..4e-3,velocity-verlet,dopri5:rtol=1e-4..1e-3,atol=1e-9",
         .fps = 60,
         .omega = 1000,
         .size = 1};
-    ck_assert_msg(!cs_sweep_make(&sweep, &settings, &error), "%s", error.message);
+    ck_assert_msg(!cs_cell_list_parse(&sweep, &settings, &error), "%s", error.message);
     ck_assert_uint_eq(sweep.n, 3 + 8 + 3);
     ck_assert_str_eq(sweep.cells[0].options, "dt=0.004");
     ck_assert_str_eq(sweep.cells[2].options, "dt=0.001");
     ck_assert_double_le(sweep.cells[3].value, 1 / 60.0);
     ck_assert_double_gt(sweep.cells[3].value, 2 / settings.omega);
     ck_assert_str_eq(sweep.cells[11].options, "atol=1e-09,rtol=0.001");
-    cs_sweep_finish(&sweep);
+    cs_cell_list_finish(&sweep);
 }
 END_TEST
 
 /* The cells of a list, "series options" each, between semicolons. */
 static const char *cells_of(const char *list, char *out, size_t size) {
-    struct cs_sweep sweep;
+    struct cs_cell_list sweep;
     struct cs_error error = {0};
-    const struct cs_sweep_settings settings = {
+    const struct cs_cell_list_settings settings = {
         .list = list, .fps = 60, .omega = 1000, .size = 1};
     *out = 0;
-    if (cs_sweep_make(&sweep, &settings, &error))
+    if (cs_cell_list_parse(&sweep, &settings, &error))
         snprintf(out, size, "%s", error.message);
     for (uint32_t k = 0; k < sweep.n; k++)
         snprintf(out + strlen(out), size - strlen(out), "%s%s %s", k ? "; " : "",
                  sweep.cells[k].series, sweep.cells[k].options);
-    cs_sweep_finish(&sweep);
+    cs_cell_list_finish(&sweep);
     return out;
 }
 
@@ -208,10 +208,10 @@ START_TEST(tolerances_have_no_unit) {
         run_in(compare + k, settings + k, &place, methods, &watch, 0.5, unit);
         place_remove(&place);
     }
-    ck_assert_uint_eq(compare[0].sweep.n, compare[1].sweep.n);
-    for (uint32_t k = 0; k < compare[0].sweep.n; k++) {
-        const struct cs_cell *one = compare[0].sweep.cells + k,
-                             *other = compare[1].sweep.cells + k;
+    ck_assert_uint_eq(compare[0].cells.n, compare[1].cells.n);
+    for (uint32_t k = 0; k < compare[0].cells.n; k++) {
+        const struct cs_cell *one = compare[0].cells.cells + k,
+                             *other = compare[1].cells.cells + k;
         ck_assert_double_eq_tol(other->achieved / one->achieved, 1, 0.01);
         ck_assert_double_eq_tol(other->error / one->error / 1000, 1, 0.01);
     }

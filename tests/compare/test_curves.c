@@ -105,7 +105,7 @@ START_TEST(a_family_is_drawn_whole_and_alone) {
     for (uint32_t c = 0; c < curves.n; c++) {
         const bool mine = !strcmp(cells[curves.list[c].first].family, "implicit");
         ck_assert_int_eq(curves.list[c].style >= 0, mine);
-        ck_assert_uint_eq(mine ? 0 : curves.list[c].crosses, 0);
+        ck_assert_uint_eq(mine ? 0 : curves.list[c].failed_marks, 0);
     }
     ck_assert_uint_eq(cs_curves_left_out(&curves), 0);
 }
@@ -152,12 +152,12 @@ START_TEST(no_axis_is_without_labels) {
         const double start = -12 + 20 * noise((unsigned)k);
         const double span = log10(4) + 25 * noise((unsigned)k + 5000) * noise((unsigned)k);
         const double range[2] = {start, start + span};
-        struct cs_tick ticks[CS_TICKS_MOST];
+        struct cs_tick ticks[CS_TICKS_MAX];
         const uint32_t n = cs_curves_ticks(range, ticks);
         uint32_t labels = 0;
         for (uint32_t i = 0; i < n; i++) {
-            ck_assert(ticks[i].at >= range[0] && ticks[i].at <= range[1]);
-            ck_assert_double_eq_tol(ticks[i].at, ticks[i].decade + log10(ticks[i].digit),
+            ck_assert(ticks[i].position >= range[0] && ticks[i].position <= range[1]);
+            ck_assert_double_eq_tol(ticks[i].position, ticks[i].decade + log10(ticks[i].digit),
                                     1e-12);
             labels += ticks[i].label;
         }

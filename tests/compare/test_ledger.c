@@ -28,7 +28,7 @@ START_TEST(interrupted_comparison_goes_on) {
     free(cells);
     ck_assert_int_eq(run(&compare, &settings, &place, METHODS, &again), CS_OK);
     ck_assert_uint_eq(again.taken, 5);
-    ck_assert_uint_eq(again.rows, compare.sweep.n);
+    ck_assert_uint_eq(again.rows, compare.cells.n);
     cs_compare_finish(&compare);
     place_remove(&place);
 }
@@ -49,12 +49,12 @@ START_TEST(other_methods_are_added) {
     // a shorter list keeps all rows, another step falls into its place
     run(&compare, &settings, &place, "rk4:dt=5e-4..2e-3", &second);
     ck_assert_uint_eq(second.taken, 6);
-    ck_assert_uint_eq(compare.sweep.n, 7);
+    ck_assert_uint_eq(compare.cells.n, 7);
     for (uint32_t k = 0; k < 5; k++) {
-        ck_assert_str_eq(compare.sweep.cells[k].method, "rk4");
-        ck_assert_double_eq(compare.sweep.cells[k].value, 8e-3 / (1 << k));
+        ck_assert_str_eq(compare.cells.cells[k].method, "rk4");
+        ck_assert_double_eq(compare.cells.cells[k].value, 8e-3 / (1 << k));
     }
-    ck_assert_double_eq_tol(compare.sweep.cells[4].order, 4, 0.1);
+    ck_assert_double_eq_tol(compare.cells.cells[4].order, 4, 0.1);
     cs_compare_finish(&compare);
     snprintf(path, sizeof path, "%s/compare.csv", place.folder);
     ck_assert(!cs_csv_read(path, &cells, &n, &error));
@@ -79,7 +79,7 @@ START_TEST(over_budget_runs_again_with_more) {
     struct cs_compare_settings settings;
     place_make(&place, "0.02");
     run_for(&compare, &settings, &place, "rk4:dt=5e-5", &first, 1e-3);
-    ck_assert_str_eq(compare.sweep.cells->outcome, cs_outcome_text(CS_OVER_BUDGET));
+    ck_assert_str_eq(compare.cells.cells->outcome, cs_outcome_text(CS_OVER_BUDGET));
     cs_compare_finish(&compare);
     run_for(&compare, &settings, &place, "rk4:dt=5e-5", &second, 1e-3);
     ck_assert_uint_eq(second.taken, 1);
@@ -87,7 +87,7 @@ START_TEST(over_budget_runs_again_with_more) {
     // without one, a single cell has the most that there is
     run_for(&compare, &settings, &place, "rk4:dt=5e-5", &third, 0);
     ck_assert_uint_eq(third.taken, 0);
-    ck_assert_double_eq(compare.budget, CS_COMPARE_MOST);
+    ck_assert_double_eq(compare.budget, CS_COMPARE_RUN_SECONDS_MAX);
     cs_compare_finish(&compare);
     place_remove(&place);
 }
@@ -144,7 +144,7 @@ START_TEST(other_machines_are_told_apart) {
     place_make(&place, "0.02");
     run(&compare, &settings, &place, "rk4:dt=1e-3..2e-3", &first);
     ck_assert_str_ne(compare.machine, "");
-    ck_assert_str_eq(compare.sweep.cells->machine, compare.machine);
+    ck_assert_str_eq(compare.cells.cells->machine, compare.machine);
     cs_compare_finish(&compare);
     snprintf(command, sizeof command,
              "sed -i 's/,[^,]*: [^,]*,\\([^,]*\\)$/,far: away,\\1/' %s/compare.csv",
@@ -152,13 +152,14 @@ START_TEST(other_machines_are_told_apart) {
     ck_assert_int_eq(system(command), 0);
     // what is of another machine stays, and is run here as well
     run(&compare, &settings, &place, "rk4:dt=1e-3..2e-3", &second);
-    ck_assert_uint_eq(compare.sweep.n, 4);
-    ck_assert_str_eq(compare.sweep.cells[0].series, "rk4");
-    ck_assert_str_eq(compare.sweep.cells[2].series, "rk4@far");
-    ck_assert_double_eq(compare.sweep.cells[0].error, compare.sweep.cells[2].error);
+    ck_assert_uint_eq(compare.cells.n, 4);
+    ck_assert_str_eq(compare.cells.cells[0].series, "rk4");
+    ck_assert_str_eq(compare.cells.cells[2].series, "rk4@far");
+    ck_assert_double_eq(compare.cells.cells[0].error, compare.cells.cells[2].error);
     ck_assert(!cs_ranking_make(&ranking, &compare, &error));
     for (uint32_t k = 0; k < ranking.n; k++)
-        ck_assert(ranking.ranks[k].best < compare.sweep.cells + 2 && !ranking.ranks[k].next);
+        ck_assert(ranking.ranks[k].best < compare.cells.cells + 2 &&
+                  !ranking.ranks[k].runner_up);
     cs_ranking_finish(&ranking);
     cs_compare_finish(&compare);
     place_remove(&place);

@@ -16,10 +16,10 @@ static void get(struct cs_compare_reference *reference, const char *first, const
     char path[64];
     struct cs_error error = {0};
     scene_write(path, SMALL_SCENE, "0.02");
-    const struct cs_course_settings course = {
+    const struct cs_recorded_run_settings recording = {
         .session = {.scene = path, .plugins = plugins, .n_plugins = 1}, .frames = FRAMES};
     const struct cs_compare_reference_settings settings = {
-        .course = &course, .methods = {first, second}, .accuracy = 1e-6, .cache = cache};
+        .run = &recording, .methods = {first, second}, .accuracy = 1e-6, .cache = cache};
     cs_compare_reference_get(reference, &settings, &error);
     unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
@@ -28,10 +28,10 @@ static void get(struct cs_compare_reference *reference, const char *first, const
 START_TEST(two_families_agree) {
     struct cs_compare_reference reference;
     get(&reference, "rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12", NULL);
-    ck_assert_msg(reference.agree, "%s", reference.reason);
+    ck_assert_msg(reference.families_agree, "%s", reference.reason);
     ck_assert(reference.pointwise);
-    ck_assert_double_lt(reference.bar, 1e-9 * reference.scale);
-    ck_assert_double_gt(reference.bar, 0);
+    ck_assert_double_lt(reference.error_bar, 1e-9 * reference.motion_scale);
+    ck_assert_double_gt(reference.error_bar, 0);
     cs_compare_reference_finish(&reference);
 }
 END_TEST
@@ -41,7 +41,7 @@ START_TEST(planted_bug_is_found) {
     for (int side = 0; side < 2; side++) {
         const char *good = "dopri5:rtol=1e-12,atol=1e-12", *bad = "biased-rk4:dt=2e-4";
         get(&reference, side ? good : bad, side ? bad : good, NULL);
-        ck_assert_msg(!reference.agree, "found to agree: families %g, twins %g and %g",
+        ck_assert_msg(!reference.families_agree, "found to agree: families %g, twins %g and %g",
                       reference.differences[2], reference.differences[0],
                       reference.differences[1]);
         ck_assert_ptr_nonnull(strstr(reference.reason, "biased-rk4"));
@@ -56,22 +56,23 @@ END_TEST
 static double true_error(const struct cs_compare_reference *reference, const char *integrator) {
     char path[64];
     struct cs_error error = {0};
-    struct cs_course course;
-    struct cs_course_end end = {0};
-    struct cs_track track;
+    struct cs_recorded_run recording;
+    struct cs_recorded_run_result end = {0};
+    struct cs_trajectory track;
     double found = 0;
     scene_write(path, SMALL_SCENE, "0.02");
-    const struct cs_course_settings asked = {.session = {.scene = path}, .frames = FRAMES};
-    ck_assert(!cs_course_open(&course, &asked, integrator, &error));
-    ck_assert(!cs_track_init(&track, &course, &error));
-    ck_assert(!cs_course_run(&course, 0, &track, &end, &error));
+    const struct cs_recorded_run_settings asked = {.session = {.scene = path},
+                                                   .frames = FRAMES};
+    ck_assert(!cs_recorded_run_open(&recording, &asked, integrator, &error));
+    ck_assert(!cs_trajectory_init(&track, &recording, &error));
+    ck_assert(!cs_recorded_run_execute(&recording, 0, &track, &end, &error));
     ck_assert(end.outcome == CS_RUNNING && !end.failed);
     for (uint32_t k = 1; k <= FRAMES; k++)
-        found = fmax(found, cs_distance_rms(&course.session.system,
-                                            cs_track_state(&reference->track, k),
-                                            cs_track_state(&track, k)));
-    cs_track_finish(&track);
-    cs_course_close(&course);
+        found = fmax(found, cs_distance_rms(&recording.session.system,
+                                            cs_trajectory_state(&reference->trajectory, k),
+                                            cs_trajectory_state(&track, k)));
+    cs_trajectory_finish(&track);
+    cs_recorded_run_close(&recording);
     unlink(path);
     return found;
 }
@@ -92,10 +93,10 @@ START_TEST(bar_is_near_the_true_error) {
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
         get(&reference, pairs[k].first, pairs[k].second, NULL);
         const double error = true_error(&reference, "rk4:dt=5e-5");
-        ck_assert_msg(reference.agree, "%s: %s", pairs[k].first, reference.reason);
-        ck_assert_msg(reference.bar >= error && reference.bar <= 30 * error,
+        ck_assert_msg(reference.families_agree, "%s: %s", pairs[k].first, reference.reason);
+        ck_assert_msg(reference.error_bar >= error && reference.error_bar <= 30 * error,
                       "%s and %s: bar %.3g m, true error %.3g m", pairs[k].first,
-                      pairs[k].second, reference.bar, error);
+                      pairs[k].second, reference.error_bar, error);
         cs_compare_reference_finish(&reference);
     }
 }
@@ -107,8 +108,8 @@ START_TEST(defaults_are_two_families_of_high_order) {
     get(&reference, NULL, NULL, NULL);
     ck_assert_msg(strncmp(reference.methods[2], "gauss:order=8,", 14) == 0, "%s",
                   reference.methods[2]);
-    ck_assert_msg(reference.agree, "%s", reference.reason);
-    ck_assert_double_lt(reference.bar, 1e-12 * reference.scale);
+    ck_assert_msg(reference.families_agree, "%s", reference.reason);
+    ck_assert_double_lt(reference.error_bar, 1e-12 * reference.motion_scale);
     cs_compare_reference_finish(&reference);
 }
 END_TEST
@@ -130,17 +131,18 @@ START_TEST(rough_scenes_take_adaptive_steps) {
     struct cs_error error = {0};
     struct cs_compare_reference reference;
     scene_write(path, ROUGH, "0.001");
-    const struct cs_course_settings course = {.session = {.scene = path}, .frames = FRAMES};
-    const struct cs_compare_reference_settings settings = {.course = &course, .accuracy = 1e-6};
+    const struct cs_recorded_run_settings recording = {.session = {.scene = path},
+                                                       .frames = FRAMES};
+    const struct cs_compare_reference_settings settings = {.run = &recording, .accuracy = 1e-6};
     cs_compare_reference_get(&reference, &settings, &error);
     unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
-    ck_assert_msg(reference.agree, "%s", reference.reason);
+    ck_assert_msg(reference.families_agree, "%s", reference.reason);
     // where a build has both of the library
     if (!strncmp(reference.methods[0], "ark-erk", 7)) {
         ck_assert_msg(!strncmp(reference.methods[2], "cvode-adams:", 12), "%s",
                       reference.methods[2]);
-        ck_assert_double_lt(reference.bar, 1e-9);
+        ck_assert_double_lt(reference.error_bar, 1e-9);
     }
     cs_compare_reference_finish(&reference);
 }
@@ -166,9 +168,9 @@ START_TEST(cache_gives_the_same_states) {
     get(&second, "rk4:dt=1e-3", "dopri5:rtol=1e-10,atol=1e-10", folder);
     ck_assert(!first.cached);
     ck_assert(second.cached);
-    ck_assert_double_eq(first.bar, second.bar);
-    ck_assert_mem_eq(cs_track_state(&first.track, FRAMES),
-                     cs_track_state(&second.track, FRAMES), 6 * 36 * sizeof(double));
+    ck_assert_double_eq(first.error_bar, second.error_bar);
+    ck_assert_mem_eq(cs_trajectory_state(&first.trajectory, FRAMES),
+                     cs_trajectory_state(&second.trajectory, FRAMES), 6 * 36 * sizeof(double));
     cs_compare_reference_finish(&first);
     cs_compare_reference_finish(&second);
     // other settings are another reference
@@ -196,8 +198,9 @@ static struct cs_horizon drape(const char *damping, double accuracy) {
     struct cs_error error = {0};
     char path[64];
     scene_write(path, DRAPE, damping);
-    const struct cs_course_settings course = {.session = {.scene = path}, .frames = 200};
-    cs_horizon_measure(&horizon, &course, accuracy, NULL, &error);
+    const struct cs_recorded_run_settings recording = {.session = {.scene = path},
+                                                       .frames = 200};
+    cs_horizon_measure(&horizon, &recording, accuracy, NULL, &error);
     unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
     return horizon;
@@ -231,32 +234,33 @@ START_TEST(events_are_hit_again_in_every_run) {
     char path[64];
     struct cs_error error = {0};
     struct cs_compare_reference reference;
-    struct cs_course course;
-    struct cs_course_end end;
-    struct cs_track tracks[2];
+    struct cs_recorded_run recording;
+    struct cs_recorded_run_result end;
+    struct cs_trajectory tracks[2];
     scene_write(path, EVENTS, "0.02");
-    const struct cs_course_settings asked = {.session = {.scene = path}, .frames = FRAMES};
+    const struct cs_recorded_run_settings asked = {.session = {.scene = path},
+                                                   .frames = FRAMES};
     const struct cs_compare_reference_settings settings = {
-        .course = &asked,
+        .run = &asked,
         .methods = {"rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12"},
         .accuracy = 1e-6};
     ck_assert(!cs_compare_reference_get(&reference, &settings, &error));
     ck_assert_msg(reference.pointwise, "%s", reference.reason);
-    ck_assert_double_lt(reference.bar, 1e-9);
-    ck_assert(!cs_course_open(&course, &asked, "rk4:dt=1e-3", &error));
+    ck_assert_double_lt(reference.error_bar, 1e-9);
+    ck_assert(!cs_recorded_run_open(&recording, &asked, "rk4:dt=1e-3", &error));
     for (int k = 0; k < 2; k++) {
-        ck_assert(!cs_track_init(tracks + k, &course, &error));
-        ck_assert(!cs_course_run(&course, 0, tracks + k, &end, &error));
-        ck_assert_double_lt(cs_distance_rms(&course.session.system,
-                                            cs_track_state(tracks + k, FRAMES),
-                                            cs_track_state(&reference.track, FRAMES)),
+        ck_assert(!cs_trajectory_init(tracks + k, &recording, &error));
+        ck_assert(!cs_recorded_run_execute(&recording, 0, tracks + k, &end, &error));
+        ck_assert_double_lt(cs_distance_rms(&recording.session.system,
+                                            cs_trajectory_state(tracks + k, FRAMES),
+                                            cs_trajectory_state(&reference.trajectory, FRAMES)),
                             1e-5);
     }
     const size_t bytes = (FRAMES + 1) * 6 * tracks->n * sizeof(double);
     ck_assert_mem_eq(tracks[0].states, tracks[1].states, bytes);
     for (int k = 0; k < 2; k++)
-        cs_track_finish(tracks + k);
-    cs_course_close(&course);
+        cs_trajectory_finish(tracks + k);
+    cs_recorded_run_close(&recording);
     cs_compare_reference_finish(&reference);
     unlink(path);
 }

@@ -36,10 +36,10 @@ static struct cs_cell cells[CELLS];
 static void take_rows(unsigned bits) {
     uint64_t state = 7;
     uint32_t n = 0, of[CELLS];
-    settings = (struct cs_compare_settings){.course = {.frames = FRAMES}};
+    settings = (struct cs_compare_settings){.run = {.frames = FRAMES}};
     compare = (struct cs_compare){.settings = &settings, .fps = FPS};
     compare.reference = (struct cs_compare_reference){
-        .agree = true, .pointwise = true, .scale = 1, .bar = 1e-9};
+        .families_agree = true, .pointwise = true, .motion_scale = 1, .error_bar = 1e-9};
     for (uint32_t k = 0; k < CELLS; k++) {
         const struct row *row = rows + k;
         if (!(bits >> k & 1))
@@ -59,8 +59,8 @@ static void take_rows(unsigned bits) {
         cell->cpu = row->cpu;
         n++;
     }
-    compare.sweep.cells = cells;
-    compare.sweep.n = n;
+    compare.cells.cells = cells;
+    compare.cells.n = n;
     struct cs_error error = {0};
     ck_assert(!cs_rounds_init(&compare.rounds, n, &error));
     compare.rounds.n = ROUNDS;
@@ -73,7 +73,7 @@ static void take_rows(unsigned bits) {
 
 /* The row that a sentence begins with: "SERIES (dt 2 ms)" or "SERIES (rtol 1.0e-05)". */
 static const struct cs_cell *named(const char *text) {
-    for (uint32_t i = 0; i < compare.sweep.n; i++) {
+    for (uint32_t i = 0; i < compare.cells.n; i++) {
         char name[400];
         if (cells[i].adaptive)
             snprintf(name, sizeof name, "%.99s (rtol %.1e)", cells[i].series, cells[i].value);
@@ -126,7 +126,7 @@ static int check_rank(const char *line, int *first) {
     check_factor(strchr(line, ';'), best, &next);
     ck_assert(finished(best) && best->error <= pow(10, last) * 1.000001);
     ck_assert(!next || next->error <= pow(10, last) * 1.000001);
-    for (uint32_t i = 0; i < compare.sweep.n; i++)
+    for (uint32_t i = 0; i < compare.cells.n; i++)
         for (int decade = *first; decade >= last; decade--) {
             if (!finished(cells + i) || !(cells[i].error <= pow(10, decade) * 1.000001))
                 continue;
@@ -148,7 +148,7 @@ static void check_frame(const char *line) {
     unsigned tried = 0, through = 0, said[2];
     const struct cs_cell *next;
     double least = HUGE_VAL;
-    for (uint32_t i = 0; i < compare.sweep.n; i++) {
+    for (uint32_t i = 0; i < compare.cells.n; i++) {
         const bool whole =
             finished(cells + i) && !cells[i].adaptive && cells[i].steps <= FRAMES;
         tried += whole || (!cells[i].adaptive && cells[i].value >= 1 / FPS);
@@ -177,7 +177,7 @@ static void check_lines(char *text) {
     double least = HUGE_VAL;
     const struct cs_cell *best = NULL;
     bool frame = false;
-    for (uint32_t i = 0; i < compare.sweep.n; i++)
+    for (uint32_t i = 0; i < compare.cells.n; i++)
         least = finished(cells + i) ? fmin(least, cells[i].error) : least;
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
         int first;
@@ -222,9 +222,9 @@ START_TEST(winner_by_another_error_is_named) {
     const struct cs_rank *rank = ranking.ranks + 3;
     ck_assert_int_eq(rank->exponent, -4);
     ck_assert_str_eq(rank->best->series, "bursts");
-    ck_assert_str_eq(rank->others[CS_NORM_PATH]->series, "keeps");
+    ck_assert_str_eq(rank->better_by_norm[CS_NORM_PATH]->series, "keeps");
     cs_ranking_finish(&ranking);
-    settings.rank = CS_NORM_PATH;
+    settings.ranking_norm = CS_NORM_PATH;
     ck_assert(!cs_ranking_make(&ranking, &compare, &error));
     ck_assert_int_eq(ranking.ranks[3].exponent, -4);
     ck_assert_str_eq(ranking.ranks[3].best->series, "adapts");
@@ -281,7 +281,7 @@ START_TEST(few_pairs_give_no_interval) {
     struct cs_ratio ratio;
     uint64_t state = 1;
     ck_assert(!cs_rounds_init(&rounds, 2, &error));
-    rounds.n = CS_PAIRS_LEAST;
+    rounds.n = CS_TIMING_PAIRS_MIN;
     make_times(&rounds, 2, &state);
     ck_assert(cs_rounds_ratio(&rounds, 1, 0, &ratio));
     rounds.seconds[3] = (double)NAN;

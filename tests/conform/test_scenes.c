@@ -15,7 +15,7 @@ static const struct cs_conform card = {.method = &cs_conform_reference};
 
 static void open_scene(struct cs_probe *probe, const struct cs_force_scene *scene) {
     ck_assert_msg(cs_probe_open(probe, &card, &cs_conform_reference, "%s", scene->json),
-                  "%s: %s", scene->what, probe->error.message);
+                  "%s: %s", scene->description, probe->error.message);
 }
 
 /* A new force needs a line in conform_scenes.c, of a check force-NAME, in which no other force
@@ -62,7 +62,7 @@ static bool has_ramp(const struct cs_scene *scene, const char *key) {
 
 START_TEST(every_ramp_has_a_scene) {
     for (uint32_t t = 0; t < cs_n_terms; t++)
-        for (const char *const *key = cs_terms[t]->ramps; key && *key; key++) {
+        for (const char *const *key = cs_terms[t]->rampable_keys; key && *key; key++) {
             bool found = false;
             for (uint32_t k = 0; k < cs_n_force_scenes && !found; k++) {
                 struct cs_probe probe;
@@ -80,7 +80,7 @@ END_TEST
 /* The scene of that name, run by the reference, and where it began. */
 static void run_scene(struct cs_probe *probe, const char *what, double *start) {
     uint32_t k = 0;
-    while (k < cs_n_force_scenes && strcmp(cs_force_scenes[k].what, what) != 0)
+    while (k < cs_n_force_scenes && strcmp(cs_force_scenes[k].description, what) != 0)
         k++;
     ck_assert_msg(k < cs_n_force_scenes, "there is no scene \"%s\"", what);
     open_scene(probe, cs_force_scenes + k);

@@ -12,19 +12,20 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
-static const struct cs_fact facts[] = {{"scene", "{\n  \"dt\": 0.001\n}"}, {"method", "rk4"}};
+static const struct cs_checkpoint_key facts[] = {{"scene", "{\n  \"dt\": 0.001\n}"},
+                                                 {"method", "rk4"}};
 enum { FACTS = sizeof facts / sizeof *facts };
 
 /* values of all kinds until there is none left */
-static void take_all(struct cs_record *record) {
-    while (!record->failed && !cs_record_is_done(record)) {
+static void take_all(struct cs_serialiser *record) {
+    while (!record->failed && !cs_serialiser_is_done(record)) {
         struct cs_text text = {0};
         double real = 0;
-        const size_t before = record->at;
-        CS_RECORD(record, real);
-        cs_record_text(record, &text);
-        CS_ASSERT(record->failed || record->at >= before + sizeof real + sizeof(size_t));
-        CS_ASSERT(record->at <= record->length);
+        const size_t before = record->position;
+        CS_SERIALISER(record, real);
+        cs_serialiser_text(record, &text);
+        CS_ASSERT(record->failed || record->position >= before + sizeof real + sizeof(size_t));
+        CS_ASSERT(record->position <= record->length);
         cs_text_finish(&text);
     }
 }
@@ -32,7 +33,7 @@ static void take_all(struct cs_record *record) {
 /* no more than one file, which is in memory */
 static void read_file(const char *bytes, size_t length) {
     char path[64];
-    struct cs_record record;
+    struct cs_serialiser record;
     struct cs_error error = {0};
     const int file = memfd_create("fuzz", MFD_CLOEXEC);
     if (file < 0 || write(file, bytes, length) != (ssize_t)length)
@@ -44,7 +45,7 @@ static void read_file(const char *bytes, size_t length) {
         CS_ASSERT(status == CS_ERR_FILE && error.message[0] == '"');
     else
         take_all(&record);
-    cs_record_finish(&record);
+    cs_serialiser_finish(&record);
     close(file);
 }
 

@@ -2,7 +2,7 @@
  * refused with a message. Nothing is run. */
 #include "cli/commands.h"
 #include "cli/completion.h"
-#include "cli/run/run_resume.h"
+#include "cli/run/run_checkpoint.h"
 #include "cli/stability_args.h"
 #include "sim/method.h"
 
@@ -34,23 +34,23 @@ static void read_row(struct cs_args *args, uint32_t row) {
     static const char *const names[] = {"cpu", "auto", "a,b", NULL};
     struct cs_error error = {0};
     struct cs_shard shard = {0};
-    struct cs_resume_pace pace;
+    struct cs_checkpoint_interval pace;
     const struct cs_override *overrides;
     uint32_t whole = 7, set = 0, n;
     double real = 1;
     int index = 0;
-    expect(cs_args_whole(args, row, 3, 1000, &whole, &error), &error);
+    expect(cs_args_integer(args, row, 3, 1000, &whole, &error), &error);
     CS_ASSERT(whole >= 3 && whole <= 1000);
     expect(cs_args_real(args, row, &real, &error), &error);
     CS_ASSERT(real > 0 && real <= 1e9);
     expect(cs_args_shard(args, row, &shard, &error), &error);
-    CS_ASSERT(shard.number <= shard.of);
+    CS_ASSERT(shard.index <= shard.count);
     expect(cs_args_choice(args, row, names, &index, &error), &error);
     CS_ASSERT(index >= 0 && index < 3);
     expect(cs_args_choices(args, row, names, &set, &error), &error);
     expect(cs_args_overrides(args, row, &overrides, &n, &error), &error);
     if (cs_args_get(args, row))
-        expect(cs_resume_read_pace(cs_args_get(args, row), &pace, &error), &error);
+        expect(cs_checkpointer_read_interval(cs_args_get(args, row), &pace, &error), &error);
 }
 
 /* NAME:key=value,... as far as it goes without opening a module */

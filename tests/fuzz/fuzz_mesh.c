@@ -1,5 +1,5 @@
 /* Any bytes as an OBJ file: a sound mesh or a refusal. */
-#include "io/mesh_read.h"
+#include "scene/file/mesh_read.h"
 
 #include <stdint.h>
 #include <string.h>

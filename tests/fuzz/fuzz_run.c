@@ -14,7 +14,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length);
 
-enum { FRAMES = 2, STEPS_MOST = 200, PARTICLES_MOST = 120 };
+enum { FRAMES = 2, STEPS_MAX = 200, PARTICLES_MAX = 120 };
 
 /* the methods of this tree, linked in: the sanitizers and the fuzzer see into them */
 #define MODULES(X) X(dopri5) X(explicit) X(implicit) X(newton) X(shape_matching) X(xpbd)
@@ -53,7 +53,7 @@ struct counter {
 static bool count_step(void *ctx, double t, double dt, double *x, double *v) {
     struct counter *counter = ctx;
     (void)t, (void)dt, (void)x, (void)v;
-    counter->stop = ++counter->steps >= STEPS_MOST;
+    counter->stop = ++counter->steps >= STEPS_MAX;
     return false;
 }
 
@@ -94,13 +94,14 @@ static bool open_run(struct cs_session *session, const char *text, struct choice
         .scene = "fuzz.json",
         .text = text,
         .method = choose_method(&choices),
-        .run = {.stop = &counter->stop, .observe = count_step, .ctx = counter, .budget = 0.5}};
+        .run = {
+            .stop = &counter->stop, .after_commit = count_step, .ctx = counter, .budget = 0.5}};
     if (cs_session_open_plan(session, &settings, &error)) {
         CS_ASSERT(error.status == CS_ERR_SCENE && *error.message);
         return false;
     }
     choose_options(&choices, &session->method);
-    if (count_particles(&session->scene) <= PARTICLES_MOST &&
+    if (count_particles(&session->scene) <= PARTICLES_MAX &&
         !cs_plan_check(&session->scene, session->method.integrator, &error) &&
         !cs_session_build(session, &error) && !cs_session_begin(session, NULL, &error))
         return true;
@@ -123,14 +124,14 @@ static bool run_frames(struct cs_session *session, uint32_t frames) {
 }
 
 /* the same run from its record */
-static void go_on(const struct cs_session *whole, struct cs_record *record, const char *text,
-                  struct choices choices) {
+static void go_on(const struct cs_session *whole, struct cs_serialiser *record,
+                  const char *text, struct choices choices) {
     struct cs_session resumed;
     struct counter counter = {0};
     struct cs_error error = {0};
     CS_ASSERT(open_run(&resumed, text, choices, &counter));
-    record->loading = true;
-    CS_ASSERT(!cs_run_load(&resumed.run, record, &error) && cs_record_is_done(record));
+    record->is_reading = true;
+    CS_ASSERT(!cs_run_load(&resumed.run, record, &error) && cs_serialiser_is_done(record));
     counter = (struct counter){0};
     CS_ASSERT(run_frames(&resumed, FRAMES));
     CS_ASSERT(!memcmp(resumed.run.x, whole->run.x,
@@ -146,7 +147,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
     struct cs_text text = {0};
     struct cs_session whole;
     struct counter counter = {0};
-    struct cs_record record = {0};
+    struct cs_serialiser record = {0};
     struct cs_error error = {0};
     make_scene(&rest, &text);
     if (open_run(&whole, cs_text_get(&text), method, &counter)) {
@@ -155,7 +156,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
             go_on(&whole, &record, cs_text_get(&text), method);
         cs_session_close(&whole);
     }
-    cs_record_finish(&record);
+    cs_serialiser_finish(&record);
     cs_text_finish(&text);
     return 0;
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* few particles, few draws and few sweeps: a scene is to be run in a millisecond */
-enum { COUNTS_MOST = 8, ITEMS_MOST = 3 };
+enum { COUNTS_MAX = 8, ITEMS_MAX = 3 };
 
 uint8_t choose(struct choices *choices) {
     if (!choices->n)
@@ -44,7 +44,7 @@ double choose_number(struct choices *choices, const struct cs_option *row) {
     if (row->type == CS_BOOL)
         return choose(choices) % 2;
     if (row->type == CS_INT || row->type == CS_COUNTS)
-        return within(row, row->min + choose(choices) % COUNTS_MOST);
+        return within(row, row->min + choose(choices) % COUNTS_MAX);
     if (row->type == CS_REAL || row->type == CS_VECTOR)
         return choose_real(choices, row, row->def);
     uint32_t n = 0;
@@ -77,7 +77,7 @@ static void add_name(struct choices *choices, struct cs_text *out) {
 
 static void add_list(struct choices *choices, const struct cs_option *row,
                      struct cs_text *out) {
-    const uint32_t n = 1 + choose(choices) % ITEMS_MOST;
+    const uint32_t n = 1 + choose(choices) % ITEMS_MAX;
     cs_text_add(out, "[");
     for (uint32_t k = 0; k < n; k++) {
         cs_text_add(out, k ? ", " : "");
@@ -131,7 +131,7 @@ static bool is_called(const struct cs_option *row, const char *name) {
 
 /* one of which a table must have exactly one */
 static bool is_one_of(const struct cs_table *table, const struct cs_option *row) {
-    return table->one_of && row >= table->rows + table->uncounted &&
+    return table->one_of && row >= table->rows + table->n_always_optional &&
            cs_option_is_optional(row) && !is_left_out(row);
 }
 
@@ -146,9 +146,10 @@ static bool is_the_one(const struct cs_table *table, const struct cs_option *row
 
 /* an event happens at a time or from one to another, and a body is a cloth or a mesh */
 static bool is_part(const struct cs_table *table, const struct cs_option *row, int kind) {
-    if (table->uncounted)
-        return is_called(row, "at") ? kind >= 128
-                                    : kind < 128 && row < table->rows + table->uncounted;
+    if (table->n_always_optional)
+        return is_called(row, "at")
+                   ? kind >= 128
+                   : kind < 128 && row < table->rows + table->n_always_optional;
     return is_called(row, "cloth") ? kind % 4 < 3 : is_called(row, "mesh") && kind % 4 == 3;
 }
 
@@ -169,7 +170,7 @@ static bool is_wanted(struct choices *choices, const struct cs_table *table,
     if (is_one_of(table, row))
         return is_the_one(table, row, kind);
     if (is_called(row, "cloth") || is_called(row, "mesh") ||
-        (table->uncounted && row < table->rows + table->uncounted))
+        (table->n_always_optional && row < table->rows + table->n_always_optional))
         return is_part(table, row, kind);
     return is_needed(row) || choose(choices) >= 160;
 }

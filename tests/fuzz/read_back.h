@@ -2,8 +2,8 @@
 #ifndef CS_FUZZ_READ_BACK_H
 #define CS_FUZZ_READ_BACK_H
 
-#include "io/scene_read.h"
-#include "io/scene_write.h"
+#include "scene/file/scene_read.h"
+#include "scene/file/scene_write.h"
 
 #include <string.h>
 

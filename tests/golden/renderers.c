@@ -8,8 +8,8 @@
  * cannot be drawn with look goals is passed over. Prints a row a picture, and fails if any is
  * beyond the gate. */
 #include "base/pool.h"
-#include "draw/compare.h"
-#include "study/picture.h"
+#include "draw/image_diff.h"
+#include "study/frame_picture.h"
 #include "study/session.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "fixture.h"
 
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -63,8 +63,8 @@ void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]) {
 
 double fixture_energy(const struct fixture *fixture) {
     const struct cs_energy energy =
-        cs_measure_energy(fixture->system, fixture->session.run.t, fixture->x, fixture->v);
-    return cs_energy_whole(&energy);
+        cs_diagnostics_energy(fixture->system, fixture->session.run.t, fixture->x, fixture->v);
+    return cs_energy_total(&energy);
 }
 
 int fixture_run(const char *name, const TTest *const *tests, size_t n_tests) {

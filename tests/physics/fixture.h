@@ -2,9 +2,9 @@
 #ifndef FIXTURE_H
 #define FIXTURE_H
 
-#include "study/deviation.h"
 #include "study/perturb.h"
 #include "study/session.h"
+#include "study/trajectory_error.h"
 
 #include <check.h>
 

@@ -9,7 +9,7 @@ struct planted planted;
 const double planted_direction[3] = {0.6, 0, 0.8};
 
 static struct cs_plan_row row_of(bool acts) {
-    return (struct cs_plan_row){.built = acts, .why = acts ? "planted" : "not planted"};
+    return (struct cs_plan_row){.built = acts, .reason = acts ? "planted" : "not planted"};
 }
 
 static struct cs_plan_row resist_plan(const struct cs_scene *scene) {
@@ -46,7 +46,7 @@ static void resist_bound(const struct cs_system *system, const struct cs_gershgo
 
 const struct cs_term cs_term_resist = {
     .name = "planted resistance",
-    .parts = CS_PART_DISSIPATIVE,
+    .part_bits = CS_PART_DISSIPATIVE,
     .plan = resist_plan,
     .add_force = resist_force,
     .add_jvp = resist_jvp,
@@ -138,14 +138,14 @@ static void trap_bound(const struct cs_system *system, const struct cs_eval *at,
 
 const struct cs_term cs_term_trap = {
     .name = "planted trap",
-    .parts = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
     .plan = trap_plan,
     .add_force = trap_force,
     .add_jvp = trap_jvp,
     .energy = trap_energy,
     .energy_kind = CS_ENERGY_OTHER,
     .add_blocks = trap_blocks,
-    .add_bound_at = trap_bound,
+    .add_state_bound = trap_bound,
 };
 
 static struct cs_plan_row swing_plan(const struct cs_scene *scene) {
@@ -163,8 +163,8 @@ static double swing_strongest(const struct cs_system *system, size_t i) {
 
 const struct cs_term cs_term_swing = {
     .name = "planted swing",
-    .parts = CS_PART_EXTERNAL,
+    .part_bits = CS_PART_EXTERNAL,
     .plan = swing_plan,
     .add_force = swing_force,
-    .strongest = swing_strongest,
+    .max_acceleration = swing_strongest,
 };

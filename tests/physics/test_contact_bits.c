@@ -1,11 +1,11 @@
 /* One state, to the last bit, of every scene in which surfaces meet: for lists with margins of
  * a half, one and two, for 1, 2, 3 and 8 threads, and for a run that was broken off and goes
  * on. (For compilers: golden hashes.) One small scene by default; "all" for the rest. */
+#include "body_pair_fixture.h"
 #include "fixture.h"
-#include "meeting.h"
 
 #include "base/pool.h"
-#include "model/pair/pairs.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "sim/run_record.h"
 
 #include <stdlib.h>
@@ -46,45 +46,46 @@ struct how {
     bool broken;   /* off in the middle, and taken up from its record */
 };
 
-static void open(struct cs_session *session, const struct meeting *meeting, struct how how) {
+static void open(struct cs_session *session, const struct meeting *params, struct how how) {
     struct cs_error error = {0};
-    meeting_open_system(session, meeting);
-    struct cs_search *search = &session->system.pairs->search;
+    meeting_open_system(session, params);
+    struct cs_candidates *search = &session->system.pairs->candidates;
     search->margin *= how.margin;
-    search->fresh = false;
+    search->is_built = false;
     cs_session_begin(session, NULL, &error);
     ck_assert_msg(!error.status, "%s", error.message);
 }
 
 /* In every run, as some methods start anew where a record is made. */
-static void break_off(struct cs_session *session, const struct meeting *meeting,
+static void break_off(struct cs_session *session, const struct meeting *params,
                       struct how how) {
     struct cs_error error = {0};
-    struct cs_record record = {0};
+    struct cs_serialiser record = {0};
     cs_run_save(&session->run, &record, &error);
     if (how.broken) {
         cs_session_close(session);
-        open(session, meeting, how);
-        record.loading = true;
+        open(session, params, how);
+        record.is_reading = true;
         cs_run_load(&session->run, &record, &error);
     }
     ck_assert_msg(!error.status, "%s", error.message);
-    cs_record_finish(&record);
+    cs_serialiser_finish(&record);
 }
 
 /* Returns the state at the end, which the caller frees. */
-static double *run(const struct meeting *meeting, struct how how, size_t *bytes) {
+static double *run(const struct meeting *params, struct how how, size_t *bytes) {
     struct cs_session session;
     struct cs_error error = {0};
     cs_pool_start(how.threads, &error);
     ck_assert_msg(!error.status, "%s", error.message);
-    open(&session, meeting, how);
-    for (uint32_t frame = 0; frame < meeting->frames; frame++) {
-        if (frame == meeting->frames / 2)
-            break_off(&session, meeting, how);
-        meeting_frame(&session, meeting);
+    open(&session, params, how);
+    for (uint32_t frame = 0; frame < params->frames; frame++) {
+        if (frame == params->frames / 2)
+            break_off(&session, params, how);
+        meeting_frame(&session, params);
     }
-    ck_assert_msg(session.system.pairs->now->n > 0, "%s: nothing meets", meeting->scene);
+    ck_assert_msg(session.system.pairs->current_contacts->n > 0, "%s: nothing meets",
+                  params->scene);
     *bytes = 6 * session.system.view.n * sizeof(double);
     double *state = malloc(*bytes);
     ck_assert_ptr_nonnull(state);
@@ -94,16 +95,16 @@ static double *run(const struct meeting *meeting, struct how how, size_t *bytes)
     return state;
 }
 
-static void check(const struct meeting *meeting) {
+static void check(const struct meeting *params) {
     static const struct how hows[] = {{1, 0.5, false}, {1, 2, false}, {2, 1, false},
                                       {3, 1, false},   {8, 1, false}, {1, 1, true}};
     size_t bytes;
-    double *right = run(meeting, (struct how){1, 1, false}, &bytes);
+    double *right = run(params, (struct how){1, 1, false}, &bytes);
     for (size_t k = 0; k < LENGTH(hows); k++) {
-        double *state = run(meeting, hows[k], &bytes);
+        double *state = run(params, hows[k], &bytes);
         ck_assert_msg(!memcmp(right, state, bytes),
-                      "%s by %s: %u threads, margin %g, %s run differs", meeting->scene,
-                      meeting->method ? meeting->method : "its own method", hows[k].threads,
+                      "%s by %s: %u threads, margin %g, %s run differs", params->scene,
+                      params->method ? params->method : "its own method", hows[k].threads,
                       hows[k].margin, hows[k].broken ? "broken" : "unbroken");
         free(state);
     }
@@ -113,9 +114,9 @@ static void check(const struct meeting *meeting) {
 START_TEST(one_state) {
     for (size_t s = 0; s < (all ? LENGTH(scenes) : 1); s++)
         for (size_t m = 0; m < LENGTH(methods); m++) {
-            struct meeting meeting = scenes[s];
-            meeting.method = methods[m];
-            check(&meeting);
+            struct meeting params = scenes[s];
+            params.method = methods[m];
+            check(&params);
         }
 }
 END_TEST

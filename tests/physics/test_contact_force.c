@@ -2,11 +2,11 @@
  * what holds for every method: its order, and that nothing gains energy at an obstacle. */
 #include "base/vec3.h"
 #include "fixture.h"
-#include "model/contact/law.h"
-#include "model/contact/obstacle.h"
-#include "model/contact/pairing.h"
-#include "model/contact/share.h"
-#include "model/cross/gap.h"
+#include "model/contact/barrier_law.h"
+#include "model/contact/ccd/accd.h"
+#include "model/contact/collider_params.h"
+#include "model/contact/posed_collider.h"
+#include "model/contact/step_check.h"
 #include "model/plan.h"
 
 #include <math.h>
@@ -19,25 +19,29 @@
 START_TEST(law_is_one_function) {
     const double range = 0.02, k = 700, e = 1e-7;
     for (double d = -0.01; d < 1.2 * range; d += 1.7e-4) {
-        const struct cs_law law = cs_law_at(d, range, k);
+        const struct cs_barrier law = cs_barrier_at(d, range, k);
         const double slope =
-            (cs_law_energy(d - e, range, k) - cs_law_energy(d + e, range, k)) / (2 * e);
+            (cs_barrier_energy(d - e, range, k) - cs_barrier_energy(d + e, range, k)) / (2 * e);
         const double bend =
-            (cs_law_at(d - e, range, k).force - cs_law_at(d + e, range, k).force) / (2 * e);
-        const double turn =
-            (cs_law_at(d + e, range, k).stiffness - cs_law_at(d - e, range, k).stiffness) /
+            (cs_barrier_at(d - e, range, k).force - cs_barrier_at(d + e, range, k).force) /
             (2 * e);
+        const double turn = (cs_barrier_at(d + e, range, k).stiffness -
+                             cs_barrier_at(d - e, range, k).stiffness) /
+                            (2 * e);
         ck_assert_double_eq_tol(law.force, slope, 1e-6 * (law.force + 1e-3));
         ck_assert_double_eq_tol(law.stiffness, bend, 1e-4 * law.stiffness + 1e-3);
         // the stiffness has a bend where its core begins
-        if (fabs(d - CS_LAW_CORE * range) > 2 * e)
-            ck_assert_double_eq_tol(cs_law_slope(d, range, k), turn, 1e-4 * fabs(turn) + 1e-2);
+        if (fabs(d - CS_BARRIER_CORE * range) > 2 * e)
+            ck_assert_double_eq_tol(cs_barrier_slope(d, range, k), turn,
+                                    1e-4 * fabs(turn) + 1e-2);
     }
-    ck_assert_double_eq_tol(cs_law_at(range / 2, range, k).stiffness, k * 11 / 12, 1e-9 * k);
-    ck_assert_double_eq(cs_law_at(range, range, k).force, 0);
-    ck_assert_double_eq(cs_law_energy(1.5 * range, range, k), 0);
+    ck_assert_double_eq_tol(cs_barrier_at(range / 2, range, k).stiffness, k * 11 / 12,
+                            1e-9 * k);
+    ck_assert_double_eq(cs_barrier_at(range, range, k).force, 0);
+    ck_assert_double_eq(cs_barrier_energy(1.5 * range, range, k), 0);
     // what it takes to cross: 1.36 k D^2
-    ck_assert_double_eq_tol(cs_law_energy(CS_LAW_CORE * range, range, k) / (k * range * range),
+    ck_assert_double_eq_tol(cs_barrier_energy(CS_BARRIER_CORE * range, range, k) /
+                                (k * range * range),
                             1.36, 0.005);
 }
 END_TEST
@@ -47,7 +51,7 @@ static double distance_of(double force, double range, double k) {
     double low = 0.05 * range, high = range;
     for (int i = 0; i < 200; i++) {
         const double d = (low + high) / 2;
-        *(cs_law_at(d, range, k).force > force ? &low : &high) = d;
+        *(cs_barrier_at(d, range, k).force > force ? &low : &high) = d;
     }
     return low;
 }
@@ -220,26 +224,26 @@ START_TEST(passes_settle_beside_implicit_euler) {
 }
 END_TEST
 
-/* the energy that a straight move of one particle does not see, as share.h has it */
+/* the energy that a straight move of one particle does not see, as step_check.h has it */
 static bool move_is_seen(const struct cs_system *system, double h, const double from[3],
                          const double to[3]) {
-    const struct cs_pairing *pairing = system->pairings;
-    struct cs_obstacle obstacle;
+    const struct cs_collider_params *params = system->collider_params;
+    struct cs_posed_collider collider;
     double g[3], hessian[6], move[3], worst = 0;
-    cs_obstacle_at(system, 0, h, &obstacle);
-    const double d = cs_obstacle_smooth(&obstacle, from, g, hessian);
-    const struct cs_law law = cs_law_at(d, pairing->range, pairing->k);
-    const double held = cs_law_energy(d, pairing->range, pairing->k);
+    cs_posed_collider_at(system, 0, h, &collider);
+    const double d = cs_posed_collider_smooth_distance(&collider, from, g, hessian);
+    const struct cs_barrier law = cs_barrier_at(d, params->range, params->k);
+    const double held = cs_barrier_energy(d, params->range, params->k);
     for (int c = 0; c < 3; c++)
         move[c] = to[c] - from[c];
     const double way = sqrt(cs_vec3_dot(move, move));
-    const int points = 1 + (int)fmin(way / (0.5 * pairing->range), 63);
+    const int points = 1 + (int)fmin(way / (0.5 * params->range), 63);
     for (int j = 1; j <= points; j++) {
         double p[3];
         for (int c = 0; c < 3; c++)
             p[c] = from[c] + j / (double)points * move[c];
-        const double s = d - cs_obstacle_smooth(&obstacle, p, g, hessian);
-        worst = fmax(worst, fabs(cs_law_energy(d - s, pairing->range, pairing->k) - held -
+        const double s = d - cs_posed_collider_smooth_distance(&collider, p, g, hessian);
+        worst = fmax(worst, fabs(cs_barrier_energy(d - s, params->range, params->k) - held -
                                  law.force * s - 0.5 * law.stiffness * s * s));
     }
     return worst <= 0.02 * (0.5 * system->mass[0] * way * way / (h * h) + held);
@@ -269,7 +273,8 @@ START_TEST(steps_are_judged_as_stated) {
                 to[c] = from[c] + length * cos(1.1 * i + 2 * c);
             }
             const bool expected = move_is_seen(one.system, h, from, to);
-            ck_assert_msg(cs_contact_is_seen(one.system, 0, from, h, to) == expected,
+            ck_assert_msg(cs_collider_contact_resolves_step(one.system, 0, from, h, to) ==
+                              expected,
                           "shape %zu, move %d of %g m: expected %d", k, i, length, expected);
             seen += expected, moves++;
         }
@@ -388,7 +393,8 @@ static double nearest_triangle(const double *x) {
                     for (size_t c = 0; c < 3; c++)
                         p[k + 1][c] = x[c * ALL + i];
                 }
-                least = fmin(least, cs_gap_squared(CS_GAP_POINT, (const double(*)[3])p));
+                least = fmin(least, cs_exact_distance_squared(CS_PRIMITIVE_POINT_TRIANGLE,
+                                                              (const double(*)[3])p));
             }
     return sqrt(least);
 }
@@ -407,7 +413,7 @@ START_TEST(no_triangle_comes_into_a_ball) {
     struct fixture cloth;
     double least = HUGE_VAL;
     fixture_open(&cloth, "implicit-linearised:dt=0.004166666666666667", BALLED);
-    ck_assert_ptr_null(cloth.system->covers);
+    ck_assert_ptr_null(cloth.system->contact_samples);
     fixture_start(&cloth);
     for (int frame = 0; frame < 45; frame++) {
         fixture_frames(&cloth, 1);

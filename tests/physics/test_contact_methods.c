@@ -3,8 +3,8 @@
  * scene, method, frames, crossings, processor time.
  *
  * test_contact_methods [METHOD [SCENE ...]]: of one method, "all" for every one. */
+#include "body_pair_fixture.h"
 #include "fixture.h"
-#include "meeting.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -71,13 +71,13 @@ static void follow(struct cs_session *session, uint32_t frames, struct course *c
 }
 
 /* true: all frames were done and nothing crossed */
-static bool run(const struct meeting *meeting) {
+static bool run(const struct meeting *params) {
     struct cs_session session;
     struct course course = {0};
     const double before = processor_seconds();
-    meeting_open(&session, meeting);
-    follow(&session, meeting->frames, &course);
-    printf("| %s | %s | %u | %llu | %.1f | %s |\n", meeting->scene, meeting->method,
+    meeting_open(&session, params);
+    follow(&session, params->frames, &course);
+    printf("| %s | %s | %u | %llu | %.1f | %s |\n", params->scene, params->method,
            course.frames, (unsigned long long)course.most, processor_seconds() - before,
            course.error.status ? course.error.message : "");
     fflush(stdout);
@@ -99,9 +99,9 @@ START_TEST(nothing_goes_through) {
     for (size_t s = 0; s < LENGTH(scenes); s++)
         for (size_t m = 0; m < LENGTH(methods); m++)
             if (is_asked(s, m)) {
-                struct meeting meeting = scenes[s];
-                meeting.method = methods[m];
-                failed += !run(&meeting);
+                struct meeting params = scenes[s];
+                params.method = methods[m];
+                failed += !run(&params);
                 done++;
             }
     ck_assert_uint_gt(done, 0);

@@ -1,10 +1,10 @@
 /* The scenes in which bodies meet: nothing goes through anything in any frame, with methods of
  * all families, and what a scene is about converges with the step. Small ones by default; "all"
  * for the rest. */
+#include "body_pair_fixture.h"
 #include "fixture.h"
-#include "meeting.h"
 
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -76,7 +76,7 @@ START_TEST(needles_do_not_tear) {
     meeting_open(&session, &of);
     for (uint32_t frame = 0; frame < of.frames; frame++) {
         meeting_frame(&session, &of);
-        const double strain = cs_measure_strain(&session.system, session.run.x);
+        const double strain = cs_diagnostics_strain(&session.system, session.run.x);
         ck_assert_msg(strain < 0.4, "frame %u: %.3g", frame + 1, strain);
     }
     cs_session_close(&session);
@@ -231,8 +231,8 @@ END_TEST
 
 /* Runs it, and gives the mean of the curtain's particles along the ball's way, in m, and which
  * share of them is in front of where the ball ends. */
-static double carried(const char *method, uint32_t grid, double mu, uint32_t frames,
-                      double *front) {
+static double provenance(const char *method, uint32_t grid, double mu, uint32_t frames,
+                         double *front) {
     struct fixture cloth;
     double mean = 0;
     *front = 0;
@@ -260,8 +260,8 @@ START_TEST(ball_goes_into_the_curtain) {
     for (int rub = all ? 0 : 1; rub < 2; rub++) {
         const double mu = rub ? 0.6 : 0, most = !all ? 0.01 : rub ? 0.002 : 0.03;
         double share[2];
-        const double coarse = carried(steps[all], grid, mu, frames, share);
-        const double fine = carried(steps[1 + all], grid, mu, frames, share + 1);
+        const double coarse = provenance(steps[all], grid, mu, frames, share);
+        const double fine = provenance(steps[1 + all], grid, mu, frames, share + 1);
         ck_assert_msg(fabs(coarse - fine) < most, "rub %d: %.4g, %.4g m", rub, coarse, fine);
         ck_assert_msg(fabs(share[0] - share[1]) < 2 * most, "rub %d: %.4g, %.4g in front", rub,
                       share[0], share[1]);

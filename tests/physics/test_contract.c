@@ -6,8 +6,8 @@
  * differences with a step of 1e-6: truncation is near 1e-11 and rounding near 1e-9 of the
  * largest entry. */
 #include "fixture.h"
-#include "model/force/bounds.h"
 #include "model/force/normals.h"
+#include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "planted_terms.h"
@@ -47,7 +47,7 @@ enum { N = 20, VALUES = 3 * N };
 static void add_keys(char *text, size_t size) {
     *text = 0;
     for (uint32_t k = 0; k < cs_n_terms; k++)
-        for (const char *const *key = cs_terms[k]->ramps; key && *key; key++) {
+        for (const char *const *key = cs_terms[k]->rampable_keys; key && *key; key++) {
             char quoted[80];
             const char *name = strncmp(*key, "forces.", 7) ? NULL : *key + 7;
             snprintf(quoted, sizeof quoted, "\"%s\"", name ? name : "");
@@ -81,21 +81,21 @@ START_TEST(bits_and_calls_agree) {
     const uint32_t shared = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE | CS_PART_EXTERNAL;
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         const struct cs_term *term = cs_terms[k];
-        const bool linearised = term->parts & CS_PART_LINEARISED;
+        const bool linearised = term->part_bits & CS_PART_LINEARISED;
         const int shares = !!term->add_scalar + !!term->add_blocks + !!term->add_diagonal;
-        const bool passive = !(term->parts & ~(CS_PART_LINEARISED | CS_PART_WITH_ENERGY));
+        const bool passive = !(term->part_bits & ~(CS_PART_LINEARISED | CS_PART_WITH_ENERGY));
         ck_assert_msg(term->name && term->plan && term->add_force, "force %u is half made", k);
-        ck_assert_msg(term->parts && !(term->parts & own_bits & ~shared),
+        ck_assert_msg(term->part_bits && !(term->part_bits & own_bits & ~shared),
                       "%s: its bit is another's", term->name);
         ck_assert_msg(!linearised || term->add_jvp, "%s: in the matrix, no jvp", term->name);
         ck_assert_msg(shares == linearised, "%s: %d shares of the matrix", term->name, shares);
-        ck_assert_msg(!linearised || term->add_bound || term->add_bound_at,
+        ck_assert_msg(!linearised || term->add_bound || term->add_state_bound,
                       "%s: in the matrix, no bound", term->name);
-        ck_assert_msg(!(term->parts & CS_PART_WITH_ENERGY) == !term->energy,
+        ck_assert_msg(!(term->part_bits & CS_PART_WITH_ENERGY) == !term->energy,
                       "%s: energy and bits differ", term->name);
-        ck_assert_msg(passive || term->strongest, "%s: neither an energy nor a greatest force",
-                      term->name);
-        own_bits |= term->parts & ~shared;
+        ck_assert_msg(passive || term->max_acceleration,
+                      "%s: neither an energy nor a greatest force", term->name);
+        own_bits |= term->part_bits & ~shared;
         for (uint32_t j = 0; j < k; j++)
             ck_assert_str_ne(term->name, cs_terms[j]->name);
     }
@@ -120,7 +120,7 @@ START_TEST(events_can_change_the_keys) {
     struct fixture cloth;
     open(&cloth);
     for (uint32_t k = 0; k < cs_n_terms; k++)
-        for (const char *const *key = cs_terms[k]->ramps; key && *key; key++) {
+        for (const char *const *key = cs_terms[k]->rampable_keys; key && *key; key++) {
             char path[96];
             struct cs_event_key found;
             struct cs_error error = {0};
@@ -198,8 +198,8 @@ START_TEST(jvp_is_the_derivative) {
         struct fixture cloth;
         open(&cloth);
         leave_alone(&cloth, cs_terms[k]);
-        for (uint32_t part = 1; part && part <= cs_terms[k]->parts; part *= 2)
-            if (part & cs_terms[k]->parts)
+        for (uint32_t part = 1; part && part <= cs_terms[k]->part_bits; part *= 2)
+            if (part & cs_terms[k]->part_bits)
                 check_jvp(&cloth, cs_terms[k]->name, part);
         fixture_close(&cloth);
     }
@@ -338,7 +338,7 @@ START_TEST(bounds_are_above_the_truth) {
         leave_alone(&cloth, cs_terms[k]);
         memset(cloth.v, 0, VALUES * sizeof *cloth.v);
         const struct cs_eval at = STATE_OF(&cloth, CS_PART_ALL);
-        cs_bounds_at(cloth.system, &at, work, &omega, &delta);
+        cs_spectral_bounds_at(cloth.system, &at, work, &omega, &delta);
         const double square = largest_value(&cloth, false), rate = largest_value(&cloth, true);
         ck_assert_msg(square <= 1.000001 * omega * omega, "%s: omega^2 %g, bound %g",
                       cs_terms[k]->name, square, omega * omega);
@@ -355,7 +355,7 @@ START_TEST(no_force_is_above_its_greatest) {
         double f[VALUES];
         open(&cloth);
         leave_alone(&cloth, cs_terms[k]);
-        for (int state = 0; state < 8 && cs_terms[k]->strongest; state++) {
+        for (int state = 0; state < 8 && cs_terms[k]->max_acceleration; state++) {
             cs_perturb_smooth(cloth.system, 0.05 * state, state);
             struct cs_eval at = STATE_OF(&cloth, CS_PART_ALL);
             at.t = 0.3 * state;
@@ -363,7 +363,7 @@ START_TEST(no_force_is_above_its_greatest) {
             for (size_t i = 0; i < N; i++) {
                 const double size =
                     sqrt(f[i] * f[i] + f[N + i] * f[N + i] + f[2 * N + i] * f[2 * N + i]);
-                ck_assert_msg(size <= 1.000001 * cs_terms[k]->strongest(cloth.system, i),
+                ck_assert_msg(size <= 1.000001 * cs_terms[k]->max_acceleration(cloth.system, i),
                               "%s: %g N", cs_terms[k]->name, size);
             }
         }

@@ -2,7 +2,7 @@
  * taken back, and where a run ends. */
 #include "fixture.h"
 
-#include "model/cross/crossings.h"
+#include "model/contact/ccd/crossings.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +59,7 @@ START_TEST(counted_sheets_pass_through_each_other) {
         const uint64_t most = run_frames(&fixture, methods[k], "count", &error);
         ck_assert_msg(!error.status, "%s", error.message);
         ck_assert_msg(most > 5, "%s: %llu", methods[k], (unsigned long long)most);
-        ck_assert_uint_eq(fixture.session.run.counts.cut_steps, 0);
+        ck_assert_uint_eq(fixture.session.run.counts.subdivided_steps, 0);
         fixture_close(&fixture);
     }
 }
@@ -80,12 +80,12 @@ START_TEST(limited_sheets_stop_before_they_meet) {
                       "%s", error.message);
         ck_assert_uint_eq(most, 0);
         ck_assert_uint_eq(cs_crossings_count(fixture.system, run->t, run->x).n, 0);
-        ck_assert_uint_gt(run->counts.cut_steps, 5);
+        ck_assert_uint_gt(run->counts.subdivided_steps, 5);
         // a move of a hundredth of a frame more would cross
         double *next = malloc(3 * fixture.n * sizeof *next);
         for (size_t i = 0; i < 3 * fixture.n; i++)
             next[i] = run->x[i] + 1e-4 * run->v[i];
-        ck_assert_double_lt(cs_crossings_share(fixture.system, 0, run->x, 1, next), 1);
+        ck_assert_double_lt(cs_crossings_safe_fraction(fixture.system, 0, run->x, 1, next), 1);
         free(next);
         fixture_close(&fixture);
     }
@@ -130,7 +130,7 @@ START_TEST(limits_cost_no_bit_until_they_act) {
                       methods[k]);
         ck_assert_ptr_null(free.system->crossings);
         ck_assert_ptr_null(free.system->surfaces);
-        ck_assert_uint_eq(limited.session.run.counts.cut_steps, 0);
+        ck_assert_uint_eq(limited.session.run.counts.subdivided_steps, 0);
         fixture_close(&free);
         fixture_close(&limited);
     }

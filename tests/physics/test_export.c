@@ -3,8 +3,8 @@
  */
 #include "../unit/unit.h"
 #include "base/file.h"
-#include "export/export.h"
 #include "fixture.h"
+#include "io/export/export.h"
 
 enum { SAMPLES = 4, ALL = CS_EXPORT_OBJ | CS_EXPORT_PC2 | CS_EXPORT_VTP | CS_EXPORT_NPZ };
 
@@ -27,14 +27,14 @@ static void export_part(struct fixture *bodies, const char *folder, uint32_t fro
     const struct cs_export_settings settings = {.folder = folder,
                                                 .formats = ALL,
                                                 .values = CS_EXPORT_FORCE | CS_EXPORT_STRAIN,
-                                                .every = 2,
-                                                .kept = from};
+                                                .frame_interval = 2,
+                                                .n_samples_before = from};
     const struct cs_run *run = &bodies->session.run;
     cs_export_open(&export, &settings, bodies->system, &error);
     for (uint32_t k = from; k < to && !error.status; k++) {
         if (k > 0)
             fixture_frames(bodies, 2);
-        cs_export_take(&export, run->frame, run->t, run->x, run->v, &error);
+        cs_export_write_sample(&export, run->frame, run->t, run->x, run->v, &error);
         ck_assert_uint_eq(export.n_samples, k + 1);
     }
     cs_export_finish(&export, to < SAMPLES, &error);
@@ -96,8 +96,8 @@ START_TEST(what_is_short_is_refused) {
         const struct cs_export_settings settings = {.folder = "short",
                                                     .formats =
                                                         k < 2 ? CS_EXPORT_PC2 : CS_EXPORT_NPZ,
-                                                    .every = 2,
-                                                    .kept = 2};
+                                                    .frame_interval = 2,
+                                                    .n_samples_before = 2};
         char path[64], part[128];
         snprintf(path, sizeof path, "short/%s", files[k]);
         ck_assert(!truncate(path, 40));
@@ -116,13 +116,13 @@ START_TEST(nothing_asked_for_takes_nothing) {
     struct fixture bodies;
     struct cs_export export = {0};
     struct cs_error error = {0};
-    const struct cs_export_settings settings = {.folder = "none", .every = 1};
+    const struct cs_export_settings settings = {.folder = "none", .frame_interval = 1};
     ck_assert(!mkdir("none", 0777));
     fixture_open(&bodies, "symplectic-euler", SCENE);
     fixture_start(&bodies);
     const struct cs_run *run = &bodies.session.run;
     cs_export_open(&export, &settings, bodies.system, &error);
-    cs_export_take(&export, 0, 0, run->x, run->v, &error);
+    cs_export_write_sample(&export, 0, 0, run->x, run->v, &error);
     cs_export_finish(&export, false, &error);
     UNIT_ASSERT_OK(&error);
     ck_assert_uint_eq(export.arena.used, 0);

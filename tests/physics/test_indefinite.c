@@ -18,7 +18,7 @@ static uint64_t step(const char *integrator, double length, double *across) {
     fixture_start(&pair);
     fixture_frames(&pair, 1);
     ck_assert_double_eq_tol(pair.v[2], -pair.v[3], 1e-12);
-    const uint64_t clamped = pair.session.run.counts.clamped;
+    const uint64_t clamped = pair.session.run.counts.clamped_setups;
     *across = pair.v[2];
     fixture_close(&pair);
     return clamped;

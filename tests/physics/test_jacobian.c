@@ -6,7 +6,7 @@
  */
 #include "fixture.h"
 
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"

@@ -3,10 +3,10 @@
 #include "fixture.h"
 
 #include "mesh/trimesh.h"
-#include "model/commit/limit.h"
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "model/force/normals.h"
 #include "model/force/terms.h"
+#include "model/post_step/strain_limit.h"
 #include "model/solver/linear.h"
 
 #include <math.h>
@@ -79,9 +79,10 @@ START_TEST(springs_are_those_of_the_geometry) {
         double found[VALUES], expected[VALUES] = {0}, energy = 0;
         open(&body, axial);
         const struct cs_trimesh *mesh = body.system->bodies[1].mesh;
-        ck_assert_uint_gt(mesh->n_inner, 300);
+        ck_assert_uint_gt(mesh->n_network_springs, 300);
         energy += add_springs(&body, mesh->edges, mesh->n_edges, 500, axial, expected);
-        energy += add_springs(&body, mesh->inner, mesh->n_inner, 200, axial, expected);
+        energy += add_springs(&body, mesh->network_springs, mesh->n_network_springs, 200, axial,
+                              expected);
         energy += add_springs(&body, mesh->hinges, mesh->n_hinges, 25, axial, expected);
         force(&body, body.x, body.v, CS_PART_SPRINGS | CS_PART_DAMPING, found);
         for (size_t i = 0; i < VALUES; i++)
@@ -244,11 +245,11 @@ START_TEST(strain_is_limited) {
         " \"strain_limit_sweeps\": 2000}]}");
     for (size_t i = 0; i < ball.n; i++)
         ball.x[ball.n + i] *= 1.2;
-    ck_assert_double_gt(cs_measure_strain(ball.system, ball.x), 0.15);
-    ck_assert(cs_limit_apply(ball.system, 0.01, ball.x, ball.v) > 0);
+    ck_assert_double_gt(cs_diagnostics_strain(ball.system, ball.x), 0.15);
+    ck_assert(cs_strain_limit_apply(ball.system, 0.01, ball.x, ball.v) > 0);
     double strain[1000];
     ck_assert_uint_lt(ball.n, 1000);
-    cs_measure_particle_strain(ball.system, ball.x, strain);
+    cs_diagnostics_particle_strain(ball.system, ball.x, strain);
     for (size_t i = 0; i < ball.n; i++)
         ck_assert_double_le(strain[i], 0.0501);
     fixture_close(&ball);

@@ -2,14 +2,14 @@
  * with them, on their paths, by order, derivative and count. */
 #include "fixture.h"
 
-#include "io/scene_read.h"
-#include "model/contact/obstacle.h"
-#include "model/contact/points.h"
-#include "model/cross/crossings.h"
-#include "model/cross/listed.h"
+#include "model/contact/ccd/accd_candidates.h"
+#include "model/contact/ccd/crossings.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/contact/posed_collider.h"
+#include "model/contact/surface_points.h"
 #include "model/force/terms.h"
-#include "model/pair/pairs.h"
 #include "model/plan.h"
+#include "scene/file/scene_read.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,7 +55,7 @@ START_TEST(it_is_a_pinned_body) {
         fixture_start(&other);
         fixture_frames(&one, FRAMES);
         fixture_frames(&other, FRAMES);
-        ck_assert_uint_gt(one.system->pairs->now->n, 10);
+        ck_assert_uint_gt(one.system->pairs->current_contacts->n, 10);
         // bit by bit, where the solver's sums go over the same particles
         double most = 0;
         for (size_t c = 0; c < 3; c++)
@@ -84,7 +84,7 @@ START_TEST(only_relative_motion_counts) {
     fixture_frames(&still, FRAMES);
     fixture_frames(&moved, FRAMES);
     const double u[3] = {0.5, 0.5, 0.25}, t = FRAMES / 60.0;
-    ck_assert_uint_gt(still.system->pairs->now->n, 10);
+    ck_assert_uint_gt(still.system->pairs->current_contacts->n, 10);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < SHEET_N; i++) {
             const size_t k = c * SHEET_N + i;
@@ -109,19 +109,20 @@ START_TEST(points_turn_with_it) {
     const struct cs_system *system = cloth.system;
     const size_t n = system->surfaces->n_points;
     ck_assert(n > SHEET_N && n <= 400);
-    const double *p = cs_points_places(system, CS_POINTS_BEGIN, 0, cloth.x);
+    const double *p = cs_surface_points_positions(system, CS_POINTS_BEGIN, 0, cloth.x);
     double start[3] = {p[n - 1], p[2 * n - 1], p[3 * n - 1]};
-    memcpy(before, cs_points_places(system, CS_POINTS_BEGIN, t - h, cloth.x),
+    memcpy(before, cs_surface_points_positions(system, CS_POINTS_BEGIN, t - h, cloth.x),
            3 * n * sizeof *p);
-    memcpy(after, cs_points_places(system, CS_POINTS_END, t + h, cloth.x), 3 * n * sizeof *p);
-    memcpy(v, cs_points_velocities(system, t, cloth.v), 3 * n * sizeof *p);
+    memcpy(after, cs_surface_points_positions(system, CS_POINTS_END, t + h, cloth.x),
+           3 * n * sizeof *p);
+    memcpy(v, cs_surface_points_velocities(system, t, cloth.v), 3 * n * sizeof *p);
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++) {
             const double slope = (after[c * n + i] - before[c * n + i]) / (2 * h);
             const double expected = i < SHEET_N ? cloth.v[c * SHEET_N + i] : slope;
             ck_assert_double_eq_tol(v[c * n + i], expected, 1e-8);
         }
-    p = cs_points_places(system, CS_POINTS_BEGIN, t, cloth.x);
+    p = cs_surface_points_positions(system, CS_POINTS_BEGIN, t, cloth.x);
     const double centre[3] = {0, 0.05, 0}, shift[3] = {t / 2, t / 2, t / 4};
     const double speed = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), angle = speed * t;
     double arm[3], along = 0;
@@ -162,7 +163,7 @@ static void end_state(const char *name, double h, double state[6 * SHEET_N]) {
     fixture_open(&cloth, integrator, BALL, 0);
     fixture_start(&cloth);
     fixture_frames(&cloth, 6);
-    ck_assert_uint_gt(cloth.system->pairs->now->n, 10);
+    ck_assert_uint_gt(cloth.system->pairs->current_contacts->n, 10);
     memcpy(state, cloth.x, 6 * SHEET_N * sizeof *state);
     fixture_close(&cloth);
 }
@@ -256,7 +257,7 @@ START_TEST(derivative_knows_the_moving_mesh) {
                        &(struct cs_eval){.t = 0.15, .x = x[s], .v = v[s], .parts = CS_PART_ALL},
                        f[s]);
     }
-    ck_assert_uint_gt(cloth.system->pairs->now->n, 10);
+    ck_assert_uint_gt(cloth.system->pairs->current_contacts->n, 10);
     cs_terms_jvp(
         &alone,
         &(struct cs_eval){
@@ -300,13 +301,13 @@ START_TEST(crossings_are_counted_and_foreseen) {
         memcpy(to, net.x, sizeof to);
         // obstacles go through each other as they like
         ck_assert_uint_eq(cs_crossings_count(system, 0, net.x).n, 0);
-        ck_assert_double_eq(cs_crossings_share(system, 0, net.x, 0, to), 1);
+        ck_assert_double_eq(cs_crossings_safe_fraction(system, 0, net.x, 0, to), 1);
         for (int i = 0; i < 4; i++)
             to[4 + i] = 0.17;
         // the needle ends at 0.2: 8 edges along its sides, and 8 across them
         const struct cs_crossing_count found = cs_crossings_count(system, 0, to);
         ck_assert_uint_ge(found.n, 8);
-        const double share = cs_crossings_share(system, 0, net.x, 0, to);
+        const double share = cs_crossings_safe_fraction(system, 0, net.x, 0, to);
         ck_assert_msg(share < 0.1 / 0.13 && share > 0.6, "%.3g", share);
         struct cs_text text = {0};
         cs_crossings_print(system, &found, &text);
@@ -328,7 +329,7 @@ START_TEST(what_comes_is_foreseen) {
     fixture_frames(&net, 1);
     for (int i = 0; i < 4; i++)
         net.x[4 + i] = 0.3;
-    const double share = cs_crossings_share(net.system, 1.0 / 60, net.x, 0.5, net.x);
+    const double share = cs_crossings_safe_fraction(net.system, 1.0 / 60, net.x, 0.5, net.x);
     const double whole = 0.6 * (0.5 - 1.0 / 60), gap = 0.1 - 0.6 / 60;
     ck_assert_msg(share < gap / whole && share > 0.8 * gap / whole, "%.3g", share);
     ck_assert_uint_eq(cs_crossings_count(net.system, 1.0 / 60, net.x).n, 0);
@@ -340,12 +341,13 @@ START_TEST(what_comes_is_foreseen) {
     for (int k = 1; k < 30; k++) {
         const double t = (1.0 + k) / 60;
         system->pairs = pairs;
-        covered += cs_listed_covers(system, true,
-                                    cs_points_places(system, CS_POINTS_BEGIN, 1.0 / 60, net.x),
-                                    cs_points_places(system, CS_POINTS_END, t, net.x));
-        const double listed = cs_crossings_share(system, 1.0 / 60, net.x, t, net.x);
+        covered += cs_accd_candidates_suffice(
+            system, true, cs_surface_points_positions(system, CS_POINTS_BEGIN, 1.0 / 60, net.x),
+            cs_surface_points_positions(system, CS_POINTS_END, t, net.x));
+        const double listed = cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x);
         system->pairs = NULL;
-        ck_assert_double_eq(cs_crossings_share(system, 1.0 / 60, net.x, t, net.x), listed);
+        ck_assert_double_eq(cs_crossings_safe_fraction(system, 1.0 / 60, net.x, t, net.x),
+                            listed);
         cut += listed < 1;
     }
     ck_assert_uint_gt(cut, 10);
@@ -367,7 +369,8 @@ START_TEST(others_pay_nothing) {
     fixture_close(&cloth);
     fixture_open(&cloth, "rk4:dt=0.01", ON_BODY, "0, 0, 0");
     ck_assert_ptr_null(cloth.system->points);
-    ck_assert_ptr_eq(cs_points_places(cloth.system, CS_POINTS_BEGIN, 0, cloth.x), cloth.x);
+    ck_assert_ptr_eq(cs_surface_points_positions(cloth.system, CS_POINTS_BEGIN, 0, cloth.x),
+                     cloth.x);
     ck_assert_uint_eq(cloth.system->surfaces->n_points, cloth.n);
     fixture_start(&cloth);
     fixture_close(&cloth);

@@ -3,12 +3,12 @@
 #include "fixture.h"
 
 #include "base/pool.h"
-#include "io/scene_read.h"
-#include "model/cross/crossings.h"
-#include "model/cross/listed.h"
-#include "model/pair/pairs.h"
+#include "model/contact/ccd/accd_candidates.h"
+#include "model/contact/ccd/crossings.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/plan.h"
 #include "model/system_build.h"
+#include "scene/file/scene_read.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -165,16 +165,16 @@ static size_t end_of_crumple(const char *method, struct how how, double state[6 
     cs_pool_start(how.threads, &error);
     fixture_open(&cloth, method, "%s", crumple);
     cloth.session.scene.time.fps = how.fps;
-    struct cs_search *search = &cloth.system->pairs->search;
+    struct cs_candidates *search = &cloth.system->pairs->candidates;
     search->margin *= how.margin;
-    search->fresh = false;
+    search->is_built = false;
     fixture_start(&cloth);
     for (uint32_t frame = 0; frame < (uint32_t)(how.fps * FRAMES / 60); frame++) {
         fixture_frames(&cloth, 1);
-        search->held = how.trust > 1 ? how.trust * search->margin : search->held;
+        search->margin_now = how.trust > 1 ? how.trust * search->margin : search->margin_now;
     }
-    ck_assert_uint_gt(cloth.system->pairs->now->n, 40);
-    ck_assert_uint_gt(search->builds, 3);
+    ck_assert_uint_gt(cloth.system->pairs->current_contacts->n, 40);
+    ck_assert_uint_gt(search->n_builds, 3);
     const size_t n = 6 * cloth.n;
     ck_assert_uint_le(n, 6 * 600);
     memcpy(state, cloth.x, n * sizeof *state);
@@ -212,7 +212,7 @@ END_TEST
 
 /* moves of all particles at random, up to so many ranges a component, from where they are */
 static void shake(const struct fixture *cloth, double ranges, uint64_t *seed, double *x) {
-    const double range = cloth->system->pairs->meetings.least;
+    const double range = cloth->system->pairs->body_pairs.range_min;
     for (size_t i = 0; i < 3 * cloth->n; i++) {
         *seed = *seed * 6364136223846793005u + 1442695040888963407u;
         x[i] = cloth->x[i] + ranges * range * ((double)(*seed >> 11) / 4503599627370496.0 - 1);
@@ -231,10 +231,10 @@ START_TEST(list_limits_as_the_tree_does) {
     for (uint32_t k = 0; k < 60; k++) {
         struct cs_pairs *pairs = cloth.system->pairs;
         shake(&cloth, 0.05 * (1 + k), &seed, x);
-        listed += cs_listed_covers(cloth.system, true, cloth.x, x);
-        const double share = cs_crossings_share(cloth.system, 0, cloth.x, 0, x);
+        listed += cs_accd_candidates_suffice(cloth.system, true, cloth.x, x);
+        const double share = cs_crossings_safe_fraction(cloth.system, 0, cloth.x, 0, x);
         cloth.system->pairs = NULL;
-        ck_assert_double_eq(cs_crossings_share(cloth.system, 0, cloth.x, 0, x), share);
+        ck_assert_double_eq(cs_crossings_safe_fraction(cloth.system, 0, cloth.x, 0, x), share);
         cloth.system->pairs = pairs;
         cut += share < 1;
     }
@@ -246,10 +246,10 @@ START_TEST(list_limits_as_the_tree_does) {
 }
 END_TEST
 
-static size_t count_listed(const struct cs_search *search) {
+static size_t count_listed(const struct cs_candidates *search) {
     size_t n = 0;
-    for (uint32_t l = 0; l < search->n_lots; l++)
-        n += search->lots[l].n;
+    for (uint32_t l = 0; l < search->n_chunks; l++)
+        n += search->chunks[l].n;
     return n;
 }
 
@@ -258,16 +258,16 @@ static size_t count_listed(const struct cs_search *search) {
 static size_t listed_when_bent(bool trusted) {
     struct fixture strip;
     fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
-    struct cs_search *search = &strip.system->pairs->search;
-    ck_assert(cs_search_update(search, strip.x));
-    ck_assert_uint_gt(search->flat.n_flat, 0);
+    struct cs_candidates *search = &strip.system->pairs->candidates;
+    ck_assert(cs_candidates_update(search, strip.x));
+    ck_assert_uint_gt(search->flat_regions.n_flat_blocks, 0);
     ck_assert_uint_eq(count_listed(search), 0);
     bend(&strip);
     for (size_t i = 2 * strip.n; i < 3 * strip.n; i++)
         strip.x[i] *= 0.5;
-    search->held = HUGE_VAL;
-    search->flat.held = trusted ? HUGE_VAL : search->flat.held;
-    ck_assert(cs_search_update(search, strip.x));
+    search->margin_now = HUGE_VAL;
+    search->flat_regions.margin_now = trusted ? HUGE_VAL : search->flat_regions.margin_now;
+    ck_assert(cs_candidates_update(search, strip.x));
     const size_t n = count_listed(search);
     fixture_close(&strip);
     return n;
@@ -284,17 +284,19 @@ END_TEST
 START_TEST(what_stays_flat_makes_no_list) {
     struct fixture strip;
     fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
-    struct cs_search *search = &strip.system->pairs->search;
-    ck_assert(cs_search_update(search, strip.x));
-    const uint64_t builds = search->builds;
+    struct cs_candidates *search = &strip.system->pairs->candidates;
+    ck_assert(cs_candidates_update(search, strip.x));
+    const uint64_t builds = search->n_builds;
     for (int turn = 1; turn <= 3; turn++) {
         for (size_t i = 0; i < strip.n; i++)
-            strip.x[2 * strip.n + i] += 0.6 * search->flat.held * sin(2.5 * strip.x[i]);
-        ck_assert(cs_search_update(search, strip.x));
-        ck_assert_int_eq(!memcmp(search->flat.from, strip.x, 3 * strip.n * sizeof *strip.x),
-                         turn == 2);
+            strip.x[2 * strip.n + i] +=
+                0.6 * search->flat_regions.margin_now * sin(2.5 * strip.x[i]);
+        ck_assert(cs_candidates_update(search, strip.x));
+        ck_assert_int_eq(
+            !memcmp(search->flat_regions.x_at_build, strip.x, 3 * strip.n * sizeof *strip.x),
+            turn == 2);
     }
-    ck_assert_uint_eq(search->builds, builds);
+    ck_assert_uint_eq(search->n_builds, builds);
     fixture_close(&strip);
 }
 END_TEST

@@ -1,7 +1,7 @@
 /* A picture drawn beside the run is that of the state at which it was begun. */
 #include "fixture.h"
 
-#include "study/picture.h"
+#include "study/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,7 @@ static uint8_t *draw_frames(const char *look, bool beside) {
     fixture_open(&cloth, "symplectic-euler", SCENE, look);
     fixture_start(&cloth);
     cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, beside, &error);
-    ck_assert_int_eq(picture.hand != NULL, beside);
+    ck_assert_int_eq(picture.worker != NULL, beside);
     for (size_t k = 0; k < FRAMES && !error.status; k++) {
         struct cs_image image = {WIDTH, HEIGHT, all + k * bytes, NULL};
         cs_picture_begin(&picture, &cloth.session.run, &image);
@@ -129,7 +129,7 @@ START_TEST(what_viewpoint_forces_see_is_drawn_at_once) {
     fixture_start(&cloth);
     cs_picture_open(&picture, cloth.system, CS_RENDERER_AUTO, false, true, &error);
     ck_assert_msg(!error.status, "%s", error.message);
-    ck_assert_ptr_null(picture.hand);
+    ck_assert_ptr_null(picture.worker);
     cs_picture_close(&picture);
     fixture_close(&cloth);
 }

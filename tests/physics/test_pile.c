@@ -3,7 +3,7 @@
  * form. All three seconds with the argument all. */
 #include "fixture.h"
 
-#include "model/cross/crossings.h"
+#include "model/contact/ccd/crossings.h"
 #include "model/force/terms.h"
 
 #include <math.h>
@@ -16,17 +16,17 @@ enum { SHEETS = 10, GRID = 9, SHEET = GRID * GRID };
 static const double friction = 0.1, friction_speed = 0.01;
 static bool all;
 
-static void write_pile(char *text, size_t room) {
-    size_t n = (size_t)snprintf(text, room, "{\"bodies\": [");
+static void write_pile(char *text, size_t capacity) {
+    size_t n = (size_t)snprintf(text, capacity, "{\"bodies\": [");
     for (int k = 0; k < SHEETS; k++)
         n += (size_t)snprintf(
-            text + n, room - n,
+            text + n, capacity - n,
             "{\"cloth\": {\"grid\": [%d, %d], \"size\": [0.4, 0.4], \"start\": \"flat\", "
             "\"place\": {\"translate\": [0, %g, 0], \"rotate\": [0, %.17g, 0, 1]}}, "
             "\"thickness\": 0.02, \"mass\": {\"areal_density\": 0.3}, \"springs\": "
             "{\"stretch\": 60, \"shear\": 20, \"bend\": 1, \"damping\": 0.1}}, ",
             GRID, GRID, 0.018 * (k + 1), tan(k * acos(-1) / 44));
-    snprintf(text + n, room - n,
+    snprintf(text + n, capacity - n,
              "{\"mesh\": {\"shape\": \"sphere\", \"detail\": 4, \"scale\": [0.24, 0.24, 0.24], "
              "\"place\": {\"translate\": [0, 0.4, 0]}}, \"mass\": {\"total\": 0.3}, "
              "\"springs\": {\"stretch\": 400, \"damping\": 0.1}, \"thickness\": 0.02}], "

@@ -8,7 +8,7 @@
  * Methods with a step are run at two and must fall by their order; those with error control
  * must meet 1e-4. Methods of another model are left out. */
 #include "fixture.h"
-#include "model/force/bounds.h"
+#include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "planted_terms.h"
@@ -210,7 +210,7 @@ START_TEST(bounds_follow_the_state) {
     for (size_t c = 0; c < 3; c++)
         cloth.x[c * 12 + 5] += q * planted_direction[c];
     const struct cs_eval at = {.x = cloth.x, .v = cloth.v, .parts = CS_PART_ALL};
-    cs_bounds_at(cloth.system, &at, work, &omega, &delta);
+    cs_spectral_bounds_at(cloth.system, &at, work, &omega, &delta);
     const double springs = 2 * (4 * 0.2 + 4 * 0.1 + 2 * 0.05 + 0.05 * (12 > 4)) / MASS;
     ck_assert_double_le(omega * omega, 3 * 50 * q * q / MASS + springs);
     ck_assert_double_ge(omega * omega, 3 * 50 * q * q / MASS);

@@ -25,7 +25,7 @@ enum { N = 81, VALUES = 3 * N };
 static bool is_built(const char *name) {
     struct cs_registry registry = {0};
     struct cs_error error = {0};
-    const struct cs_registered *found;
+    const struct cs_registry_entry *found;
     const bool built = !cs_registry_find(&registry, name, &found, &error);
     ck_assert_msg(built || error.status == CS_ERR_USAGE, "%s", error.message);
     cs_registry_finish(&registry);

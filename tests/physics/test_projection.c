@@ -73,7 +73,7 @@ START_TEST(block_below_the_angle_of_friction_stays) {
         fixture_frames(&sheet, 600);
         ck_assert_msg(drift(&sheet) <= 1e-6, "%s: %.3g m", method, drift(&sheet));
         // held from the start on, it never falls behind the slope
-        ck_assert_uint_eq(sheet.session.run.counts.contacts, 0);
+        ck_assert_uint_eq(sheet.session.run.counts.projected_particles, 0);
         fixture_close(&sheet);
     }
 }
@@ -277,9 +277,9 @@ struct log {
 
 static bool look(void *ctx, double t, double dt, double *x, double *v) {
     struct log *log = ctx;
-    const struct cs_energy energy = cs_measure_energy(log->ball->system, t, x, v);
+    const struct cs_energy energy = cs_diagnostics_energy(log->ball->system, t, x, v);
     (void)dt;
-    log->largest = fmax(log->largest, cs_energy_whole(&energy));
+    log->largest = fmax(log->largest, cs_energy_total(&energy));
     log->lowest = fmin(log->lowest, energy.gravity);
     return false;
 }
@@ -303,7 +303,7 @@ static struct log drop(const char *method, double absorption, int fps, double se
     struct fixture ball;
     struct log log = {.ball = &ball, .lowest = HUGE_VAL};
     fixture_open(&ball, method, BALL, detail(), damping_of(method), absorption, fps);
-    ball.session.settings.run.observe = look;
+    ball.session.settings.run.after_commit = look;
     ball.session.settings.run.ctx = &log;
     fixture_start(&ball);
     fixture_frames(&ball, (uint32_t)(seconds * fps));

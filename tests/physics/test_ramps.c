@@ -150,7 +150,7 @@ START_TEST(factored_matrix_follows_ramps) {
         " \"ramp\": {\"key\": \"forces.drag\", \"value\": 0.05}}], \"time\": {\"fps\": 20}}";
     struct cs_registry registry = {0};
     struct cs_error error = {0};
-    const struct cs_registered *found;
+    const struct cs_registry_entry *found;
     const bool built = !cs_registry_find(&registry, "fast-mass-spring", &found, &error);
     cs_registry_finish(&registry);
     if (!built)

@@ -36,22 +36,22 @@ static void compare(const struct cs_session *whole, const struct cs_session *res
                   broken->scene, broken->method, at);
     ck_assert_uint_eq(a->counts.steps, b->counts.steps);
     ck_assert_uint_eq(a->counts.forces, b->counts.forces);
-    ck_assert_uint_eq(a->counts.contacts, b->counts.contacts);
-    ck_assert_uint_eq(a->counts.limit_moves, b->counts.limit_moves);
+    ck_assert_uint_eq(a->counts.projected_particles, b->counts.projected_particles);
+    ck_assert_uint_eq(a->counts.strain_limit_moves, b->counts.strain_limit_moves);
     ck_assert_uint_eq(a->counts.method.rejected, b->counts.method.rejected);
     ck_assert_uint_eq(a->n_notes, b->n_notes);
     ck_assert_mem_eq(a->notes, b->notes, sizeof a->notes);
 }
 
-static void go_on(const struct broken *broken, struct cs_record *record,
+static void go_on(const struct broken *broken, struct cs_serialiser *record,
                   const struct cs_session *whole, uint32_t at) {
     struct cs_error error = {0};
     struct cs_session resumed;
     open_session(&resumed, broken);
-    record->loading = true;
+    record->is_reading = true;
     cs_run_load(&resumed.run, record, &error);
     ck_assert_msg(!error.status, "%s", error.message);
-    ck_assert(cs_record_is_done(record));
+    ck_assert(cs_serialiser_is_done(record));
     ck_assert_uint_eq(resumed.run.frame, at);
     run_to(&resumed, broken->frames);
     compare(whole, &resumed, broken, at);
@@ -62,7 +62,7 @@ static void go_on(const struct broken *broken, struct cs_record *record,
 static void check(const struct broken *broken) {
     struct cs_error error = {0};
     struct cs_session whole;
-    struct cs_record records[BREAKS] = {0};
+    struct cs_serialiser records[BREAKS] = {0};
     open_session(&whole, broken);
     for (int k = 0; k < BREAKS; k++) {
         run_to(&whole, broken->breaks[k]);
@@ -71,11 +71,11 @@ static void check(const struct broken *broken) {
     }
     run_to(&whole, broken->frames);
     // after the last break nothing starts anew any more; before it only a method that saves
-    const bool saves = cs_run_remembers(whole.method.integrator);
+    const bool saves = cs_run_method_has_history(whole.method.integrator);
     for (int k = saves ? 0 : BREAKS - 1; k < BREAKS; k++)
         go_on(broken, records + k, &whole, broken->breaks[k]);
     for (int k = 0; k < BREAKS; k++)
-        cs_record_finish(records + k);
+        cs_serialiser_finish(records + k);
     cs_session_close(&whole);
 }
 
@@ -109,16 +109,16 @@ START_TEST(foreign_records_are_refused) {
     static const struct broken two = {"scenes/swing.json", "velocity-verlet", 3, {1, 2, 3}};
     struct cs_error error = {0};
     struct cs_session session;
-    struct cs_record record = {0};
+    struct cs_serialiser record = {0};
     open_session(&session, &one);
     run_to(&session, 1);
     cs_run_save(&session.run, &record, &error);
     cs_session_close(&session);
     open_session(&session, &two);
-    record.loading = true;
+    record.is_reading = true;
     cs_run_load(&session.run, &record, &error);
-    ck_assert(error.status == CS_ERR_FILE || !cs_record_is_done(&record));
-    cs_record_finish(&record);
+    ck_assert(error.status == CS_ERR_FILE || !cs_serialiser_is_done(&record));
+    cs_serialiser_finish(&record);
     cs_session_close(&session);
 }
 END_TEST

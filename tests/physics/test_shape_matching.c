@@ -1,7 +1,7 @@
 /* Shape matching against closed forms and its limit cases. */
 #include "matched.h"
 
-#include "model/cross/crossings.h"
+#include "model/contact/ccd/crossings.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ START_TEST(alpha_0_is_symplectic_euler) {
         fixture_start(&free);
         fixture_frames(&matched, 60);
         fixture_frames(&free, 60);
-        ck_assert_uint_gt(matched.session.run.counts.contacts, 0);
+        ck_assert_uint_gt(matched.session.run.counts.projected_particles, 0);
         for (size_t k = 0; k < 6 * free.n; k++)
             ck_assert(matched.x[k] == free.x[k]);
         fixture_close(&matched);
@@ -262,7 +262,7 @@ START_TEST(a_limit_holds_off_what_goals_draw) {
         struct cs_error error = {0};
         ck_assert_uint_eq(throw_boxes(steps[s], "all", &counts, y + s, &error), 0);
         ck_assert_msg(!error.status, "%s", error.message);
-        ck_assert_uint_gt(counts.cut_steps, 0);
+        ck_assert_uint_gt(counts.subdivided_steps, 0);
         ck_assert_uint_eq(throw_boxes(steps[s], "listed", &counts, &end, &error), 0);
         ck_assert_msg(error.status == CS_ERR_MODULE &&
                           strstr(error.message, "through a surface"),

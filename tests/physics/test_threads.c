@@ -54,7 +54,7 @@ static double *run(const char *method, const char *scene, uint32_t n, size_t *le
     ck_assert_ptr_nonnull(state);
     memcpy(state, all.x, *length * sizeof *state);
     ck_assert_uint_gt(all.system->springs.n_blocks, n == 1 ? 0 : 4);
-    ck_assert_uint_eq(all.system->springs.n_lots == 0, n == 1);
+    ck_assert_uint_eq(all.system->springs.n_chunks == 0, n == 1);
     fixture_close(&all);
     cs_pool_stop();
     return state;

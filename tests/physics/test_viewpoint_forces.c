@@ -109,7 +109,7 @@ START_TEST(looks_that_see_the_same_change_nothing) {
             fixture_start(dust + e);
             fixture_frames(dust + e, 15);
         }
-        ck_assert(dust[0].system->events->viewpoint_forces->states->looks == 9);
+        ck_assert(dust[0].system->events->viewpoint_forces->states->n_tests == 9);
         ck_bits(dust[0].x, dust[1].x, 6 * dust[0].n, methods[k]);
         for (size_t e = 0; e < 2; e++)
             fixture_close(dust + e);
@@ -141,8 +141,8 @@ START_TEST(runs_are_joined_at_looks) {
         }
         fixture_frames(&dust, 9);
         fixture_frames(&parts, 6);
-        ck_assert(parts.system->push[2 * n + 5] == -1);
-        parts.system->push[2 * n + 5] = 0;
+        ck_assert(parts.system->event_force[2 * n + 5] == -1);
+        parts.system->event_force[2 * n + 5] = 0;
         struct cs_error error = {0};
         ck_assert_int_eq(cs_run_restart(&parts.session.run, 0.1, &error), CS_OK);
         fixture_frames(&parts, 3);
@@ -185,7 +185,7 @@ START_TEST(only_what_is_seen_moves) {
     for (int k = 0; k < 2; k++)
         for (uint32_t b = 0; b < 5; b++)
             for (uint32_t i = 0; i < bodies[b].count; i++)
-                seen[k][b] += states[k].seen[bodies[b].first + i];
+                seen[k][b] += states[k].is_visible[bodies[b].first + i];
     ck_assert(seen[0][0] == 25 && seen[0][1] == 0 && seen[0][2] == 0 && seen[0][4] == 0);
     /* the front and the lower side of the box */
     ck_assert(seen[0][3] > 0 && seen[0][3] < bodies[3].count);
@@ -284,8 +284,8 @@ START_TEST(methods_agree) {
                      "{\"at\": 0.1, \"viewpoint_force\": {\"force\": 0.5}}");
         fixture_start(cloths + k);
         fixture_frames(cloths + k, 18);
-        ck_assert_mem_eq(cloths[k].system->events->viewpoint_forces->states[0].seen,
-                         cloths[0].system->events->viewpoint_forces->states[0].seen,
+        ck_assert_mem_eq(cloths[k].system->events->viewpoint_forces->states[0].is_visible,
+                         cloths[0].system->events->viewpoint_forces->states[0].is_visible,
                          cloths[0].n);
     }
     const size_t n = 3 * cloths[0].n;
@@ -314,7 +314,7 @@ START_TEST(bytes_are_planned) {
                       rows[CS_FEATURE_EVENTS].bytes + rows[CS_FEATURE_VIEWPOINT_FORCES].bytes);
     ck_assert(!without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].built);
     ck_assert_uint_eq(without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes, 0);
-    ck_assert_ptr_null(blow.system->push);
+    ck_assert_ptr_null(blow.system->event_force);
     fixture_close(&with);
     fixture_close(&blow);
     fixture_close(&without);
@@ -339,7 +339,7 @@ START_TEST(cuts_are_counted) {
                  "\"refresh\": %g}}",
                  rows[k].refresh);
         fixture_open(&dust, "velocity-verlet", DUST, "0", event);
-        const uint32_t cuts = cs_events_cuts(dust.system->events, 1);
+        const uint32_t cuts = cs_events_count_stops(dust.system->events, 1);
         ck_assert_msg(cuts == rows[k].cuts, "%g looks a second: %u", rows[k].refresh, cuts);
         fixture_close(&dust);
     }

@@ -87,7 +87,7 @@ static void check_scene(const struct row *row) {
                                                            : FEW_METHODS,
                                .seconds = row->seconds,
                                .budget = 20,
-                               .check = true,
+                               .bisect_too = true,
                                .workers = 2};
     while (advise.session.n_overrides < 2 && row->overrides[advise.session.n_overrides].path)
         advise.session.n_overrides++;

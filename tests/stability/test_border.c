@@ -19,21 +19,21 @@ static double border_of(const struct row *row, struct cs_reference *reference) {
     const struct cs_override grid = {"bodies[0].cloth.grid", row->grid};
     double border = (double)NAN;
     snprintf(path, sizeof path, SCENES "/%s.json", row->scene);
-    const struct cs_trial_settings trial = {.session = {.scene = path,
-                                                        .integrator = row->method,
-                                                        .overrides = &grid,
-                                                        .n_overrides = 1,
-                                                        .perturbation = 1e-6},
-                                            .seconds = row->seconds,
-                                            .samples = 32};
+    const struct cs_sampled_run_settings trial = {.session = {.scene = path,
+                                                              .integrator = row->method,
+                                                              .overrides = &grid,
+                                                              .n_overrides = 1,
+                                                              .perturbation = 1e-6},
+                                                  .seconds = row->seconds,
+                                                  .samples = 32};
     ck_assert_msg(!cs_reference_run(reference, &trial, &error), "%s", error.message);
-    ck_assert_msg(reference->found, "%s", reference->message);
-    cs_stability_border(&trial, reference, reference->worst.dt / 3, reference->worst.dt * 2,
-                        &border, &error);
+    ck_assert_msg(reference->exists, "%s", reference->message);
+    cs_stability_boundary(&trial, reference, reference->smallest_limit.dt / 3,
+                          reference->smallest_limit.dt * 2, &border, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     printf("%-10s %-18s %-9s border %.5g s, worst on the way %.5g, at the start %.5g: %.3f\n",
-           row->scene, row->method, row->grid, border, reference->worst.dt,
-           reference->at_rest.dt, border / reference->worst.dt);
+           row->scene, row->method, row->grid, border, reference->smallest_limit.dt,
+           reference->start_limit.dt, border / reference->smallest_limit.dt);
     return border;
 }
 
@@ -51,9 +51,9 @@ START_TEST(border_lies_on_the_worst_limit) {
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct cs_reference reference;
         const double border = border_of(rows + i, &reference);
-        ck_assert_msg(fabs(border / reference.worst.dt - 1) < 0.05,
+        ck_assert_msg(fabs(border / reference.smallest_limit.dt - 1) < 0.05,
                       "%s, %s, %s: border %.6g s, theory %.6g", rows[i].scene, rows[i].method,
-                      rows[i].grid, border, reference.worst.dt);
+                      rows[i].grid, border, reference.smallest_limit.dt);
     }
 }
 END_TEST
@@ -63,8 +63,8 @@ START_TEST(forward_euler_lives_by_damping) {
     static const struct row row = {"drum", "explicit-euler", "[16, 16]", 1};
     struct cs_reference reference;
     const double border = border_of(&row, &reference);
-    ck_assert_double_eq_tol(border / reference.at_rest.dt, 1, 0.1);
-    ck_assert_double_lt(border, 0.1 * 2 / sqrt(reference.at_rest.mode.square));
+    ck_assert_double_eq_tol(border / reference.start_limit.dt, 1, 0.1);
+    ck_assert_double_lt(border, 0.1 * 2 / sqrt(reference.start_limit.mode.omega_squared));
 }
 END_TEST
 
@@ -104,7 +104,7 @@ START_TEST(column_without_a_reference_is_not_judged) {
         ck_assert_int_eq(map.columns[0].cells[r].verdict, CS_STABILITY_UNJUDGED);
         ck_assert(map.columns[1].cells[r].verdict < CS_STABILITY_OVER_BUDGET);
     }
-    ck_assert(isnan(map.columns[0].border) && !isnan(map.columns[1].border));
+    ck_assert(isnan(map.columns[0].boundary) && !isnan(map.columns[1].boundary));
     cs_stability_print_table(&map, &table);
     ck_assert_ptr_nonnull(strstr(cs_text_get(&table), "stiffness = 0.02: no run to judge by"));
     cs_text_finish(&table);

@@ -1,7 +1,7 @@
 /* Linear theory from the code that runs: step limits of single oscillators, the fastest motion
  * of a chain, and the verdicts of runs that are known. */
+#include "study/energy_monitor.h"
 #include "study/stability/theory.h"
-#include "study/watch.h"
 
 #include "../physics/fixture.h"
 
@@ -16,9 +16,9 @@ static double limit_of(const char *method, double square, double rate) {
     struct cs_error error = {0};
     double limit = (double)NAN;
     fixture_open(&pair, method, PAIR);
-    const struct cs_amplify amplify = {pair.session.method.integrator,
-                                       pair.session.method.options, 0};
-    cs_amplify_limit(&amplify, square, rate, &limit, &error);
+    const struct cs_amplification amplify = {pair.session.method.integrator,
+                                             pair.session.method.options, 0};
+    cs_amplification_limit(&amplify, square, rate, &limit, &error);
     ck_assert_msg(!error.status, "%s", error.message);
     fixture_close(&pair);
     return limit;
@@ -60,18 +60,18 @@ END_TEST
 START_TEST(fastest_motion_of_a_chain) {
     const double pi = 3.14159265358979323846;
     struct fixture chain;
-    struct cs_modes modes;
+    struct cs_stiffest_modes modes;
     struct cs_error error = {0};
     fixture_open(&chain, "velocity-verlet",
                  "{\"bodies\": [{\"cloth\": {\"grid\": [40, 1]}, \"mass\": {\"particle\": 0.5},"
                  " \"springs\": {\"stretch\": 8, \"bend\": 0, \"damping\": 0.25}, "
                  "\"pins\": [0, 39]}]}");
-    ck_assert_int_eq(cs_modes_init(&modes, chain.system, &error), CS_OK);
+    ck_assert_int_eq(cs_stiffest_modes_init(&modes, chain.system, &error), CS_OK);
     const double wave = sin(pi * 38 / (2.0 * 39));
-    const struct cs_mode mode = cs_modes_largest(&modes, chain.x, 1, 0);
-    ck_assert_double_eq_tol(mode.square / (4 * 8 / 0.5 * wave * wave), 1, 1e-3);
-    ck_assert_double_eq_tol(mode.rate / mode.square, 0.25 / 8, 1e-9);
-    cs_modes_finish(&modes);
+    const struct cs_mode mode = cs_stiffest_modes_largest(&modes, chain.x, 1, 0);
+    ck_assert_double_eq_tol(mode.omega_squared / (4 * 8 / 0.5 * wave * wave), 1, 1e-3);
+    ck_assert_double_eq_tol(mode.damping_rate / mode.omega_squared, 0.25 / 8, 1e-9);
+    cs_stiffest_modes_finish(&modes);
     fixture_close(&chain);
 }
 END_TEST
@@ -80,30 +80,30 @@ END_TEST
  * whole, it is a global one. */
 START_TEST(watch_tells_local_from_global) {
     struct fixture cloth;
-    struct cs_watch watch;
-    struct cs_watch_row row;
+    struct cs_energy_monitor monitor;
+    struct cs_energy_monitor_row row;
     struct cs_error error = {0};
     fixture_open(&cloth, "velocity-verlet",
                  "{\"bodies\": [{\"cloth\": {\"grid\": [20, 20]}, \"mass\": {\"particle\": 1}, "
                  "\"springs\": {\"stretch\": 100}, \"pins\": [\"top\"]}]}");
     fixture_start(&cloth);
-    ck_assert_int_eq(cs_watch_begin(&watch, &cloth.session.run, &error), CS_OK);
+    ck_assert_int_eq(cs_energy_monitor_begin(&monitor, &cloth.session.run, &error), CS_OK);
     fixture_frames(&cloth, 30);
-    cs_watch_look(&watch, &cloth.session.run, &row);
+    cs_energy_monitor_sample(&monitor, &cloth.session.run, &row);
     ck_assert_int_eq(row.verdict, CS_STABILITY_BOUNDED);
     cloth.v[250] = 1.2 * row.speed_limit;
-    cs_watch_look(&watch, &cloth.session.run, &row);
+    cs_energy_monitor_sample(&monitor, &cloth.session.run, &row);
     ck_assert_int_eq(row.verdict, CS_STABILITY_LOCAL);
     ck_assert_uint_eq(row.particle, 250);
     ck_assert_uint_eq(row.particles, 1);
     for (size_t i = 100; i < 400; i++)
         cloth.v[i] = row.speed_limit;
-    cs_watch_look(&watch, &cloth.session.run, &row);
+    cs_energy_monitor_sample(&monitor, &cloth.session.run, &row);
     ck_assert_int_eq(row.verdict, CS_STABILITY_GLOBAL);
     cloth.v[7] = (double)NAN;
-    cs_watch_look(&watch, &cloth.session.run, &row);
+    cs_energy_monitor_sample(&monitor, &cloth.session.run, &row);
     ck_assert_int_eq(row.verdict, CS_STABILITY_NOT_FINITE);
-    ck_assert_uint_eq(watch.first.particle, 250);
+    ck_assert_uint_eq(monitor.first.particle, 250);
     fixture_close(&cloth);
 }
 END_TEST

@@ -40,8 +40,8 @@ static inline void crumple_start(struct crumple *crumple, double spacing) {
     uint32_t seed = 1;
     crumple->arena = (struct cs_arena){0};
     cs_linear_init(&crumple->linear, &sheet->system, &crumple->arena, &error);
-    crumple->b = cs_arena_take_n(&crumple->arena, 3 * n, sizeof(double), &error);
-    crumple->u = cs_arena_take_n(&crumple->arena, 3 * n, sizeof(double), &error);
+    crumple->b = cs_arena_alloc_array(&crumple->arena, 3 * n, sizeof(double), &error);
+    crumple->u = cs_arena_alloc_array(&crumple->arena, 3 * n, sizeof(double), &error);
     UNIT_ASSERT_OK(&error);
     for (size_t i = 0; i < n; i++) {
         const double x = sheet->x[i], y = sheet->x[n + i];

@@ -3,10 +3,10 @@
 #ifndef CS_TEST_RAYS_H
 #define CS_TEST_RAYS_H
 
-#include "model/event/sight.h"
+#include "model/event/visibility.h"
 
 #include "mesh/trimesh.h"
-#include "model/contact/obstacle.h"
+#include "model/contact/posed_collider.h"
 #include "sheet.h"
 
 /* two cloths, a closed mesh, and obstacles of every kind; %s: keys of the last sphere */
@@ -87,7 +87,7 @@ static inline void look_past_triangles(struct verdict *verdict, const struct she
 }
 
 /* the least distance of a convex obstacle from the way: by thirds, for it is convex too */
-static inline double least_distance(const struct cs_obstacle *of, const double eye[3],
+static inline double least_distance(const struct cs_posed_collider *of, const double eye[3],
                                     const double way[3]) {
     double low = 0, high = 1, d[2] = {0, 0};
     for (int k = 0; k < 100; k++) {
@@ -96,7 +96,7 @@ static inline double least_distance(const struct cs_obstacle *of, const double e
             double n[3];
             const double p[3] = {eye[0] + at[s] * way[0], eye[1] + at[s] * way[1],
                                  eye[2] + at[s] * way[2]};
-            d[s] = cs_obstacle_distance(of, p, n);
+            d[s] = cs_posed_collider_distance(of, p, n);
         }
         *(d[0] < d[1] ? &high : &low) = d[0] < d[1] ? at[1] : at[0];
     }
@@ -127,8 +127,8 @@ static inline void look_past_obstacles(struct verdict *verdict, const struct she
     require(verdict, eye[1] + 0.45);
     require(verdict, end[1] + 0.45);
     for (uint32_t k = 4; k < 6; k++) {
-        struct cs_obstacle of;
-        cs_obstacle_at(&sheet->system, k, 0, &of);
+        struct cs_posed_collider of;
+        cs_posed_collider_at(&sheet->system, k, 0, &of);
         require(verdict, least_distance(&of, eye, way));
     }
 }

@@ -2,9 +2,9 @@
 #ifndef SHEET_H
 #define SHEET_H
 
-#include "io/scene_read.h"
 #include "model/plan.h"
 #include "model/system_build.h"
+#include "scene/file/scene_read.h"
 #include "unit.h"
 
 #include <math.h>

@@ -22,7 +22,7 @@ START_TEST(pieces_are_aligned_zeroed_and_apart) {
     unsigned char *pieces[N];
     size_t sum = 0;
     for (size_t k = 0; k < N; k++) {
-        pieces[k] = cs_arena_take(&arena, sizes[k], &error);
+        pieces[k] = cs_arena_alloc(&arena, sizes[k], &error);
         ck_assert_ptr_nonnull(pieces[k]);
         ck_assert_uint_eq((uintptr_t)pieces[k] % 64, 0);
         ck_assert(is_zero(pieces[k], sizes[k]));
@@ -43,7 +43,7 @@ START_TEST(finish_empties) {
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     for (int round = 0; round < 3; round++) {
-        unsigned char *bytes = cs_arena_take(&arena, 200000, &error);
+        unsigned char *bytes = cs_arena_alloc(&arena, 200000, &error);
         ck_assert(is_zero(bytes, 200000));
         memset(bytes, 0xff, 200000);
         cs_arena_finish(&arena);
@@ -70,13 +70,13 @@ START_TEST(impossible_sizes_are_refused) {
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         struct cs_arena arena = {0};
         struct cs_error error = {0};
-        ck_assert_ptr_nonnull(cs_arena_take(&arena, 8, &error));
-        ck_assert_ptr_null(cs_arena_take_n(&arena, sizes[k][0], sizes[k][1], &error));
+        ck_assert_ptr_nonnull(cs_arena_alloc(&arena, 8, &error));
+        ck_assert_ptr_null(cs_arena_alloc_array(&arena, sizes[k][0], sizes[k][1], &error));
         UNIT_ASSERT_FAILED(&error, CS_ERR_MEMORY, "out of memory");
         ck_assert_uint_eq(arena.used, 8);
         // what it held is still there, and it goes on
         struct cs_error later = {0};
-        ck_assert_ptr_nonnull(cs_arena_take(&arena, 8, &later));
+        ck_assert_ptr_nonnull(cs_arena_alloc(&arena, 8, &later));
         UNIT_ASSERT_OK(&later);
         cs_arena_finish(&arena);
     }
@@ -87,10 +87,10 @@ START_TEST(text_is_copied) {
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     char text[] = "particle";
-    char *copy = cs_arena_take_text(&arena, text, &error);
+    char *copy = cs_arena_copy_text(&arena, text, &error);
     text[0] = 'x';
     ck_assert_str_eq(copy, "particle");
-    ck_assert_str_eq(cs_arena_take_text(&arena, "", &error), "");
+    ck_assert_str_eq(cs_arena_copy_text(&arena, "", &error), "");
     cs_arena_finish(&arena);
 }
 END_TEST

@@ -3,8 +3,8 @@
 #include "io/checkpoint.h"
 #include "unit.h"
 
-static const struct cs_fact facts[] = {{"scene", "{\n  \"dt\": 0.001,\n  \"n\": 3\n}"},
-                                       {"method", "rk4:dt=0.001"}};
+static const struct cs_checkpoint_key facts[] = {
+    {"scene", "{\n  \"dt\": 0.001,\n  \"n\": 3\n}"}, {"method", "rk4:dt=0.001"}};
 enum { FACTS = sizeof facts / sizeof *facts };
 
 struct memory {
@@ -12,51 +12,52 @@ struct memory {
     unsigned count;
 };
 
-static void record_memory(struct memory *memory, struct cs_record *record) {
-    CS_RECORD(record, memory->x);
-    CS_RECORD(record, memory->count);
+static void record_memory(struct memory *memory, struct cs_serialiser *record) {
+    CS_SERIALISER(record, memory->x);
+    CS_SERIALISER(record, memory->count);
 }
 
 static void write_one(void) {
     struct cs_error error = {0};
-    struct cs_record record = {0};
+    struct cs_serialiser record = {0};
     struct memory memory = {{0.1, -0.0, 1e300}, 7};
     record_memory(&memory, &record);
     cs_checkpoint_write("c", facts, FACTS, &record, &error);
     UNIT_ASSERT_OK(&error);
-    cs_record_finish(&record);
+    cs_serialiser_finish(&record);
 }
 
-static void expect_refusal(const struct cs_fact *expected, uint32_t n, const char *part) {
+static void expect_refusal(const struct cs_checkpoint_key *expected, uint32_t n,
+                           const char *part) {
     struct cs_error error = {0};
-    struct cs_record record;
+    struct cs_serialiser record;
     cs_checkpoint_read("c", expected, n, &record, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, part);
-    cs_record_finish(&record);
+    cs_serialiser_finish(&record);
 }
 
 START_TEST(it_comes_back) {
     struct cs_error error = {0};
-    struct cs_record record;
+    struct cs_serialiser record;
     struct memory memory = {0};
     const double expected[3] = {0.1, -0.0, 1e300};
     write_one();
     cs_checkpoint_read("c", facts, FACTS, &record, &error);
     UNIT_ASSERT_OK(&error);
     record_memory(&memory, &record);
-    ck_assert(cs_record_is_done(&record));
+    ck_assert(cs_serialiser_is_done(&record));
     ck_assert_mem_eq(memory.x, expected, sizeof expected);
     ck_assert_uint_eq(memory.count, 7);
     ck_assert_int_eq(unit_count_files("."), 1);
     // more is asked for than there is: said, and nothing is written
-    CS_RECORD(&record, memory.count);
+    CS_SERIALISER(&record, memory.count);
     ck_assert(record.failed && memory.count == 7);
-    cs_record_finish(&record);
+    cs_serialiser_finish(&record);
 }
 END_TEST
 
 START_TEST(what_differs_is_told) {
-    struct cs_fact others[FACTS] = {facts[0], facts[1]};
+    struct cs_checkpoint_key others[FACTS] = {facts[0], facts[1]};
     write_one();
     others[0].value = "{\n  \"dt\": 0.002,\n  \"n\": 3\n}";
     expect_refusal(others, FACTS,
@@ -64,7 +65,7 @@ START_TEST(what_differs_is_told) {
     others[0].value = facts[0].value;
     others[1].value = "rk4:dt=0.001,more";
     expect_refusal(others, FACTS, "another method: there rk4:dt=0.001, here rk4:dt=0.001,more");
-    others[1] = (struct cs_fact){"plugin", ""};
+    others[1] = (struct cs_checkpoint_key){"plugin", ""};
     expect_refusal(others, FACTS, "says nothing of the plugin");
     expect_refusal(facts, 1, "it holds no record");
 }

@@ -1,8 +1,8 @@
 /* Crossings of whole systems: closed cases, and every pair tried one by one. */
 #include "base/pool.h"
-#include "model/cross/crossings.h"
-#include "model/cross/gap.h"
-#include "model/cross/pierce.h"
+#include "model/contact/ccd/accd.h"
+#include "model/contact/ccd/crossings.h"
+#include "model/contact/ccd/edge_triangle.h"
 #include "sheet.h"
 
 #define SHEET                                                                                  \
@@ -45,7 +45,8 @@ static struct cs_crossing_count count_all(const struct sheet *sheet) {
                 continue;
             read_points(sheet, sheet->x, s->edges + 2 * e, 2, edge);
             read_points(sheet, sheet->x, s->triangles + 3 * t, 3, triangle);
-            if (!cs_pierces((const double(*)[3])edge, (const double(*)[3])triangle))
+            if (!cs_edge_crosses_triangle((const double(*)[3])edge,
+                                          (const double(*)[3])triangle))
                 continue;
             if (!count.n++)
                 count.edge = e, count.triangle = t;
@@ -53,7 +54,7 @@ static struct cs_crossing_count count_all(const struct sheet *sheet) {
     return count;
 }
 
-static double share_of(const struct sheet *sheet, enum cs_gap_kind kind,
+static double share_of(const struct sheet *sheet, enum cs_primitive_pair_kind kind,
                        const uint32_t items[4], const double *to, double most) {
     double p[4][3], moves[4][3];
     read_points(sheet, sheet->x, items, 4, p);
@@ -61,7 +62,7 @@ static double share_of(const struct sheet *sheet, enum cs_gap_kind kind,
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < 3; c++)
             moves[k][c] -= p[k][c];
-    return cs_gap_share(kind, (const double(*)[3])p, (const double(*)[3])moves, most);
+    return cs_accd_safe_fraction(kind, (const double(*)[3])p, (const double(*)[3])moves, most);
 }
 
 /* every point of a body against every triangle, every edge against every other */
@@ -73,14 +74,14 @@ static double share_all(const struct sheet *sheet, const double *to) {
             const uint32_t *corners = s->triangles + 3 * t;
             const uint32_t items[4] = {i, corners[0], corners[1], corners[2]};
             if (!share_one(items, 1, corners, 3))
-                share = share_of(sheet, CS_GAP_POINT, items, to, share);
+                share = share_of(sheet, CS_PRIMITIVE_POINT_TRIANGLE, items, to, share);
         }
     for (uint32_t e = 0; e < s->n_edges; e++)
         for (uint32_t f = e + 1; f < s->n_edges; f++) {
             const uint32_t *a = s->edges + 2 * e, *b = s->edges + 2 * f;
             const uint32_t items[4] = {a[0], a[1], b[0], b[1]};
             if (!share_one(a, 2, b, 2))
-                share = share_of(sheet, CS_GAP_EDGES, items, to, share);
+                share = share_of(sheet, CS_PRIMITIVE_EDGE_EDGE, items, to, share);
         }
     return share;
 }
@@ -198,7 +199,8 @@ START_TEST(shares_are_those_of_all_pairs) {
         for (uint32_t threads = 1; threads < 4; threads++) {
             cs_pool_start(threads, &error);
             UNIT_ASSERT_OK(&error);
-            ck_assert_double_eq(cs_crossings_share(&sheet.system, 0, sheet.x, 1, to), all);
+            ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to),
+                                all);
             cs_pool_stop();
         }
         cut += all < 1;
@@ -224,7 +226,7 @@ START_TEST(spikes_of_either_body_are_seen) {
         memcpy(to, sheet.x, 3 * sheet.n * sizeof *to);
         for (size_t i = 16; i < 32; i++)
             to[2 * sheet.n + i] -= 0.1;
-        const double share = cs_crossings_share(&sheet.system, 0, sheet.x, 1, to);
+        const double share = cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to);
         ck_assert_msg(share < 0.5 && share > 0.44, "%zu: %g", spiked, share);
         free(to);
         sheet_close(&sheet);
@@ -240,11 +242,11 @@ START_TEST(shared_moves_and_blow_ups) {
     sheet_stir(&sheet, 0.01, 0);
     for (size_t i = 0; i < 3 * sheet.n; i++)
         to[i] = sheet.x[i] + 0.5;
-    ck_assert_double_eq(cs_crossings_share(&sheet.system, 0, sheet.x, 1, to), 1);
-    ck_assert_double_eq(cs_crossings_share(&sheet.system, 0, sheet.x, 1, sheet.x), 1);
+    ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to), 1);
+    ck_assert_double_eq(cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, sheet.x), 1);
     for (size_t i = 0; i < 3 * sheet.n; i += 5)
         to[i] = i % 2 ? (double)NAN : HUGE_VAL;
-    cs_crossings_share(&sheet.system, 0, sheet.x, 1, to);
+    cs_crossings_safe_fraction(&sheet.system, 0, sheet.x, 1, to);
     cs_crossings_count(&sheet.system, 0, to);
     free(to);
     sheet_close(&sheet);

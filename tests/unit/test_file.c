@@ -18,7 +18,7 @@ static void assert_content(const char *path, const char *expected) {
 
 START_TEST(written_file_reads_back) {
     struct cs_error error = {0};
-    cs_folder_make("alone", &error);
+    cs_folder_create("alone", &error);
     cs_file_write("alone/a.txt", "hello", 5, &error);
     UNIT_ASSERT_OK(&error);
     assert_content("alone/a.txt", "hello");
@@ -132,7 +132,7 @@ END_TEST
 START_TEST(size_limit_keeps_the_old_file) {
     struct cs_error error = {0};
     static const char bytes[20000];
-    cs_folder_make("limit", &error);
+    cs_folder_create("limit", &error);
     cs_file_write("limit/limit.bin", "old", 3, &error);
     signal(SIGXFSZ, SIG_IGN);
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &(struct rlimit){9000, 9000}), 0);
@@ -173,7 +173,7 @@ START_TEST(folders_are_made_with_parents) {
     struct stat info;
     const char *const paths[] = {"p/q/r", "p/q/r", "p//q/s/", ".", "/", "/tmp", "p/../t"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        cs_folder_make(paths[i], &error);
+        cs_folder_create(paths[i], &error);
         UNIT_ASSERT_OK(&error);
         ck_assert_int_eq(stat(paths[i], &info), 0);
         ck_assert(S_ISDIR(info.st_mode));
@@ -187,7 +187,7 @@ START_TEST(folder_over_a_file_is_refused) {
     cs_file_write("file", "x", 1, &made);
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         struct cs_error error = {0};
-        cs_folder_make(paths[i], &error);
+        cs_folder_create(paths[i], &error);
         UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "cannot make the folder");
     }
 }

@@ -1,5 +1,5 @@
 /* The gate of JSON text: each rule, each with its place. */
-#include "io/json.h"
+#include "scene/file/json.h"
 #include "unit.h"
 
 struct refused {
@@ -209,7 +209,7 @@ END_TEST
 static void assert_place(const struct cs_json *value, const char *text, bool of_key,
                          size_t at) {
     size_t offset = 0;
-    ck_assert(cs_json_place(value, text, of_key, &offset));
+    ck_assert(cs_json_position(value, text, of_key, &offset));
     ck_assert_uint_eq(offset, at);
 }
 

@@ -1,5 +1,5 @@
 /* OBJ files are read whole; bad ones are refused with the line. */
-#include "io/mesh_read.h"
+#include "scene/file/mesh_read.h"
 #include "unit.h"
 
 static const double plain[3] = {1, 1, 1};
@@ -32,9 +32,9 @@ START_TEST(tetrahedron_is_whole) {
     ck_assert_uint_eq(mesh.n_hinges, 0); /* every pair has an edge */
     ck_assert_ptr_null(mesh.uv);
     ck_assert_mem_eq(mesh.triangles, triangles, sizeof triangles);
-    ck_assert_double_eq(mesh.places[1], 2);
-    ck_assert_double_eq(mesh.places[4 + 2], 3);
-    ck_assert_double_eq(mesh.places[8 + 3], 4);
+    ck_assert_double_eq(mesh.positions[1], 2);
+    ck_assert_double_eq(mesh.positions[4 + 2], 3);
+    ck_assert_double_eq(mesh.positions[8 + 3], 4);
     ck_assert_double_eq_tol(mesh.area[0], (3 + 4 + 6) / 3.0, 1e-15);
     cs_arena_finish(&arena);
 }

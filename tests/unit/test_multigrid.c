@@ -91,7 +91,7 @@ START_TEST(flat_sheets_are_solved) {
                 x[i] = stretched * flat[i];
             crumple_setup(&crumple, true);
             ck_assert_int_eq(crumple_solve(&crumple, 1e-3), CS_LINEAR_DONE);
-            ck_assert_uint_lt(crumple.iterations, CS_LINEAR_PATIENCE);
+            ck_assert_uint_lt(crumple.iterations, CS_LINEAR_STALL_ITERATIONS);
             free(flat);
             crumple_shut(&crumple);
         }

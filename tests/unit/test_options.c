@@ -109,14 +109,14 @@ START_TEST(absent_values_are_known) {
         for (size_t k = 0; k < sizeof absent / sizeof *absent; k++)
             is_absent |= !strcmp(rows[r].name, absent[k]);
         ck_assert_msg(cs_option_is_optional(rows + r) == is_absent, "%s", rows[r].name);
-        ck_assert_msg(cs_option_is_given(rows + r, &all) != is_absent, "%s", rows[r].name);
+        ck_assert_msg(cs_option_is_set(rows + r, &all) != is_absent, "%s", rows[r].name);
     }
     all.absent = 0;
     all.inner.present = true;
     all.list.n = 1;
     memcpy(all.text, "a", 2);
     for (uint32_t r = 0; r < table.n; r++)
-        ck_assert(cs_option_is_given(rows + r, &all));
+        ck_assert(cs_option_is_set(rows + r, &all));
 }
 END_TEST
 

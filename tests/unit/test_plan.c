@@ -34,13 +34,13 @@ static uint32_t built(const struct cs_plan *plan) {
     uint32_t bits = 0;
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
         bits |= (uint32_t)plan->rows[f].built << f;
-        ck_assert_ptr_nonnull(plan->rows[f].why);
+        ck_assert_ptr_nonnull(plan->rows[f].reason);
         ck_assert(plan->rows[f].built || plan->rows[f].bytes == 0);
     }
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         const struct cs_plan_row *row = plan->forces + k;
         // the others have a line as features
-        bits |= (uint32_t)(row->built && row->why) << (CS_FEATURES + k);
+        bits |= (uint32_t)(row->built && row->reason) << (CS_FEATURES + k);
         ck_assert(row->built || row->bytes == 0);
     }
     return bits;

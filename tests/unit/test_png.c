@@ -135,7 +135,7 @@ END_TEST
 START_TEST(pictures_share_work_memory) {
     static const uint32_t sizes[][2] = {{7, 3}, {64, 48}, {1, 1}, {300, 200}};
     struct cs_error error = {0};
-    struct cs_png_work work = {.level = 1};
+    struct cs_png_encoder work = {.level = 1};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         struct cs_image image = make_picture(sizes[k][0], sizes[k][1]), back;
         cs_png_write_next(&work, "w.png", &image, NULL, 0, &error);
@@ -146,7 +146,7 @@ START_TEST(pictures_share_work_memory) {
         free(image.rgb);
         free(back.rgb);
     }
-    cs_png_work_finish(&work);
+    cs_png_encoder_finish(&work);
 }
 END_TEST
 

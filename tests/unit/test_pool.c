@@ -11,7 +11,7 @@
 
 enum { MOST = 5000 };
 static const uint32_t sizes[] = {0, 1, 2, 3, 4, 7, 16, 63, 1000, MOST};
-static const uint32_t threads[] = {1, 2, 3, 4, 7, CS_POOL_MOST};
+static const uint32_t threads[] = {1, 2, 3, 4, 7, CS_POOL_THREADS_MAX};
 
 struct tally {
     atomic_uint times[MOST];
@@ -27,20 +27,20 @@ static void start(uint32_t n) {
 }
 
 static void count(void *arg, uint32_t block) {
-    struct tally *tally = arg;
-    tally->times[block]++;
+    struct tally *stats = arg;
+    stats->times[block]++;
 }
 
 START_TEST(every_block_is_done_once) {
-    static struct tally tally;
+    static struct tally stats;
     for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
         start(threads[t]);
         for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
             for (int again = 0; again < 5; again++) {
-                memset(&tally, 0, sizeof tally);
-                cs_pool_run(sizes[s], count, &tally);
+                memset(&stats, 0, sizeof stats);
+                cs_pool_run(sizes[s], count, &stats);
                 for (uint32_t b = 0; b < MOST; b++)
-                    UNIT_ASSERT_OFTEN(tally.times[b] == (b < sizes[s]));
+                    UNIT_ASSERT_OFTEN(stats.times[b] == (b < sizes[s]));
             }
     }
     cs_pool_stop();
@@ -48,19 +48,19 @@ START_TEST(every_block_is_done_once) {
 END_TEST
 
 static void note_order(void *arg, uint32_t block) {
-    struct tally *tally = arg;
-    UNIT_ASSERT_OFTEN(pthread_equal(pthread_self(), tally->main));
-    tally->order[tally->n++] = block;
+    struct tally *stats = arg;
+    UNIT_ASSERT_OFTEN(pthread_equal(pthread_self(), stats->main));
+    stats->order[stats->n++] = block;
 }
 
 static void check_order(uint32_t blocks) {
-    static struct tally tally;
-    tally.n = 0;
-    tally.main = pthread_self();
-    cs_pool_run(blocks, note_order, &tally);
-    ck_assert_uint_eq(tally.n, blocks);
+    static struct tally stats;
+    stats.n = 0;
+    stats.main = pthread_self();
+    cs_pool_run(blocks, note_order, &stats);
+    ck_assert_uint_eq(stats.n, blocks);
     for (uint32_t b = 0; b < blocks; b++)
-        ck_assert_uint_eq(tally.order[b], b);
+        ck_assert_uint_eq(stats.order[b], b);
 }
 
 START_TEST(one_thread_goes_in_order) {
@@ -82,11 +82,11 @@ static void run_inner(void *arg, uint32_t block) {
 }
 
 START_TEST(a_loop_within_a_loop_is_the_threads_own) {
-    static struct tally tally;
+    static struct tally stats;
     start(3);
-    cs_pool_run(40, run_inner, &tally);
+    cs_pool_run(40, run_inner, &stats);
     for (uint32_t b = 0; b < 50; b++)
-        ck_assert_uint_eq(tally.times[b], 40);
+        ck_assert_uint_eq(stats.times[b], 40);
     cs_pool_stop();
 }
 END_TEST
@@ -132,16 +132,16 @@ START_TEST(a_loop_sees_what_the_last_one_wrote) {
 END_TEST
 
 START_TEST(starts_and_stops_repeatedly) {
-    static struct tally tally;
+    static struct tally stats;
     for (int k = 0; k < 100; k++) {
         start(1 + (uint32_t)k % 5);
-        cs_pool_run(10, count, &tally);
+        cs_pool_run(10, count, &stats);
         if (k % 2)
             cs_pool_stop();
     }
     cs_pool_stop();
     for (uint32_t b = 0; b < 10; b++)
-        ck_assert_uint_eq(tally.times[b], 100);
+        ck_assert_uint_eq(stats.times[b], 100);
 }
 END_TEST
 
@@ -159,25 +159,25 @@ END_TEST
 #if FORKS
 /* a child has one thread and may start its own; the parent's go on */
 START_TEST(a_child_has_no_pool) {
-    static struct tally tally;
+    static struct tally stats;
     int end = 1;
     start(4);
-    cs_pool_run(1000, count, &tally);
+    cs_pool_run(1000, count, &stats);
     const pid_t child = fork();
     if (!child) {
         struct cs_error error = {0};
         const uint32_t before = cs_pool_threads();
-        cs_pool_run(1000, count, &tally);
+        cs_pool_run(1000, count, &stats);
         cs_pool_start(3, &error);
-        cs_pool_run(1000, count, &tally);
-        const bool good = before == 1 && cs_pool_threads() == 3 && tally.times[999] == 3;
+        cs_pool_run(1000, count, &stats);
+        const bool good = before == 1 && cs_pool_threads() == 3 && stats.times[999] == 3;
         cs_pool_stop();
         _exit(good ? 0 : 1);
     }
     ck_assert_int_eq(waitpid(child, &end, 0), child);
     ck_assert_int_eq(end, 0);
-    cs_pool_run(1000, count, &tally);
-    ck_assert_uint_eq(tally.times[999], 2);
+    cs_pool_run(1000, count, &stats);
+    ck_assert_uint_eq(stats.times[999], 2);
     cs_pool_stop();
 }
 END_TEST

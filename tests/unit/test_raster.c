@@ -18,7 +18,7 @@ struct field {
 
 static struct field field;
 static const struct cs_samples samples = {
-    .depth = field.depth, .shown = field.shown, .width = SIZE, .top = 0, .rows = SIZE};
+    .depth = field.depth, .triangle_ids = field.shown, .width = SIZE, .top = 0, .rows = SIZE};
 
 static void clear(void) {
     for (size_t i = 0; i < PIXELS; i++) {
@@ -28,24 +28,24 @@ static void clear(void) {
 }
 
 /* looks down -z: x and y of -1..1 at z = 0 are the picture */
-static struct cs_lens parallel(void) {
+static struct cs_clip_transform parallel(void) {
     double matrix[16];
     float as_float[16];
-    struct cs_lens lens;
+    struct cs_clip_transform clip;
     cs_matrix_parallel(1, 1, -1, 1, matrix);
     cs_matrix_to_float(matrix, as_float);
-    cs_lens_make(&lens, as_float, 0, SIZE, SIZE);
-    return lens;
+    cs_clip_transform_make(&clip, as_float, 0, SIZE, SIZE);
+    return clip;
 }
 
-static struct cs_lens perspective(double near) {
+static struct cs_clip_transform perspective(double near) {
     double matrix[16];
     float as_float[16];
-    struct cs_lens lens;
+    struct cs_clip_transform clip;
     cs_matrix_perspective(1, 1, near, 100, matrix);
     cs_matrix_to_float(matrix, as_float);
-    cs_lens_make(&lens, as_float, (float)near, SIZE, SIZE);
-    return lens;
+    cs_clip_transform_make(&clip, as_float, (float)near, SIZE, SIZE);
+    return clip;
 }
 
 /* of a place at w, before a far plane at 100 */
@@ -54,24 +54,24 @@ static double nearness(double near, double w) {
     return (double)CS_DEPTH_STEPS * (1 - (z / 2 + 0.5));
 }
 
-static void add(struct cs_triangles *triangles, const struct cs_lens *lens, float p[3][3],
-                bool front_only) {
+static void add(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
+                float p[3][3], bool front_only) {
     const struct cs_triangle_kind kind = {.attributes = 3, .front_only = front_only};
-    struct cs_corner corners[3];
-    const struct cs_corner *three[3] = {corners, corners + 1, corners + 2};
+    struct cs_clip_vertex corners[3];
+    const struct cs_clip_vertex *three[3] = {corners, corners + 1, corners + 2};
     for (int i = 0; i < 3; i++) {
-        cs_lens_corner(lens, p[i], corners + i);
+        cs_clip_transform_corner(clip, p[i], corners + i);
         for (int k = 0; k < CS_ATTRIBUTES; k++)
             corners[i].attributes[k] = k < 3 ? p[i][k] : 0;
     }
-    cs_triangles_add(triangles, lens, three, &kind);
+    cs_triangles_add(triangles, clip, three, &kind);
 }
 
 static uint32_t covered(const struct cs_triangles *triangles, size_t from, size_t to) {
     uint32_t n = 0;
     clear();
     for (size_t i = from; i < to; i++)
-        cs_raster_fill(triangles->items + i, (int32_t)i, &cs_pattern_four, &samples);
+        cs_raster_fill(triangles->items + i, (int32_t)i, &cs_sample_pattern_four, &samples);
     for (size_t i = 0; i < PIXELS; i++)
         for (int s = 0; s < 4; s++)
             n += field.shown[i][s] != CS_NOTHING;
@@ -87,7 +87,7 @@ static float between(float least, float most) {
 /* The share of samples inside is the area, but for samples near the outline: at most one along
  * each quarter pixel of it is counted wrong. */
 START_TEST(a_triangle_covers_its_area) {
-    const struct cs_lens lens = parallel();
+    const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     for (int trial = 0; trial < 300; trial++) {
         float p[3][3];
@@ -97,7 +97,7 @@ START_TEST(a_triangle_covers_its_area) {
             p[i][2] = 0;
         }
         triangles.n = 0;
-        add(&triangles, &lens, p, false);
+        add(&triangles, &clip, p, false);
         if (triangles.n == 0)
             continue;
         const double a = (double)(p[1][0] - p[0][0]), b = (double)(p[1][1] - p[0][1]);
@@ -115,7 +115,7 @@ END_TEST
 
 /* A fan about a point covers every sample of the picture exactly once, however it lies. */
 START_TEST(neighbours_share_no_sample_and_leave_none) {
-    const struct cs_lens lens = parallel();
+    const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     for (int trial = 0; trial < 60; trial++) {
         enum { SPOKES = 9 };
@@ -134,7 +134,7 @@ START_TEST(neighbours_share_no_sample_and_leave_none) {
                 p[1 + e][1] = far * (float)sin(angle) * 2;
                 p[1 + e][2] = 0;
             }
-            add(&triangles, &lens, p, false);
+            add(&triangles, &clip, p, false);
         }
         ck_assert_uint_ge(triangles.n, SPOKES);
         for (size_t i = 0; i < triangles.n; i++)
@@ -148,7 +148,7 @@ END_TEST
 
 /* of two triangles that cross, each sample shows the one whose plane is nearer there */
 START_TEST(the_nearer_one_shows) {
-    const struct cs_lens lens = perspective(0.1);
+    const struct cs_clip_transform clip = perspective(0.1);
     struct cs_triangles triangles = {0};
     // planes z = -3 + x and z = -3 - x: the left half shows the second
     float p[2][3][3] = {{{-2, -9, -5}, {2, -9, -1}, {0, 9, -3}},
@@ -156,14 +156,14 @@ START_TEST(the_nearer_one_shows) {
     for (int order = 0; order < 2; order++) {
         uint32_t seen = 0;
         triangles.n = 0;
-        add(&triangles, &lens, p[order], false);
-        add(&triangles, &lens, p[1 - order], false);
+        add(&triangles, &clip, p[order], false);
+        add(&triangles, &clip, p[1 - order], false);
         ck_assert_uint_eq(triangles.n, 2);
         ck_assert_uint_gt(covered(&triangles, 0, 2), 0);
         for (int i = 0; i < PIXELS; i++)
             for (int s = 0; s < 4; s++) {
                 const int32_t id = field.shown[i][s];
-                const double x = i % SIZE + cs_pattern_four.x[s] / 256.0 - SIZE / 2;
+                const double x = i % SIZE + cs_sample_pattern_four.x[s] / 256.0 - SIZE / 2;
                 const bool right = x > 0;
                 if (id == CS_NOTHING || fabs(x) < 0.01)
                     continue;
@@ -178,11 +178,11 @@ END_TEST
 
 /* of two at the same depth the later one */
 START_TEST(of_equals_the_later_one_shows) {
-    const struct cs_lens lens = parallel();
+    const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     float p[3][3] = {{-0.7f, -0.6f, 0.1f}, {0.8f, -0.5f, 0.3f}, {0.1f, 0.9f, 0.2f}};
-    add(&triangles, &lens, p, false);
-    add(&triangles, &lens, p, false);
+    add(&triangles, &clip, p, false);
+    add(&triangles, &clip, p, false);
     covered(&triangles, 0, 2);
     for (size_t i = 0; i < PIXELS; i++)
         for (int s = 0; s < 4; s++)
@@ -195,18 +195,19 @@ END_TEST
  * meets it before the eye, and its depth and place are those of the ray. */
 START_TEST(what_lies_behind_the_eye_is_cut_off) {
     const float near = 0.25f;
-    const struct cs_lens lens = perspective((double)near);
+    const struct cs_clip_transform clip = perspective((double)near);
     struct cs_triangles triangles = {0};
     // the plane y = -1, from far ahead to far behind
     float p[3][3] = {{-50, -1, -60}, {50, -1, -60}, {0, -1, 80}};
-    add(&triangles, &lens, p, false);
+    add(&triangles, &clip, p, false);
     ck_assert_uint_ge(triangles.n, 1);
     covered(&triangles, 0, triangles.n);
     for (int i = 0; i < PIXELS; i++) {
         const cs_i4 shown = field.shown[i];
         for (int s = 0; s < 4; s++) {
-            const double up = 1 - (i / SIZE + cs_pattern_four.y[s] / 256.0) * 2 / SIZE;
-            const double right = (i % SIZE + cs_pattern_four.x[s] / 256.0) * 2 / SIZE - 1;
+            const double up = 1 - (i / SIZE + cs_sample_pattern_four.y[s] / 256.0) * 2 / SIZE;
+            const double right =
+                (i % SIZE + cs_sample_pattern_four.x[s] / 256.0) * 2 / SIZE - 1;
             const double along = up < 0 ? -1 / up : 1e9; // the ray's w at the plane
             const bool inside = along < 59 && fabs(right * along) < 50 * (1 - along / 60);
             if (along < 58 && inside && along > 1.05 * (double)near) {
@@ -224,11 +225,12 @@ START_TEST(what_lies_behind_the_eye_is_cut_off) {
         const struct cs_triangle *t = triangles.items + id;
         const double up = 1 - (i / SIZE + 0.5) * 2 / SIZE;
         const float across = (float)(i % SIZE - t->left), down = (float)(i / SIZE - t->top);
-        const struct cs_slope *y = t->attributes + 1, *w = &t->inverse;
-        const double inverse = (double)(w->at + w->x * across + w->y * down);
-        const double side = t->back ? -1 : 1;
+        const struct cs_plane_equation *y = t->attributes + 1, *w = &t->inverse;
+        const double inverse = (double)(w->value + w->d_dx * across + w->d_dy * down);
+        const double side = t->is_back_facing ? -1 : 1;
         ck_assert_double_le(
-            fabs(side * (double)(y->at + y->x * across + y->y * down) / inverse + 1), 1e-3);
+            fabs(side * (double)(y->value + y->d_dx * across + y->d_dy * down) / inverse + 1),
+            1e-3);
         ck_assert_double_le(fabs(inverse + up), 1e-4);
     }
     cs_triangles_finish(&triangles);
@@ -237,10 +239,10 @@ END_TEST
 
 /* Corners so far beside the picture that pixels of theirs are no whole numbers any more. */
 START_TEST(what_reaches_far_out_is_cut) {
-    const struct cs_lens lens = perspective(0.01);
+    const struct cs_clip_transform clip = perspective(0.01);
     struct cs_triangles triangles = {0};
     float p[3][3] = {{-1e5f, -1e5f, -0.02f}, {1e5f, -1e5f, -0.02f}, {0, 1e5f, -0.02f}};
-    add(&triangles, &lens, p, false);
+    add(&triangles, &clip, p, false);
     ck_assert_uint_eq(covered(&triangles, 0, triangles.n), 4 * PIXELS);
     for (size_t i = 0; i < PIXELS; i++)
         ck_assert_double_le(fabs((double)field.depth[i][0] - nearness(0.01, 0.02)), 4);
@@ -250,23 +252,23 @@ END_TEST
 
 /* the front is counter-clockwise; asked for it alone, the other side is left out */
 START_TEST(sides_are_told_apart) {
-    const struct cs_lens lens = parallel();
+    const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     float front[3][3] = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0.5f, 0}};
     float back[3][3] = {{-0.5f, -0.5f, 0}, {0, 0.5f, 0}, {0.5f, -0.5f, 0}};
-    add(&triangles, &lens, front, true);
+    add(&triangles, &clip, front, true);
     ck_assert_uint_eq(triangles.n, 1);
-    ck_assert(!triangles.items[0].back);
-    add(&triangles, &lens, back, true);
+    ck_assert(!triangles.items[0].is_back_facing);
+    add(&triangles, &clip, back, true);
     ck_assert_uint_eq(triangles.n, 1);
-    add(&triangles, &lens, back, false);
+    add(&triangles, &clip, back, false);
     ck_assert_uint_eq(triangles.n, 2);
-    ck_assert(triangles.items[1].back);
+    ck_assert(triangles.items[1].is_back_facing);
     // nothing of it can be seen: on one line, and on one place
     float line[3][3] = {{-0.5f, -0.5f, 0}, {0, 0, 0}, {0.5f, 0.5f, 0}};
     float place[3][3] = {{0.1f, 0.1f, 0}, {0.1f, 0.1f, 0}, {0.1f, 0.1f, 0}};
-    add(&triangles, &lens, line, false);
-    add(&triangles, &lens, place, false);
+    add(&triangles, &clip, line, false);
+    add(&triangles, &clip, place, false);
     ck_assert_uint_eq(triangles.n, 2);
     cs_triangles_finish(&triangles);
 }
@@ -275,21 +277,21 @@ END_TEST
 /* samples of a pixel one by one are those that filling finds */
 START_TEST(one_pixel_is_as_in_a_row) {
     uint32_t wrong = 0;
-    const struct cs_lens lens = parallel();
+    const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     for (int trial = 0; trial < 40; trial++) {
         float p[3][3];
         for (int i = 0; i < 9; i++)
             p[i / 3][i % 3] = between(-1, 1) * (i % 3 == 2 ? 0.5f : trial % 2 ? 1 : 9);
         triangles.n = 0;
-        add(&triangles, &lens, p, false);
+        add(&triangles, &clip, p, false);
         if (triangles.n == 0)
             continue;
         covered(&triangles, 0, 1);
         for (int i = 0; i < PIXELS; i++) {
             cs_f4 depth;
-            const unsigned mask =
-                cs_raster_covers(triangles.items, &cs_pattern_four, i % SIZE, i / SIZE, &depth);
+            const unsigned mask = cs_raster_covers(triangles.items, &cs_sample_pattern_four,
+                                                   i % SIZE, i / SIZE, &depth);
             for (int s = 0; s < 4; s++)
                 wrong += (mask >> s & 1) != (field.shown[i][s] != CS_NOTHING);
         }

@@ -2,14 +2,14 @@
  * are.
  */
 #include "base/options.h"
-#include "io/scene_hash.h"
-#include "io/scene_read.h"
 #include "mesh/trimesh.h"
+#include "scene/file/scene_hash.h"
+#include "scene/file/scene_read.h"
 #include "unit.h"
 
 #include <math.h>
 
-enum { HASHES_MOST = 1024 };
+enum { HASHES_MAX = 1024 };
 
 static const struct cs_table no_options = {.n = 0};
 
@@ -63,13 +63,13 @@ static void empty(const struct cs_table *table, void *object) {
 /* All rows of the scene, and the hashes that their changes have led to. */
 struct walk {
     struct cs_scene scene;
-    char found[HASHES_MOST][CS_HASH_DIGITS];
+    char found[HASHES_MAX][CS_HASH_DIGITS];
     uint32_t n;
 };
 
 /* the hash as it now is has not been there before */
 static void expect_another(struct walk *walk, const char *what) {
-    ck_assert_uint_lt(walk->n, HASHES_MOST);
+    ck_assert_uint_lt(walk->n, HASHES_MAX);
     hash_of(&walk->scene, walk->found[walk->n]);
     for (uint32_t k = 0; k < walk->n; k++)
         ck_assert_msg(strcmp(walk->found[k], walk->found[walk->n]) != 0,
@@ -215,12 +215,12 @@ START_TEST(new_key_at_its_default_changes_nothing) {
     struct cs_text before = {0}, after = {0}, given = {0};
     cs_options_default(&later, &time);
     time.known.fps = 25;
-    cs_scene_add_meaning(known, &time.known, "time.", &before);
-    cs_scene_add_meaning(&later, &time, "time.", &after);
+    cs_scene_add_canonical(known, &time.known, "time.", &before);
+    cs_scene_add_canonical(&later, &time, "time.", &after);
     ck_assert_str_eq(cs_text_get(&before), "time.fps=25\n");
     ck_assert_str_eq(cs_text_get(&after), cs_text_get(&before));
     time.slowness = 4;
-    cs_scene_add_meaning(&later, &time, "time.", &given);
+    cs_scene_add_canonical(&later, &time, "time.", &given);
     ck_assert_str_eq(cs_text_get(&given), "time.slowness=4\ntime.fps=25\n");
     cs_text_finish(&before);
     cs_text_finish(&after);

@@ -1,5 +1,5 @@
 /* Scenes are read whole, with defaults, shorthands and --set; bad ones name the place. */
-#include "io/scene_read.h"
+#include "scene/file/scene_read.h"
 #include "unit.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 /* What is written of a scene reads back as the same scene; schema and manual follow the tables.
  */
 #include "base/options.h"
-#include "io/json.h"
-#include "io/scene_read.h"
-#include "io/scene_write.h"
+#include "scene/file/json.h"
+#include "scene/file/scene_read.h"
+#include "scene/file/scene_write.h"
 #include "unit.h"
 
 #include <math.h>
@@ -44,8 +44,8 @@ static void assert_same_row(const struct cs_option *row, const void *a, const vo
     const char *field_a = (const char *)a + row->offset,
                *field_b = (const char *)b + row->offset;
     const struct cs_list *list_a = (const void *)field_a, *list_b = (const void *)field_b;
-    ck_assert_msg(cs_option_is_given(row, a) == cs_option_is_given(row, b), "%s", row->name);
-    if (!cs_option_is_given(row, a))
+    ck_assert_msg(cs_option_is_set(row, a) == cs_option_is_set(row, b), "%s", row->name);
+    if (!cs_option_is_set(row, a))
         return;
     switch (row->type) {
     case CS_TABLE:

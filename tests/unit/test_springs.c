@@ -61,9 +61,9 @@ START_TEST(runs_are_the_twelve_neighbours) {
             ck_assert_uint_gt(run->count, 0);
             next += run->count;
             for (uint32_t i = 0; i < run->count; i++) {
-                const int d = step_between(run->a + i, run->b + i, columns);
+                const int d = step_between(run->first_a + i, run->first_b + i, columns);
                 ck_assert_int_lt(d, 6);
-                ck_assert_uint_eq(seen[6 * (run->a + i) + (uint32_t)d]++, 0);
+                ck_assert_uint_eq(seen[6 * (run->first_a + i) + (uint32_t)d]++, 0);
                 ck_assert_uint_eq(run->kind, steps[d].kind);
                 ck_assert_double_eq(run->stiffness, steps[d].stiffness);
                 const double across = columns > 1 ? 3.0 / (columns - 1) * steps[d].right : 0;
@@ -89,7 +89,7 @@ START_TEST(second_body_has_its_own_particles) {
         const struct cs_spring_run *run = springs->runs + r;
         const bool second = run->first >= first;
         ck_assert_uint_eq(run->body, second);
-        ck_assert(second ? run->a >= 6 : run->b + run->count <= 6);
+        ck_assert(second ? run->first_a >= 6 : run->first_b + run->count <= 6);
         ck_assert_double_eq(run->damping, second ? 0.5 : 0);
     }
     sheet_close(&sheet);
@@ -126,7 +126,7 @@ END_TEST
 /* f += force of one spring, from the formula in springs.h */
 static void add_spring(const struct sheet *sheet, const struct cs_spring_run *run, uint32_t i,
                        uint32_t parts, double *f) {
-    const size_t n = sheet->n, a = run->a + i, b = run->b + i;
+    const size_t n = sheet->n, a = run->first_a + i, b = run->first_b + i;
     double u[3], w[3], length = 0, along = 0;
     for (size_t c = 0; c < 3; c++) {
         u[c] = sheet->x[c * n + b] - sheet->x[c * n + a];
@@ -191,7 +191,7 @@ END_TEST
 static void add_own_blocks(const struct sheet *sheet, const struct cs_spring_run *run,
                            uint32_t i, double *kxx, double *dvv) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-    const size_t n = sheet->n, ends[2] = {run->a + i, run->b + i};
+    const size_t n = sheet->n, ends[2] = {run->first_a + i, run->first_b + i};
     double u[3], length = 0;
     for (size_t c = 0; c < 3; c++) {
         u[c] = sheet->x[c * n + ends[1]] - sheet->x[c * n + ends[0]];
@@ -223,8 +223,8 @@ START_TEST(own_blocks_are_the_sum_of_single_springs) {
             const struct cs_eval at = {.x = sheet.x,
                                        .v = sheet.v,
                                        .parts = CS_PART_DAMPED_SPRINGS,
-                                       .kxx = found,
-                                       .dvv = found + 6 * sheet.n,
+                                       .dfdx_blocks = found,
+                                       .dfdv_blocks = found + 6 * sheet.n,
                                        .block = &all};
             cs_springs_add_force(springs, (uint32_t)sheet.n, &at, NULL);
             cs_springs_finish_diagonal(springs, (uint32_t)sheet.n, &at);
@@ -324,7 +324,8 @@ START_TEST(energy_is_the_sum_of_single_springs) {
         for (uint32_t i = 0; i < run->count; i++) {
             double squared = 0;
             for (size_t c = 0; c < 3; c++) {
-                const double d = sheet.x[c * 35 + run->b + i] - sheet.x[c * 35 + run->a + i];
+                const double d =
+                    sheet.x[c * 35 + run->first_b + i] - sheet.x[c * 35 + run->first_a + i];
                 squared += d * d;
             }
             expected[run->kind] += 0.5 * run->stiffness * pow(sqrt(squared) - run->length, 2);

@@ -31,7 +31,7 @@ static void check_owners(const struct cs_surfaces *s) {
                 UNIT_ASSERT_OFTEN(n < 2);
                 expected[n++] = t;
             }
-        UNIT_ASSERT_OFTEN(!memcmp(expected, s->owners + 2 * e, sizeof expected));
+        UNIT_ASSERT_OFTEN(!memcmp(expected, s->edge_triangles + 2 * e, sizeof expected));
     }
 }
 

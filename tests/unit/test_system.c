@@ -94,8 +94,8 @@ START_TEST(spring_list_is_the_runs) {
         const struct cs_spring_run *run = sheet.system.springs.runs + r;
         for (uint32_t i = 0; i < run->count; i++) {
             const size_t s = run->first + i;
-            ck_assert_uint_eq(view->ends[2 * s], run->a + i);
-            ck_assert_uint_eq(view->ends[2 * s + 1], run->b + i);
+            ck_assert_uint_eq(view->ends[2 * s], run->first_a + i);
+            ck_assert_uint_eq(view->ends[2 * s + 1], run->first_b + i);
             ck_assert_double_eq(view->length[s], run->length);
             ck_assert_double_eq(view->stiffness[s], run->stiffness);
             ck_assert_double_eq(view->damping[s], run->damping);

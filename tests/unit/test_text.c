@@ -111,7 +111,7 @@ START_TEST(nearest_word_is_found) {
         {"dam", "damping"},    {"colour", NULL},   {"x", NULL},     {"stretch", "stretch"},
         {"bedn", "bend"},      {"bulk", NULL},     {"shape", NULL}, {"tend", "bend"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const char *found = cs_nearest(rows[k].word, words);
+        const char *found = cs_nearest_word(rows[k].word, words);
         ck_assert_msg(rows[k].nearest ? found && !strcmp(found, rows[k].nearest) : !found,
                       "%s: found %s", rows[k].word, found ? found : "none");
     }
@@ -119,7 +119,7 @@ START_TEST(nearest_word_is_found) {
     char endless[200];
     memset(endless, 'a', sizeof endless - 1);
     endless[sizeof endless - 1] = 0;
-    cs_nearest(endless, words);
+    cs_nearest_word(endless, words);
 }
 END_TEST
 

@@ -19,10 +19,10 @@ static double volume_of(const struct cs_trimesh *mesh) {
     double volume = 0;
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
         double normal[3];
-        cs_trimesh_normal(mesh, t, mesh->places, mesh->n, 0, normal);
+        cs_trimesh_normal(mesh, t, mesh->positions, mesh->n, 0, normal);
         for (size_t c = 0; c < 3; c++)
             volume +=
-                normal[c] * mesh->places[c * mesh->n + mesh->triangles[3 * (size_t)t]] / 6;
+                normal[c] * mesh->positions[c * mesh->n + mesh->triangles[3 * (size_t)t]] / 6;
     }
     return volume;
 }
@@ -92,15 +92,15 @@ START_TEST(spheres_and_tori_lie_on_their_surface) {
     struct cs_arena arena;
     make(&mesh, CS_MESH_SPHERE, 9, &arena);
     for (uint32_t i = 0; i < mesh.n; i++) {
-        const double x = mesh.places[i], y = mesh.places[mesh.n + i];
-        const double z = mesh.places[2 * mesh.n + i];
+        const double x = mesh.positions[i], y = mesh.positions[mesh.n + i];
+        const double z = mesh.positions[2 * mesh.n + i];
         ck_assert_double_eq_tol(sqrt(x * x + y * y + z * z), 0.5, 1e-15);
     }
     cs_arena_finish(&arena);
     make(&mesh, CS_MESH_TORUS, 11, &arena);
     for (uint32_t i = 0; i < mesh.n; i++) {
-        const double x = mesh.places[i], y = mesh.places[mesh.n + i];
-        const double z = mesh.places[2 * mesh.n + i];
+        const double x = mesh.positions[i], y = mesh.positions[mesh.n + i];
+        const double z = mesh.positions[2 * mesh.n + i];
         ck_assert_double_eq_tol(hypot(hypot(x, y) - 0.35, z), 0.15, 1e-15);
     }
     cs_arena_finish(&arena);
@@ -115,10 +115,11 @@ START_TEST(limbs_are_symmetric) {
     for (uint32_t i = 0; i < mesh.n; i++) {
         double nearest = 1;
         for (uint32_t j = 0; j < mesh.n; j++)
-            nearest = fmin(nearest,
-                           fabs(mesh.places[i] + mesh.places[j]) +
-                               fabs(mesh.places[mesh.n + i] - mesh.places[mesh.n + j]) +
-                               fabs(mesh.places[2 * mesh.n + i] - mesh.places[2 * mesh.n + j]));
+            nearest =
+                fmin(nearest,
+                     fabs(mesh.positions[i] + mesh.positions[j]) +
+                         fabs(mesh.positions[mesh.n + i] - mesh.positions[mesh.n + j]) +
+                         fabs(mesh.positions[2 * mesh.n + i] - mesh.positions[2 * mesh.n + j]));
         ck_assert_double_le(nearest, 1e-12);
     }
     cs_arena_finish(&arena);
@@ -161,9 +162,10 @@ START_TEST(edges_agree_with_brute_force) {
         ck_assert_uint_eq(e, mesh.n_edges);
         ck_assert_uint_eq(h, mesh.n_hinges);
         for (uint32_t i = 0; i < mesh.n; i++)
-            for (uint32_t k = cs_trimesh_around_begin(&mesh, i); k < mesh.around_end[i]; k++)
-                ck_assert(has_corner(&mesh, mesh.around[k], i));
-        ck_assert_uint_eq(mesh.around_end[mesh.n - 1], 3 * mesh.n_triangles);
+            for (uint32_t k = cs_trimesh_around_begin(&mesh, i);
+                 k < mesh.vertex_triangles_end[i]; k++)
+                ck_assert(has_corner(&mesh, mesh.vertex_triangles[k], i));
+        ck_assert_uint_eq(mesh.vertex_triangles_end[mesh.n - 1], 3 * mesh.n_triangles);
         cs_arena_finish(&arena);
     }
 }

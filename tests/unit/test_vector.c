@@ -31,7 +31,7 @@ START_TEST(sums_of_whole_numbers_are_exact) {
             largest = fmax(largest, fabs(x[i]));
         }
         ck_assert_double_eq(kernels->dot(lengths[k], x, y), (double)dot);
-        ck_assert_double_eq(kernels->weighted_square(lengths[k], x, y), (double)square);
+        ck_assert_double_eq(kernels->weighted_sum_of_squares(lengths[k], x, y), (double)square);
         ck_assert_double_eq(kernels->max_norm(lengths[k], x), largest);
     }
 }
@@ -65,7 +65,7 @@ START_TEST(sums_have_one_order) {
     }
     for (size_t k = 0; k < LENGTHS; k++) {
         ck_assert_double_eq(kernels->dot(lengths[k], x, y), sum_in_order(products, lengths[k]));
-        ck_assert_double_eq(kernels->weighted_square(lengths[k], x, y),
+        ck_assert_double_eq(kernels->weighted_sum_of_squares(lengths[k], x, y),
                             sum_in_order(squares, lengths[k]));
     }
 }
@@ -96,7 +96,7 @@ START_TEST(numbers_that_are_not_finite_show) {
         x[at] = (double)NAN;
         ck_assert_double_nan(kernels->max_norm(20, x));
         ck_assert_double_nan(kernels->dot(20, x, w));
-        ck_assert_double_nan(kernels->weighted_square(20, x, w));
+        ck_assert_double_nan(kernels->weighted_sum_of_squares(20, x, w));
     }
 }
 END_TEST
@@ -130,7 +130,7 @@ START_TEST(threads_change_no_bit) {
         for (size_t i = 0; i < LONG; i++)
             wrong += z[i] != 3 * x[i] - 2 * y[i];
         uint8_t *times = (uint8_t *)memset(z, 0, LONG);
-        kernels->share(LONG, count_items, times);
+        kernels->parallel_for(LONG, count_items, times);
         for (size_t i = 0; i < LONG; i++)
             wrong += times[i] != 1;
         ck_assert_uint_eq(wrong, 0);

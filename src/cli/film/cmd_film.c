@@ -7,7 +7,7 @@
 #include "cli/line/print.h"
 #include "cli/run_output.h"
 #include "io/png.h"
-#include "io/program.h"
+#include "io/subprocess.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -44,8 +44,8 @@ struct film {
 
 /* Where the film goes, by its ending what it is; the part keeps the ending, which ffmpeg reads.
  */
-static enum cs_status place(const struct cs_args *args, struct film *film,
-                            struct cs_error *error) {
+static enum cs_status set_output_path(const struct cs_args *args, struct film *film,
+                                      struct cs_error *error) {
     const char *name = cs_args_get(args, FILM_OUT);
     char made[PATH_BYTES], here[PATH_BYTES] = "";
     snprintf(made, sizeof made, "%.4000s/film.mp4", film->folder);
@@ -133,17 +133,17 @@ static enum cs_status refuse(const struct film *film, const char *const *argumen
 static enum cs_status make(const struct film *film, struct cs_error *error) {
     const volatile sig_atomic_t *stop = cs_interrupt_catch();
     const char *arguments[ARGUMENTS];
-    struct cs_program_end end;
+    struct cs_subprocess_result end;
     char rate[32];
     snprintf(rate, sizeof rate, "%.15g", film->rate);
     fill(film, rate, film->part, arguments);
-    if (cs_program_run(film->folder, arguments, false, &end, error))
+    if (cs_subprocess_run(film->folder, arguments, false, &end, error))
         return error->status;
-    if (!end.found) {
+    if (!end.was_found) {
         fill(film, rate, film->out, arguments);
         return refuse(film, arguments, error);
     }
-    if (end.done && !rename(film->part, film->out))
+    if (end.exited_ok && !rename(film->part, film->out))
         return CS_OK;
     remove(film->part);
     return *stop ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted; there is no film")
@@ -170,8 +170,9 @@ static enum cs_status make_film(const struct cs_args *args, const struct cs_film
     if (cs_args_get(args, FILM_TILE))
         return cs_fail(error, CS_ERR_USAGE, "--tile is of a sheet: give --sheet too");
     film.clear = report->clear;
-    if (cs_args_real(args, FILM_FPS, &film.rate, error) || place(args, &film, error) ||
-        check_pictures(&film, report, error) || make(&film, error))
+    if (cs_args_real(args, FILM_FPS, &film.rate, error) ||
+        set_output_path(args, &film, error) || check_pictures(&film, report, error) ||
+        make(&film, error))
         return error->status;
     cs_text_add(told, "%s: %g pictures a second\n", film.out, film.rate);
     return CS_OK;
@@ -179,11 +180,11 @@ static enum cs_status make_film(const struct cs_args *args, const struct cs_film
 
 enum { MOST_TILES = 1000 };
 
-static enum cs_status read_sheet(const struct cs_args *args, struct cs_sheet *sheet,
+static enum cs_status read_sheet(const struct cs_args *args, struct cs_contact_sheet *sheet,
                                  struct cs_error *error) {
     const char *found = cs_args_get(args, FILM_SHEET);
     char rest;
-    *sheet = (struct cs_sheet){.tile = 320};
+    *sheet = (struct cs_contact_sheet){.tile = 320};
     if (cs_args_get(args, FILM_FPS))
         return cs_fail(error, CS_ERR_USAGE, "--fps is of a film: a sheet has none");
     if (strspn(found, "0123456789x") != strlen(found) || strlen(found) > 9 ||
@@ -195,7 +196,7 @@ static enum cs_status read_sheet(const struct cs_args *args, struct cs_sheet *sh
             "--sheet: found \"%.60s\", expected columns and rows of 1 to %d, such as "
             "5x4",
             found, MOST_TILES);
-    return cs_args_whole(args, FILM_TILE, 16, 4096, &sheet->tile, error);
+    return cs_args_integer(args, FILM_TILE, 16, 4096, &sheet->tile, error);
 }
 
 static enum cs_status place_sheet(const struct cs_args *args, char out[PATH_BYTES],
@@ -217,15 +218,15 @@ static enum cs_status make_sheet(const struct cs_args *args,
                                  struct cs_error *error) {
     const struct cs_png_text text = {"Software", "clothsim " CS_VERSION};
     char out[PATH_BYTES];
-    struct cs_sheet sheet;
+    struct cs_contact_sheet sheet;
     struct cs_image image;
     if (read_sheet(args, &sheet, error) || place_sheet(args, out, error) ||
-        cs_sheet_make(&sheet, args->operands[0], report, &image, error))
+        cs_contact_sheet_make(&sheet, args->operands[0], report, &image, error))
         return error->status;
     cs_png_write(out, &image, 6, &text, 1, error);
     free(image.rgb);
     cs_text_add(told, "%s: %u x %u pictures%s\n", out, sheet.columns, sheet.rows,
-                sheet.bar || report->pictures->range[0] == report->pictures->range[1]
+                sheet.colour_bar || report->pictures->range[0] == report->pictures->range[1]
                     ? ""
                     : ", whose colours differ in range: see --range of clothsim run");
     return error->status;
@@ -255,7 +256,7 @@ const struct cs_command cs_command_film = {
              "Example: clothsim film out -o cloth.webm\n",
     .rows = rows,
     .n_rows = FILM_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = film,
 };

@@ -2,7 +2,7 @@
 #include "cli/film/film_report.h"
 
 #include "base/file.h"
-#include "io/json.h"
+#include "scene/file/json.h"
 #include "scene/scene.h"
 
 #include <stdio.h>

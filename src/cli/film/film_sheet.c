@@ -1,12 +1,12 @@
 /* Lays pictures out on a sheet: white paper, dark ink. */
 #include "cli/film/film_sheet.h"
 
-#include "cli/film/film_pen.h"
-#include "draw/bar.h"
+#include "cli/film/film_lines.h"
 #include "draw/colour.h"
+#include "draw/colour_bar.h"
 #include "draw/glyph.h"
 #include "io/png.h"
-#include "study/picture.h"
+#include "study/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,17 +24,17 @@ enum {
 
 /* A sheet under way. */
 struct layout {
-    struct cs_sheet *sheet;
+    struct cs_contact_sheet *sheet;
     const struct cs_film_report *report;
     struct cs_image *image;
     uint32_t width, height; /* of a shrunk picture */
-    struct cs_tone tone;
-    struct cs_pen pen;
+    struct cs_srgb tone;
+    struct cs_image_lines pen;
 };
 
 /* As many tiles as there are pictures for, in a whole rectangle; of equal ones the one whose
  * sides are most like those that were asked for. */
-static void choose_grid(struct cs_sheet *sheet, uint32_t n) {
+static void choose_grid(struct cs_contact_sheet *sheet, uint32_t n) {
     const long columns = sheet->columns, rows = sheet->rows, most = (long)n;
     long best = 0, unlike = 0;
     for (long c = columns; c > 0; c--) {
@@ -75,14 +75,14 @@ static enum cs_status read_picture(const struct layout *layout, const char *fold
 }
 
 /* Takes the paper, for pictures of the first one's size. */
-static enum cs_status take_paper(struct layout *layout, const struct cs_image *first,
-                                 struct cs_error *error) {
-    struct cs_sheet *sheet = layout->sheet;
+static enum cs_status init_sheet_image(struct layout *layout, const struct cs_image *first,
+                                       struct cs_error *error) {
+    struct cs_contact_sheet *sheet = layout->sheet;
     const double scale = fmin((double)sheet->tile / first->width, 1);
     layout->width = (uint32_t)fmax(floor(scale * first->width + 0.5), 1);
     layout->height = (uint32_t)fmax(floor(scale * first->height + 0.5), 1);
-    const uint64_t width =
-        GAP + (uint64_t)sheet->columns * (layout->width + GAP) + (sheet->bar ? BAR_WIDTH : 0);
+    const uint64_t width = GAP + (uint64_t)sheet->columns * (layout->width + GAP) +
+                           (sheet->colour_bar ? BAR_WIDTH : 0);
     const uint64_t height = GAP + (uint64_t)sheet->rows * (layout->height + CAPTION + GAP);
     if (width > MOST || height > MOST)
         return cs_fail(error, CS_ERR_FILE,
@@ -110,7 +110,7 @@ static void shrink_pixel(const struct layout *layout, const struct cs_image *pic
             area += share;
         }
     for (int k = 0; k < 3; k++)
-        out[k] = (uint8_t)cs_tone_encode(&layout->tone, (float)fmin(light[k] / area, 1));
+        out[k] = (uint8_t)cs_srgb_encode(&layout->tone, (float)fmin(light[k] / area, 1));
 }
 
 static void shrink(const struct layout *layout, const struct cs_image *picture, uint32_t left,
@@ -167,14 +167,14 @@ static void put_bar(struct layout *layout) {
     const struct cs_frame frame = {.range = {range[0], range[1]},
                                    .title = cs_picture_title(look),
                                    .factor = cs_picture_factor(look)};
-    struct cs_bar bar;
-    cs_bar_init(&bar, &paper);
+    struct cs_colour_bar bar;
+    cs_colour_bar_init(&bar, &paper);
     layout->pen.look = look;
     layout->pen.left = layout->image->width - (double)BAR_WIDTH;
     /* the bar stands at the foot of its picture */
     const double length = 0.39 * height + 18 * fmax(height / 480, 0.75);
     layout->pen.top = floor((layout->image->height + length) / 2 - height);
-    cs_bar_draw(&bar, &layout->pen.lines, &frame);
+    cs_colour_bar_draw(&bar, &layout->pen.lines, &frame);
 }
 
 static enum cs_status put_tiles(struct layout *layout, const char *folder,
@@ -182,24 +182,25 @@ static enum cs_status put_tiles(struct layout *layout, const char *folder,
     const uint32_t tiles = layout->sheet->columns * layout->sheet->rows;
     for (uint32_t tile = 0; tile < tiles && !error->status; tile++)
         put_tile(layout, folder, tile, first, error);
-    if (!error->status && layout->sheet->bar)
+    if (!error->status && layout->sheet->colour_bar)
         put_bar(layout);
     return error->status;
 }
 
-enum cs_status cs_sheet_make(struct cs_sheet *sheet, const char *folder,
-                             const struct cs_film_report *report, struct cs_image *image,
-                             struct cs_error *error) {
+enum cs_status cs_contact_sheet_make(struct cs_contact_sheet *sheet, const char *folder,
+                                     const struct cs_film_report *report,
+                                     struct cs_image *image, struct cs_error *error) {
     struct layout layout = {.sheet = sheet, .report = report, .image = image};
     struct cs_arena arena = {0};
     struct cs_image first = {0};
     *image = (struct cs_image){0};
     choose_grid(sheet, report->n);
-    sheet->bar = has_one_range(report);
-    cs_tone_make(&layout.tone);
+    sheet->colour_bar = has_one_range(report);
+    cs_srgb_make(&layout.tone);
     if (!read_picture(&layout, folder, 0, &first, error) &&
-        !take_paper(&layout, &first, error) &&
-        !cs_pen_init(&layout.pen, CS_BAR_LINES, image, &layout.tone, &arena, error))
+        !init_sheet_image(&layout, &first, error) &&
+        !cs_image_lines_init(&layout.pen, CS_COLOUR_BAR_LINES, image, &layout.tone, &arena,
+                             error))
         put_tiles(&layout, folder, &first, error);
     free(first.rgb);
     cs_arena_finish(&arena);

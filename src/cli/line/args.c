@@ -15,7 +15,7 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
         if (command->rows[r].help)
             names[n++] = command->rows[r].name;
     names[n] = NULL;
-    const char *nearest = word[1] == '-' ? cs_nearest(word + 2, names) : NULL;
+    const char *nearest = word[1] == '-' ? cs_nearest_word(word + 2, names) : NULL;
     if (nearest)
         return cs_fail(
             error, CS_ERR_USAGE,
@@ -28,7 +28,7 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
 /* The long name; an option that may be repeated answers to its singular too (--integrator). */
 static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
     const size_t whole = strlen(row->name);
-    const bool singular = row->many && whole == length + 1 && row->name[length] == 's';
+    const bool singular = row->repeatable && whole == length + 1 && row->name[length] == 's';
     return (whole == length || singular) && !strncmp(row->name, word, length);
 }
 
@@ -45,7 +45,7 @@ static const struct cs_arg *find_row(const struct cs_command *command, const cha
             *attached = word[2 + length] ? word + 3 + length : NULL;
             return row;
         }
-        if (row->letter != word[1])
+        if (row->short_name != word[1])
             continue;
         if (word[2])
             *attached = word + 2;
@@ -56,7 +56,7 @@ static const struct cs_arg *find_row(const struct cs_command *command, const cha
 
 static enum cs_status check_given_once(const struct cs_args *args, const struct cs_arg *row,
                                        struct cs_error *error) {
-    if (row->many || !cs_args_get(args, (uint32_t)(row - args->command->rows)))
+    if (row->repeatable || !cs_args_get(args, (uint32_t)(row - args->command->rows)))
         return CS_OK;
     return cs_fail(error, CS_ERR_USAGE, "--%s is given more than once", row->name);
 }
@@ -87,7 +87,7 @@ static enum cs_status take_option(struct cs_args *args, int argc, char **argv, i
         return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name, row->name,
                        row->value);
     args->given[args->n_given++] =
-        (struct cs_given){(uint32_t)(row - args->command->rows), value};
+        (struct cs_arg_value){(uint32_t)(row - args->command->rows), value};
     return CS_OK;
 }
 
@@ -100,13 +100,13 @@ static bool asks_for_help(int argc, char **argv) {
 
 static enum cs_status check_operands(const struct cs_args *args, struct cs_error *error) {
     const struct cs_command *command = args->command;
-    if (args->n_operands < command->least)
+    if (args->n_operands < command->operands_min)
         return cs_fail(error, CS_ERR_USAGE, "expected %s (see: clothsim %s --help)",
                        command->operands, command->name);
-    if (args->n_operands > command->most)
+    if (args->n_operands > command->operands_max)
         return cs_fail(error, CS_ERR_USAGE,
                        "unexpected argument \"%.60s\" (see: clothsim %s --help)",
-                       args->operands[command->most], command->name);
+                       args->operands[command->operands_max], command->name);
     return CS_OK;
 }
 
@@ -117,8 +117,9 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
     if (args->help)
         return CS_OK;
     /* no word gives more than one option or operand */
-    args->given = cs_arena_take_n(&args->arena, (size_t)argc, sizeof *args->given, error);
-    args->operands = cs_arena_take_n(&args->arena, (size_t)argc, sizeof *args->operands, error);
+    args->given = cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->given, error);
+    args->operands =
+        cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->operands, error);
     if (error->status)
         return error->status;
     bool options = true;
@@ -147,9 +148,9 @@ const char *cs_args_get(const struct cs_args *args, uint32_t row) {
     return NULL;
 }
 
-enum cs_status cs_args_all(struct cs_args *args, uint32_t row, const char *const **values,
-                           uint32_t *n, struct cs_error *error) {
-    const char **all = cs_arena_take_n(&args->arena, args->n_given, sizeof *all, error);
+enum cs_status cs_args_get_all(struct cs_args *args, uint32_t row, const char *const **values,
+                               uint32_t *n, struct cs_error *error) {
+    const char **all = cs_arena_alloc_array(&args->arena, args->n_given, sizeof *all, error);
     *n = 0;
     if (!all)
         return error->status;

@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "base/text.h"
-#include "io/scene_read.h"
+#include "scene/file/scene_read.h"
 #include "study/shard.h"
 
 #include <stdbool.h>
@@ -13,10 +13,10 @@
 /* One option of a command. */
 struct cs_arg {
     const char *name;  /* long name without its dashes */
-    char letter;       /* short name; 0: none */
+    char short_name;   /* short name; 0: none */
     const char *value; /* what stands for its value in --help; NULL: a switch */
     const char *help;  /* lower case, no full stop; NULL: not shown */
-    bool many;         /* may be given more than once */
+    bool repeatable;   /* may be given more than once */
 };
 
 struct cs_args;
@@ -28,11 +28,11 @@ struct cs_command {
     const char *notes; /* paragraphs below the options, or NULL */
     const struct cs_arg *rows;
     uint32_t n_rows;
-    uint32_t least, most; /* number of operands */
+    uint32_t operands_min, operands_max; /* number of operands */
     enum cs_status (*main)(struct cs_args *args, struct cs_error *error);
 };
 
-struct cs_given {
+struct cs_arg_value {
     uint32_t row; /* of the command's table */
     const char *value;
 };
@@ -40,7 +40,7 @@ struct cs_given {
 /* What was typed behind a command, in its order. Zeroed: nothing. */
 struct cs_args {
     const struct cs_command *command;
-    struct cs_given *given;
+    struct cs_arg_value *given;
     const char **operands;
     uint32_t n_given, n_operands;
     bool help;             /* --help was there: nothing else was looked at */
@@ -57,16 +57,16 @@ void cs_args_finish(struct cs_args *args);
 const char *cs_args_get(const struct cs_args *args, uint32_t row);
 
 /* All values of an option, in order; CS_ERR_MEMORY. */
-enum cs_status cs_args_all(struct cs_args *args, uint32_t row, const char *const **values,
-                           uint32_t *n, struct cs_error *error);
+enum cs_status cs_args_get_all(struct cs_args *args, uint32_t row, const char *const **values,
+                               uint32_t *n, struct cs_error *error);
 
 /* The methods of all values of an option, each a list NAME:key=value,...,NAME,... */
 enum cs_status cs_args_methods(struct cs_args *args, uint32_t row, const char *const **methods,
                                uint32_t *n, struct cs_error *error);
 
 /* An option as a whole number in min..max; *value is left alone where it was not given. */
-enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t min,
-                             uint32_t max, uint32_t *value, struct cs_error *error);
+enum cs_status cs_args_integer(const struct cs_args *args, uint32_t row, uint32_t min,
+                               uint32_t max, uint32_t *value, struct cs_error *error);
 
 /* An option as a number above 0 and up to 1e9; *value is left alone where it was not given. */
 enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *value,

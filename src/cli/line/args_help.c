@@ -6,8 +6,8 @@ enum { HELP_COLUMN = 28 };
 
 static void add_row(const struct cs_arg *row, struct cs_text *out) {
     struct cs_text left = {0};
-    if (row->letter)
-        cs_text_add(&left, "  -%c, --%s", row->letter, row->name);
+    if (row->short_name)
+        cs_text_add(&left, "  -%c, --%s", row->short_name, row->name);
     else
         cs_text_add(&left, "      --%s", row->name);
     if (row->value)

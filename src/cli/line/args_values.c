@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t min,
-                             uint32_t max, uint32_t *value, struct cs_error *error) {
+enum cs_status cs_args_integer(const struct cs_args *args, uint32_t row, uint32_t min,
+                               uint32_t max, uint32_t *value, struct cs_error *error) {
     const char *text = cs_args_get(args, row);
     if (!text)
         return CS_OK;
@@ -27,12 +27,12 @@ enum cs_status cs_args_methods(struct cs_args *args, uint32_t row, const char *c
     for (uint32_t i = 0; i < args->n_given; i++)
         if (args->given[i].row == row)
             most += strlen(args->given[i].value) + 1;
-    const char **all = cs_arena_take_n(&args->arena, most, sizeof *all, error);
+    const char **all = cs_arena_alloc_array(&args->arena, most, sizeof *all, error);
     *n = 0;
     for (uint32_t i = 0; i < args->n_given && !error->status; i++) {
         if (args->given[i].row != row)
             continue;
-        char *rest = cs_arena_take_text(&args->arena, args->given[i].value, error);
+        char *rest = cs_arena_copy_text(&args->arena, args->given[i].value, error);
         while (rest)
             all[(*n)++] = cs_method_split(&rest);
     }
@@ -97,7 +97,7 @@ enum cs_status cs_args_choices(struct cs_args *args, uint32_t row, const char *c
                                uint32_t *set, struct cs_error *error) {
     const char *const *texts;
     uint32_t n, found = 0;
-    if (cs_args_all(args, row, &texts, &n, error))
+    if (cs_args_get_all(args, row, &texts, &n, error))
         return error->status;
     for (uint32_t i = 0; i < n; i++) {
         int index = 0;
@@ -117,7 +117,7 @@ static enum cs_status split(struct cs_args *args, const char *option, const char
     if (!equals || equals == text || !equals[1])
         return cs_fail(error, CS_ERR_USAGE, "--%s: expected PATH=VALUE, found \"%.60s\"",
                        option, text);
-    char *path = cs_arena_take_text(&args->arena, text, error);
+    char *path = cs_arena_copy_text(&args->arena, text, error);
     if (!path)
         return error->status;
     path[equals - text] = 0;
@@ -129,9 +129,9 @@ enum cs_status cs_args_overrides(struct cs_args *args, uint32_t row,
                                  const struct cs_override **overrides, uint32_t *n,
                                  struct cs_error *error) {
     const char *const *texts;
-    if (cs_args_all(args, row, &texts, n, error))
+    if (cs_args_get_all(args, row, &texts, n, error))
         return error->status;
-    struct cs_override *all = cs_arena_take_n(&args->arena, *n, sizeof *all, error);
+    struct cs_override *all = cs_arena_alloc_array(&args->arena, *n, sizeof *all, error);
     if (!all)
         return error->status;
     for (uint32_t i = 0; i < *n; i++)

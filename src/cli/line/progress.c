@@ -10,7 +10,7 @@
 
 void cs_progress_begin(struct cs_progress *progress, bool quiet) {
     *progress = (struct cs_progress){
-        .shown = !quiet, .terminal = isatty(STDERR_FILENO), .what = "frame"};
+        .shown = !quiet, .terminal = isatty(STDERR_FILENO), .label = "frame"};
     progress->start = progress->last = cs_clock_wall();
 }
 
@@ -32,7 +32,7 @@ void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t tota
         return;
     const double left = (now - progress->start) / done * (total - done);
     char line[80];
-    snprintf(line, sizeof line, "%s %u of %u, %u %%, %.0f:%02u left", progress->what, done,
+    snprintf(line, sizeof line, "%s %u of %u, %u %%, %.0f:%02u left", progress->label, done,
              total, (uint32_t)(100.0 * done / total), (left - (uint32_t)left % 60) / 60,
              (uint32_t)left % 60);
     if (progress->terminal)

@@ -8,7 +8,7 @@
 struct cs_progress {
     bool shown;         /* nobody asked for quiet */
     bool terminal;      /* stderr is one */
-    const char *what;   /* is counted: "frame" */
+    const char *label;  /* is counted: "frame" */
     double start, last; /* s */
     int width;          /* of the line that is there */
 };

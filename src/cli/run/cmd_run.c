@@ -7,7 +7,7 @@
 #include "cli/manifest.h"
 #include "cli/run/run_range.h"
 #include "cli/run/run_report.h"
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "study/isolate.h"
 
 #include <string.h>
@@ -125,10 +125,10 @@ static enum cs_status read_session(struct cs_args *args, struct cs_session_setti
     session->run.timed = cs_args_get(args, RUN_TIMING);
     session->threads = CS_THREADS_AUTO;
     session->run.stop = cs_interrupt_catch();
-    if (cs_args_whole(args, RUN_THREADS, 1, CS_POOL_MOST, &session->threads, error) ||
+    if (cs_args_integer(args, RUN_THREADS, 1, CS_POOL_THREADS_MAX, &session->threads, error) ||
         cs_args_overrides(args, RUN_SET, &session->overrides, &session->n_overrides, error))
         return error->status;
-    return cs_args_all(args, RUN_PLUGIN, &session->plugins, &session->n_plugins, error);
+    return cs_args_get_all(args, RUN_PLUGIN, &session->plugins, &session->n_plugins, error);
 }
 
 /* A resumed run goes on in its folder, at its own pace of checkpoints. */
@@ -144,7 +144,7 @@ static enum cs_status read_checkpoints(const struct cs_args *args,
                            rows[others[k]].name);
     settings->resume = folder;
     settings->folder = folder ? folder : settings->folder;
-    return pace ? cs_resume_read_pace(pace, &settings->checkpoint, error) : CS_OK;
+    return pace ? cs_checkpointer_read_interval(pace, &settings->checkpoint, error) : CS_OK;
 }
 
 static bool is_stdout(const char *path) {
@@ -159,9 +159,9 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
         bool asks;
     } outputs[] = {{"--hash", settings->hash},
                    {"--json -", is_stdout(settings->json)},
-                   {"--watch -", is_stdout(settings->watch)},
+                   {"--watch -", is_stdout(settings->monitor_file)},
                    {"--ledger -", is_stdout(settings->ledger)},
-                   {"--trace", settings->trail.asked}};
+                   {"--trace", settings->trace.is_requested}};
     const char *first = NULL;
     for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
         if (outputs[k].asks && first)
@@ -176,27 +176,27 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings
                                     struct cs_error *error) {
     const char *folder = cs_args_get(args, RUN_OUT);
     *settings = (struct cs_job_settings){
-        .every = 1,
+        .frame_interval = 1,
         .folder = folder ? folder : "out",
         .states = cs_args_get(args, RUN_STATES),
         .json = cs_args_get(args, RUN_JSON),
-        .watch = cs_args_get(args, RUN_WATCH),
+        .monitor_file = cs_args_get(args, RUN_WATCH),
         .ledger = cs_args_get(args, RUN_LEDGER),
         .renderer = CS_RENDERER_AUTO,
         .level = 1,
-        .fast = cs_args_get(args, RUN_FAST),
+        .fast_render = cs_args_get(args, RUN_FAST),
         .hash = cs_args_get(args, RUN_HASH),
         .overwrite = cs_args_get(args, RUN_OVERWRITE),
         .quiet = cs_args_get(args, RUN_QUIET),
     };
     if (read_checkpoints(args, settings, error) ||
-        cs_args_whole(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
-        cs_args_whole(args, RUN_EVERY, 1, MOST_FRAMES, &settings->every, error) ||
-        cs_args_whole(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
+        cs_args_integer(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
+        cs_args_integer(args, RUN_EVERY, 1, MOST_FRAMES, &settings->frame_interval, error) ||
+        cs_args_integer(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
         cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))
         return error->status;
     const char *trace = cs_args_get(args, RUN_TRACE);
-    if ((trace && cs_run_trail_read(trace, &settings->trail, error)) ||
+    if ((trace && cs_run_trace_read(trace, &settings->trace, error)) ||
         check_stream(settings, error) ||
         cs_run_export_read(cs_args_get(args, RUN_EXPORT), cs_args_get(args, RUN_VALUES),
                            &settings->export, error))
@@ -226,9 +226,9 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
 
 /* Of each folder that the run owns, once all of its files are there. */
 static enum cs_status write_manifests(const struct cs_job *job, struct cs_error *error) {
-    if (job->folder.lock)
+    if (job->folder.folder_lock)
         cs_manifest_write(job->settings->folder, error);
-    if (job->states.lock && !error->status)
+    if (job->states.folder_lock && !error->status)
         cs_manifest_write(job->settings->states, error);
     return error->status;
 }
@@ -236,8 +236,8 @@ static enum cs_status write_manifests(const struct cs_job *job, struct cs_error 
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const bool taken = settings->hash || is_stdout(settings->json) ||
-                       is_stdout(settings->watch) || is_stdout(settings->ledger) ||
-                       settings->trail.asked;
+                       is_stdout(settings->monitor_file) || is_stdout(settings->ledger) ||
+                       settings->trace.is_requested;
     struct cs_text table = {0};
     if (settings->quiet)
         return CS_OK;
@@ -246,26 +246,27 @@ static enum cs_status print_table(const struct cs_job *job, struct cs_error *err
 }
 
 /* A run that ends in a state which it cannot have come to says so whatever else is printed. */
-static void tell_watch(const struct cs_job *job) {
+static void print_watch(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     struct cs_text found = {0};
-    cs_watch_print(&job->watch, run->system, &found);
+    cs_energy_monitor_print(&job->monitor, run->system, &found);
     if (found.length) {
-        const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
+        const struct cs_energy energy =
+            cs_diagnostics_energy(run->system, run->t, run->x, run->v);
         cs_text_add(&found, "; %.3g J at the end (clothsim advise tells which steps hold)",
-                    cs_energy_held(&energy));
+                    cs_energy_without_gravity(&energy));
         cs_print_message(cs_text_get(&found));
     }
     cs_text_finish(&found);
 }
 
 /* So does one that stopped early. */
-static enum cs_status tell_outcome(const struct cs_job *job, bool strict,
-                                   struct cs_error *error) {
+static enum cs_status print_outcome(const struct cs_job *job, bool strict,
+                                    struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     struct cs_text outcome = {0};
     if (run->outcome == CS_RUNNING) {
-        tell_watch(job);
+        print_watch(job);
         return CS_OK;
     }
     cs_report_print_outcome(job, &outcome);
@@ -296,7 +297,7 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
         write_manifests(&job, &later);
     if (!error->status && !write_json(&job, error) && !write_manifests(&job, error) &&
         !print_table(&job, error))
-        tell_outcome(&job, cs_args_get(args, RUN_STRICT), error);
+        print_outcome(&job, cs_args_get(args, RUN_STRICT), error);
     cs_job_finish(&job);
     cs_run_range_finish(&range);
     return error->status;
@@ -321,7 +322,7 @@ const struct cs_command cs_command_run = {
              "Example: clothsim run scenes/hang.json --frames 60 -i velocity-verlet:dt=0.001\n",
     .rows = rows,
     .n_rows = RUN_ROWS,
-    .least = 1,
-    .most = 1,
+    .operands_min = 1,
+    .operands_max = 1,
     .main = run,
 };

@@ -2,7 +2,7 @@
  * one that follows them as slowly as they can be followed. */
 #include "cli/run/run_camera.h"
 
-#include "draw/fit.h"
+#include "draw/camera_fit.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,14 +14,14 @@ static const double least = 0.46, most = 0.79, wanted = 0.62;
 
 /* What is known of the frames that will be drawn. */
 struct motion {
-    struct cs_fit fit;
-    double *places;             /* (n, 3, CS_FIT_EXTREMES) */
+    struct cs_camera_fit fit;
+    double *places;             /* (n, 3, CS_CAMERA_FIT_EXTREMES) */
     struct cs_camera_key *keys; /* (n) */
     uint32_t n;
 };
 
-static const double *places_of(const struct motion *motion, uint32_t k) {
-    return motion->places + (size_t)3 * CS_FIT_EXTREMES * k;
+static const double *positions_of(const struct motion *motion, uint32_t k) {
+    return motion->places + (size_t)3 * CS_CAMERA_FIT_EXTREMES * k;
 }
 
 static enum cs_status record(struct cs_session *session, uint32_t frames, uint32_t every,
@@ -33,17 +33,20 @@ static enum cs_status record(struct cs_session *session, uint32_t frames, uint32
         if (run->outcome != CS_RUNNING || run->frame % every)
             continue;
         motion->keys[motion->n].at = run->t;
-        cs_fit_extremes(&motion->fit, session->system.view.n, run->x,
-                        motion->places + (size_t)3 * CS_FIT_EXTREMES * motion->n++);
+        cs_camera_fit_extremes(&motion->fit, session->system.view.n, run->x,
+                               motion->places +
+                                   (size_t)3 * CS_CAMERA_FIT_EXTREMES * motion->n++);
     }
     return run->outcome == CS_INTERRUPTED
                ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted while the run was framed")
                : CS_OK;
 }
 
-static bool suits(const struct motion *motion, const struct cs_camera *camera, uint32_t k) {
+static bool frames_all(const struct motion *motion, const struct cs_camera *camera,
+                       uint32_t k) {
     double rows[2];
-    cs_fit_rows(&motion->fit, camera, CS_FIT_EXTREMES, places_of(motion, k), rows);
+    cs_camera_fit_rows(&motion->fit, camera, CS_CAMERA_FIT_EXTREMES, positions_of(motion, k),
+                       rows);
     const double height = (rows[1] - rows[0]) / 2;
     return height >= least && height <= most && rows[0] > -0.96 && rows[1] < 0.96;
 }
@@ -54,17 +57,17 @@ static void set_key(struct motion *motion, uint32_t k, const struct cs_camera *c
 }
 
 /* true where one place does for all frames; it is the only key then */
-static bool stand_still(struct motion *motion, double *all) {
-    const size_t of_all = (size_t)motion->n * CS_FIT_EXTREMES;
+static bool find_fixed_camera(struct motion *motion, double *all) {
+    const size_t of_all = (size_t)motion->n * CS_CAMERA_FIT_EXTREMES;
     struct cs_camera camera;
     for (size_t i = 0; i < of_all; i++)
         for (size_t c = 0; c < 3; c++)
             all[c * of_all + i] =
-                motion->places[(i / CS_FIT_EXTREMES * 3 + c) * CS_FIT_EXTREMES +
-                               i % CS_FIT_EXTREMES];
-    cs_fit_camera(&motion->fit, of_all, all, most - 0.01, &camera);
+                motion->places[(i / CS_CAMERA_FIT_EXTREMES * 3 + c) * CS_CAMERA_FIT_EXTREMES +
+                               i % CS_CAMERA_FIT_EXTREMES];
+    cs_camera_fit_solve(&motion->fit, of_all, all, most - 0.01, &camera);
     for (uint32_t k = 0; k < motion->n; k++)
-        if (!suits(motion, &camera, k))
+        if (!frames_all(motion, &camera, k))
             return false;
     set_key(motion, 0, &camera);
     motion->n = 1;
@@ -87,31 +90,32 @@ static void average(const struct motion *motion, const struct cs_camera *each, u
 }
 
 /* as slowly as every frame allows: means over so many frames, halved until all suit */
-static void follow(struct motion *motion, struct cs_camera *each) {
+static void smooth_path(struct motion *motion, struct cs_camera *each) {
     struct cs_camera camera;
     for (uint32_t k = 0; k < motion->n; k++)
-        cs_fit_camera(&motion->fit, CS_FIT_EXTREMES, places_of(motion, k), wanted, each + k);
+        cs_camera_fit_solve(&motion->fit, CS_CAMERA_FIT_EXTREMES, positions_of(motion, k),
+                            wanted, each + k);
     for (uint32_t reach = motion->n / 4 + 1;; reach /= 2) {
         bool all = true;
         for (uint32_t k = 0; k < motion->n; k++) {
             average(motion, each, k, reach, &camera);
             set_key(motion, k, &camera);
-            all = all && suits(motion, &camera, k);
+            all = all && frames_all(motion, &camera, k);
         }
         if (all || reach == 0)
             break;
     }
 }
 
-static enum cs_status find_way(struct motion *motion, struct cs_scene *scene,
-                               struct cs_error *error) {
-    double *all = calloc((size_t)motion->n * CS_FIT_EXTREMES + 1, 3 * sizeof *all);
+static enum cs_status find_camera_path(struct motion *motion, struct cs_scene *scene,
+                                       struct cs_error *error) {
+    double *all = calloc((size_t)motion->n * CS_CAMERA_FIT_EXTREMES + 1, 3 * sizeof *all);
     struct cs_camera *each = calloc(motion->n + 1, sizeof *each);
     if (all && each && motion->n) {
-        if (!stand_still(motion, all))
-            follow(motion, each);
+        if (!find_fixed_camera(motion, all))
+            smooth_path(motion, each);
         struct cs_camera_key *keys =
-            cs_arena_take_n(&scene->arena, motion->n, sizeof *keys, error);
+            cs_arena_alloc_array(&scene->arena, motion->n, sizeof *keys, error);
         if (keys) {
             memcpy(keys, motion->keys, motion->n * sizeof *keys);
             scene->camera.path = (struct cs_list){keys, motion->n};
@@ -127,7 +131,8 @@ static enum cs_status find_way(struct motion *motion, struct cs_scene *scene,
 }
 
 static enum cs_status take(struct motion *motion, uint32_t frames, struct cs_error *error) {
-    motion->places = calloc((size_t)frames + 1, 3 * CS_FIT_EXTREMES * sizeof *motion->places);
+    motion->places =
+        calloc((size_t)frames + 1, 3 * CS_CAMERA_FIT_EXTREMES * sizeof *motion->places);
     motion->keys = calloc((size_t)frames + 1, sizeof *motion->keys);
     return motion->places && motion->keys
                ? CS_OK
@@ -139,7 +144,8 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
     struct cs_session_settings once = of->settings->session;
     struct cs_session session = {0};
     struct motion motion = {.n = 0};
-    const uint32_t frames = cs_job_frames(of->settings, scene), every = of->settings->every;
+    const uint32_t frames = cs_job_frames(of->settings, scene),
+                   every = of->settings->frame_interval;
     if (scene->camera.frame != CS_FRAME_AUTO)
         return;
     if (!strcmp(once.scene, "-")) {
@@ -149,11 +155,11 @@ void cs_run_camera_find(struct cs_scene *scene, void *camera) {
     }
     // those of the session that asks
     once.threads = 0;
-    cs_fit_begin(&motion.fit, &scene->camera, scene->render.size);
+    cs_camera_fit_begin(&motion.fit, &scene->camera, scene->render.size);
     if (!cs_session_open(&session, &once, &of->error) &&
         !take(&motion, frames / every, &of->error) &&
         !record(&session, frames, every, &motion, &of->error))
-        find_way(&motion, scene, &of->error);
+        find_camera_path(&motion, scene, &of->error);
     cs_session_close(&session);
     free(motion.places);
     free(motion.keys);

@@ -52,10 +52,10 @@ enum cs_status cs_run_export_begin(struct cs_export *export,
                                    struct cs_error *error) {
     struct cs_export_settings these = *settings;
     /* the start, and one every so many frames */
-    these.kept = goes_on ? run->frame / these.every + 1 : 0;
+    these.n_samples_before = goes_on ? run->frame / these.frame_interval + 1 : 0;
     if (cs_export_open(export, &these, run->system, error) || goes_on)
         return error->status;
-    return cs_export_take(export, run->frame, run->t, run->x, run->v, error);
+    return cs_export_write_sample(export, run->frame, run->t, run->x, run->v, error);
 }
 
 static void print_set(uint32_t set, const char *const *names, struct cs_text *out) {

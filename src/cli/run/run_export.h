@@ -3,7 +3,7 @@
 #define CS_RUN_EXPORT_H
 
 #include "base/text.h"
-#include "export/export.h"
+#include "io/export/export.h"
 #include "sim/run.h"
 
 /* Reads --export and --export-values, lists with commas between; NULL: not given. CS_ERR_USAGE.

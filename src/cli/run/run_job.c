@@ -6,13 +6,13 @@
 #include "base/pool.h"
 #include "cli/line/print.h"
 #include "cli/line/progress.h"
-#include "cli/run/run_claims.h"
-#include "io/scene_hash.h"
-#include "io/scene_write.h"
-#include "study/coarse.h"
-#include "study/company.h"
-#include "study/origin.h"
-#include "study/within.h"
+#include "cli/run/run_file_conflicts.h"
+#include "scene/file/scene_hash.h"
+#include "scene/file/scene_write.h"
+#include "study/containment_warning.h"
+#include "study/overlap_warning.h"
+#include "study/provenance_write.h"
+#include "study/sampling_warning.h"
 
 #include <string.h>
 
@@ -28,15 +28,15 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
                       job->scene_hash, error) ||
         !cs_job_wants_json(job->settings))
         return error->status;
-    return cs_origin_print(session, job->scene_hash, cs_text_get(&job->method), &job->origin,
-                           error);
+    return cs_provenance_out_print(session, job->scene_hash, cs_text_get(&job->method),
+                                   &job->provenance, error);
 }
 
 static enum cs_status check_outputs(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const struct cs_run_outputs outputs = {
         .json = settings->json,
-        .watch = settings->watch,
+        .monitor_file = settings->monitor_file,
         .ledger = settings->ledger,
         .states = settings->states,
         .folder = cs_job_uses_folder(settings) ? settings->folder : NULL};
@@ -54,7 +54,7 @@ static bool has_processors(void) {
 static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     if (cs_picture_open(&job->picture, &job->session.system,
-                        (enum cs_renderer_kind)settings->renderer, settings->fast,
+                        (enum cs_renderer_kind)settings->renderer, settings->fast_render,
                         has_processors(), error))
         return error->status;
     cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));
@@ -72,34 +72,34 @@ static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
     const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_KEEP
                                            : settings->overwrite ? CS_OUTPUT_REMOVE
                                                                  : CS_OUTPUT_REFUSE;
-    if (settings->states &&
-        cs_output_own(&job->states, NULL, settings->states, cs_output_is_state, earlier, error))
+    if (settings->states && cs_output_lock_folders(&job->states, NULL, settings->states,
+                                                   cs_output_is_state, earlier, error))
         return error->status;
     if (cs_job_uses_folder(settings) &&
-        cs_output_own(&job->folder, &job->states, settings->folder, cs_output_is_result,
-                      earlier, error))
+        cs_output_lock_folders(&job->folder, &job->states, settings->folder,
+                               cs_output_is_result, earlier, error))
         return error->status;
     if (!settings->session.render)
         return CS_OK;
-    const struct cs_frames_settings frames = {
+    const struct cs_frame_writer_settings frames = {
         (uint32_t)render->size[0], (uint32_t)render->size[1],
         render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
-    return cs_frames_create(settings->folder, &frames, &job->writer, error);
+    return cs_frame_writer_create(settings->folder, &frames, &job->writer, error);
 }
 
 /* Waits for the picture under way and hands it over. */
 static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
     const double start = cs_clock_wall();
-    if (!job->begun.number)
+    if (!job->has_begun.number)
         return CS_OK;
     const struct cs_picture_origin origin = {
         &job->session.scene, job->scene_hash, cs_text_get(&job->method),
-        cs_text_get(&job->renderer), cs_text_get(&job->recipe)};
+        cs_text_get(&job->renderer), cs_text_get(&job->picture_provenance)};
     const enum cs_status status = cs_picture_end(&job->picture, error);
     job->wait_seconds += cs_clock_wall() - start;
-    if (!status && !cs_job_picture_give(&job->begun, &origin, job->writer, error))
-        job->drawn++;
-    job->begun.number = 0;
+    if (!status && !cs_job_picture_submit(&job->has_begun, &origin, job->writer, error))
+        job->n_drawn++;
+    job->has_begun.number = 0;
     return error->status;
 }
 
@@ -110,15 +110,16 @@ static enum cs_status begin_picture(struct cs_job *job, struct cs_job_frame *fra
     if (end_picture(job, error))
         return error->status;
     const double start = cs_clock_wall();
-    struct cs_image *image = cs_frames_take(job->writer);
+    struct cs_image *image = cs_frame_writer_acquire(job->writer);
     job->wait_seconds += cs_clock_wall() - start;
     cs_picture_begin(&job->picture, run, image);
-    job->begun = (struct cs_job_picture){.number = run->frame / job->settings->every,
-                                         .frame = run->frame,
-                                         .time = run->t,
-                                         .image = image};
-    memcpy(job->begun.hash, job->hash, sizeof job->hash);
-    memcpy(job->begun.range, job->picture.range, sizeof job->begun.range);
+    job->has_begun =
+        (struct cs_job_picture){.number = run->frame / job->settings->frame_interval,
+                                .frame = run->frame,
+                                .time = run->t,
+                                .image = image};
+    memcpy(job->has_begun.hash, job->hash, sizeof job->hash);
+    memcpy(job->has_begun.range, job->picture.range, sizeof job->has_begun.range);
     memcpy(frame->range, job->picture.range, sizeof frame->range);
     frame->drawn = true;
     return CS_OK;
@@ -132,24 +133,24 @@ static enum cs_status print_hash(uint32_t number, const char *hash, struct cs_er
 
 /* Looks whether the run is still sound, and keeps the rows for --watch and --ledger. */
 static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
-    struct cs_watch_row row;
-    cs_watch_look(&job->watch, &job->session.run, &row);
-    if (job->settings->watch)
-        cs_watch_print_row(&row, job->session.run.frame, &job->watch_rows);
+    struct cs_energy_monitor_row row;
+    cs_energy_monitor_sample(&job->monitor, &job->session.run, &row);
+    if (job->settings->monitor_file)
+        cs_energy_monitor_print_row(&row, job->session.run.frame, &job->watch_rows);
     if (job->settings->ledger)
-        cs_account_print_row(&job->account, job->session.run.frame, &job->ledger_rows);
+        cs_energy_ledger_print_row(&job->ledger, job->session.run.frame, &job->ledger_rows);
     if (job->watch_rows.failed || job->ledger_rows.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of frames");
     return CS_OK;
 }
 
 static enum cs_status begin_watch(struct cs_job *job, struct cs_error *error) {
-    if (cs_watch_begin(&job->watch, &job->session.run, error))
+    if (cs_energy_monitor_begin(&job->monitor, &job->session.run, error))
         return error->status;
-    if (job->settings->watch)
-        cs_watch_print_head(&job->watch_rows);
+    if (job->settings->monitor_file)
+        cs_energy_monitor_print_head(&job->watch_rows);
     if (job->settings->ledger)
-        cs_account_print_head(&job->ledger_rows);
+        cs_energy_ledger_print_head(&job->ledger_rows);
     return watch_frame(job, error);
 }
 
@@ -163,26 +164,28 @@ static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
     memcpy(frame.hash, job->hash, sizeof frame.hash);
     if (watch_frame(job, error))
         return error->status;
-    cs_tally_take(&job->tally, run);
-    frame.crossings = job->tally.last;
+    cs_crossing_stats_add(&job->crossings, run);
+    frame.crossings = job->crossings.last_count;
     if (settings->states &&
         cs_output_state(settings->states, run->frame, run->x, run->v, n, error))
         return error->status;
-    if (job->writer && run->frame % settings->every == 0 && begin_picture(job, &frame, error))
+    if (job->writer && run->frame % settings->frame_interval == 0 &&
+        begin_picture(job, &frame, error))
         return error->status;
-    if (cs_export_take(&job->export, run->frame, run->t, run->x, run->v, error))
+    if (cs_export_write_sample(&job->export, run->frame, run->t, run->x, run->v, error))
         return error->status;
-    if (cs_job_wants_json(settings) && cs_kept_add(&job->kept, run->frame, &frame, error))
+    if (cs_job_wants_json(settings) &&
+        cs_frame_log_add(&job->frame_log, run->frame, &frame, error))
         return error->status;
     return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
 }
 
 /* Waits until every picture that was begun is a file. */
-static enum cs_status settle_pictures(struct cs_job *job, struct cs_error *error) {
+static enum cs_status drain_pictures(struct cs_job *job, struct cs_error *error) {
     if (end_picture(job, error) || !job->writer)
         return error->status;
     const double start = cs_clock_wall();
-    cs_frames_finish(job->writer, &job->encode_seconds, error);
+    cs_frame_writer_finish(job->writer, &job->encode_seconds, error);
     job->wait_seconds += cs_clock_wall() - start;
     return error->status;
 }
@@ -191,29 +194,30 @@ static enum cs_status settle_pictures(struct cs_job *job, struct cs_error *error
 static enum cs_status write_checkpoint(struct cs_job *job, struct cs_error *error) {
     if (!cs_job_makes_checkpoints(job->settings) || cs_export_sync(&job->export, error))
         return error->status;
-    return cs_resume_write(&job->checkpoints, error);
+    return cs_checkpointer_write(&job->checkpoints, error);
 }
 
 static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error) {
     bool due;
-    if (cs_resume_keep(&job->checkpoints, &due, error) || !due || settle_pictures(job, error))
+    if (cs_checkpointer_capture(&job->checkpoints, &due, error) || !due ||
+        drain_pictures(job, error))
         return error->status;
     return write_checkpoint(job, error);
 }
 
 /* What the job keeps of the frames so far, for a checkpoint. */
-static void record_job(void *ctx, struct cs_record *record) {
+static void record_job(void *ctx, struct cs_serialiser *record) {
     struct cs_job *job = ctx;
     uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
-    CS_RECORD(record, job->watch);
-    CS_RECORD(record, job->tally);
-    CS_RECORD(record, job->hash);
-    CS_RECORD(record, job->drawn);
-    cs_record_text(record, &job->watch_rows);
-    cs_record_text(record, &job->ledger_rows);
-    CS_RECORD(record, job->account.work);
-    CS_RECORD(record, n);
-    cs_kept_record(&job->kept, n, record);
+    CS_SERIALISER(record, job->monitor);
+    CS_SERIALISER(record, job->crossings);
+    CS_SERIALISER(record, job->hash);
+    CS_SERIALISER(record, job->n_drawn);
+    cs_serialiser_text(record, &job->watch_rows);
+    cs_serialiser_text(record, &job->ledger_rows);
+    CS_SERIALISER(record, job->ledger.work);
+    CS_SERIALISER(record, n);
+    cs_frame_log_serialise(&job->frame_log, n, record);
 }
 
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
@@ -221,28 +225,29 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
     cs_job_print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
     if (job->outputs.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for checkpoints");
-    const struct cs_resume_of of = {.scene = cs_text_get(&job->scene),
-                                    .hash = job->scene_hash,
-                                    .method = cs_text_get(&job->method),
-                                    .outputs = cs_text_get(&job->outputs),
-                                    .record = record_job,
-                                    .ctx = job};
-    return cs_resume_begin(&job->checkpoints, &job->session, &of, settings->folder,
-                           &settings->checkpoint, error);
+    const struct cs_checkpoint_source of = {.scene = cs_text_get(&job->scene),
+                                            .hash = job->scene_hash,
+                                            .method = cs_text_get(&job->method),
+                                            .output_settings = cs_text_get(&job->outputs),
+                                            .serialise = record_job,
+                                            .ctx = job};
+    return cs_checkpointer_begin(&job->checkpoints, &job->session, &of, settings->folder,
+                                 &settings->checkpoint, error);
 }
 
 /* Known once a run has begun, or goes on at its pace of checkpoints. */
 static enum cs_status make_recipe(struct cs_job *job, struct cs_error *error) {
     if (!job->writer)
         return CS_OK;
-    const struct cs_recipe recipe = {.origin = cs_text_get(&job->origin),
-                                     .scene = cs_text_get(&job->scene),
-                                     .renderer = job->picture.renderer->name,
-                                     .drawn_by = cs_text_get(&job->renderer),
-                                     .fast = job->settings->fast,
-                                     .restarts = cs_job_restarts(job)};
-    cs_origin_print_recipe(&recipe, &job->recipe);
-    return job->recipe.failed
+    const struct cs_picture_provenance recipe = {.provenance = cs_text_get(&job->provenance),
+                                                 .scene = cs_text_get(&job->scene),
+                                                 .renderer = job->picture.renderer->name,
+                                                 .renderer_description =
+                                                     cs_text_get(&job->renderer),
+                                                 .fast_render = job->settings->fast_render,
+                                                 .restarts = cs_job_restarts(job)};
+    cs_provenance_out_print_recipe(&recipe, &job->picture_provenance);
+    return job->picture_provenance.failed
                ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of pictures")
                : CS_OK;
 }
@@ -251,17 +256,17 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
     struct cs_progress progress;
     cs_progress_begin(&progress, job->settings->quiet);
-    cs_run_trail_begin(&job->trail, run);
+    cs_run_trace_begin(&job->trace, run);
     while (run->frame < job->frames && !error->status) {
-        cs_run_trail_step(&job->trail, run);
+        cs_run_trace_step(&job->trace, run);
         if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
             break;
-        if (!cs_run_trail_frame(&job->trail, run, error) && !take_frame(job, error))
+        if (!cs_run_trace_frame(&job->trace, run, error) && !take_frame(job, error))
             make_checkpoint(job, error);
         cs_progress_show(&progress, run->frame, job->frames);
     }
     cs_progress_end(&progress);
-    cs_run_trail_end(&job->trail, run);
+    cs_run_trace_end(&job->trace, run);
     return error->status;
 }
 
@@ -269,7 +274,7 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
 static enum cs_status begin_exports(struct cs_job *job, struct cs_error *error) {
     struct cs_export_settings settings = job->settings->export;
     settings.folder = job->settings->folder;
-    settings.every = job->settings->every;
+    settings.frame_interval = job->settings->frame_interval;
     return settings.formats ? cs_run_export_begin(&job->export, &settings, &job->session.run,
                                                   job->settings->resume, error)
                             : CS_OK;
@@ -279,7 +284,7 @@ static enum cs_status begin_exports(struct cs_job *job, struct cs_error *error) 
  * checkpoint. The first failure wins: a later one of drawing or writing changes nothing. */
 static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
-    if (settle_pictures(job, &later) == CS_OK)
+    if (drain_pictures(job, &later) == CS_OK)
         write_checkpoint(job, &later);
     cs_export_finish(&job->export, cs_job_makes_checkpoints(job->settings), &later);
     if (!error->status)
@@ -294,14 +299,14 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
     if (states && cs_output_state(states, 0, run->x, run->v, n, error))
         return error->status;
-    cs_tally_take(&job->tally, run);
+    cs_crossing_stats_add(&job->crossings, run);
     return begin_watch(job, error);
 }
 
 /* Its account goes on from the state that was loaded. */
-static enum cs_status go_on(struct cs_job *job, struct cs_error *error) {
-    if (!cs_resume_load(&job->checkpoints, job->frames, error) && job->settings->ledger)
-        cs_account_go_on(&job->account, job->session.run.t);
+static enum cs_status resume(struct cs_job *job, struct cs_error *error) {
+    if (!cs_checkpointer_load(&job->checkpoints, job->frames, error) && job->settings->ledger)
+        cs_energy_ledger_resume(&job->ledger, job->session.run.t);
     return error->status;
 }
 
@@ -309,15 +314,15 @@ static enum cs_status go_on(struct cs_job *job, struct cs_error *error) {
 static enum cs_status open_session(struct cs_job *job, struct cs_error *error) {
     struct cs_session_settings settings = job->settings->session;
     const bool kept = job->settings->ledger != NULL;
-    settings.run.account = kept ? &job->account : NULL;
-    job->trail = job->settings->trail;
-    settings.run.trace = job->trail.only ? &job->trail.trace : NULL;
+    settings.run.ledger = kept ? &job->ledger : NULL;
+    job->trace = job->settings->trace;
+    settings.run.trace = job->trace.frame ? &job->trace.trace : NULL;
     job->camera.settings = job->settings;
-    settings.change = settings.render ? cs_run_camera_find : NULL;
+    settings.edit_scene = settings.render ? cs_run_camera_find : NULL;
     settings.ctx = &job->camera;
     if (cs_session_open(&job->session, &settings, error) || job->camera.error.status)
         return cs_fail(error, job->camera.error.status, "%s", job->camera.error.message);
-    return !kept ? CS_OK : cs_account_open(&job->account, &job->session.system, 0, error);
+    return !kept ? CS_OK : cs_energy_ledger_open(&job->ledger, &job->session.system, 0, error);
 }
 
 enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *settings,
@@ -325,27 +330,27 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     const double start = cs_clock_wall();
     job->settings = settings;
     if (open_session(job, error) || describe(job, error) ||
-        cs_resume_check_pace(&job->session, &settings->checkpoint, error) ||
+        cs_checkpointer_check_interval(&job->session, &settings->checkpoint, error) ||
         check_outputs(job, error) || open_outputs(job, error))
         return error->status;
     const struct cs_scene *scene = &job->session.scene;
     job->frames = cs_job_frames(settings, scene);
-    if (cs_company_print(scene, job->frames / scene->time.fps, &job->warning, error))
+    if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))
         return error->status;
     if (!job->warning.length)
-        cs_coarse_print(&job->session.system, &job->warning);
+        cs_sampling_warning_print(&job->session.system, &job->warning);
     if (!job->warning.length)
-        cs_within_print(&job->session.system, &job->warning);
+        cs_containment_warning_print(&job->session.system, &job->warning);
 
     if (cs_job_makes_checkpoints(settings) && begin_checkpoints(job, error))
         return error->status;
     /* a checkpoint that is refused leaves the rows of the run that it is of */
-    if ((settings->resume ? go_on(job, error) : begin(job, error)) ||
+    if ((settings->resume ? resume(job, error) : begin(job, error)) ||
         begin_exports(job, error) || make_recipe(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
     /* also after a failure: rows and frames that were finished are kept */
-    cs_output_rows(settings->watch, &job->watch_rows, error);
+    cs_output_rows(settings->monitor_file, &job->watch_rows, error);
     cs_output_rows(settings->ledger, &job->ledger_rows, error);
     finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
@@ -355,22 +360,22 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
 void cs_job_finish(struct cs_job *job) {
     /* a picture under way is drawn into an image of the writer's */
     cs_picture_close(&job->picture);
-    cs_frames_destroy(job->writer);
+    cs_frame_writer_destroy(job->writer);
     cs_export_close(&job->export);
-    cs_output_release(&job->folder);
-    cs_output_release(&job->states);
+    cs_output_unlock_folders(&job->folder);
+    cs_output_unlock_folders(&job->states);
     cs_session_close(&job->session);
     cs_text_finish(&job->scene);
     cs_text_finish(&job->warning);
     cs_text_finish(&job->method);
-    cs_text_finish(&job->origin);
-    cs_text_finish(&job->recipe);
+    cs_text_finish(&job->provenance);
+    cs_text_finish(&job->picture_provenance);
     cs_text_finish(&job->renderer);
     cs_text_finish(&job->watch_rows);
     cs_text_finish(&job->ledger_rows);
-    cs_account_close(&job->account);
+    cs_energy_ledger_close(&job->ledger);
     cs_text_finish(&job->outputs);
-    cs_resume_finish(&job->checkpoints);
-    cs_kept_finish(&job->kept);
+    cs_checkpointer_finish(&job->checkpoints);
+    cs_frame_log_finish(&job->frame_log);
     *job = (struct cs_job){0};
 }

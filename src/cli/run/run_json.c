@@ -1,8 +1,8 @@
 /* Prints run.json: what is needed to repeat a run and to see that it gave the same result. */
-#include "base/arithmetic.h"
+#include "base/ieee_check.h"
 #include "base/pool.h"
 #include "cli/run/run_report.h"
-#include "study/origin.h"
+#include "study/provenance_write.h"
 
 #include <cjson/cJSON.h>
 #include <png.h>
@@ -29,7 +29,7 @@ static void add_versions(const struct cs_job *job, struct cs_text *out) {
 
 /* only where the hashes of the report are not to be compared with those of other builds */
 static void add_arithmetic(struct cs_text *out) {
-    const char *fault = cs_arithmetic_fault();
+    const char *fault = cs_ieee_check();
     if (!fault)
         return;
     cs_text_add(out, "  \"arithmetic\": ");
@@ -57,11 +57,11 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
         add_real(out, ", \"bound\": ", run->blow_up.bound);
         cs_text_add(out, "}");
     }
-    cs_text_add(out, ",\n  \"verdict\": \"%s\"", cs_stability_word(job->watch.worst));
-    if (job->watch.found) {
-        add_real(out, ",\n  \"unstable_from\": {\"time\": ", job->watch.first.t);
-        cs_text_add(out, ", \"particle\": %u, \"particles\": %u}", job->watch.first.particle,
-                    job->watch.first.particles);
+    cs_text_add(out, ",\n  \"verdict\": \"%s\"", cs_stability_word(job->monitor.worst_verdict));
+    if (job->monitor.has_local_instability) {
+        add_real(out, ",\n  \"unstable_from\": {\"time\": ", job->monitor.first.t);
+        cs_text_add(out, ", \"particle\": %u, \"particles\": %u}", job->monitor.first.particle,
+                    job->monitor.first.particles);
     }
     cs_text_add(out, ",\n  \"frames_asked\": %u,\n  \"frames_done\": %u", job->frames,
                 run->frame);
@@ -86,11 +86,11 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
         {"solve_setups", c->solve_setups},
         {"solves", c->solves},
         {"solve_iterations", c->solve_iterations},
-        {"clamped", c->clamped},
-        {"contacts", c->contacts},
+        {"clamped", c->clamped_setups},
+        {"contacts", c->projected_particles},
         {"contact_tests", c->contact_tests},
-        {"contact_cut_steps", c->cut_steps},
-        {"limit_moves", c->limit_moves},
+        {"contact_cut_steps", c->subdivided_steps},
+        {"limit_moves", c->strain_limit_moves},
         {"normals", c->normals},
     };
     cs_text_add(out, "  \"counts\": {");
@@ -102,30 +102,30 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
 
 /* Only where they were counted. */
 static void add_crossings(const struct cs_job *job, struct cs_text *out) {
-    const struct cs_tally *tally = &job->tally;
-    if (!tally->counted)
+    const struct cs_crossing_stats *stats = &job->crossings;
+    if (!stats->is_counted)
         return;
     cs_text_add(out, "  \"crossings\": {\"start\": %llu, \"most\": %llu, \"end\": %llu",
-                (unsigned long long)tally->start, (unsigned long long)tally->most,
-                (unsigned long long)tally->last);
-    if (tally->most) {
+                (unsigned long long)stats->start_count, (unsigned long long)stats->max_count,
+                (unsigned long long)stats->last_count);
+    if (stats->max_count) {
         const uint32_t *ends =
-            job->session.system.surfaces->edges + 2 * (size_t)tally->first.edge;
-        add_real(out, ", \"most_at\": ", tally->most_time);
-        add_real(out, ", \"first\": {\"time\": ", tally->first_time);
+            job->session.system.surfaces->edges + 2 * (size_t)stats->first.edge;
+        add_real(out, ", \"most_at\": ", stats->max_time);
+        add_real(out, ", \"first\": {\"time\": ", stats->first_time);
         cs_text_add(out, ", \"edge\": [%u, %u]}", ends[0], ends[1]);
     }
     cs_text_add(out, "},\n");
 }
 
 static void add_measures(const struct cs_run *run, struct cs_text *out) {
-    const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
+    const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     add_real(out, "  \"energy\": {\"kinetic\": ", energy.kinetic);
     add_real(out, ", \"elastic\": ", energy.elastic);
     add_real(out, ", \"gravity\": ", energy.gravity);
     if (energy.other != 0)
         add_real(out, ", \"other\": ", energy.other);
-    add_real(out, "},\n  \"largest_strain\": ", cs_measure_strain(run->system, run->x));
+    add_real(out, "},\n  \"largest_strain\": ", cs_diagnostics_strain(run->system, run->x));
     cs_text_add(out, ",\n  \"memory\": {\"bytes\": %zu, \"method\": %zu", cs_run_bytes(run),
                 run->method_bytes);
     add_real(out, ", \"a_particle\": ", (double)cs_run_bytes(run) / run->system->view.n);
@@ -158,12 +158,12 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const bool coloured = cs_picture_is_coloured(&job->session.scene);
     cs_text_add(out, "  \"frames\": [");
     for (uint32_t i = 0; i < job->session.run.frame; i++) {
-        const struct cs_job_frame *frame = job->kept.frames + i;
+        const struct cs_job_frame *frame = job->frame_log.frames + i;
         cs_text_add(out, "%s\n    {\"number\": %u, \"hash\": \"%s\", \"drawn\": %s",
                     i ? "," : "", i + 1, frame->hash, frame->drawn ? "true" : "false");
         if (frame->drawn)
-            cs_text_add(out, ", \"picture\": %u", (i + 1) / job->settings->every);
-        if (job->tally.counted)
+            cs_text_add(out, ", \"picture\": %u", (i + 1) / job->settings->frame_interval);
+        if (job->crossings.is_counted)
             cs_text_add(out, ", \"crossings\": %llu", (unsigned long long)frame->crossings);
         if (coloured && frame->drawn) {
             add_real(out, ", \"range\": [", frame->range[0]);
@@ -180,8 +180,8 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "{\n  \"schema\": %d,\n", SCHEMA_VERSION);
     add_versions(job, out);
     add_arithmetic(out);
-    cs_origin_add_restarts(cs_job_restarts(job), out);
-    cs_text_add(out, "%s", cs_text_get(&job->origin));
+    cs_provenance_out_add_restarts(cs_job_restarts(job), out);
+    cs_text_add(out, "%s", cs_text_get(&job->provenance));
     cs_text_add(out, ",\n  \"particles\": %u,\n  \"springs\": %u,\n", run->system->view.n,
                 run->system->springs.n);
     add_outcome(job, out);

@@ -2,7 +2,7 @@
 #include "cli/run/run_picture.h"
 
 #include "base/text.h"
-#include "study/picture.h"
+#include "study/frame_picture.h"
 
 #include <stdio.h>
 
@@ -16,9 +16,9 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
     cs_text_add(range, " %s", cs_picture_unit(scene));
 }
 
-enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
-                                   const struct cs_picture_origin *origin,
-                                   struct cs_frames *frames, struct cs_error *error) {
+enum cs_status cs_job_picture_submit(const struct cs_job_picture *picture,
+                                     const struct cs_picture_origin *origin,
+                                     struct cs_frame_writer *frames, struct cs_error *error) {
     char frame[16], pixels[CS_HASH_DIGITS];
     struct cs_text time = {0}, range = {0};
     snprintf(frame, sizeof frame, "%u", picture->frame);
@@ -34,7 +34,7 @@ enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
         {"clothsim:state-hash", picture->hash},
         {"clothsim:renderer", origin->renderer},
         {"clothsim:pixel-hash", pixels},
-        {"clothsim:run", origin->recipe},
+        {"clothsim:run", origin->provenance},
         {"clothsim:range", cs_text_get(&range)},
     };
     /* the range comes last, so that it can be left out where nothing is coloured */
@@ -42,7 +42,7 @@ enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
     if (time.failed || range.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
     else
-        cs_frames_give(frames, picture->number, texts, n_texts, error);
+        cs_frame_writer_submit(frames, picture->number, texts, n_texts, error);
     cs_text_finish(&time);
     cs_text_finish(&range);
     return error->status;

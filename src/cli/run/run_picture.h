@@ -4,14 +4,14 @@
 #define CS_RUN_PICTURE_H
 
 #include "base/hash.h"
-#include "io/frames.h"
+#include "io/frame_writer.h"
 #include "scene/scene.h"
 
 /* What all pictures of a run have in common; borrowed texts. */
 struct cs_picture_origin {
     const struct cs_scene *scene;
     const char *scene_hash, *method, *renderer;
-    const char *recipe; /* see study/origin.h */
+    const char *provenance; /* see study/provenance_write.h */
 };
 
 /* The frame whose picture is being drawn while the run goes on. */
@@ -24,10 +24,11 @@ struct cs_job_picture {
     const struct cs_image *image; /* of the writer */
 };
 
-/* Hands the image taken last over, as frame_NUMBER.png. CS_ERR_MEMORY, and as cs_frames_give.
+/* Hands the image taken last over, as frame_NUMBER.png. CS_ERR_MEMORY, and as
+ * cs_frame_writer_submit.
  */
-enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
-                                   const struct cs_picture_origin *origin,
-                                   struct cs_frames *frames, struct cs_error *error);
+enum cs_status cs_job_picture_submit(const struct cs_job_picture *picture,
+                                     const struct cs_picture_origin *origin,
+                                     struct cs_frame_writer *frames, struct cs_error *error);
 
 #endif

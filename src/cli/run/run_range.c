@@ -1,7 +1,7 @@
 /* Finds the range of colours in one run before the one that is drawn. */
 #include "cli/run/run_range.h"
 
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,8 +25,8 @@ static enum cs_status take(struct search *search, uint32_t frames, struct cs_err
     return CS_OK;
 }
 
-static enum cs_status look(struct search *search, uint32_t frames, uint32_t every,
-                           struct cs_error *error) {
+static enum cs_status sample_frame(struct search *search, uint32_t frames, uint32_t every,
+                                   struct cs_error *error) {
     struct cs_run *run = &search->session.run;
     while (run->frame < frames && run->outcome == CS_RUNNING) {
         if (cs_run_frame(run, error))
@@ -35,7 +35,7 @@ static enum cs_status look(struct search *search, uint32_t frames, uint32_t ever
             continue;
         cs_picture_values(&search->session.system, run, search->scalar, search->work);
         search->most[search->n++] =
-            cs_measure_magnitude(search->scalar, search->session.system.view.n);
+            cs_diagnostics_magnitude(search->scalar, search->session.system.view.n);
     }
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "interrupted while the range of colours was found");
@@ -63,9 +63,10 @@ static enum cs_status search_range(const struct cs_job_settings *settings, char 
     if (cs_session_open(session, &settings->session, error))
         return error->status;
     const uint32_t frames = cs_job_frames(settings, &session->scene);
-    if (!check(session, error) && !take(&search, frames / settings->every, error) &&
-        !look(&search, frames, settings->every, error)) {
-        cs_picture_range(&session->scene, cs_measure_magnitude(search.most, search.n), range);
+    if (!check(session, error) && !take(&search, frames / settings->frame_interval, error) &&
+        !sample_frame(&search, frames, settings->frame_interval, error)) {
+        cs_picture_range(&session->scene, cs_diagnostics_magnitude(search.most, search.n),
+                         range);
         if (range[0] < range[1])
             snprintf(value, 80, "[%.9g,%.9g]", range[0], range[1]);
     }

@@ -51,7 +51,7 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
 /* Only where the watch has something to say. */
 static void add_watch(const struct cs_job *job, struct cs_text *out) {
     struct cs_text found = {0};
-    cs_watch_print(&job->watch, &job->session.system, &found);
+    cs_energy_monitor_print(&job->monitor, &job->session.system, &found);
     if (found.length)
         cs_print_hanging("watch", cs_text_get(&found), VALUE_COLUMN, out);
     cs_text_finish(&found);
@@ -60,9 +60,9 @@ static void add_watch(const struct cs_job *job, struct cs_text *out) {
 /* Only where they were counted. */
 static void add_crossings(const struct cs_job *job, struct cs_text *out) {
     struct cs_text found = {0};
-    if (!job->tally.counted)
+    if (!job->crossings.is_counted)
         return;
-    cs_tally_print(&job->tally, &job->session.system, &found);
+    cs_crossing_stats_print(&job->crossings, &job->session.system, &found);
     cs_print_hanging("crossings", cs_text_get(&found), VALUE_COLUMN, out);
     cs_text_finish(&found);
 }
@@ -77,25 +77,26 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
     add_row(out, "iterations", "%llu linear in %llu solves, %llu nonlinear",
             (unsigned long long)c->solve_iterations, (unsigned long long)c->solves,
             (unsigned long long)c->method.newton);
-    if (c->clamped)
+    if (c->clamped_setups)
         add_row(out, "clamped", "%llu indefinite matrices made definite",
-                (unsigned long long)c->clamped);
+                (unsigned long long)c->clamped_setups);
     if (c->contact_tests)
-        add_row(out, "contacts", "%llu in %llu tests", (unsigned long long)c->contacts,
+        add_row(out, "contacts", "%llu in %llu tests",
+                (unsigned long long)c->projected_particles,
                 (unsigned long long)c->contact_tests);
-    if (c->limit_moves)
+    if (c->strain_limit_moves)
         add_row(out, "strain limit", "%llu springs shortened",
-                (unsigned long long)c->limit_moves);
+                (unsigned long long)c->strain_limit_moves);
 }
 
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
-    const struct cs_energy energy = cs_measure_energy(run->system, run->t, run->x, run->v);
+    const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     add_row(out, "energy", "%.6g J kinetic, %.6g J elastic, %.6g J gravity", energy.kinetic,
             energy.elastic, energy.gravity);
     if (energy.other != 0)
         add_row(out, "other energy", "%.6g J", energy.other);
-    add_row(out, "largest strain", "%.4g %%", 100 * cs_measure_strain(run->system, run->x));
+    add_row(out, "largest strain", "%.4g %%", 100 * cs_diagnostics_strain(run->system, run->x));
     add_row(out, "memory", "%zu bytes in arrays, %.1f a particle", cs_run_bytes(run),
             (double)cs_run_bytes(run) / run->system->view.n);
     add_row(out, "wall time", "%.3g s, %.3g s of it in the integrator", job->wall_seconds,
@@ -129,8 +130,8 @@ static void add_stages(const struct cs_job *job, struct cs_text *out) {
 
 static void add_files(const struct cs_job *job, struct cs_text *out) {
     const struct cs_job_settings *settings = job->settings;
-    if (job->drawn)
-        add_row(out, "pictures", "%u in %s", job->drawn, settings->folder);
+    if (job->n_drawn)
+        add_row(out, "pictures", "%u in %s", job->n_drawn, settings->folder);
     if (settings->export.formats)
         add_row(out, "exports", "%u samples in %s", job->export.n_samples, settings->folder);
     if (settings->states)

@@ -17,7 +17,7 @@ bool cs_job_uses_folder(const struct cs_job_settings *settings) {
            settings->export.formats;
 }
 
-static const char *yes(bool fact) {
+static const char *yes_or_no(bool fact) {
     return fact ? "yes" : "no";
 }
 
@@ -26,10 +26,10 @@ void cs_job_print_outputs(const struct cs_job_settings *settings, const char *re
     cs_text_add(out,
                 "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
                 "%s\nwatch: %s\nledger: %s\nJSON: %s\nexport:",
-                settings->session.render ? renderer : "none", settings->every, settings->level,
-                yes(settings->fast), yes(settings->states != NULL),
-                yes(settings->watch != NULL), yes(settings->ledger != NULL),
-                yes(cs_job_wants_json(settings)));
+                settings->session.render ? renderer : "none", settings->frame_interval,
+                settings->level, yes_or_no(settings->fast_render),
+                yes_or_no(settings->states != NULL), yes_or_no(settings->monitor_file != NULL),
+                yes_or_no(settings->ledger != NULL), yes_or_no(cs_job_wants_json(settings)));
     cs_run_export_print(&settings->export, out);
     cs_text_add(out, "\n");
 }

@@ -2,25 +2,25 @@
 #ifndef CS_RUN_SETTINGS_H
 #define CS_RUN_SETTINGS_H
 
+#include "cli/run/run_checkpoint.h"
 #include "cli/run/run_export.h"
-#include "cli/run/run_resume.h"
-#include "cli/run/run_trail.h"
+#include "cli/run/run_trace.h"
 #include "study/session.h"
 
 struct cs_job_settings {
     struct cs_session_settings session;
     uint32_t frames;                    /* 0: one second of them */
-    uint32_t every;                     /* draw every n-th frame */
+    uint32_t frame_interval;            /* draw every n-th frame */
     const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
-    const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
+    const char *monitor_file;           /* CSV of energy, strain and velocity; NULL: none */
     const char *ledger;                 /* CSV of where energy went; NULL: none */
     int renderer;                       /* enum cs_renderer_kind */
     uint32_t level;                     /* zlib */
-    struct cs_resume_pace checkpoint;   /* zeroed: none */
-    struct cs_run_trail trail;          /* zeroed: none */
-    bool resume;                        /* go on from the checkpoint in the folder */
-    struct cs_export_settings export;   /* into the folder, as often as pictures */
-    bool fast, hash, overwrite, quiet;
+    struct cs_checkpoint_interval checkpoint; /* zeroed: none */
+    struct cs_run_trace trace;                /* zeroed: none */
+    bool resume;                              /* go on from the checkpoint in the folder */
+    struct cs_export_settings export;         /* into the folder, as often as pictures */
+    bool fast_render, hash, overwrite, quiet;
 };
 
 /* How many frames are simulated. */

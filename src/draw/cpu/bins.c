@@ -6,19 +6,20 @@
 
 enum cs_status cs_bins_init(struct cs_bins *bins, int height, struct cs_error *error) {
     bins->bands = (uint32_t)((height + CS_ROWS - 1) / CS_ROWS);
-    bins->ends = calloc(bins->bands + 1, sizeof *bins->ends);
-    return bins->ends ? CS_OK : cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+    bins->band_ends = calloc(bins->bands + 1, sizeof *bins->band_ends);
+    return bins->band_ends ? CS_OK
+                           : cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
 }
 
 void cs_bins_clear(struct cs_bins *bins) {
-    memset(bins->ends, 0, (bins->bands + 1) * sizeof *bins->ends);
+    memset(bins->band_ends, 0, (bins->bands + 1) * sizeof *bins->band_ends);
 }
 
 // counts of bands, one place up, become the beginnings of their lists
-void cs_bins_turn(struct cs_bins *bins) {
+void cs_bins_begin_put(struct cs_bins *bins) {
     for (uint32_t band = 0; band < bins->bands; band++)
-        bins->ends[band + 1] += bins->ends[band];
-    const size_t n = bins->ends[bins->bands];
+        bins->band_ends[band + 1] += bins->band_ends[band];
+    const size_t n = bins->band_ends[bins->bands];
     bins->failed = false;
     if (n <= bins->capacity)
         return;
@@ -31,7 +32,7 @@ void cs_bins_turn(struct cs_bins *bins) {
 }
 
 void cs_bins_finish(struct cs_bins *bins) {
-    free(bins->ends);
+    free(bins->band_ends);
     free(bins->list);
     *bins = (struct cs_bins){0};
 }

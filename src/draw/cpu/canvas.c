@@ -3,12 +3,12 @@
  * Colliders are made ready anew only where one has moved. Of a frame, the cloths become
  * triangles on one thread; then stripes of the light's picture and bands of the picture are
  * shared out. */
-#include "draw/cpu/bodies.h"
-#include "draw/cpu/drawing.h"
-#include "draw/cpu/solids.h"
-#include "draw/extent.h"
+#include "draw/cpu/band_pass.h"
+#include "draw/cpu/body_geometry.h"
+#include "draw/cpu/collider_geometry.h"
 #include "draw/matrix.h"
 #include "draw/overlay.h"
+#include "draw/scene_extent.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -17,15 +17,15 @@ struct cs_canvas {
     struct cs_canvas_settings settings;
     struct cs_arena arena; /* owns all memory but that of lists which grow */
     struct cs_view_state view;
-    struct cs_lens lens;
-    struct cs_tone tone;
-    struct cs_lightmap lightmap;
+    struct cs_clip_transform lens;
+    struct cs_srgb tone;
+    struct cs_shadow_map lightmap;
     struct cs_triangles light_fixed, light_moving;
-    struct cs_solids solids;
-    struct cs_body_picture *bodies; /* (scene->bodies.n) */
-    struct cs_drawing drawing;
+    struct cs_collider_geometry solids;
+    struct cs_body_geometry *bodies; /* (scene->bodies.n) */
+    struct cs_band_pass drawing;
     struct cs_overlay overlay;
-    struct cs_board *boards; /* (threads) */
+    struct cs_tile_buffer *boards; /* (threads) */
     atomic_uint next_band;
 };
 
@@ -53,94 +53,100 @@ static void aim_rays(struct cs_rays *rays, const struct cs_view_state *view,
 /* What follows from where the camera stands. */
 static void aim_camera(struct cs_canvas *canvas) {
     const struct cs_render *render = &canvas->settings.scene->render;
-    cs_lens_make(&canvas->lens, canvas->view.block.world_to_clip, canvas->view.block.size[2],
-                 (int)render->size[0], (int)render->size[1]);
-    aim_rays(&canvas->drawing.easel.rays, &canvas->view, render);
+    cs_clip_transform_make(&canvas->lens, canvas->view.block.world_to_clip,
+                           canvas->view.block.size[2], (int)render->size[0],
+                           (int)render->size[1]);
+    aim_rays(&canvas->drawing.shading.rays, &canvas->view, render);
 }
 
-static void init_ground(struct cs_canvas *canvas, const struct cs_ball *extent) {
+static void init_ground(struct cs_canvas *canvas, const struct cs_bounding_sphere *extent) {
     struct cs_grid *grid = &canvas->drawing.grid;
-    cs_ground_make(&grid->ground, canvas->settings.system, canvas->settings.obstacles, extent);
-    grid->easel = &canvas->drawing.easel;
-    const float *ink = grid->ground.ink;
-    grid->ink = cs_tone_pack(&canvas->tone, ink[0], ink[1], ink[2]);
+    cs_ground_make(&grid->ground, canvas->settings.system, canvas->settings.colliders, extent);
+    grid->shading = &canvas->drawing.shading;
+    const float *ink = grid->ground.line_colour;
+    grid->ink = cs_srgb_pack(&canvas->tone, ink[0], ink[1], ink[2]);
 }
 
 static void init_view(struct cs_canvas *canvas) {
     const struct cs_scene *scene = canvas->settings.scene;
     const struct cs_system *system = canvas->settings.system;
     const int width = (int)scene->render.size[0], height = (int)scene->render.size[1];
-    const struct cs_ball extent =
-        cs_extent_solid(system, system->view.start, canvas->settings.obstacles);
-    struct cs_drawing *drawing = &canvas->drawing;
+    const struct cs_bounding_sphere extent =
+        cs_scene_extent_solid(system, system->view.start, canvas->settings.colliders);
+    struct cs_band_pass *drawing = &canvas->drawing;
     cs_view_init(&canvas->view, scene, &extent);
     aim_camera(canvas);
-    cs_tone_make(&canvas->tone);
-    drawing->easel.width = width;
-    drawing->easel.height = height;
-    drawing->easel.view = &canvas->view.block;
-    drawing->easel.lightmap = &canvas->lightmap;
-    drawing->easel.tone = &canvas->tone;
-    drawing->pattern = scene->render.samples > 1 ? &cs_pattern_four : &cs_pattern_one;
+    cs_srgb_make(&canvas->tone);
+    drawing->shading.width = width;
+    drawing->shading.height = height;
+    drawing->shading.view = &canvas->view.block;
+    drawing->shading.shadow_map = &canvas->lightmap;
+    drawing->shading.srgb = &canvas->tone;
+    drawing->sample_pattern =
+        scene->render.samples > 1 ? &cs_sample_pattern_four : &cs_sample_pattern_one;
     init_ground(canvas, &extent);
 }
 
 static void add_solids(struct cs_canvas *canvas) {
-    struct cs_drawing *drawing = &canvas->drawing;
+    struct cs_band_pass *drawing = &canvas->drawing;
     drawing->triangles.n = 0;
-    cs_solids_add(&canvas->solids, &canvas->lens, canvas->view.block.eye, drawing->coats,
-                  &drawing->triangles, &drawing->n_squares);
+    cs_collider_geometry_add(&canvas->solids, &canvas->lens, canvas->view.block.eye,
+                             drawing->materials, &drawing->triangles,
+                             &drawing->n_ground_squares);
     drawing->n_fixed = drawing->triangles.n;
 }
 
 static enum cs_status init_surfaces(struct cs_canvas *canvas, struct cs_error *error) {
     const struct cs_canvas_settings *settings = &canvas->settings;
     const uint32_t n = settings->scene->bodies.n, solids = settings->scene->colliders.n;
-    struct cs_drawing *drawing = &canvas->drawing;
+    struct cs_band_pass *drawing = &canvas->drawing;
     if (n + solids > UINT16_MAX)
         return cs_fail(error, CS_ERR_MODULE,
                        "renderer cpu draws at most %d bodies and colliders, not %u", UINT16_MAX,
                        n + solids);
-    drawing->coats = cs_arena_take_n(&canvas->arena, n + solids, sizeof *drawing->coats, error);
-    canvas->bodies = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->bodies, error);
+    drawing->materials =
+        cs_arena_alloc_array(&canvas->arena, n + solids, sizeof *drawing->materials, error);
+    canvas->bodies = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->bodies, error);
     for (uint32_t b = 0; b < n && error->status == CS_OK; b++) {
-        canvas->bodies[b].tone = &canvas->tone;
-        cs_body_picture_init(canvas->bodies + b, settings, b, drawing->coats + solids + b,
-                             &canvas->arena, error);
+        canvas->bodies[b].srgb = &canvas->tone;
+        cs_body_geometry_init(canvas->bodies + b, settings, b, drawing->materials + solids + b,
+                              &canvas->arena, error);
     }
-    if (error->status || cs_solids_init(&canvas->solids, settings->system, settings->obstacles,
-                                        &canvas->arena, error))
+    if (error->status || cs_collider_geometry_init(&canvas->solids, settings->system,
+                                                   settings->colliders, &canvas->arena, error))
         return error->status;
     add_solids(canvas);
     return CS_OK;
 }
 
-static bool has_fading(const struct cs_canvas *canvas) {
+static bool has_fading_surface(const struct cs_canvas *canvas) {
     for (uint32_t i = 0; i < canvas->settings.scene->colliders.n; i++)
-        if (canvas->drawing.coats[i].fade > 0)
+        if (canvas->drawing.materials[i].fade_radius > 0)
             return true;
     return false;
 }
 
 static enum cs_status init_boards(struct cs_canvas *canvas, struct cs_error *error) {
     const uint32_t n = canvas->settings.threads;
-    canvas->boards = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->boards, error);
+    canvas->boards = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->boards, error);
     for (uint32_t i = 0; i < n && error->status == CS_OK; i++)
-        cs_board_init(canvas->boards + i, canvas->drawing.easel.width, has_fading(canvas),
-                      canvas->drawing.grid.ground.present, &canvas->arena, error);
+        cs_tile_buffer_init(canvas->boards + i, canvas->drawing.shading.width,
+                            has_fading_surface(canvas), canvas->drawing.grid.ground.present,
+                            &canvas->arena, error);
     return error->status;
 }
 
 static enum cs_status init(struct cs_canvas *canvas, struct cs_error *error) {
-    struct cs_drawing *drawing = &canvas->drawing;
+    struct cs_band_pass *drawing = &canvas->drawing;
     init_view(canvas);
-    if (cs_lightmap_init(&canvas->lightmap, &canvas->arena, error) != CS_OK ||
+    if (cs_shadow_map_init(&canvas->lightmap, &canvas->arena, error) != CS_OK ||
         init_surfaces(canvas, error) != CS_OK || init_boards(canvas, error) != CS_OK ||
-        cs_bins_init(&drawing->bins, drawing->easel.height, error) != CS_OK ||
-        cs_strokes_init(&drawing->strokes, &drawing->easel, &canvas->lens, error) != CS_OK)
+        cs_bins_init(&drawing->bins, drawing->shading.height, error) != CS_OK ||
+        cs_thick_lines_init(&drawing->thick_lines, &drawing->shading, &canvas->lens, error) !=
+            CS_OK)
         return error->status;
     return cs_overlay_init(&canvas->overlay, canvas->settings.system, canvas->view.pixels_per_m,
-                           &drawing->strokes.lines, &canvas->arena, error);
+                           &drawing->thick_lines.lines, &canvas->arena, error);
 }
 
 static void destroy(struct cs_canvas *canvas) {
@@ -151,7 +157,7 @@ static void destroy(struct cs_canvas *canvas) {
     cs_triangles_finish(&canvas->drawing.triangles);
     cs_triangles_finish(&canvas->drawing.grid.square);
     cs_bins_finish(&canvas->drawing.bins);
-    cs_strokes_finish(&canvas->drawing.strokes);
+    cs_thick_lines_finish(&canvas->drawing.thick_lines);
     cs_arena_finish(&canvas->arena);
     free(canvas);
 }
@@ -162,7 +168,7 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
     if (!*canvas)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for a canvas");
     (*canvas)->settings = *settings;
-    if (!settings->share || !settings->threads)
+    if (!settings->parallel_for || !settings->threads)
         (*canvas)->settings.threads = 1;
     if (init(*canvas, error) == CS_OK)
         return CS_OK;
@@ -174,7 +180,7 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
 static void share(struct cs_canvas *canvas, uint32_t blocks,
                   void (*task)(void *arg, uint32_t block)) {
     if (canvas->settings.threads > 1)
-        canvas->settings.share(blocks, task, canvas);
+        canvas->settings.parallel_for(blocks, task, canvas);
     else
         for (uint32_t block = 0; block < blocks; block++)
             task(canvas, block);
@@ -182,10 +188,10 @@ static void share(struct cs_canvas *canvas, uint32_t blocks,
 
 static void draw_stripe(void *arg, uint32_t stripe) {
     struct cs_canvas *canvas = arg;
-    cs_lightmap_draw(&canvas->lightmap, stripe, &canvas->light_fixed, &canvas->light_moving);
+    cs_shadow_map_draw(&canvas->lightmap, stripe, &canvas->light_fixed, &canvas->light_moving);
 }
 
-static void lay_ground(struct cs_canvas *canvas, const struct cs_ball *solid) {
+static void blend_ground(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
     struct cs_grid *grid = &canvas->drawing.grid;
     grid->square.n = 0;
     if (!grid->ground.present)
@@ -195,7 +201,7 @@ static void lay_ground(struct cs_canvas *canvas, const struct cs_ball *solid) {
 }
 
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
-                        const struct cs_ball *solid) {
+                        const struct cs_bounding_sphere *solid) {
     const struct cs_system *system = canvas->settings.system;
     cs_view_move(&canvas->view, canvas->settings.scene, solid, frame->t, system->view.n,
                  frame->x);
@@ -203,83 +209,84 @@ static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
     aim_camera(canvas);
 }
 
-static void draw_shadow(struct cs_canvas *canvas, const struct cs_ball *solid, bool moved) {
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid,
+                        bool moved) {
     const struct cs_triangle_kind kind = {.attributes = 0};
-    cs_shadow_aim(solid, &canvas->view.block);
-    const bool changed = cs_lightmap_aim(&canvas->lightmap, &canvas->view.block);
-    if (!canvas->lightmap.present)
+    cs_light_frustum_fit(solid, &canvas->view.block);
+    const bool changed = cs_shadow_map_set_frustum(&canvas->lightmap, &canvas->view.block);
+    if (!canvas->lightmap.enabled)
         return;
     if (changed || moved) {
         canvas->light_fixed.n = 0;
-        cs_solids_add_shadow(&canvas->solids, &canvas->lightmap.lens, canvas->view.block.light,
-                             &canvas->light_fixed);
+        cs_collider_geometry_add_shadow(&canvas->solids, &canvas->lightmap.transform,
+                                        canvas->view.block.light, &canvas->light_fixed);
     }
     canvas->light_moving.n = 0;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
-        cs_body_picture_add(canvas->bodies + b, &canvas->lightmap.lens, &kind,
-                            &canvas->light_moving);
-    share(canvas, CS_MAP_STRIPES, draw_stripe);
-    cs_lightmap_bound(&canvas->lightmap);
+        cs_body_geometry_add(canvas->bodies + b, &canvas->lightmap.transform, &kind,
+                             &canvas->light_moving);
+    share(canvas, CS_SHADOW_MAP_STRIPES, draw_stripe);
+    cs_shadow_map_bound(&canvas->lightmap);
 }
 
 static void add_bodies(struct cs_canvas *canvas) {
-    struct cs_drawing *drawing = &canvas->drawing;
+    struct cs_band_pass *drawing = &canvas->drawing;
     drawing->triangles.n = drawing->n_fixed;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++) {
-        struct cs_body_picture *body = canvas->bodies + b;
+        struct cs_body_geometry *body = canvas->bodies + b;
         const struct cs_triangle_kind kind = {
             .surface = (uint16_t)(canvas->settings.scene->colliders.n + b),
-            .attributes = (uint8_t)body->coat->attributes};
+            .attributes = (uint8_t)body->material->attributes};
         if (!body->hidden)
-            cs_body_picture_add(body, &canvas->lens, &kind, &drawing->triangles);
+            cs_body_geometry_add(body, &canvas->lens, &kind, &drawing->triangles);
     }
-    cs_drawing_sort(drawing);
+    cs_band_pass_bin(drawing);
 }
 
 // one board draws bands as long as there are any
-static void draw_bands(void *arg, uint32_t board) {
+static void draw_bands(void *arg, uint32_t tiles) {
     struct cs_canvas *canvas = arg;
     for (;;) {
         const uint32_t band = atomic_fetch_add(&canvas->next_band, 1);
         if (band >= canvas->drawing.bins.bands)
             break;
-        cs_drawing_band(&canvas->drawing, band, canvas->boards + board);
+        cs_band_pass_draw(&canvas->drawing, band, canvas->boards + tiles);
     }
 }
 
-static bool ran_out(const struct cs_canvas *canvas) {
-    const struct cs_drawing *drawing = &canvas->drawing;
+static bool out_of_memory(const struct cs_canvas *canvas) {
+    const struct cs_band_pass *drawing = &canvas->drawing;
     return canvas->light_fixed.failed || canvas->light_moving.failed ||
            drawing->triangles.failed || drawing->grid.square.failed || drawing->bins.failed ||
-           drawing->strokes.failed || drawing->strokes.bins.failed;
+           drawing->thick_lines.failed || drawing->thick_lines.bins.failed;
 }
 
 static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                             struct cs_image *image, struct cs_error *error) {
-    struct cs_drawing *drawing = &canvas->drawing;
-    image->width = (uint32_t)drawing->easel.width;
-    image->height = (uint32_t)drawing->easel.height;
+    struct cs_band_pass *drawing = &canvas->drawing;
+    image->width = (uint32_t)drawing->shading.width;
+    image->height = (uint32_t)drawing->shading.height;
     drawing->image = image;
     for (uint32_t b = 0; b < canvas->settings.scene->bodies.n; b++)
-        cs_body_picture_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
-    const struct cs_ball solid =
-        cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
+        cs_body_geometry_update(canvas->bodies + b, canvas->settings.system->view.n, frame);
+    const struct cs_bounding_sphere solid =
+        cs_scene_extent_solid(canvas->settings.system, frame->x, frame->colliders);
     const bool varies = cs_view_varies(canvas->settings.scene);
-    const bool moved = cs_solids_move(&canvas->solids, frame->obstacles);
+    const bool moved = cs_collider_geometry_move(&canvas->solids, frame->colliders);
     if (varies)
         move_camera(canvas, frame, &solid);
     if (moved || varies)
         add_solids(canvas);
-    lay_ground(canvas, &solid);
+    blend_ground(canvas, &solid);
     draw_shadow(canvas, &solid, moved);
     add_bodies(canvas);
-    drawing->strokes.n = 0;
+    drawing->thick_lines.n = 0;
     cs_overlay_draw(&canvas->overlay, frame);
-    cs_strokes_sort(&drawing->strokes);
+    cs_thick_lines_bin(&drawing->thick_lines);
     atomic_store(&canvas->next_band, 0);
     share(canvas, canvas->settings.threads, draw_bands);
-    return ran_out(canvas) ? cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture")
-                           : CS_OK;
+    return out_of_memory(canvas) ? cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture")
+                                 : CS_OK;
 }
 
 static const char *description(const struct cs_canvas *canvas) {

@@ -16,15 +16,15 @@ struct cells {
 };
 
 // where on the ground a pixel looks; false above the horizon
-static bool find_place(const struct cs_grid *grid, float x, float y, float place[3]) {
-    const struct cs_rays *rays = &grid->easel->rays;
-    const float height = grid->ground.span[1], above = height - rays->eye[1];
+static bool find_position(const struct cs_grid *grid, float x, float y, float place[3]) {
+    const struct cs_rays *rays = &grid->shading->rays;
+    const float height = grid->ground.fade_disc[1], above = height - rays->eye[1];
     float d[3];
-    cs_rays_through(grid->easel, x, y, d);
+    cs_ray_direction(grid->shading, x, y, d);
     const float fall = rays->parallel ? -rays->back[1] : d[1];
     const float way = rays->parallel ? above - d[1] : above;
     const float t = fall < 0 || fall > 0 ? way / fall : -1;
-    cs_rays_place(grid->easel, x, y, t, place);
+    cs_ray_point(grid->shading, x, y, t, place);
     place[1] = height;
     return rays->parallel ? fall < 0 : t > 0;
 }
@@ -49,13 +49,13 @@ static float cover(const float at[2], const float wide[2], float step, float hal
 }
 
 static float lines_at(const struct cs_grid *grid, float x, float y, const float p[3]) {
-    const int size = grid->easel->height;
+    const int size = grid->shading->height;
     const float beside_x = (float)((int)x ^ 1);
     const float beside_y = (float)(size - 1 - ((size - 1 - (int)y) ^ 1));
-    const float pitch = grid->ground.pitch, at[2] = {p[0], p[2]};
+    const float pitch = grid->ground.line_spacing, at[2] = {p[0], p[2]};
     float a[3], b[3];
-    find_place(grid, beside_x, y, a);
-    find_place(grid, x, beside_y, b);
+    find_position(grid, beside_x, y, a);
+    find_position(grid, x, beside_y, b);
     const float wide[2] = {away(a[0] - p[0]) + away(b[0] - p[0]),
                            away(a[2] - p[2]) + away(b[2] - p[2])};
     const float fine = 0.5f * cover(at, wide, pitch, 0.45f);
@@ -64,35 +64,37 @@ static float lines_at(const struct cs_grid *grid, float x, float y, const float 
 }
 
 /* A pixel that shows one thing keeps one colour: a new one, since the sky's is its row's. */
-static void lay_pixel(struct cs_board *board, size_t pixel, unsigned mask, uint32_t ink,
-                      uint32_t share) {
-    if (mask != 15 || board->codes[pixel] != 0) {
-        cs_board_lay(board, pixel, mask, ink, share);
+static void blend_pixel(struct cs_tile_buffer *tiles, size_t pixel, unsigned mask, uint32_t ink,
+                        uint32_t share) {
+    if (mask != 15 || tiles->sample_codes[pixel] != 0) {
+        cs_tile_buffer_blend(tiles, pixel, mask, ink, share);
         return;
     }
-    const uint32_t laid = board->n_colours++;
-    board->colours[laid] = cs_tone_blend(board->colours[board->base[pixel]], ink, share);
-    board->base[pixel] = laid;
+    const uint32_t laid = tiles->n_colours++;
+    tiles->colours[laid] =
+        cs_srgb_blend(tiles->colours[tiles->first_colour[pixel]], ink, share);
+    tiles->first_colour[pixel] = laid;
 }
 
-static void lay(const struct cs_grid *grid, struct cells *cells, struct cs_board *board) {
+static void blend_grid(const struct cs_grid *grid, struct cells *cells,
+                       struct cs_tile_buffer *tiles) {
     static const float up[N] = {0}; // x and z of the normals
     float places[3][N], ones[N], shares[N];
-    const float *span = grid->ground.span;
+    const float *span = grid->ground.fade_disc;
     bool seen[N];
     for (int i = 0; i < cells->n; i++) {
         float p[3];
-        seen[i] = find_place(grid, cells->x[i], cells->y[i], p);
+        seen[i] = find_position(grid, cells->x[i], cells->y[i], p);
         for (int k = 0; k < 3; k++)
             places[k][i] = p[k];
         ones[i] = 1;
     }
-    const struct cs_lit lit = {.places = {places[0], places[1], places[2]},
-                               .normals = {up, ones, up},
-                               .facing = ones,
-                               .share = shares,
-                               .n = cells->n};
-    cs_lightmap_look(grid->easel->lightmap, &lit);
+    const struct cs_shadow_query lit = {.positions = {places[0], places[1], places[2]},
+                                        .normals = {up, ones, up},
+                                        .n_dot_l = ones,
+                                        .visibility = shares,
+                                        .n = cells->n};
+    cs_shadow_map_sample(grid->shading->shadow_map, &lit);
     for (int i = 0; i < cells->n; i++) {
         const float p[3] = {places[0][i], places[1][i], places[2][i]};
         const float dx = p[0] - span[0], dz = p[2] - span[2];
@@ -101,19 +103,19 @@ static void lay(const struct cs_grid *grid, struct cells *cells, struct cs_board
         if (!seen[i] || !(near > 0))
             continue;
         const float lines =
-            grid->ground.pitch > 0 ? lines_at(grid, cells->x[i], cells->y[i], p) : 0;
+            grid->ground.line_spacing > 0 ? lines_at(grid, cells->x[i], cells->y[i], p) : 0;
         const float share = near * near * (dark + (1 - dark) * 0.55f * lines);
         const uint32_t byte = (uint32_t)(share * 255 + 0.5f);
         if (byte)
-            lay_pixel(board, cells->pixels[i], cells->masks[i], grid->ink, byte);
+            blend_pixel(tiles, cells->pixels[i], cells->masks[i], grid->ink, byte);
     }
     cells->n = 0;
 }
 
 // samples of a pixel where the ground shows: before the sky or what never moves
-static unsigned mask_of(const struct cs_board *board, size_t at, int32_t moving) {
-    const struct cs_samples *on = &board->samples, *ground = &board->ground;
-    const cs_i4 lies = (ground->shown[at] >= 0) & (on->shown[at] < moving) &
+static unsigned mask_of(const struct cs_tile_buffer *tiles, size_t at, int32_t moving) {
+    const struct cs_samples *on = &tiles->samples, *ground = &tiles->ground;
+    const cs_i4 lies = (ground->triangle_ids[at] >= 0) & (on->triangle_ids[at] < moving) &
                        (ground->depth[at] >= on->depth[at]);
     return (unsigned)(lies[0] & 1) | (unsigned)(lies[1] & 2) | (unsigned)(lies[2] & 4) |
            (unsigned)(lies[3] & 8);
@@ -124,36 +126,36 @@ struct window {
     int left, right, top, bottom;
 };
 
-static struct window fill(const struct cs_grid *grid, const struct cs_pattern *pattern,
-                          struct cs_board *board) {
-    const int last = board->samples.top + board->samples.rows - 1;
-    struct window in = {board->samples.width, -1, last + 1, -1};
+static struct window fill(const struct cs_grid *grid, const struct cs_sample_pattern *pattern,
+                          struct cs_tile_buffer *tiles) {
+    const int last = tiles->samples.top + tiles->samples.rows - 1;
+    struct window in = {tiles->samples.width, -1, last + 1, -1};
     for (size_t i = 0; i < grid->square.n; i++) {
         const struct cs_triangle *t = grid->square.items + i;
-        in.left = cs_least(in.left, t->left);
-        in.right = cs_most(in.right, t->right);
-        in.top = cs_least(in.top, t->top);
-        in.bottom = cs_most(in.bottom, t->bottom);
+        in.left = cs_min(in.left, t->left);
+        in.right = cs_max(in.right, t->right);
+        in.top = cs_min(in.top, t->top);
+        in.bottom = cs_max(in.bottom, t->bottom);
     }
-    in.top = cs_most(in.top, board->samples.top);
-    in.bottom = cs_least(in.bottom, last);
+    in.top = cs_max(in.top, tiles->samples.top);
+    in.bottom = cs_min(in.bottom, last);
     if (in.top > in.bottom)
         return in;
-    cs_board_clear_ground(board);
+    cs_tile_buffer_clear_ground(tiles);
     for (size_t i = 0; i < grid->square.n; i++)
-        cs_raster_fill(grid->square.items + i, (int32_t)i, pattern, &board->ground);
+        cs_raster_fill(grid->square.items + i, (int32_t)i, pattern, &tiles->ground);
     return in;
 }
 
-void cs_grid_draw(const struct cs_grid *grid, int32_t moving, const struct cs_pattern *pattern,
-                  struct cs_board *board) {
-    const struct window in = fill(grid, pattern, board);
+void cs_grid_draw(const struct cs_grid *grid, int32_t moving,
+                  const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles) {
+    const struct window in = fill(grid, pattern, tiles);
     struct cells cells = {.n = 0};
     for (int y = in.top; y <= in.bottom; y++)
         for (int x = in.left; x <= in.right; x++) {
             const size_t at =
-                (size_t)(y - board->samples.top) * (size_t)board->samples.width + (size_t)x;
-            const unsigned mask = mask_of(board, at, moving);
+                (size_t)(y - tiles->samples.top) * (size_t)tiles->samples.width + (size_t)x;
+            const unsigned mask = mask_of(tiles, at, moving);
             if (!mask)
                 continue;
             cells.pixels[cells.n] = (uint32_t)at;
@@ -161,7 +163,7 @@ void cs_grid_draw(const struct cs_grid *grid, int32_t moving, const struct cs_pa
             cells.x[cells.n] = (float)x;
             cells.y[cells.n++] = (float)y;
             if (cells.n == N)
-                lay(grid, &cells, board);
+                blend_grid(grid, &cells, tiles);
         }
-    lay(grid, &cells, board);
+    blend_grid(grid, &cells, tiles);
 }

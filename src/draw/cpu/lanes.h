@@ -11,23 +11,23 @@
 
 typedef float cs_f4 __attribute__((vector_size(16)));
 typedef int32_t cs_i4 __attribute__((vector_size(16)));
-typedef float cs_f4_loose __attribute__((vector_size(16), aligned(4)));
+typedef float cs_f4_unaligned __attribute__((vector_size(16), aligned(4)));
 
 /* a where mask is all ones, b where it is 0 */
-CS_INLINE cs_i4 cs_pick(cs_i4 mask, cs_i4 a, cs_i4 b) {
+CS_INLINE cs_i4 cs_select(cs_i4 mask, cs_i4 a, cs_i4 b) {
     return (mask & a) | (~mask & b);
 }
 
 CS_INLINE cs_f4 cs_clamp4(cs_f4 v, float least, float most) {
     const cs_f4 low = {least, least, least, least}, high = {most, most, most, most};
-    v = (cs_f4)cs_pick(v < low, (cs_i4)low, (cs_i4)v);
-    return (cs_f4)cs_pick(v > high, (cs_i4)high, (cs_i4)v);
+    v = (cs_f4)cs_select(v < low, (cs_i4)low, (cs_i4)v);
+    return (cs_f4)cs_select(v > high, (cs_i4)high, (cs_i4)v);
 }
 
-CS_INLINE int cs_least(int a, int b) {
+CS_INLINE int cs_min(int a, int b) {
     return a < b ? a : b;
 }
-CS_INLINE int cs_most(int a, int b) {
+CS_INLINE int cs_max(int a, int b) {
     return a > b ? a : b;
 }
 CS_INLINE float cs_clamp(float v, float least, float most) {

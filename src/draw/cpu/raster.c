@@ -2,8 +2,10 @@
 #include "draw/cpu/raster.h"
 
 // rows of the picture count from the top, those of OpenGL from the bottom
-const struct cs_pattern cs_pattern_four = {{96, 224, 32, 160}, {224, 160, 96, 32}};
-const struct cs_pattern cs_pattern_one = {{128, 128, 128, 128}, {128, 128, 128, 128}};
+const struct cs_sample_pattern cs_sample_pattern_four = {{96, 224, 32, 160},
+                                                         {224, 160, 96, 32}};
+const struct cs_sample_pattern cs_sample_pattern_one = {{128, 128, 128, 128},
+                                                        {128, 128, 128, 128}};
 
 struct edges {
     int32_t dx[3], dy[3], bias[3];
@@ -13,7 +15,7 @@ struct edges {
 struct fill {
     const struct cs_triangle *triangle;
     struct edges edges;
-    const struct cs_pattern *pattern;
+    const struct cs_sample_pattern *pattern;
     int32_t id;
 };
 
@@ -39,38 +41,39 @@ CS_INLINE cs_f4 to_float(cs_i4 v) {
 }
 
 // depth of a row of samples at the picture's left edge, and of those of a pixel in it
-CS_INLINE cs_f4 up_at(const struct cs_triangle *t, const struct cs_pattern *pattern, int y) {
+CS_INLINE cs_f4 row_depth(const struct cs_triangle *t, const struct cs_sample_pattern *pattern,
+                          int y) {
     const cs_f4 up = to_float(256 - pattern->y) * (1.0f / 256) + (float)(t->bottom_row - y);
-    return t->depth.y * up;
+    return t->depth.d_dy * up;
 }
 
-CS_INLINE cs_f4 across_at(const struct cs_pattern *pattern) {
+CS_INLINE cs_f4 across_at(const struct cs_sample_pattern *pattern) {
     return to_float(pattern->x) * (1.0f / 256);
 }
 
 // nearness, not beyond that of the corners; the sums' order is that of OpenGL
 CS_INLINE cs_f4 nearness_at(const struct cs_triangle *t, cs_f4 across, cs_f4 rise) {
-    const cs_f4 z = (t->depth.at + t->depth.x * across) + rise;
-    return cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->farthest, t->nearest);
+    const cs_f4 z = (t->depth.value + t->depth.d_dx * across) + rise;
+    return cs_clamp4(CS_DEPTH_STEPS - z * CS_DEPTH_STEPS, t->depth_min, t->depth_max);
 }
 
 CS_INLINE void put(cs_f4 *depth, cs_i4 *shown, cs_i4 mask, cs_f4 z, int32_t id) {
     const cs_f4 old = *depth;
     const cs_i4 ids = {id, id, id, id};
     mask &= z >= old;
-    *depth = (cs_f4)cs_pick(mask, (cs_i4)z, (cs_i4)old);
-    *shown = cs_pick(mask, ids, *shown);
+    *depth = (cs_f4)cs_select(mask, (cs_i4)z, (cs_i4)old);
+    *shown = cs_select(mask, ids, *shown);
 }
 
 CS_INLINE void fill_small_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
     const struct cs_triangle *t = fill->triangle;
     const struct edges *e = &fill->edges;
-    const struct cs_pattern *pattern = fill->pattern;
+    const struct cs_sample_pattern *pattern = fill->pattern;
     cs_i4 inside[3];
     for (int k = 0; k < 3; k++)
         inside[k] = e->dx[k] * (pattern->y + (y * 256 - t->y[k])) -
                     e->dy[k] * (pattern->x + (t->left * 256 - t->x[k])) + e->bias[k];
-    const cs_f4 rise = up_at(t, pattern, y), across = across_at(pattern);
+    const cs_f4 rise = row_depth(t, pattern, y), across = across_at(pattern);
     for (int x = t->left; x <= t->right; x++, depth++, shown++) {
         const cs_i4 mask = (inside[0] | inside[1] | inside[2]) >= 0;
         put(depth, shown, mask, nearness_at(t, across + (float)x, rise), fill->id);
@@ -108,7 +111,7 @@ CS_INLINE struct run span(const struct cs_triangle *t, const struct edges *e, in
 
 CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i4 *shown) {
     const struct cs_triangle *t = fill->triangle;
-    const struct cs_pattern *pattern = fill->pattern;
+    const struct cs_sample_pattern *pattern = fill->pattern;
     cs_i4 left, right;
     int from = t->right + 1, to = t->left - 1;
     // each sample has a row of its own; 1..0 where none of it lies inside
@@ -117,10 +120,10 @@ CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i
         const bool some = run.left <= run.right;
         left[s] = some ? (int)run.left : 1;
         right[s] = some ? (int)run.right : 0;
-        from = some ? cs_least(from, (int)run.left) : from;
-        to = some ? cs_most(to, (int)run.right) : to;
+        from = some ? cs_min(from, (int)run.left) : from;
+        to = some ? cs_max(to, (int)run.right) : to;
     }
-    const cs_f4 rise = up_at(t, pattern, y), across = across_at(pattern);
+    const cs_f4 rise = row_depth(t, pattern, y), across = across_at(pattern);
     for (int x = from; x <= to; x++) {
         const cs_i4 at = {x, x, x, x};
         put(depth + (x - t->left), shown + (x - t->left), (at >= left) & (at <= right),
@@ -129,22 +132,22 @@ CS_INLINE void fill_large_row(const struct fill *fill, int y, cs_f4 *depth, cs_i
 }
 
 CS_CLONES void cs_raster_fill(const struct cs_triangle *t, int32_t id,
-                              const struct cs_pattern *pattern,
+                              const struct cs_sample_pattern *pattern,
                               const struct cs_samples *samples) {
     const struct fill fill = {t, edges_of(t), pattern, id};
-    const int top = cs_most(t->top, samples->top);
-    const int bottom = cs_least(t->bottom, samples->top + samples->rows - 1);
+    const int top = cs_max(t->top, samples->top);
+    const int bottom = cs_min(t->bottom, samples->top + samples->rows - 1);
     for (int y = top; y <= bottom; y++) {
         const size_t at = (size_t)(y - samples->top) * (size_t)samples->width + (size_t)t->left;
-        if (t->small)
-            fill_small_row(&fill, y, samples->depth + at, samples->shown + at);
+        if (t->fits_32_bits)
+            fill_small_row(&fill, y, samples->depth + at, samples->triangle_ids + at);
         else
-            fill_large_row(&fill, y, samples->depth + at, samples->shown + at);
+            fill_large_row(&fill, y, samples->depth + at, samples->triangle_ids + at);
     }
 }
 
-unsigned cs_raster_covers(const struct cs_triangle *t, const struct cs_pattern *pattern, int x,
-                          int y, cs_f4 *depth) {
+unsigned cs_raster_covers(const struct cs_triangle *t, const struct cs_sample_pattern *pattern,
+                          int x, int y, cs_f4 *depth) {
     const struct edges e = edges_of(t);
     unsigned mask = 0;
     if (x < t->left || x > t->right || y < t->top || y > t->bottom)
@@ -158,32 +161,32 @@ unsigned cs_raster_covers(const struct cs_triangle *t, const struct cs_pattern *
                            0;
         mask |= (unsigned)in << s;
     }
-    *depth = nearness_at(t, across_at(pattern) + (float)x, up_at(t, pattern, y));
+    *depth = nearness_at(t, across_at(pattern) + (float)x, row_depth(t, pattern, y));
     return mask;
 }
 
 CS_INLINE void raise_four(float *map, cs_i4 mask, cs_f4 z) {
-    cs_f4_loose *at = (cs_f4_loose *)map;
+    cs_f4_unaligned *at = (cs_f4_unaligned *)map;
     const cs_f4 old = *at;
     mask &= z > old;
-    *at = (cs_f4)cs_pick(mask, (cs_i4)z, (cs_i4)old);
+    *at = (cs_f4)cs_select(mask, (cs_i4)z, (cs_i4)old);
 }
 
 CS_CLONES void cs_raster_raise(const struct cs_triangle *t, float *map, size_t stride, int top,
                                int rows) {
     const cs_i4 ramp = {0, 1, 2, 3};
     const struct edges e = edges_of(t);
-    const int last = cs_least(t->bottom, top + rows - 1);
-    for (int y = cs_most(t->top, top); y <= last; y++) {
-        const cs_f4 rise = up_at(t, &cs_pattern_one, y);
+    const int last = cs_min(t->bottom, top + rows - 1);
+    for (int y = cs_max(t->top, top); y <= last; y++) {
+        const cs_f4 rise = row_depth(t, &cs_sample_pattern_one, y);
         float *at = map + (size_t)y * stride;
         // edges of a large triangle do not fit into the mask's 32 bits: its row is cut before
         const struct run run =
-            t->small ? (struct run){t->left, t->right} : span(t, &e, 128, 128, y);
+            t->fits_32_bits ? (struct run){t->left, t->right} : span(t, &e, 128, 128, y);
         for (int x = (int)run.left; x <= run.right; x += 4) {
             const cs_i4 column = ramp + x;
             cs_i4 mask = column <= (int)run.right;
-            for (int k = 0; t->small && k < 3; k++)
+            for (int k = 0; t->fits_32_bits && k < 3; k++)
                 mask &= e.dx[k] * (128 + y * 256 - t->y[k]) + e.bias[k] -
                             e.dy[k] * (column * 256 + (128 - t->x[k])) >=
                         0;

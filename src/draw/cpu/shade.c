@@ -16,47 +16,48 @@ struct work {
     float facing[N], share[N], shine[N], base[3][N], colour[3][N], cover[N];
 };
 
-void cs_coat_make(struct cs_coat *coat, const struct cs_surface_style *style) {
+void cs_shading_material_make(struct cs_shading_material *coat,
+                              const struct cs_surface_style *style) {
     for (int i = 0; i < 3; i++) {
-        coat->base[0][i] = (float)style->front[i];
-        coat->base[1][i] = (float)style->back[i];
+        coat->base[0][i] = (float)style->front_colour[i];
+        coat->base[1][i] = (float)style->back_colour[i];
     }
     coat->mode = style->mode;
-    coat->folds = style->folds;
-    coat->attributes = style->mode == CS_SURFACE_TEXTURED                ? CS_ATTRIBUTES
-                       : style->mode == CS_SURFACE_VALUE || style->folds ? 4
-                                                                         : 3;
+    coat->has_ambient_occlusion = style->has_ambient_occlusion;
+    coat->attributes = style->mode == CS_SURFACE_TEXTURED ? CS_ATTRIBUTES
+                       : style->mode == CS_SURFACE_VALUE || style->has_ambient_occlusion ? 4
+                                                                                         : 3;
     coat->ambient = (float)style->ambient;
     coat->diffuse = (float)style->diffuse;
     coat->specular = (float)style->specular;
     const int parts = (int)(style->shininess * 256 + 0.5);
-    coat->shine = parts / 256;
-    coat->shine_part = parts % 256;
-    coat->fade = (float)style->fade;
-    coat->sink = (float)style->sink;
+    coat->shininess_int = parts / 256;
+    coat->shininess_fraction = parts % 256;
+    coat->fade_radius = (float)style->fade_radius;
+    coat->depth_bias = (float)style->depth_bias;
 }
 
-static void find_parallel_places(const struct cs_easel *easel, const struct cs_fragments *f,
-                                 struct work *w) {
+static void find_parallel_places(const struct cs_shading_context *shading,
+                                 const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < N; i++) {
         float place[3];
-        cs_rays_place(easel, f->x[i], f->y[i], f->along[i], place);
+        cs_ray_point(shading, f->x[i], f->y[i], f->view_depth[i], place);
         for (int k = 0; k < 3; k++) {
             w->place[k][i] = place[k];
-            w->view[k][i] = easel->rays.back[k];
+            w->view[k][i] = shading->rays.back[k];
         }
     }
 }
 
-CS_INLINE void find_places(const struct cs_easel *easel, const struct cs_fragments *f,
-                           struct work *w) {
+CS_INLINE void find_positions(const struct cs_shading_context *shading,
+                              const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < N; i++) {
         const float t = 1 / f->inverse[i];
         float d[3];
-        cs_rays_through(easel, f->x[i], f->y[i], d);
+        cs_ray_direction(shading, f->x[i], f->y[i], d);
         const float length = 1 / sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         for (int k = 0; k < 3; k++) {
-            w->place[k][i] = easel->rays.eye[k] + t * d[k];
+            w->place[k][i] = shading->rays.eye[k] + t * d[k];
             w->view[k][i] = -d[k] * length;
         }
     }
@@ -75,8 +76,8 @@ CS_INLINE void find_normals(const struct cs_fragments *f, struct work *w) {
     }
 }
 
-CS_INLINE void find_light(const struct cs_easel *easel, struct work *w) {
-    const float *lamp = easel->view->light;
+CS_INLINE void find_light(const struct cs_shading_context *shading, struct work *w) {
+    const float *lamp = shading->view->light;
     const float x = lamp[0], y = lamp[1], z = lamp[2], near = lamp[3];
     for (int i = 0; i < N; i++) {
         const float a = x - near * w->place[0][i], b = y - near * w->place[1][i];
@@ -93,7 +94,7 @@ CS_INLINE void find_light(const struct cs_easel *easel, struct work *w) {
 /* The highlight: a whole power by squaring again and again, the rest by roots: x^(1/2),
  * x^(1/4).. to 1/256, an error of the exponent of 1/512. Small numbers become 0, as those
  * beyond the smallest normal one are slow. */
-CS_INLINE void find_shine(const struct cs_coat *coat, struct work *w) {
+CS_INLINE void find_shine(const struct cs_shading_material *coat, struct work *w) {
     float power[N];
     for (int i = 0; i < N; i++) {
         float h[3], square = 0, along = 0;
@@ -110,17 +111,17 @@ CS_INLINE void find_shine(const struct cs_coat *coat, struct work *w) {
         power[i] = cosine > 0 ? cosine : 0;
         w->shine[i] = 1;
     }
-    for (int bit = 128; bit && coat->shine_part; bit >>= 1) {
+    for (int bit = 128; bit && coat->shininess_fraction; bit >>= 1) {
         float root[N];
         // from the half on, each root is one of the one before
         for (int i = 0; i < N; i++)
             root[i] = bit == 128 ? power[i] : w->cover[i];
         for (int i = 0; i < N; i++)
             w->cover[i] = sqrtf(root[i]);
-        for (int i = 0; i < N && (coat->shine_part & bit); i++)
+        for (int i = 0; i < N && (coat->shininess_fraction & bit); i++)
             w->shine[i] *= w->cover[i];
     }
-    for (int left = coat->shine; left; left >>= 1) {
+    for (int left = coat->shininess_int; left; left >>= 1) {
         for (int i = 0; i < N && (left & 1); i++)
             w->shine[i] *= power[i];
         for (int i = 0; i < N; i++) {
@@ -135,8 +136,8 @@ static void paint_base(const struct cs_fragments *f, struct work *w) {
     for (int i = 0; i < f->n; i++) {
         const float t = 1 / f->inverse[i];
         float rgb[3];
-        cs_mips_look(f->coat->mips, f->attributes[4][i] * t, f->attributes[5][i] * t,
-                     f->texels[i], rgb);
+        cs_mipmap_sample(f->material->mips, f->attributes[4][i] * t, f->attributes[5][i] * t,
+                         f->texels[i], rgb);
         for (int k = 0; k < 3; k++)
             w->base[k][i] *= rgb[k];
     }
@@ -145,7 +146,7 @@ static void paint_base(const struct cs_fragments *f, struct work *w) {
 // the share of ambient light that comes into folds (mesh.h)
 CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
     const float side = f->side ? -1 : 1;
-    if (!f->coat->folds) {
+    if (!f->material->has_ambient_occlusion) {
         for (int i = 0; i < N; i++)
             folds[i] = 1;
         return;
@@ -159,24 +160,24 @@ CS_INLINE void find_folds(const struct cs_fragments *f, float folds[N]) {
         folds[i] = 1 / sqrtf(folds[i]);
 }
 
-CS_INLINE void shade_lit(const struct cs_easel *easel, const struct cs_fragments *f,
+CS_INLINE void shade_lit(const struct cs_shading_context *shading, const struct cs_fragments *f,
                          struct work *w) {
-    const struct cs_coat *coat = f->coat;
+    const struct cs_shading_material *coat = f->material;
     float folds[N];
     find_folds(f, folds);
-    find_light(easel, w);
-    const struct cs_lit lit = {.places = {w->place[0], w->place[1], w->place[2]},
-                               .normals = {w->normal[0], w->normal[1], w->normal[2]},
-                               .facing = w->facing,
-                               .share = w->share,
-                               .n = f->n};
-    cs_lightmap_look(easel->lightmap, &lit);
+    find_light(shading, w);
+    const struct cs_shadow_query lit = {.positions = {w->place[0], w->place[1], w->place[2]},
+                                        .normals = {w->normal[0], w->normal[1], w->normal[2]},
+                                        .n_dot_l = w->facing,
+                                        .visibility = w->share,
+                                        .n = f->n};
+    cs_shadow_map_sample(shading->shadow_map, &lit);
     for (int i = f->n; i < N; i++)
         w->share[i] = 0;
     find_shine(coat, w);
     for (int k = 0; k < 3; k++) {
-        const float ambient = easel->view->ambient[k], diffuse = easel->view->diffuse[k];
-        const float specular = easel->view->specular[k];
+        const float ambient = shading->view->ambient[k], diffuse = shading->view->diffuse[k];
+        const float specular = shading->view->specular[k];
         for (int i = 0; i < N; i++) {
             // ambient light is 1 on an upright surface seen straight on; more from above and
             // less towards the outline, or folds without direct light would be one flat patch
@@ -195,7 +196,7 @@ CS_INLINE void shade_lit(const struct cs_easel *easel, const struct cs_fragments
 }
 
 // how much a surface is seen straight on
-CS_INLINE void find_towards(struct work *w) {
+CS_INLINE void n_dot_view(struct work *w) {
     for (int i = 0; i < N; i++) {
         const float across = w->normal[0][i] * w->view[0][i] + w->normal[1][i] * w->view[1][i] +
                              w->normal[2][i] * w->view[2][i];
@@ -203,84 +204,86 @@ CS_INLINE void find_towards(struct work *w) {
     }
 }
 
-static void shade_value(const struct cs_easel *easel, const struct cs_fragments *f,
+static void shade_value(const struct cs_shading_context *shading, const struct cs_fragments *f,
                         struct work *w) {
-    find_towards(w);
+    n_dot_view(w);
     for (int i = 0; i < N; i++) {
         const float at = cs_clamp(f->attributes[3][i] / f->inverse[i], 0, 1) * 5;
-        const int low = cs_least((int)at, 4);
-        const float *a = easel->view->stops[low], *b = easel->view->stops[low + 1];
+        const int low = cs_min((int)at, 4);
+        const float *a = shading->view->colour_stops[low],
+                    *b = shading->view->colour_stops[low + 1];
         const float bright = 0.5f + 0.5f * w->share[i];
         for (int k = 0; k < 3; k++)
             w->colour[k][i] = (a[k] + (b[k] - a[k]) * (at - (float)low)) * bright;
     }
 }
 
-CS_INLINE void shade_faint(const struct cs_easel *easel, struct work *w) {
-    find_towards(w);
+CS_INLINE void shade_faint(const struct cs_shading_context *shading, struct work *w) {
+    n_dot_view(w);
     for (int k = 0; k < 3; k++) {
-        const float pale = easel->view->sky[k] * 0.55f + 0.45f;
+        const float pale = shading->view->sky[k] * 0.55f + 0.45f;
         for (int i = 0; i < N; i++)
             w->colour[k][i] = pale * (0.62f + 0.38f * w->share[i]);
     }
 }
 
 // a floor has no end: its square melts into the background
-CS_INLINE void find_cover(const struct cs_coat *coat, struct work *w) {
-    if (!(coat->fade > 0)) {
+CS_INLINE void find_cover(const struct cs_shading_material *coat, struct work *w) {
+    if (!(coat->fade_radius > 0)) {
         for (int i = 0; i < N; i++)
             w->cover[i] = 1;
         return;
     }
     for (int i = 0; i < N; i++) {
         const float x = w->place[0][i], z = w->place[2][i];
-        const float far = sqrtf(x * x + z * z) / coat->fade;
+        const float far = sqrtf(x * x + z * z) / coat->fade_radius;
         const float t = cs_clamp((far - 0.35f) / 0.65f, 0, 1);
         w->cover[i] = 1 - t * t * (3 - 2 * t);
     }
 }
 
-CS_CLONES static void shade(const struct cs_easel *easel, struct cs_fragments *f,
+CS_CLONES static void shade(const struct cs_shading_context *shading, struct cs_fragments *f,
                             struct work *w) {
     // the places behind the last fragment are shaded too, for whole vectors
     for (int i = f->n; i < N; i++) {
         f->x[i] = f->y[i] = 0;
         f->inverse[i] = 1;
-        f->along[i] = 1;
+        f->view_depth[i] = 1;
         for (int k = 0; k < CS_ATTRIBUTES; k++)
             f->attributes[k][i] = 1;
     }
-    if (easel->rays.parallel)
-        find_parallel_places(easel, f, w);
+    if (shading->rays.parallel)
+        find_parallel_places(shading, f, w);
     else
-        find_places(easel, f, w);
+        find_positions(shading, f, w);
     find_normals(f, w);
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++)
-            w->base[k][i] = f->coat->base[f->side][k];
-    if (f->coat->mode == CS_SURFACE_TEXTURED)
+            w->base[k][i] = f->material->base[f->side][k];
+    if (f->material->mode == CS_SURFACE_TEXTURED)
         paint_base(f, w);
-    if (f->coat->mode <= CS_SURFACE_TEXTURED)
-        shade_lit(easel, f, w);
-    else if (f->coat->mode == CS_SURFACE_VALUE)
-        shade_value(easel, f, w);
+    if (f->material->mode <= CS_SURFACE_TEXTURED)
+        shade_lit(shading, f, w);
+    else if (f->material->mode == CS_SURFACE_VALUE)
+        shade_value(shading, f, w);
     else
-        shade_faint(easel, w);
-    find_cover(f->coat, w);
+        shade_faint(shading, w);
+    find_cover(f->material, w);
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++)
             w->colour[k][i] = cs_clamp(w->colour[k][i], 0, 1);
 }
 
-void cs_shade(const struct cs_easel *easel, struct cs_fragments *f, uint32_t *colours) {
+void cs_shade(const struct cs_shading_context *shading, struct cs_fragments *f,
+              uint32_t *colours) {
     struct work w;
     if (f->n == 0)
         return;
-    shade(easel, f, &w);
+    shade(shading, f, &w);
     for (int i = 0; i < f->n; i++) {
         const uint32_t cover = (uint32_t)(w.cover[i] * 255 + 0.5f);
-        colours[f->out[i]] =
-            cs_tone_pack(easel->tone, w.colour[0][i], w.colour[1][i], w.colour[2][i]) |
+        colours[f->colour_index[i]] =
+            cs_srgb_pack(shading->srgb, w.colour[0][i], w.colour[1][i], w.colour[2][i]) |
             (255 - cover) << 24;
     }
     f->n = 0;

@@ -17,16 +17,17 @@ static int32_t snap(double pixel) {
     return (int32_t)floor(pixel * 256 + 0.5);
 }
 
-static struct cs_slope slope(const struct frame *f, double a, double b, double c) {
+static struct cs_plane_equation slope(const struct frame *f, double a, double b, double c) {
     const double x = (b - a) * f->dy[1] - (c - a) * f->dy[0];
     const double y = (c - a) * f->dx[0] - (b - a) * f->dx[1];
-    return (struct cs_slope){(float)(a + x * f->across + y * f->down), (float)x, (float)y};
+    return (struct cs_plane_equation){(float)(a + x * f->across + y * f->down), (float)x,
+                                      (float)y};
 }
 
 /* From the places before they were put on the grid. A sliver has no slopes to speak of: its
  * planes are flat. */
 static struct frame make_frame(const struct cs_triangle *t,
-                               const struct cs_corner *const p[3]) {
+                               const struct cs_clip_vertex *const p[3]) {
     const double from_top = t->bottom_row + 1 - (double)p[0]->y;
     struct frame f = {.across = t->left + 0.5 - (double)p[0]->x,
                       .down = t->top + 0.5 - from_top};
@@ -43,31 +44,33 @@ static struct frame make_frame(const struct cs_triangle *t,
     return f;
 }
 
-struct cs_slope cs_depth_of(const struct cs_corner *a, const struct cs_corner *b,
-                            const struct cs_corner *c) {
+struct cs_plane_equation cs_depth_of(const struct cs_clip_vertex *a,
+                                     const struct cs_clip_vertex *b,
+                                     const struct cs_clip_vertex *c) {
     const float ab[3] = {a->x - b->x, a->y - b->y, a->z - b->z};
     const float ca[3] = {c->x - a->x, c->y - a->y, c->z - a->z};
     const float area = ab[0] * ca[1] - ca[0] * ab[1];
     const float least = 1.0f / 512, share = area > least || area < -least ? 1 / area : 0;
     const float x = ab[2] * (ca[1] * share) - (ab[1] * share) * ca[2];
     const float y = ca[2] * (ab[0] * share) - ab[2] * (ca[0] * share);
-    return (struct cs_slope){a->z - (x * a->x + y * a->y), x, y};
+    return (struct cs_plane_equation){a->z - (x * a->x + y * a->y), x, y};
 }
 
-static void set_depth(struct cs_triangle *t, const struct cs_corner *const corners[3]) {
-    const struct cs_corner *a = corners[t->back ? 0 : 1], *b = corners[t->back ? 1 : 0];
+static void set_depth(struct cs_triangle *t, const struct cs_clip_vertex *const corners[3]) {
+    const struct cs_clip_vertex *a = corners[t->is_back_facing ? 0 : 1],
+                                *b = corners[t->is_back_facing ? 1 : 0];
     t->depth = cs_depth_of(a, b, corners[2]);
-    t->farthest = t->nearest = cs_nearness(a->z);
+    t->depth_min = t->depth_max = cs_reversed_depth(a->z);
     for (int i = 0; i < 3; i++) {
-        const float near = cs_nearness(corners[i]->z);
-        t->farthest = near < t->farthest ? near : t->farthest;
-        t->nearest = near > t->nearest ? near : t->nearest;
+        const float near = cs_reversed_depth(corners[i]->z);
+        t->depth_min = near < t->depth_min ? near : t->depth_min;
+        t->depth_max = near > t->depth_max ? near : t->depth_max;
     }
 }
 
-static void set_planes(struct cs_triangle *t, const struct cs_corner *const p[3], int n) {
+static void set_planes(struct cs_triangle *t, const struct cs_clip_vertex *const p[3], int n) {
     const struct frame f = make_frame(t, p);
-    const float side = t->back ? -1 : 1;
+    const float side = t->is_back_facing ? -1 : 1;
     t->inverse = slope(&f, (double)p[0]->inverse, (double)p[1]->inverse, (double)p[2]->inverse);
     for (int k = 0; k < n; k++) {
         double over[3];
@@ -78,21 +81,21 @@ static void set_planes(struct cs_triangle *t, const struct cs_corner *const p[3]
 }
 
 // the corners on the grid, turned so that the inside is on one side; false where none is left
-static bool set_corners(struct cs_triangle *t, int height, const struct cs_corner *p[3]) {
+static bool set_corners(struct cs_triangle *t, int height, const struct cs_clip_vertex *p[3]) {
     int64_t x[3], y[3];
     for (int i = 0; i < 3; i++) {
         x[i] = snap((double)p[i]->x);
         y[i] = snap(height - (double)p[i]->y);
     }
     const int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    t->back = area > 0; // y points down here
+    t->is_back_facing = area > 0; // y points down here
     for (int i = 0; i < 3; i++) {
         const int from = area < 0 && i ? 3 - i : i;
         t->x[i] = (int32_t)x[from];
         t->y[i] = (int32_t)y[from];
     }
     if (area < 0) {
-        const struct cs_corner *swap = p[1];
+        const struct cs_clip_vertex *swap = p[1];
         p[1] = p[2];
         p[2] = swap;
     }
@@ -102,16 +105,16 @@ static bool set_corners(struct cs_triangle *t, int height, const struct cs_corne
 static bool set_box(struct cs_triangle *t, int width, int height) {
     int left = t->x[0], right = left, top = t->y[0], bottom = top;
     for (int i = 1; i < 3; i++) {
-        left = cs_least(left, t->x[i]);
-        right = cs_most(right, t->x[i]);
-        top = cs_least(top, t->y[i]);
-        bottom = cs_most(bottom, t->y[i]);
+        left = cs_min(left, t->x[i]);
+        right = cs_max(right, t->x[i]);
+        top = cs_min(top, t->y[i]);
+        bottom = cs_max(bottom, t->y[i]);
     }
-    t->small = right - left < SMALL && bottom - top < SMALL;
-    t->left = cs_most(left >> 8, 0);
-    t->right = cs_least(right >> 8, width - 1);
-    t->top = cs_most(top >> 8, 0);
-    t->bottom = cs_least(bottom >> 8, height - 1);
+    t->fits_32_bits = right - left < SMALL && bottom - top < SMALL;
+    t->left = cs_max(left >> 8, 0);
+    t->right = cs_min(right >> 8, width - 1);
+    t->top = cs_max(top >> 8, 0);
+    t->bottom = cs_min(bottom >> 8, height - 1);
     return t->left <= t->right && t->top <= t->bottom;
 }
 
@@ -129,35 +132,35 @@ static struct cs_triangle *next(struct cs_triangles *triangles) {
     return triangles->items + triangles->n;
 }
 
-static void add(struct cs_triangles *triangles, const struct cs_lens *lens,
-                const struct cs_corner *a, const struct cs_corner *b, const struct cs_corner *c,
-                const struct cs_triangle_kind *kind) {
-    const struct cs_corner *const corners[3] = {a, b, c};
-    const struct cs_corner *p[3] = {a, b, c};
+static void add(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
+                const struct cs_clip_vertex *a, const struct cs_clip_vertex *b,
+                const struct cs_clip_vertex *c, const struct cs_triangle_kind *kind) {
+    const struct cs_clip_vertex *const corners[3] = {a, b, c};
+    const struct cs_clip_vertex *p[3] = {a, b, c};
     struct cs_triangle *t = next(triangles);
-    if (!t || !set_corners(t, lens->height, p) || (t->back && kind->front_only) ||
-        !set_box(t, lens->width, lens->height))
+    if (!t || !set_corners(t, clip->height, p) || (t->is_back_facing && kind->front_only) ||
+        !set_box(t, clip->width, clip->height))
         return;
     t->surface = kind->surface;
-    t->bottom_row = lens->height - 1;
+    t->bottom_row = clip->height - 1;
     set_depth(t, corners);
     set_planes(t, p, kind->attributes);
     triangles->n++;
 }
 
-void cs_triangles_add(struct cs_triangles *triangles, const struct cs_lens *lens,
-                      const struct cs_corner *const corners[3],
+void cs_triangles_add(struct cs_triangles *triangles, const struct cs_clip_transform *clip,
+                      const struct cs_clip_vertex *const corners[3],
                       const struct cs_triangle_kind *kind) {
-    struct cs_corner polygon[CS_CLIP_MOST];
-    if (!(corners[0]->outside | corners[1]->outside | corners[2]->outside)) {
-        add(triangles, lens, corners[0], corners[1], corners[2], kind);
+    struct cs_clip_vertex polygon[CS_CLIP_VERTICES_MAX];
+    if (!(corners[0]->clip_mask | corners[1]->clip_mask | corners[2]->clip_mask)) {
+        add(triangles, clip, corners[0], corners[1], corners[2], kind);
         return;
     }
-    if (corners[0]->outside & corners[1]->outside & corners[2]->outside)
+    if (corners[0]->clip_mask & corners[1]->clip_mask & corners[2]->clip_mask)
         return;
-    const int n = cs_lens_clip(lens, corners, polygon);
+    const int n = cs_clip_transform_clip(clip, corners, polygon);
     for (int i = 2; i < n; i++)
-        add(triangles, lens, polygon, polygon + i - 1, polygon + i, kind);
+        add(triangles, clip, polygon, polygon + i - 1, polygon + i, kind);
 }
 
 void cs_triangles_finish(struct cs_triangles *triangles) {

@@ -1,18 +1,18 @@
 /* Prepares a scene for drawing through OpenGL, and exports the renderer's table of calls. */
-#include "draw/aim.h"
-#include "draw/extent.h"
-#include "draw/gl/backdrop.h"
 #include "draw/gl/collider.h"
 #include "draw/gl/context.h"
 #include "draw/gl/driver.h"
+#include "draw/gl/framebuffer.h"
 #include "draw/gl/gl.h"
 #include "draw/gl/lines.h"
 #include "draw/gl/shadow.h"
+#include "draw/gl/sky_and_ground.h"
 #include "draw/gl/surface.h"
-#include "draw/gl/target.h"
+#include "draw/light_frustum.h"
 #include "draw/mesh.h"
 #include "draw/overlay.h"
 #include "draw/render.h"
+#include "draw/scene_extent.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,9 +28,9 @@ struct cs_canvas {
     const struct cs_system *system;
     struct cs_context *context; /* owns all that GL holds */
     struct cs_arena arena;      /* owns all other memory */
-    struct cs_target target;
+    struct cs_framebuffer target;
     struct cs_view_state view;
-    struct cs_backdrop backdrop;
+    struct cs_sky_and_ground backdrop;
     struct cs_surface_program program;
     struct cs_shadow shadow;
     struct cs_gl_colliders colliders;
@@ -43,8 +43,8 @@ struct cs_canvas {
 static enum cs_status init_texture(struct cs_canvas *canvas, const struct cs_image *image,
                                    unsigned *texture, struct cs_error *error) {
     struct cs_arena arena = {0}; // OpenGL has its own copy
-    struct cs_mips mips;
-    if (cs_mips_make(&mips, image, canvas->target.tone, &arena, error) == CS_OK)
+    struct cs_mipmap mips;
+    if (cs_mipmap_make(&mips, image, canvas->target.srgb, &arena, error) == CS_OK)
         *texture = cs_texture_make(&mips);
     cs_arena_finish(&arena);
     return error->status;
@@ -58,14 +58,15 @@ static enum cs_status init_cloth(struct cs_canvas *canvas, uint32_t b,
                      error) != CS_OK)
         return error->status;
     /* split vertices stand in the order in which they are drawn, without indices */
-    cs_surface_init(&cloth->surface, cloth->mesh.split ? NULL : cloth->mesh.indices,
+    cs_surface_init(&cloth->surface, cloth->mesh.split_vertices ? NULL : cloth->mesh.indices,
                     cloth->mesh.n_indices);
     cs_style_cloth(&cloth->style, material, texture->width > 0, canvas->scene->render.look);
     if (cloth->style.mode != CS_SURFACE_TEXTURED)
         return CS_OK;
     if (init_texture(canvas, texture, &cloth->style.texture, error))
         return error->status;
-    float *uv = cs_arena_take_n(&canvas->arena, cloth->mesh.n_vertices, 2 * sizeof *uv, error);
+    float *uv =
+        cs_arena_alloc_array(&canvas->arena, cloth->mesh.n_vertices, 2 * sizeof *uv, error);
     if (!uv)
         return error->status;
     cs_mesh_uv(&cloth->mesh, material->texture_repeat, uv);
@@ -77,7 +78,7 @@ static enum cs_status init_cloths(struct cs_canvas *canvas, const struct cs_imag
                                   struct cs_error *error) {
     static const struct cs_image none = {0, 0, NULL, NULL};
     const uint32_t n = canvas->scene->bodies.n;
-    canvas->cloths = cs_arena_take_n(&canvas->arena, n, sizeof *canvas->cloths, error);
+    canvas->cloths = cs_arena_alloc_array(&canvas->arena, n, sizeof *canvas->cloths, error);
     for (uint32_t b = 0; b < n && error->status == CS_OK; b++)
         init_cloth(canvas, b, textures ? textures + b : &none, error);
     return error->status;
@@ -87,7 +88,7 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
                            struct cs_error *error) {
     const struct cs_render *render = &canvas->scene->render;
     /* before there is a context: Mesa reads its environment only once */
-    const char *caps = cs_driver_pin(settings->fast);
+    const char *caps = cs_driver_pin(settings->fast_render);
     if (cs_context_create(&canvas->context, error) != CS_OK || cs_gl_load(error) != CS_OK)
         return error->status;
     snprintf(canvas->description, sizeof canvas->description, "%s | %s | %s",
@@ -95,17 +96,17 @@ static enum cs_status init(struct cs_canvas *canvas, const struct cs_canvas_sett
              caps);
 
     /* by the start alone, so that the view is the same in every frame */
-    const struct cs_ball extent =
-        cs_extent_solid(canvas->system, canvas->system->view.start, settings->obstacles);
+    const struct cs_bounding_sphere extent =
+        cs_scene_extent_solid(canvas->system, canvas->system->view.start, settings->colliders);
     struct cs_ground ground = {.present = false};
     cs_view_init(&canvas->view, canvas->scene, &extent);
-    cs_ground_make(&ground, canvas->system, settings->obstacles, &extent);
-    if (cs_target_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
-        cs_backdrop_init(&canvas->backdrop, &ground, error) != CS_OK ||
+    cs_ground_make(&ground, canvas->system, settings->colliders, &extent);
+    if (cs_framebuffer_init(&canvas->target, render, &canvas->arena, error) != CS_OK ||
+        cs_sky_and_ground_init(&canvas->backdrop, &ground, error) != CS_OK ||
         cs_surface_program_init(&canvas->program, error) != CS_OK ||
         cs_shadow_init(&canvas->shadow, error) != CS_OK ||
         cs_gl_colliders_init(&canvas->colliders, canvas->system, &canvas->view.block,
-                             settings->obstacles, &canvas->arena, error) != CS_OK ||
+                             settings->colliders, &canvas->arena, error) != CS_OK ||
         init_cloths(canvas, settings->textures, error) != CS_OK ||
         cs_gl_lines_init(&canvas->lines, error) != CS_OK ||
         cs_overlay_init(&canvas->overlay, canvas->system, canvas->view.pixels_per_m,
@@ -139,16 +140,16 @@ static enum cs_status create(const struct cs_canvas_settings *settings,
 }
 
 static void move_camera(struct cs_canvas *canvas, const struct cs_frame *frame,
-                        const struct cs_ball *solid) {
+                        const struct cs_bounding_sphere *solid) {
     cs_view_move(&canvas->view, canvas->scene, solid, frame->t, canvas->system->view.n,
                  frame->x);
     cs_overlay_aim(&canvas->overlay, canvas->view.pixels_per_m);
 }
 
-static void draw_shadow(struct cs_canvas *canvas, const struct cs_ball *solid) {
+static void draw_shadow(struct cs_canvas *canvas, const struct cs_bounding_sphere *solid) {
     if (canvas->backdrop.ground.present)
         cs_ground_aim(&canvas->backdrop.ground, &canvas->view.block, solid);
-    const bool has_shadow = cs_shadow_aim(solid, &canvas->view.block);
+    const bool has_shadow = cs_light_frustum_fit(solid, &canvas->view.block);
     cs_view_upload(&canvas->view);
     if (!has_shadow)
         return;
@@ -160,11 +161,11 @@ static void draw_shadow(struct cs_canvas *canvas, const struct cs_ball *solid) {
 
 static void draw_scene(struct cs_canvas *canvas, const struct cs_frame *frame) {
     cs_shadow_bind(&canvas->shadow);
-    cs_target_begin(&canvas->target);
-    cs_backdrop_draw_sky(&canvas->backdrop);
+    cs_framebuffer_begin(&canvas->target);
+    cs_sky_and_ground_draw_sky(&canvas->backdrop);
     cs_gl_colliders_draw(&canvas->colliders, &canvas->program);
     if (canvas->backdrop.ground.present)
-        cs_backdrop_draw_ground(&canvas->backdrop);
+        cs_sky_and_ground_draw_ground(&canvas->backdrop);
     for (uint32_t b = 0; b < canvas->scene->bodies.n; b++) {
         if (cs_overlay_hides(canvas->scene, b))
             continue;
@@ -183,14 +184,15 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
         cs_mesh_update(&cloth->mesh, canvas->system->view.n, frame);
         cs_surface_upload(&cloth->surface, cloth->mesh.vertices, cloth->mesh.n_vertices);
     }
-    const struct cs_ball solid = cs_extent_solid(canvas->system, frame->x, frame->obstacles);
+    const struct cs_bounding_sphere solid =
+        cs_scene_extent_solid(canvas->system, frame->x, frame->colliders);
     const bool varies = cs_view_varies(canvas->scene);
     if (varies)
         move_camera(canvas, frame, &solid);
-    cs_gl_colliders_move(&canvas->colliders, frame->obstacles, varies);
+    cs_gl_colliders_move(&canvas->colliders, frame->colliders, varies);
     draw_shadow(canvas, &solid);
     draw_scene(canvas, frame);
-    cs_target_read(&canvas->target, image);
+    cs_framebuffer_read(&canvas->target, image);
     return cs_gl_check("drawing a frame", error);
 }
 

@@ -1,54 +1,55 @@
 /* Draws colliders through OpenGL: as the camera sees them, and as the light does. */
 #include "draw/gl/collider.h"
 
-#include "draw/extent.h"
+#include "draw/collider_mesh.h"
 #include "draw/gl/gl.h"
-#include "draw/solid.h"
+#include "draw/scene_extent.h"
 
 #include <string.h>
 
 static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
-    const struct cs_obstacle *obstacle = colliders->obstacles + i;
-    const uint32_t n = cs_solid_count(obstacle);
+    const struct cs_posed_collider *obstacle = colliders->colliders + i;
+    const uint32_t n = cs_collider_mesh_count(obstacle);
     if (n == 0)
         return;
-    cs_solid_fill(obstacle, colliders->cell, colliders->view->eye, colliders->vertices);
+    cs_collider_mesh_fill(obstacle, colliders->cell, colliders->view->eye, colliders->vertices);
     cs_surface_upload(colliders->surfaces + i, colliders->vertices, n);
-    if (obstacle->kind == CS_OBSTACLE_PLANE)
+    if (obstacle->kind == CS_COLLIDER_PLANE)
         return;
-    cs_solid_fill(obstacle, colliders->cell, colliders->view->light, colliders->vertices);
+    cs_collider_mesh_fill(obstacle, colliders->cell, colliders->view->light,
+                          colliders->vertices);
     cs_surface_upload(colliders->shadows + i, colliders->vertices, n);
 }
 
 static enum cs_status take(struct cs_gl_colliders *colliders,
-                           const struct cs_obstacle *obstacles, struct cs_arena *arena,
+                           const struct cs_posed_collider *obstacles, struct cs_arena *arena,
                            struct cs_error *error) {
     const uint32_t n = colliders->n;
     uint32_t most = 0;
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t count = cs_solid_count(obstacles + i);
+        const uint32_t count = cs_collider_mesh_count(obstacles + i);
         most = count > most ? count : most;
     }
-    colliders->obstacles = cs_arena_take_n(arena, n, sizeof *colliders->obstacles, error);
-    colliders->surfaces = cs_arena_take_n(arena, n, sizeof *colliders->surfaces, error);
-    colliders->shadows = cs_arena_take_n(arena, n, sizeof *colliders->shadows, error);
-    colliders->vertices = cs_arena_take_n(arena, most, sizeof *colliders->vertices, error);
+    colliders->colliders = cs_arena_alloc_array(arena, n, sizeof *colliders->colliders, error);
+    colliders->surfaces = cs_arena_alloc_array(arena, n, sizeof *colliders->surfaces, error);
+    colliders->shadows = cs_arena_alloc_array(arena, n, sizeof *colliders->shadows, error);
+    colliders->vertices = cs_arena_alloc_array(arena, most, sizeof *colliders->vertices, error);
     return error->status;
 }
 
 enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
                                     const struct cs_system *system,
                                     const struct cs_view_block *view,
-                                    const struct cs_obstacle *obstacles, struct cs_arena *arena,
-                                    struct cs_error *error) {
+                                    const struct cs_posed_collider *obstacles,
+                                    struct cs_arena *arena, struct cs_error *error) {
     colliders->n = system->scene->colliders.n;
-    colliders->cell = cs_extent_cell(system);
+    colliders->cell = cs_scene_extent_cell(system);
     colliders->view = view;
     if (take(colliders, obstacles, arena, error))
         return error->status;
     for (uint32_t i = 0; i < colliders->n; i++) {
         // a copy, by which cs_gl_colliders_move sees what has moved
-        colliders->obstacles[i] = obstacles[i];
+        colliders->colliders[i] = obstacles[i];
         cs_surface_init(colliders->surfaces + i, NULL, 0);
         cs_surface_init(colliders->shadows + i, NULL, 0);
         upload(colliders, i);
@@ -57,9 +58,9 @@ enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
 }
 
 void cs_gl_colliders_move(struct cs_gl_colliders *colliders,
-                          const struct cs_obstacle *obstacles, bool seen_anew) {
+                          const struct cs_posed_collider *obstacles, bool seen_anew) {
     for (uint32_t i = 0; i < colliders->n; i++) {
-        struct cs_obstacle *now = colliders->obstacles + i;
+        struct cs_posed_collider *now = colliders->colliders + i;
         const bool moved = memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
                            memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
         *now = obstacles[i];
@@ -73,8 +74,8 @@ void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
     // squares first, because they may be blended
     for (int pass = 0; pass < 2; pass++)
         for (uint32_t i = 0; i < colliders->n; i++) {
-            const struct cs_obstacle *obstacle = colliders->obstacles + i;
-            const bool square = obstacle->kind == CS_OBSTACLE_PLANE;
+            const struct cs_posed_collider *obstacle = colliders->colliders + i;
+            const bool square = obstacle->kind == CS_COLLIDER_PLANE;
             struct cs_surface_style style;
             if (!obstacle->collider->visible || square != (pass == 0))
                 continue;
@@ -89,8 +90,8 @@ void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
 
 void cs_gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders) {
     for (uint32_t i = 0; i < colliders->n; i++) {
-        const struct cs_obstacle *obstacle = colliders->obstacles + i;
-        if (obstacle->collider->visible && obstacle->kind != CS_OBSTACLE_PLANE)
+        const struct cs_posed_collider *obstacle = colliders->colliders + i;
+        if (obstacle->collider->visible && obstacle->kind != CS_COLLIDER_PLANE)
             cs_surface_draw(colliders->shadows + i);
     }
 }

@@ -4,14 +4,14 @@
 
 #include "draw/gl/surface.h"
 #include "draw/view.h"
-#include "model/contact/obstacle.h"
+#include "model/contact/posed_collider.h"
 
 struct cs_gl_colliders {
     uint32_t n;
-    struct cs_obstacle *obstacles; /* (n) where they are now */
-    struct cs_surface *surfaces;   /* (n) as the camera sees them */
-    struct cs_surface *shadows;    /* (n) as the light does */
-    struct cs_vertex *vertices;    /* work: room for the largest of them */
+    struct cs_posed_collider *colliders; /* (n) where they are now */
+    struct cs_surface *surfaces;         /* (n) as the camera sees them */
+    struct cs_surface *shadows;          /* (n) as the light does */
+    struct cs_vertex *vertices;          /* work: room for the largest of them */
     const struct cs_view_block *view;
     double cell; /* m: how coarse the cloth is that lies on them */
 };
@@ -21,12 +21,12 @@ struct cs_gl_colliders {
 enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
                                     const struct cs_system *system,
                                     const struct cs_view_block *view,
-                                    const struct cs_obstacle *obstacles, struct cs_arena *arena,
-                                    struct cs_error *error);
+                                    const struct cs_posed_collider *obstacles,
+                                    struct cs_arena *arena, struct cs_error *error);
 
 /* Puts those that are elsewhere now where they are; seen_anew: the camera has moved. */
 void cs_gl_colliders_move(struct cs_gl_colliders *colliders,
-                          const struct cs_obstacle *obstacles, bool seen_anew);
+                          const struct cs_posed_collider *obstacles, bool seen_anew);
 
 void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
                           const struct cs_surface_program *program);

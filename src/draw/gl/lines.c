@@ -7,16 +7,16 @@
 static void draw(struct cs_lines *base, const struct cs_line_style *style) {
     const struct cs_gl_lines *lines = (const struct cs_gl_lines *)base;
     gl.UseProgram(lines->program);
-    gl.Uniform4f(lines->paint, style->colour[0], style->colour[1], style->colour[2],
+    gl.Uniform4f(lines->colour_location, style->colour[0], style->colour[1], style->colour[2],
                  (float)style->alpha);
     gl.Uniform1f(lines->half_width, (float)style->half_width);
-    gl.Uniform1f(lines->lift, (float)style->lift);
+    gl.Uniform1f(lines->depth_offset, (float)style->depth_offset);
     gl.Uniform1i(lines->flat, style->flat);
     gl.BindVertexArray(lines->object);
     gl.BindBuffer(GL_ARRAY_BUFFER, lines->buffer);
     gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(base->n * sizeof *base->ends), base->ends,
                   GL_STREAM_DRAW);
-    if (style->over || style->flat)
+    if (style->on_top || style->flat)
         gl.Disable(GL_DEPTH_TEST);
     /* no depth is written: soft edges would cut holes into later lines */
     gl.Enable(GL_BLEND);
@@ -46,9 +46,9 @@ enum cs_status cs_gl_lines_init(struct cs_gl_lines *lines, struct cs_error *erro
     lines->box = gl.GetUniformLocation(lines->ramp, "box");
     /* the bar has no vertex data, but a core context draws nothing without an array object */
     gl.GenVertexArrays(1, &lines->ramp_object);
-    lines->paint = gl.GetUniformLocation(lines->program, "paint");
+    lines->colour_location = gl.GetUniformLocation(lines->program, "paint");
     lines->half_width = gl.GetUniformLocation(lines->program, "half_width");
-    lines->lift = gl.GetUniformLocation(lines->program, "lift");
+    lines->depth_offset = gl.GetUniformLocation(lines->program, "lift");
     lines->flat = gl.GetUniformLocation(lines->program, "flat_");
     gl.GenVertexArrays(1, &lines->object);
     gl.BindVertexArray(lines->object);

@@ -7,7 +7,7 @@
 struct cs_gl_lines {
     struct cs_lines lines; /* first: its calls are given this one */
     unsigned program, object, buffer;
-    int paint, half_width, lift, flat;
+    int colour_location, half_width, depth_offset, flat;
     unsigned ramp, ramp_object;
     int box;
 };

@@ -1,9 +1,9 @@
 /* Renders the depth map that is seen from the light. */
 #include "draw/gl/shadow.h"
 
-#include "draw/aim.h"
 #include "draw/gl/gl.h"
 #include "draw/gl/shader.h"
+#include "draw/light_frustum.h"
 
 static void make_texture(struct cs_shadow *shadow) {
     gl.GenTextures(1, &shadow->texture);

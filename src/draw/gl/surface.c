@@ -17,10 +17,10 @@ void cs_surface_init(struct cs_surface *surface, const uint32_t *indices, uint32
     gl.BindVertexArray(surface->object);
     gl.GenBuffers(1, &surface->vertices);
     gl.BindBuffer(GL_ARRAY_BUFFER, surface->vertices);
-    attribute(0, 3, stride, offsetof(struct cs_vertex, place));
+    attribute(0, 3, stride, offsetof(struct cs_vertex, position));
     attribute(1, 3, stride, offsetof(struct cs_vertex, normal));
     attribute(3, 1, stride, offsetof(struct cs_vertex, value));
-    surface->indexed = indices != NULL;
+    surface->has_indices = indices != NULL;
     surface->n_drawn = n_indices;
     if (indices) {
         GLuint buffer;
@@ -36,7 +36,7 @@ void cs_surface_upload(struct cs_surface *surface, const struct cs_vertex *verti
     gl.BindBuffer(GL_ARRAY_BUFFER, surface->vertices);
     gl.BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(n * sizeof *vertices), vertices,
                   GL_STREAM_DRAW);
-    if (!surface->indexed)
+    if (!surface->has_indices)
         surface->n_drawn = n;
 }
 
@@ -51,7 +51,7 @@ void cs_surface_set_uv(struct cs_surface *surface, const float *uv, uint32_t n) 
 
 void cs_surface_draw(const struct cs_surface *surface) {
     gl.BindVertexArray(surface->object);
-    if (surface->indexed)
+    if (surface->has_indices)
         gl.DrawElements(GL_TRIANGLES, (GLsizei)surface->n_drawn, GL_UNSIGNED_INT, NULL);
     else
         gl.DrawArrays(GL_TRIANGLES, 0, (GLsizei)surface->n_drawn);
@@ -62,11 +62,11 @@ enum cs_status cs_surface_program_init(struct cs_surface_program *program,
     if (cs_shader_make(&cs_shader_surface, &program->name, error) != CS_OK)
         return error->status;
     program->mode = gl.GetUniformLocation(program->name, "mode");
-    program->front = gl.GetUniformLocation(program->name, "front");
-    program->back = gl.GetUniformLocation(program->name, "back");
+    program->front_location = gl.GetUniformLocation(program->name, "front");
+    program->back_location = gl.GetUniformLocation(program->name, "back");
     program->coefficients = gl.GetUniformLocation(program->name, "coefficients");
-    program->fade = gl.GetUniformLocation(program->name, "fade");
-    program->sink = gl.GetUniformLocation(program->name, "sink");
+    program->fade_location = gl.GetUniformLocation(program->name, "fade");
+    program->depth_bias_location = gl.GetUniformLocation(program->name, "sink");
     return CS_OK;
 }
 
@@ -74,30 +74,30 @@ void cs_surface_program_use(const struct cs_surface_program *program,
                             const struct cs_surface_style *style) {
     gl.UseProgram(program->name);
     gl.Uniform1i(program->mode, (GLint)style->mode);
-    gl.Uniform3f(program->front, (float)style->front[0], (float)style->front[1],
-                 (float)style->front[2]);
-    gl.Uniform3f(program->back, (float)style->back[0], (float)style->back[1],
-                 (float)style->back[2]);
+    gl.Uniform3f(program->front_location, (float)style->front_colour[0],
+                 (float)style->front_colour[1], (float)style->front_colour[2]);
+    gl.Uniform3f(program->back_location, (float)style->back_colour[0],
+                 (float)style->back_colour[1], (float)style->back_colour[2]);
     gl.Uniform4f(program->coefficients, (float)style->ambient, (float)style->diffuse,
                  (float)style->specular, (float)style->shininess);
-    gl.Uniform1f(program->fade, (float)style->fade);
-    gl.Uniform1f(program->sink, (float)style->sink);
+    gl.Uniform1f(program->fade_location, (float)style->fade_radius);
+    gl.Uniform1f(program->depth_bias_location, (float)style->depth_bias);
     if (style->mode == CS_SURFACE_TEXTURED) {
         gl.ActiveTexture(GL_TEXTURE0);
         gl.BindTexture(GL_TEXTURE_2D, style->texture);
     }
 }
 
-unsigned cs_texture_make(const struct cs_mips *mips) {
+unsigned cs_texture_make(const struct cs_mipmap *mips) {
     GLuint name;
     gl.GenTextures(1, &name);
     gl.ActiveTexture(GL_TEXTURE0);
     gl.BindTexture(GL_TEXTURE_2D, name);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (int level = 0; level < mips->n; level++)
-        gl.TexImage2D(GL_TEXTURE_2D, level, GL_RGB16, mips->copies[level].width,
-                      mips->copies[level].height, 0, GL_RGB, GL_UNSIGNED_SHORT,
-                      mips->copies[level].light);
+        gl.TexImage2D(GL_TEXTURE_2D, level, GL_RGB16, mips->levels[level].width,
+                      mips->levels[level].height, 0, GL_RGB, GL_UNSIGNED_SHORT,
+                      mips->levels[level].light);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, mips->n - 1);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_REPEAT);

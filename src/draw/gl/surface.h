@@ -2,8 +2,8 @@
 #ifndef CS_DRAW_SURFACE_H
 #define CS_DRAW_SURFACE_H
 
-#include "draw/mips.h"
-#include "draw/style.h"
+#include "draw/mipmap.h"
+#include "draw/surface_style.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,7 +13,7 @@
 struct cs_surface {
     unsigned object, vertices;
     uint32_t n_drawn;
-    bool indexed;
+    bool has_indices;
 };
 
 void cs_surface_init(struct cs_surface *surface, const uint32_t *indices, uint32_t n_indices);
@@ -23,13 +23,13 @@ void cs_surface_upload(struct cs_surface *surface, const struct cs_vertex *verti
 /* Gives texture coordinates (n,2) once. */
 void cs_surface_set_uv(struct cs_surface *surface, const float *uv, uint32_t n);
 /* Returns the name of a texture with trilinear filtering. */
-unsigned cs_texture_make(const struct cs_mips *mips);
+unsigned cs_texture_make(const struct cs_mipmap *mips);
 /* Draws with the program in use. */
 void cs_surface_draw(const struct cs_surface *surface);
 
 struct cs_surface_program {
     unsigned name;
-    int mode, front, back, coefficients, sink, fade;
+    int mode, front_location, back_location, coefficients, depth_bias_location, fade_location;
 };
 
 enum cs_status cs_surface_program_init(struct cs_surface_program *program,

@@ -1,14 +1,14 @@
 /* event_move.c - colliders on paths: an event's chords made into the motion of its obstacle. */
 #include "model/event/event_move.h"
 
-#include "model/contact/obstacle.h"
+#include "model/contact/posed_collider.h"
 #include "model/event/event_path.h"
 
 #include <math.h>
 #include <string.h>
 
-static const struct cs_obstacle_motion at_rest = {.until = HUGE_VAL,
-                                                  .turn = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+static const struct cs_collider_motion at_rest = {.t_end = HUGE_VAL,
+                                                  .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
 bool cs_event_moves_any(const struct cs_scene *scene) {
     for (uint32_t e = 0; e < scene->events.n; e++)
@@ -19,9 +19,9 @@ bool cs_event_moves_any(const struct cs_scene *scene) {
 
 enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *error) {
     const uint32_t n = system->scene->colliders.n;
-    system->motions = cs_arena_take_n(&system->arena, n, sizeof *system->motions, error);
-    system->collider_motion =
-        cs_arena_take_n(&system->arena, 9 * (size_t)n, sizeof *system->collider_motion, error);
+    system->motions = cs_arena_alloc_array(&system->arena, n, sizeof *system->motions, error);
+    system->collider_motion = cs_arena_alloc_array(&system->arena, 9 * (size_t)n,
+                                                   sizeof *system->collider_motion, error);
     if (error->status)
         return error->status;
     for (uint32_t k = 0; k < n; k++)
@@ -37,10 +37,10 @@ enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *e
 void cs_event_show_moves(struct cs_system *system) {
     const size_t n = system->view.n_colliders;
     for (uint32_t k = 0; k < n; k++) {
-        const double since = system->motions[k].since;
+        const double since = system->motions[k].t_begin;
         double *shown = system->collider_motion + 3 * (size_t)k;
-        struct cs_obstacle at;
-        cs_obstacle_at(system, k, since, &at);
+        struct cs_posed_collider at;
+        cs_posed_collider_at(system, k, since, &at);
         for (int c = 0; c < 3; c++) {
             shown[c] = at.centre[c] - since * at.velocity[c];
             shown[3 * n + c] = at.velocity[c];
@@ -54,65 +54,66 @@ static const struct cs_move *move_of(const struct cs_system *system, uint32_t ev
 }
 
 /* NULL where the collider was taken out of the scene, as compare does */
-static struct cs_obstacle_motion *motion_of(const struct cs_system *system, uint32_t event) {
+static struct cs_collider_motion *motion_of(const struct cs_system *system, uint32_t event) {
     return system->motions ? system->motions + move_of(system, event)->collider : NULL;
 }
 
 /* stands still from t on, as it is then */
-static void stop(struct cs_obstacle_motion *motion, double t) {
-    struct cs_obstacle_motion stopped = at_rest;
-    stopped.since = t;
-    cs_obstacle_shift(motion, t, stopped.from);
-    memcpy(stopped.to, stopped.from, sizeof stopped.to);
-    cs_obstacle_turn(motion, t, stopped.turn);
+static void stop(struct cs_collider_motion *motion, double t) {
+    struct cs_collider_motion stopped = at_rest;
+    stopped.t_begin = t;
+    cs_posed_collider_translate(motion, t, stopped.shift_begin);
+    memcpy(stopped.shift_end, stopped.shift_begin, sizeof stopped.shift_end);
+    cs_posed_collider_rotate(motion, t, stopped.rotation);
     *motion = stopped;
 }
 
 void cs_event_begin_move(struct cs_system *system, uint32_t event, double t) {
     struct cs_event_state *state = system->events->states + event;
-    struct cs_obstacle_motion *motion = motion_of(system, event);
+    struct cs_collider_motion *motion = motion_of(system, event);
     if (!motion)
         return;
     stop(motion, t);
     motion->event = event + 1;
     memcpy(motion->spin, move_of(system, event)->spin, sizeof motion->spin);
-    memcpy(state->origin, motion->from, sizeof state->origin);
-    memset(state->to, 0, sizeof state->to);
+    memcpy(state->origin, motion->shift_begin, sizeof state->origin);
+    memset(state->chord_to, 0, sizeof state->chord_to);
     cs_event_begin_path(state, t);
 }
 
 void cs_event_end_move(struct cs_system *system, uint32_t event, double t) {
-    struct cs_obstacle_motion *motion = motion_of(system, event);
+    struct cs_collider_motion *motion = motion_of(system, event);
     if (!motion)
         return;
     memset(system->events->states[event].rate, 0, sizeof system->events->states[event].rate);
-    system->events->states[event].until = HUGE_VAL;
+    system->events->states[event].chord_end = HUGE_VAL;
     if (motion->event == event + 1)
         stop(motion, t);
 }
 
 void cs_event_follow_move(struct cs_system *system, uint32_t event, double t) {
     const struct cs_event_state *state = system->events->states + event;
-    struct cs_obstacle_motion *motion = motion_of(system, event);
-    if (!motion || motion->event != event + 1 || state->since != t)
+    struct cs_collider_motion *motion = motion_of(system, event);
+    if (!motion || motion->event != event + 1 || state->chord_begin != t)
         return;
     double turn[9];
-    cs_obstacle_turn(motion, t, turn);
-    memcpy(motion->turn, turn, sizeof turn);
-    motion->since = t;
-    motion->until = state->until;
+    cs_posed_collider_rotate(motion, t, turn);
+    memcpy(motion->rotation, turn, sizeof turn);
+    motion->t_begin = t;
+    motion->t_end = state->chord_end;
     for (int c = 0; c < 3; c++) {
-        motion->from[c] = state->origin[c] + state->from[c];
-        motion->to[c] = state->origin[c] + state->to[c];
+        motion->shift_begin[c] = state->origin[c] + state->chord_from[c];
+        motion->shift_end[c] = state->origin[c] + state->chord_to[c];
         motion->rate[c] = state->rate[c];
     }
 }
 
 /* m, from the centre to the farthest matter; of a plane: to the farthest particle */
-static double reach_of(const struct cs_system *system, const struct cs_obstacle *obstacle) {
-    const double *core = obstacle->core, *x = system->state;
+static double reach_of(const struct cs_system *system,
+                       const struct cs_posed_collider *obstacle) {
+    const double *core = obstacle->half_sizes, *x = system->state;
     const size_t n = system->view.n;
-    if (obstacle->kind != CS_OBSTACLE_PLANE)
+    if (obstacle->kind != CS_COLLIDER_PLANE)
         return sqrt(core[0] * core[0] + core[1] * core[1] + core[2] * core[2]) +
                obstacle->radius;
     double squared = 0;
@@ -127,16 +128,16 @@ static double reach_of(const struct cs_system *system, const struct cs_obstacle 
     return sqrt(squared);
 }
 
-double cs_event_turn_speed(const struct cs_system *system) {
+double cs_event_angular_speed(const struct cs_system *system) {
     double speed = 0;
     for (uint32_t k = 0; system->motions && k < system->scene->colliders.n; k++) {
-        const struct cs_obstacle_motion *motion = system->motions + k;
+        const struct cs_collider_motion *motion = system->motions + k;
         const double *w = motion->spin;
         const double rate = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-        struct cs_obstacle obstacle;
+        struct cs_posed_collider obstacle;
         if (rate == 0)
             continue;
-        cs_obstacle_at(system, k, motion->since, &obstacle);
+        cs_posed_collider_at(system, k, motion->t_begin, &obstacle);
         speed = fmax(speed, rate * reach_of(system, &obstacle));
     }
     return speed;

@@ -1,4 +1,4 @@
-/* event_move.h - events that move colliders; for events.c and event_act.c. */
+/* event_move.h - events that move colliders; for events.c and event_apply.c. */
 #ifndef CS_EVENT_MOVE_H
 #define CS_EVENT_MOVE_H
 
@@ -15,13 +15,13 @@ enum cs_status cs_event_moves_build(struct cs_system *system, struct cs_error *e
 void cs_event_begin_move(struct cs_system *system, uint32_t event, double t);
 void cs_event_end_move(struct cs_system *system, uint32_t event, double t);
 
-/* After cs_event_turn: the collider follows the chord that the event is in. */
+/* After cs_event_next_leg: the collider follows the chord that the event is in. */
 void cs_event_follow_move(struct cs_system *system, uint32_t event, double t);
 
 /* Shows in the view how the colliders move from now on. */
 void cs_event_show_moves(struct cs_system *system);
 
 /* Largest speed in m/s that matter of a turning collider has within the scene. */
-double cs_event_turn_speed(const struct cs_system *system);
+double cs_event_angular_speed(const struct cs_system *system);
 
 #endif

@@ -12,41 +12,41 @@ static void chord_point(const struct cs_event_path *path, const struct cs_event_
                         double out[3]) {
     const double *point = path->points[state->leg].point;
     const double s = (state->chord + 1) / (double)CS_EVENT_CHORDS;
-    const bool whole = state->chord + 1 == path->chords;
+    const bool whole = state->chord + 1 == path->n_chords;
     for (int c = 0; c < 3; c++)
-        out[c] = whole
-                     ? point[c]
-                     : state->corner[c] + (point[c] - state->corner[c]) * (s * s * (3 - 2 * s));
+        out[c] = whole ? point[c]
+                       : state->leg_start[c] +
+                             (point[c] - state->leg_start[c]) * (s * s * (3 - 2 * s));
 }
 
 void cs_event_begin_path(struct cs_event_state *state, double t) {
-    /* the end of a leg before the first: cs_event_turn goes on from there */
-    memcpy(state->corner, state->to, sizeof state->corner);
+    /* the end of a leg before the first: cs_event_next_leg goes on from there */
+    memcpy(state->leg_start, state->chord_to, sizeof state->leg_start);
     state->leg = 0;
     state->chord = UINT32_MAX;
-    state->until = t;
+    state->chord_end = t;
 }
 
-void cs_event_turn(struct cs_events *events, uint32_t event, double t) {
+void cs_event_next_leg(struct cs_events *events, uint32_t event, double t) {
     struct cs_event_state *state = events->states + event;
     const struct cs_event_path path = cs_event_path_of(cs_scene_events(&events->scene) + event);
-    if (state->begin > t || state->until > t)
+    if (state->begin > t || state->chord_end > t)
         return;
-    memcpy(state->from, state->to, sizeof state->from);
+    memcpy(state->chord_from, state->chord_to, sizeof state->chord_from);
     memset(state->rate, 0, sizeof state->rate);
-    state->since = t;
-    state->until = HUGE_VAL;
+    state->chord_begin = t;
+    state->chord_end = HUGE_VAL;
     /* the leg is done: the next one begins where it ends */
-    if (++state->chord == path.chords) {
-        memcpy(state->corner, state->to, sizeof state->corner);
+    if (++state->chord == path.n_chords) {
+        memcpy(state->leg_start, state->chord_to, sizeof state->leg_start);
         state->chord = 0;
         state->leg++;
     }
     /* behind the last point it stays there */
     if (state->leg >= path.n)
         return;
-    chord_point(&path, state, state->to);
-    state->until = cs_event_chord_end(events, event, state->leg, state->chord);
+    chord_point(&path, state, state->chord_to);
+    state->chord_end = cs_event_chord_end(events, event, state->leg, state->chord);
     for (int c = 0; c < 3; c++)
-        state->rate[c] = (state->to[c] - state->from[c]) / (state->until - t);
+        state->rate[c] = (state->chord_to[c] - state->chord_from[c]) / (state->chord_end - t);
 }

@@ -7,6 +7,6 @@
 /* The path of a grab or a move begins at t, at state->to. */
 void cs_event_begin_path(struct cs_event_state *state, double t);
 /* Goes on to the next chord of the path of a grab or a move if that begins at t. */
-void cs_event_turn(struct cs_events *events, uint32_t event, double t);
+void cs_event_next_leg(struct cs_events *events, uint32_t event, double t);
 
 #endif

@@ -25,7 +25,7 @@ size_t cs_event_times_count(const struct cs_scene *scene) {
     size_t n = 0;
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_event_path path = cs_event_path_of(events + e);
-        n += 2 + (size_t)path.n * path.chords;
+        n += 2 + (size_t)path.n * path.n_chords;
     }
     return n;
 }
@@ -34,9 +34,9 @@ static double chord_end(const struct cs_event *event, uint32_t leg, uint32_t cho
     const struct cs_event_path path = cs_event_path_of(event);
     const double begin = leg ? path.points[leg - 1].at : begin_of(event);
     const double end = path.points[leg].at;
-    return chord + 1 == path.chords
+    return chord + 1 == path.n_chords
                ? end
-               : begin + (end - begin) * ((chord + 1) / (double)path.chords);
+               : begin + (end - begin) * ((chord + 1) / (double)path.n_chords);
 }
 
 double cs_event_time_snap(const struct cs_scene *scene, double t) {
@@ -70,7 +70,7 @@ static uint32_t collect(const struct cs_scene *scene, double *times) {
         times[n++] = cs_event_time_snap(scene, end_of(list + e));
         const struct cs_event_path path = cs_event_path_of(list + e);
         for (uint32_t leg = 0; leg < path.n; leg++)
-            for (uint32_t c = 0; c < path.chords; c++)
+            for (uint32_t c = 0; c < path.n_chords; c++)
                 times[n++] = cs_event_time_snap(scene, chord_end(list + e, leg, c));
     }
     return n;

@@ -15,7 +15,7 @@ double cs_event_time_snap(const struct cs_scene *scene, double t);
 /* The path of a grab or a move: from point to point in a number of chords. n 0: none. */
 struct cs_event_path {
     const struct cs_path_point *points;
-    uint32_t n, chords;
+    uint32_t n, n_chords;
 };
 struct cs_event_path cs_event_path_of(const struct cs_event *event);
 

@@ -1,13 +1,13 @@
 /* The events of a run: cuts it into segments and, between two, applies what begins and ends. */
 #include "model/event/events.h"
 
-#include "model/contact/obstacle.h"
-#include "model/event/event_act.h"
+#include "model/contact/posed_collider.h"
+#include "model/event/event_apply.h"
 #include "model/event/event_move.h"
 #include "model/event/event_path.h"
 #include "model/event/event_times.h"
 #include "model/event/viewpoint_forces.h"
-#include "model/force/bounds.h"
+#include "model/force/spectral_bounds.h"
 #include "scene/event_key.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ static bool pushes(const struct cs_event *event) {
 static bool grabs(const struct cs_event *event) {
     return event->grab.present;
 }
-static bool lets_go(const struct cs_event *event) {
+static bool releases(const struct cs_event *event) {
     return event->release.present ||
            ((event->pin.present || event->grab.present) && isnan(event->at));
 }
@@ -38,43 +38,45 @@ size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n) {
            scene->bodies.n * sizeof(struct cs_body) +
            scene->colliders.n * sizeof(struct cs_collider) +
            (cs_event_moves_any(scene) ? scene->colliders.n : 0) *
-               (sizeof(struct cs_obstacle_motion) + 9 * sizeof(double)) +
+               (sizeof(struct cs_collider_motion) + 9 * sizeof(double)) +
            n * (2 * sizeof(uint32_t) + sizeof(bool) + vectors * sizeof(double));
 }
 
 /* the list's items again, as the caller's own */
 static void copy_list(struct cs_system *system, struct cs_list *list, size_t size,
                       struct cs_error *error) {
-    void *items = cs_arena_take_n(&system->arena, list->n, size, error);
+    void *items = cs_arena_alloc_array(&system->arena, list->n, size, error);
     if (items && list->n > 0)
         memcpy(items, list->items, list->n * size);
     list->items = items;
 }
 
-static void take_arrays(struct cs_system *system, struct cs_events *events,
-                        struct cs_error *error) {
+static void alloc_arrays(struct cs_system *system, struct cs_events *events,
+                         struct cs_error *error) {
     const size_t n = system->view.n;
     struct cs_arena *arena = &system->arena;
     struct cs_scene *scene = &events->scene;
     *scene = *system->scene;
     copy_list(system, &scene->bodies, sizeof(struct cs_body), error);
     copy_list(system, &scene->colliders, sizeof(struct cs_collider), error);
-    events->times = cs_arena_take_n(arena, cs_event_times_count(scene), sizeof(double), error);
+    events->times =
+        cs_arena_alloc_array(arena, cs_event_times_count(scene), sizeof(double), error);
     events->states =
-        cs_arena_take_n(arena, scene->events.n, sizeof(struct cs_event_state), error);
-    events->holders = cs_arena_take_n(arena, n, sizeof(uint32_t), error);
-    events->marks = cs_arena_take_n(arena, n, sizeof(bool), error);
+        cs_arena_alloc_array(arena, scene->events.n, sizeof(struct cs_event_state), error);
+    events->held_by = cs_arena_alloc_array(arena, n, sizeof(uint32_t), error);
+    events->work = cs_arena_alloc_array(arena, n, sizeof(bool), error);
     if (any(scene, pushes))
-        system->push = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+        system->event_force = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     if (any(scene, grabs))
-        events->offsets = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+        events->offsets = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     if (cs_event_moves_any(scene))
         cs_event_moves_build(system, error);
 }
 
 /* any particle may become a pinned one */
 static void widen_pinned(struct cs_system *system, struct cs_error *error) {
-    uint32_t *pinned = cs_arena_take_n(&system->arena, system->view.n, sizeof *pinned, error);
+    uint32_t *pinned =
+        cs_arena_alloc_array(&system->arena, system->view.n, sizeof *pinned, error);
     if (!pinned)
         return;
     memcpy(pinned, system->pinned, system->n_pinned * sizeof *pinned);
@@ -82,10 +84,10 @@ static void widen_pinned(struct cs_system *system, struct cs_error *error) {
 }
 
 enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error) {
-    struct cs_events *events = cs_arena_take(&system->arena, sizeof *events, error);
+    struct cs_events *events = cs_arena_alloc(&system->arena, sizeof *events, error);
     if (!events)
         return error->status;
-    take_arrays(system, events, error);
+    alloc_arrays(system, events, error);
     widen_pinned(system, error);
     const struct cs_event *list = cs_scene_events(&events->scene);
     for (uint32_t e = 0; e < events->scene.events.n && !error->status; e++) {
@@ -99,7 +101,7 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
         return error->status;
     cs_event_times_fill(events);
     events->end = events->times[0];
-    events->look = HUGE_VAL;
+    events->next_test = HUGE_VAL;
     system->events = events;
     system->scene = &events->scene;
     return cs_viewpoint_forces_any(system->scene) ? cs_viewpoint_forces_build(system, error)
@@ -109,8 +111,8 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
 /* what hangs on values that ramps change */
 static void refresh(struct cs_system *system) {
     cs_event_refresh_springs(system);
-    if (any(&system->events->scene, cs_event_weighs))
-        cs_system_weigh(system);
+    if (any(&system->events->scene, cs_event_changes_mass))
+        cs_system_set_masses(system);
 }
 
 void cs_events_set_bounds(struct cs_system *system, double *work) {
@@ -123,14 +125,14 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
             continue;
         state->first = *state->value;
         /* the stiffest springs and the lightest particles */
-        *state->value = cs_event_weighs(event) ? fmin(*state->value, event->ramp.value)
-                                               : fmax(*state->value, event->ramp.value);
+        *state->value = cs_event_changes_mass(event) ? fmin(*state->value, event->ramp.value)
+                                                     : fmax(*state->value, event->ramp.value);
     }
     refresh(system);
-    if (any(&events->scene, lets_go))
+    if (any(&events->scene, releases))
         for (uint32_t p = 0; p < system->n_pinned; p++)
             system->inv_mass[system->pinned[p]] = 1 / system->mass[system->pinned[p]];
-    cs_bounds_set(system, work);
+    cs_spectral_bounds_set(system, work);
 
     for (uint32_t p = 0; p < system->n_pinned; p++)
         system->inv_mass[system->pinned[p]] = 0;
@@ -142,10 +144,10 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
 
 double cs_events_next(const struct cs_events *events) {
     /* a look so near to the end is made there */
-    return events->look + CS_EVENT_SAME < events->end ? events->look : events->end;
+    return events->next_test + CS_EVENT_SAME < events->end ? events->next_test : events->end;
 }
 
-uint32_t cs_events_cuts(const struct cs_events *events, double t) {
+uint32_t cs_events_count_stops(const struct cs_events *events, double t) {
     return events->n_times + cs_viewpoint_forces_cuts(&events->scene, t);
 }
 
@@ -157,12 +159,12 @@ static void list_pinned(struct cs_system *system) {
 }
 
 /* the segment ends */
-static void turn(struct cs_system *system, double t) {
+static void end_segment(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
     const uint32_t n = events->scene.events.n;
     cs_events_move_values(system, t);
     events->next++;
-    events->begin = events->now = t;
+    events->begin = events->values_time = t;
     events->end = events->next < events->n_times ? events->times[events->next] : HUGE_VAL;
     /* ends first: the next event may take over the same value or particles */
     for (uint32_t e = 0; e < n; e++)
@@ -173,36 +175,37 @@ static void turn(struct cs_system *system, double t) {
             cs_event_start(system, e);
 
     /* what is under way in the segment that begins */
-    events->ramps = events->grabs = false;
+    events->has_ramps = events->has_grabs = false;
     for (uint32_t e = 0; e < n; e++) {
         const struct cs_event *event = cs_scene_events(&events->scene) + e;
-        events->ramps |=
+        events->has_ramps |=
             events->states[e].active && (event->ramp.present || event->wind.present);
         if (event->grab.present || (event->move.present && system->motions))
-            cs_event_turn(events, e, t);
+            cs_event_next_leg(events, e, t);
         if (event->move.present)
             cs_event_follow_move(system, e, t);
     }
     cs_event_show_moves(system);
     for (uint32_t i = 0; i < system->view.n; i++) {
-        const uint32_t holder = events->holders[i];
-        events->grabs |= holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
+        const uint32_t holder = events->held_by[i];
+        events->has_grabs |=
+            holder > 0 && cs_scene_events(&events->scene)[holder - 1].grab.present;
     }
     list_pinned(system);
     refresh(system);
-    cs_events_place(system, t, system->state, system->state + 3 * (size_t)system->view.n);
+    cs_events_apply_paths(system, t, system->state, system->state + 3 * (size_t)system->view.n);
 }
 
 bool cs_events_apply(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
     const bool turns = events->end <= t;
     if (turns)
-        turn(system, t);
-    const bool others = events->viewpoint_forces && cs_viewpoint_forces_look(system, t);
+        end_segment(system, t);
+    const bool others = events->viewpoint_forces && cs_viewpoint_forces_retest(system, t);
     if (turns || others)
         cs_event_sum_pushes(system);
     if (events->viewpoint_forces)
-        events->look = cs_viewpoint_forces_next(events->viewpoint_forces);
+        events->next_test = cs_viewpoint_forces_next(events->viewpoint_forces);
     return turns || others;
 }
 
@@ -210,28 +213,29 @@ void cs_events_move_values(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
     // stages may lie behind the end of their step, and forces are smooth there too
     const double now = fmax(t, events->begin);
-    if (!events->ramps || now == events->now)
+    if (!events->has_ramps || now == events->values_time)
         return;
-    events->now = now;
+    events->values_time = now;
     for (uint32_t e = 0; e < events->scene.events.n; e++)
         if (events->states[e].active)
             cs_event_set_value(system, e, now);
     cs_event_refresh_springs(system);
 }
 
-void cs_events_place(const struct cs_system *system, double t, double *x, double *v) {
+void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v) {
     const struct cs_events *events = system->events;
     const size_t n = system->view.n;
-    for (uint32_t p = 0; events->grabs && p < system->n_pinned; p++) {
+    for (uint32_t p = 0; events->has_grabs && p < system->n_pinned; p++) {
         const size_t i = system->pinned[p];
-        const uint32_t holder = events->holders[i];
+        const uint32_t holder = events->held_by[i];
         if (!holder || !cs_scene_events(&events->scene)[holder - 1].grab.present)
             continue;
         const struct cs_event_state *state = events->states + holder - 1;
         for (size_t c = 0; c < 3; c++) {
-            const double point = t >= state->until
-                                     ? state->to[c]
-                                     : state->from[c] + state->rate[c] * (t - state->since);
+            const double point =
+                t >= state->chord_end
+                    ? state->chord_to[c]
+                    : state->chord_from[c] + state->rate[c] * (t - state->chord_begin);
             x[c * n + i] = events->offsets[c * n + i] + point;
             v[c * n + i] = state->rate[c];
         }
@@ -245,5 +249,5 @@ double cs_events_speed(const struct cs_system *system) {
         const double *rate = events->states[e].rate;
         squared = fmax(squared, rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
     }
-    return sqrt(squared) + cs_event_turn_speed(system);
+    return sqrt(squared) + cs_event_angular_speed(system);
 }

@@ -17,8 +17,8 @@ size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n);
 /* Makes the events of a system whose arrays are all there. CS_ERR_MEMORY. */
 enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error);
 
-/* Sets the system's bounds (bounds.h) to the largest that its ramps and releases can reach.
- * work has 2n doubles. */
+/* Sets the system's bounds (spectral_bounds.h) to the largest that its ramps and releases can
+ * reach. work has 2n doubles. */
 void cs_events_set_bounds(struct cs_system *system, double *work);
 
 /* When something happens next that has not happened yet, in s: the segment ends, or within it a
@@ -32,7 +32,7 @@ double cs_events_next(const struct cs_events *events);
 bool cs_events_apply(struct cs_system *system, double t);
 
 /* Times up to t, besides those of frames, at which a method may have to stop, or more. */
-uint32_t cs_events_cuts(const struct cs_events *events, double t);
+uint32_t cs_events_count_stops(const struct cs_events *events, double t);
 
 /* Sets ramped values to those at t, or at the begin of the segment if t lies before it. Behind
  * its end they go on at the same rate: a stage of a method may lie there, and a bend within its
@@ -43,6 +43,6 @@ void cs_events_move_values(struct cs_system *system, double t);
 double cs_events_speed(const struct cs_system *system);
 
 /* Puts the grabbed particles where they are at t, with the velocity of their path. */
-void cs_events_place(const struct cs_system *system, double t, double *x, double *v);
+void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v);
 
 #endif

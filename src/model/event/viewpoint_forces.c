@@ -26,7 +26,7 @@ bool cs_viewpoint_forces_any(const struct cs_scene *scene) {
 size_t cs_viewpoint_forces_bytes(const struct cs_scene *scene, uint32_t n) {
     return sizeof(struct cs_viewpoint_forces) +
            count(scene) * (sizeof(struct cs_viewpoint_force_state) + n * sizeof(bool)) +
-           cs_sight_bytes(n);
+           cs_visibility_query_bytes(n);
 }
 
 enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_error *error) {
@@ -34,24 +34,25 @@ enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_err
     const uint32_t n = system->view.n;
     struct cs_arena *arena = &system->arena;
     struct cs_viewpoint_forces *viewpoint_forces =
-        cs_arena_take(arena, sizeof *viewpoint_forces, error);
+        cs_arena_alloc(arena, sizeof *viewpoint_forces, error);
     if (!viewpoint_forces)
         return error->status;
     viewpoint_forces->states =
-        cs_arena_take_n(arena, count(scene), sizeof *viewpoint_forces->states, error);
+        cs_arena_alloc_array(arena, count(scene), sizeof *viewpoint_forces->states, error);
     for (uint32_t e = 0; e < scene->events.n && !error->status; e++) {
         if (!viewpoint_force_of(scene, e)->present)
             continue;
-        bool *seen = cs_arena_take_n(arena, n, sizeof *seen, error);
+        bool *seen = cs_arena_alloc_array(arena, n, sizeof *seen, error);
         struct cs_viewpoint_force_state *state =
             viewpoint_forces->states + viewpoint_forces->n++;
-        *state = (struct cs_viewpoint_force_state){.event = e, .seen = seen, .next = HUGE_VAL};
-        cs_sight_make(&state->sight, viewpoint_force_of(scene, e));
+        *state =
+            (struct cs_viewpoint_force_state){.event = e, .is_visible = seen, .next = HUGE_VAL};
+        cs_visibility_query_make(&state->query, viewpoint_force_of(scene, e));
     }
     /* shared work: nobody keeps anything in it between two calls */
-    viewpoint_forces->marks = system->events->marks;
+    viewpoint_forces->work_marks = system->events->work;
     system->events->viewpoint_forces = viewpoint_forces;
-    return cs_sight_work_init(&viewpoint_forces->work, n, arena, error);
+    return cs_visibility_scratch_init(&viewpoint_forces->work, n, arena, error);
 }
 
 static struct cs_viewpoint_force_state *
@@ -63,16 +64,16 @@ state_of(const struct cs_viewpoint_forces *viewpoint_forces, uint32_t event) {
 }
 
 /* tests visibility again; true if other particles are seen than before */
-static bool look(const struct cs_system *system, struct cs_viewpoint_force_state *state,
-                 double t) {
+static bool retest_visibility(const struct cs_system *system,
+                              struct cs_viewpoint_force_state *state, double t) {
     const struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
     const struct cs_viewpoint_force *viewpoint_force =
         viewpoint_force_of(system->scene, state->event);
-    const size_t bytes = system->view.n * sizeof *state->seen;
-    cs_sight_find(&state->sight, system, t, system->state, viewpoint_force->body,
-                  &viewpoint_forces->work, viewpoint_forces->marks);
-    const bool changed = memcmp(state->seen, viewpoint_forces->marks, bytes) != 0;
-    memcpy(state->seen, viewpoint_forces->marks, bytes);
+    const size_t bytes = system->view.n * sizeof *state->is_visible;
+    cs_visibility_query_run(&state->query, system, t, system->state, viewpoint_force->body,
+                            &viewpoint_forces->work, viewpoint_forces->work_marks);
+    const bool changed = memcmp(state->is_visible, viewpoint_forces->work_marks, bytes) != 0;
+    memcpy(state->is_visible, viewpoint_forces->work_marks, bytes);
     return changed;
 }
 
@@ -82,8 +83,8 @@ static void add(const struct cs_system *system, const struct cs_viewpoint_force_
     const size_t n = system->view.n;
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
-            if (state->seen[i] && system->inv_mass[i] > 0)
-                out[c * n + i] += state->sight.axes[2][c] * (factor / system->mass[i]);
+            if (state->is_visible[i] && system->inv_mass[i] > 0)
+                out[c * n + i] += state->query.axes[2][c] * (factor / system->mass[i]);
 }
 
 /* time of the visibility test number `looks`, in s */
@@ -101,7 +102,7 @@ static void plan_next(const struct cs_system *system, struct cs_viewpoint_force_
     const struct cs_viewpoint_force *viewpoint_force =
         viewpoint_force_of(system->scene, state->event);
     do
-        state->next = time_of(system->scene, viewpoint_force, of->begin, ++state->looks);
+        state->next = time_of(system->scene, viewpoint_force, of->begin, ++state->n_tests);
     while (state->next <= t + CS_EVENT_SAME);
 }
 
@@ -110,9 +111,9 @@ void cs_viewpoint_force_start(struct cs_system *system, uint32_t event) {
     const struct cs_event_state *of = events->states + event;
     const struct cs_viewpoint_force *viewpoint_force = viewpoint_force_of(system->scene, event);
     struct cs_viewpoint_force_state *state = state_of(events->viewpoint_forces, event);
-    look(system, state, of->begin);
+    retest_visibility(system, state, of->begin);
     state->active = of->end > of->begin;
-    state->looks = 0;
+    state->n_tests = 0;
     if (state->active)
         plan_next(system, state, of->begin);
     else
@@ -126,13 +127,13 @@ void cs_viewpoint_force_finish(struct cs_system *system, uint32_t event) {
     state->next = HUGE_VAL;
 }
 
-bool cs_viewpoint_forces_look(struct cs_system *system, double t) {
+bool cs_viewpoint_forces_retest(struct cs_system *system, double t) {
     struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
     bool changed = false;
     for (uint32_t k = 0; k < viewpoint_forces->n; k++) {
         if (viewpoint_forces->states[k].next > t + CS_EVENT_SAME)
             continue;
-        changed |= look(system, viewpoint_forces->states + k, t);
+        changed |= retest_visibility(system, viewpoint_forces->states + k, t);
         plan_next(system, viewpoint_forces->states + k, t);
     }
     return changed;

@@ -10,22 +10,22 @@
 #ifndef CS_VIEWPOINT_FORCES_H
 #define CS_VIEWPOINT_FORCES_H
 
-#include "model/event/sight.h"
+#include "model/event/visibility.h"
 
 struct cs_viewpoint_force_state {
     uint32_t event; /* number in the scene */
-    struct cs_sight sight;
-    bool *seen;   /* (n) particles at the last test */
-    bool active;  /* between its two ends */
-    double looks; /* tests so far in this interval */
-    double next;  /* s, of the next test; HUGE_VAL: none */
+    struct cs_visibility_query query;
+    bool *is_visible; /* (n) particles at the last test */
+    bool active;      /* between its two ends */
+    double n_tests;   /* tests so far in this interval */
+    double next;      /* s, of the next test; HUGE_VAL: none */
 };
 
 struct cs_viewpoint_forces {
     uint32_t n;
     struct cs_viewpoint_force_state *states; /* (n) in the scene's order */
-    struct cs_sight_work work;
-    bool *marks; /* (n particles) work, the events' */
+    struct cs_visibility_scratch work;
+    bool *work_marks; /* (n particles) work, the events' */
 };
 
 bool cs_viewpoint_forces_any(const struct cs_scene *scene);
@@ -42,7 +42,7 @@ void cs_viewpoint_force_start(struct cs_system *system, uint32_t event);
 void cs_viewpoint_force_finish(struct cs_system *system, uint32_t event);
 
 /* Tests visibility where it is time at t. true if any now sees others than before. */
-bool cs_viewpoint_forces_look(struct cs_system *system, double t);
+bool cs_viewpoint_forces_retest(struct cs_system *system, double t);
 
 /* Time of the next test in s; HUGE_VAL: none. */
 double cs_viewpoint_forces_next(const struct cs_viewpoint_forces *viewpoint_forces);

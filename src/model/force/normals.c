@@ -48,11 +48,11 @@ static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
 static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
                          const double *x, double product[3]) {
     const struct cs_trimesh *mesh = body->mesh;
-    const uint32_t end = mesh->around_end[i - body->first];
+    const uint32_t end = mesh->vertex_triangles_end[i - body->first];
     product[0] = product[1] = product[2] = 0;
     for (uint32_t k = cs_trimesh_around_begin(mesh, i - body->first); k < end; k++) {
         double normal[3];
-        cs_trimesh_normal(mesh, mesh->around[k], x, n, body->first, normal);
+        cs_trimesh_normal(mesh, mesh->vertex_triangles[k], x, n, body->first, normal);
         for (int c = 0; c < 3; c++)
             product[c] += normal[c];
     }
@@ -96,7 +96,7 @@ static void update_part(void *arg, size_t begin, size_t end) {
 
 void cs_normals_update(const struct cs_system *system, const double *x) {
     struct update update = {system, x};
-    cs_vector_share(system->view.n, update_part, &update);
+    cs_vector_parallel_for(system->view.n, update_part, &update);
 }
 
 /* a vector with its change along dx */
@@ -135,9 +135,9 @@ static void grid_change(const struct cs_body_range *body, uint32_t i, uint32_t n
 static void mesh_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
                         const struct cs_eval *at, struct change *sum) {
     const struct cs_trimesh *mesh = body->mesh;
-    const uint32_t end = mesh->around_end[i - body->first], first = body->first;
+    const uint32_t end = mesh->vertex_triangles_end[i - body->first], first = body->first;
     for (uint32_t k = cs_trimesh_around_begin(mesh, i - first); k < end; k++) {
-        const uint32_t *corner = mesh->triangles + 3 * (size_t)mesh->around[k];
+        const uint32_t *corner = mesh->triangles + 3 * (size_t)mesh->vertex_triangles[k];
         const struct change a = change_of(at, n, first + corner[0], first + corner[1]);
         const struct change b = change_of(at, n, first + corner[0], first + corner[2]);
         add_product(&a, &b, sum);

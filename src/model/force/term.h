@@ -15,8 +15,9 @@ enum cs_term_use {
     CS_USE_AREA = 1u << 1     /* area (n) */
 };
 
-/* For the Gershgorin bounds of bounds.h, at each particle: the sum of the norms of the 3x3
- * blocks in its row of a force's derivative, the diagonal block and those of its neighbours. */
+/* For the Gershgorin bounds of spectral_bounds.h, at each particle: the sum of the norms of the
+ * 3x3 blocks in its row of a force's derivative, the diagonal block and those of its
+ * neighbours. */
 struct cs_gershgorin {
     double *stiffness, *damping; /* (n) of df/dx in N/m and of df/dv in N s/m */
 };
@@ -26,8 +27,8 @@ enum cs_energy_kind { CS_ENERGY_ELASTIC, CS_ENERGY_GRAVITY, CS_ENERGY_OTHER, CS_
 
 /* Calls may be NULL where it says so; they get arrays (3,n) and write nothing else. */
 struct cs_term {
-    const char *name; /* of its line in --plan */
-    uint32_t parts;   /* enum cs_part: by them methods choose */
+    const char *name;   /* of its line in --plan */
+    uint32_t part_bits; /* enum cs_part: by them methods choose */
 
     /* --- whether a scene has it --- */
     /* Its line of the plan: whether it is built, bytes of arrays of its own, why or why not;
@@ -39,8 +40,9 @@ struct cs_term {
     enum cs_status (*build)(struct cs_system *system, struct cs_error *error);
     /* After build: why there is nothing to do for it after all, which is then its line of the
      * plan, and it is not called again; NULL where there is. May be NULL. */
-    const char *(*idle_why)(const struct cs_system *system);
-    const char *const *ramps; /* keys that events may change while it acts, closed by NULL */
+    const char *(*reason_idle)(const struct cs_system *system);
+    const char *const
+        *rampable_keys; /* keys that events may change while it acts, closed by NULL */
 
     /* --- the force --- */
     /* Before the blocks of one force, or of one product (at->dx or at->dv is given), by all
@@ -74,7 +76,7 @@ struct cs_term {
     void (*prepare_matrix)(const struct cs_system *system, const struct cs_matrix *matrix,
                            bool kept);
     /* y += those entries times p. */
-    void (*add_product)(const struct cs_system *system, const double *p, double *y);
+    void (*add_matrix_product)(const struct cs_system *system, const double *p, double *y);
     /* Between particles: the springs alone, whose factors the solver knows. Where at->kxx and
      * at->dvv are given, its add_force adds diagonal blocks of df/dx and df/dv too, and f may
      * be NULL; here, after all blocks, it adds those that are left. */
@@ -85,11 +87,11 @@ struct cs_term {
      * has now. NULL: none, or none that holds for every state. */
     void (*add_bound)(const struct cs_system *system, const struct cs_gershgorin *sums);
     /* Bounds at a state, instead of those above. NULL: they hold at any. */
-    void (*add_bound_at)(const struct cs_system *system, const struct cs_eval *at,
-                         const struct cs_gershgorin *sums);
+    void (*add_state_bound)(const struct cs_system *system, const struct cs_eval *at,
+                            const struct cs_gershgorin *sums);
     /* Greatest force in N that it can exert on particle i whatever the state is. NULL: energy
      * that is there bounds what it can do, or it only takes energy away. */
-    double (*strongest)(const struct cs_system *system, size_t i);
+    double (*max_acceleration)(const struct cs_system *system, size_t i);
 };
 
 #endif

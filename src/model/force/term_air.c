@@ -7,20 +7,20 @@
 
 #include <math.h>
 
-static double share_of(const struct cs_system *system, bool by_area, size_t i) {
+static double fraction_of(const struct cs_system *system, bool by_area, size_t i) {
     return by_area ? system->area[i] : 1;
 }
 
 /* c of particle i in N s/m */
 static double drag_of(const struct cs_system *system, size_t i) {
     const struct cs_forces *forces = &system->scene->forces;
-    return forces->drag * share_of(system, forces->drag_unit == CS_DRAG_AREA, i);
+    return forces->drag * fraction_of(system, forces->drag_unit == CS_DRAG_AREA, i);
 }
 
 static struct cs_plan_row drag_plan(const struct cs_scene *scene) {
     const bool acts = cs_event_key_acts(scene, scene->forces.drag, "forces.drag");
     return (struct cs_plan_row){.built = acts,
-                                .why = acts ? "forces.drag is above 0" : "forces.drag is 0"};
+                                .reason = acts ? "forces.drag is above 0" : "forces.drag is 0"};
 }
 
 static uint32_t drag_uses(const struct cs_scene *scene) {
@@ -60,10 +60,10 @@ static const char *const drag_ramps[] = {"forces.drag", NULL};
 
 const struct cs_term cs_term_drag = {
     .name = "drag",
-    .parts = CS_PART_DRAG,
+    .part_bits = CS_PART_DRAG,
     .plan = drag_plan,
     .uses = drag_uses,
-    .ramps = drag_ramps,
+    .rampable_keys = drag_ramps,
     .add_force = drag_force,
     .add_jvp = drag_jvp,
     .add_scalar = drag_scalar,
@@ -83,9 +83,9 @@ static struct cs_plan_row wind_plan(const struct cs_scene *scene) {
     const bool acts =
         has_gust(scene) || cs_event_key_acts(scene, strength, "forces.wind.strength");
     return (struct cs_plan_row){.built = acts,
-                                .why = acts            ? "forces.wind blows; it needs normals"
-                                       : wind->present ? "forces.wind.strength is 0"
-                                                       : "no forces.wind"};
+                                .reason = acts ? "forces.wind blows; it needs normals"
+                                          : wind->present ? "forces.wind.strength is 0"
+                                                          : "no forces.wind"};
 }
 
 static uint32_t wind_uses(const struct cs_scene *scene) {
@@ -96,7 +96,7 @@ static uint32_t wind_uses(const struct cs_scene *scene) {
 /* s of particle i in N, which is also the greatest force */
 static double strength_of(const struct cs_system *system, size_t i) {
     const struct cs_wind *wind = &system->scene->forces.wind;
-    return wind->strength * share_of(system, wind->strength_unit == CS_WIND_PA, i);
+    return wind->strength * fraction_of(system, wind->strength_unit == CS_WIND_PA, i);
 }
 
 static void wind_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -146,11 +146,11 @@ static const char *const wind_ramps[] = {"forces.wind.strength", NULL};
 
 const struct cs_term cs_term_wind = {
     .name = "wind",
-    .parts = CS_PART_WIND,
+    .part_bits = CS_PART_WIND,
     .plan = wind_plan,
     .uses = wind_uses,
-    .ramps = wind_ramps,
+    .rampable_keys = wind_ramps,
     .add_force = wind_force,
     .add_jvp = wind_jvp,
-    .strongest = strength_of,
+    .max_acceleration = strength_of,
 };

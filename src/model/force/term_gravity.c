@@ -9,7 +9,7 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
     const double size = fabs(g[0]) + fabs(g[1]) + fabs(g[2]);
     const bool acts = cs_event_key_acts(scene, size, "forces.gravity");
     return (struct cs_plan_row){.built = acts,
-                                .why = acts ? "forces.gravity" : "forces.gravity is 0"};
+                                .reason = acts ? "forces.gravity" : "forces.gravity is 0"};
 }
 
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -31,7 +31,7 @@ static double energy(const struct cs_system *system, const struct cs_eval *at) {
     return sum;
 }
 
-static double strongest(const struct cs_system *system, size_t i) {
+static double max_acceleration(const struct cs_system *system, size_t i) {
     const double *g = system->scene->forces.gravity;
     return system->mass[i] * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
 }
@@ -40,11 +40,11 @@ static const char *const ramps[] = {"forces.gravity", NULL};
 
 const struct cs_term cs_term_gravity = {
     .name = "gravity",
-    .parts = CS_PART_GRAVITY,
+    .part_bits = CS_PART_GRAVITY,
     .plan = plan,
-    .ramps = ramps,
+    .rampable_keys = ramps,
     .add_force = add_force,
     .energy = energy,
     .energy_kind = CS_ENERGY_GRAVITY,
-    .strongest = strongest,
+    .max_acceleration = max_acceleration,
 };

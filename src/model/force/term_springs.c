@@ -11,9 +11,9 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
 
 static void prepare(const struct cs_system *system, const struct cs_eval *at) {
     if (at->dx || at->dv)
-        cs_springs_wait_jvp(&system->springs, system->view.n, at);
+        cs_springs_jvp_to_slots(&system->springs, system->view.n, at);
     else
-        cs_springs_wait_force(&system->springs, system->view.n, at);
+        cs_springs_force_to_slots(&system->springs, system->view.n, at);
 }
 
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -52,9 +52,9 @@ static const char *const ramps[] = {"bodies.springs.stretch", "bodies.springs.sh
 
 const struct cs_term cs_term_springs = {
     .name = "springs",
-    .parts = CS_PART_DAMPED_SPRINGS,
+    .part_bits = CS_PART_DAMPED_SPRINGS,
     .plan = plan,
-    .ramps = ramps,
+    .rampable_keys = ramps,
     .prepare = prepare,
     .add_force = add_force,
     .add_jvp = add_jvp,

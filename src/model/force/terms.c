@@ -9,14 +9,13 @@
 const struct cs_term *const cs_terms[] = {CS_TERM_LIST(X)};
 #undef X
 const uint32_t cs_n_terms = sizeof cs_terms / sizeof *cs_terms;
-_Static_assert(sizeof cs_terms / sizeof *cs_terms <= CS_TERMS_MOST,
-               "a plan has a row for each");
+_Static_assert(sizeof cs_terms / sizeof *cs_terms <= CS_TERMS_MAX, "a plan has a row for each");
 
 /* what blocks are done with */
 struct job {
     const struct cs_system *system;
     struct cs_eval at;
-    double *to;
+    double *out;
 };
 
 static void clear(const struct cs_system *system, const struct cs_block *block, double *f) {
@@ -48,7 +47,7 @@ static void clear_pinned(const struct cs_system *system, const struct cs_block *
 }
 
 static bool is_asked(const struct cs_term *term, const struct cs_eval *at) {
-    return term->parts & at->parts;
+    return term->part_bits & at->parts;
 }
 
 static void prepare(const struct job *job) {
@@ -64,11 +63,11 @@ static void force_block(void *arg, uint32_t number) {
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
     struct cs_eval at = job->at;
     at.block = &block;
-    clear(system, &block, job->to);
+    clear(system, &block, job->out);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (is_asked(system->terms[k], &at))
-            system->terms[k]->add_force(system, &at, job->to);
-    clear_pinned(system, &block, job->to);
+            system->terms[k]->add_force(system, &at, job->out);
+    clear_pinned(system, &block, job->out);
 }
 
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
@@ -84,11 +83,11 @@ static void jvp_block(void *arg, uint32_t number) {
     const struct cs_block block = cs_springs_block(&system->springs, system->view.n, number);
     struct cs_eval at = job->at;
     at.block = &block;
-    clear(system, &block, job->to);
+    clear(system, &block, job->out);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (is_asked(system->terms[k], &at) && system->terms[k]->add_jvp)
-            system->terms[k]->add_jvp(system, &at, job->to);
-    clear_pinned(system, &block, job->to);
+            system->terms[k]->add_jvp(system, &at, job->out);
+    clear_pinned(system, &block, job->out);
 }
 
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
@@ -115,8 +114,8 @@ void cs_terms_prepare_matrix(const struct cs_system *system, const struct cs_mat
 
 void cs_terms_add_product(const struct cs_system *system, const double *p, double *y) {
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->add_product)
-            system->terms[k]->add_product(system, p, y);
+        if (system->terms[k]->add_matrix_product)
+            system->terms[k]->add_matrix_product(system, p, y);
 }
 
 /* of all terms that have one without the springs */
@@ -139,9 +138,9 @@ static void diagonal_block(void *arg, uint32_t number) {
 }
 
 static void clear_diagonal(const struct cs_system *system, const struct cs_eval *at) {
-    const size_t bytes = 6 * sizeof *at->kxx * system->view.n;
-    memset(at->kxx, 0, bytes);
-    memset(at->dvv, 0, bytes);
+    const size_t bytes = 6 * sizeof *at->dfdx_blocks * system->view.n;
+    memset(at->dfdx_blocks, 0, bytes);
+    memset(at->dfdv_blocks, 0, bytes);
 }
 
 /* what is left where forces have added their blocks */
@@ -151,15 +150,15 @@ static void finish_diagonal(const struct cs_system *system, const struct cs_eval
     for (uint32_t term = 0; term < system->n_terms; term++)
         if (system->terms[term]->add_diagonal)
             system->terms[term]->add_diagonal(system, at);
-    add_shares(system, &k, at->kxx);
-    add_shares(system, &d, at->dvv);
+    add_shares(system, &k, at->dfdx_blocks);
+    add_shares(system, &d, at->dfdv_blocks);
 }
 
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv) {
     struct job job = {.system = system, .at = *at};
-    job.at.kxx = kxx;
-    job.at.dvv = dvv;
+    job.at.dfdx_blocks = kxx;
+    job.at.dfdv_blocks = dvv;
     clear_diagonal(system, &job.at);
     cs_pool_run(system->springs.n_blocks, diagonal_block, &job);
     finish_diagonal(system, &job.at);
@@ -168,8 +167,8 @@ void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at,
 void cs_terms_force_diagonal(const struct cs_system *system, const struct cs_eval *at,
                              double *f, double *blocks) {
     struct cs_eval both = *at;
-    both.kxx = blocks;
-    both.dvv = blocks + 6 * (size_t)system->view.n;
+    both.dfdx_blocks = blocks;
+    both.dfdv_blocks = blocks + 6 * (size_t)system->view.n;
     clear_diagonal(system, &both);
     cs_terms_force(system, &both, f);
     finish_diagonal(system, &both);
@@ -180,7 +179,7 @@ void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *mat
     memset(blocks, 0, 6 * sizeof *blocks * system->view.n);
     cs_terms_prepare_matrix(system, matrix, false);
     for (uint32_t k = 0; k < system->n_terms; k++)
-        if (system->terms[k]->parts & parts)
+        if (system->terms[k]->part_bits & parts)
             add_share(system, matrix, system->terms[k], blocks);
 }
 
@@ -208,7 +207,7 @@ static uint32_t use_of(const struct cs_term *term, const struct cs_scene *scene)
 
 bool cs_terms_need_normals(const struct cs_system *system, uint32_t parts) {
     for (uint32_t k = 0; system->normals && k < system->n_terms; k++)
-        if (system->terms[k]->parts & parts &&
+        if (system->terms[k]->part_bits & parts &&
             use_of(system->terms[k], system->scene) & CS_USE_NORMALS)
             return true;
     return false;

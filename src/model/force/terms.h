@@ -17,7 +17,7 @@
 CS_TERM_LIST(X)
 #undef X
 
-/* The list; at most CS_TERMS_MOST, as many as a plan has rows for. */
+/* The list; at most CS_TERMS_MAX, as many as a plan has rows for. */
 extern const struct cs_term *const cs_terms[];
 extern const uint32_t cs_n_terms;
 

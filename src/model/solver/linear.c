@@ -2,8 +2,8 @@
 #include "model/solver/linear.h"
 
 #include "base/vector.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/force/terms.h"
-#include "model/pair/pairs.h"
 
 #include <clothsim/clones.h>
 #include <clothsim/small.h>
@@ -20,14 +20,14 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
     const size_t n = system->view.n;
     *linear = (struct cs_linear){.system = system};
     linear->factors =
-        cs_arena_take_n(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
-    linear->mass = cs_arena_take_n(arena, n, sizeof(double), error);
-    linear->inverse = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
+        cs_arena_alloc_array(arena, 4 * (size_t)system->springs.n, sizeof(double), error);
+    linear->mass = cs_arena_alloc_array(arena, n, sizeof(double), error);
+    linear->inverse = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     if (cs_terms_have_blocks(system))
-        linear->blocks = cs_arena_take_n(arena, 6 * n, sizeof(double), error);
+        linear->blocks = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
     double **vectors[4] = {&linear->r, &linear->z, &linear->p, &linear->q};
     for (int k = 0; k < 4; k++)
-        *vectors[k] = cs_arena_take_n(arena, 3 * n, sizeof(double), error);
+        *vectors[k] = cs_arena_alloc_array(arena, 3 * n, sizeof(double), error);
     return error->status ? error->status
                          : cs_multigrid_init(&linear->multigrid, system, arena, error);
 }
@@ -94,7 +94,7 @@ static void set_multigrid(struct cs_linear *linear, double stiffness) {
                                                .mass = linear->mass,
                                                .blocks = linear->blocks,
                                                .pairs = pairs,
-                                               .least = LEAST * mass * cm,
+                                               .trace_min = LEAST * mass * cm,
                                                .scale = mass * (cm + stiffness)};
     if (!cs_multigrid_setup(&linear->multigrid, &matrix))
         pairs->failed = true;
@@ -109,7 +109,7 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     linear->stiff = linear->multigrid.n > 0 && stiffness > CS_LINEAR_STIFF * matrix->cm;
     cs_springs_factor(&system->springs, view->n, matrix, linear->factors);
     cs_terms_prepare_matrix(system, matrix, true);
-    cs_vector_share(view->n, set_mass, linear);
+    cs_vector_parallel_for(view->n, set_mass, linear);
     if (linear->stiff)
         set_multigrid(linear, stiffness);
     /* an exact matrix shows in its blocks whether it is definite, mostly */
@@ -158,7 +158,7 @@ CS_CLONES static void mul_mass(void *arg, size_t begin, size_t end) {
 void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
     const size_t n = linear->system->view.n;
     struct product product = {linear, p, y};
-    cs_vector_share(n, mul_mass, &product);
+    cs_vector_parallel_for(n, mul_mass, &product);
     cs_springs_mul_add(&linear->system->springs, (uint32_t)n, linear->factors, p, y);
     cs_terms_add_product(linear->system, p, y);
     clear_pinned(linear->system, y);
@@ -184,7 +184,7 @@ void cs_linear_precondition(struct cs_linear *linear, const double *r, double no
     if (linear->stiff)
         cs_multigrid_apply(&linear->multigrid, r, norm, z);
     else
-        cs_vector_share(linear->system->view.n, mul_inverse, &product);
+        cs_vector_parallel_for(linear->system->view.n, mul_inverse, &product);
 }
 
 /* Single precision may be too little for a matrix: masses that differ by more than it has. */
@@ -222,7 +222,7 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
         }
         cs_linear_precondition(linear, r, norm, z);
         const double next = cs_vector_dot(n3, r, z);
-        if (linear->stiff && (*iterations == CS_LINEAR_PATIENCE || !(next > 0))) {
+        if (linear->stiff && (*iterations == CS_LINEAR_STALL_ITERATIONS || !(next > 0))) {
             give_up_multigrid(linear);
             fresh = true;
             continue;

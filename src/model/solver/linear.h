@@ -14,7 +14,7 @@
 #include "model/solver/multigrid.h"
 #include "model/system/system.h"
 
-enum { CS_LINEAR_STIFF = 16, CS_LINEAR_PATIENCE = 500 };
+enum { CS_LINEAR_STIFF = 16, CS_LINEAR_STALL_ITERATIONS = 500 };
 
 struct cs_linear {
     const struct cs_system *system; /* borrowed */

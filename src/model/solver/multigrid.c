@@ -3,16 +3,16 @@
 
 #include "base/pool.h"
 #include "model/force/terms.h"
-#include "model/solver/coupling.h"
-#include "model/solver/links.h"
-#include "scene/pairs.h"
+#include "model/solver/contact_coupling.h"
+#include "model/solver/extra_springs.h"
+#include "scene/body_pairs.h"
 #include "scene/shape.h"
 
 #include <clothsim/clones.h>
 
 enum { ROW = 4096 }; /* particles of a mesh that are handled as a row; cells of a block */
 
-static bool is_worth_it(const struct cs_scene *scene) {
+static bool is_stiff_enough(const struct cs_scene *scene) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         if (cs_shape_count(cs_scene_bodies(scene) + b) > CS_MULTIGRID_PARTICLES)
             return true;
@@ -21,7 +21,7 @@ static bool is_worth_it(const struct cs_scene *scene) {
 
 static bool meets_itself(const struct cs_scene *scene, uint32_t body) {
     double friction;
-    return cs_scene_bodies_meet(scene, body, body, &friction);
+    return cs_scene_bodies_collide(scene, body, body, &friction);
 }
 
 static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
@@ -38,17 +38,17 @@ static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t
                                  .columns = range->mesh ? ROW : range->columns,
                                  .runs = springs->runs + begin,
                                  .n_runs = end - begin,
-                                 .forced = cs_terms_have_blocks(system),
-                                 .linked = meets_itself(system->scene, body)};
+                                 .has_particle_blocks = cs_terms_have_blocks(system),
+                                 .has_self_contact = meets_itself(system->scene, body)};
 }
 
-static void couple(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchy,
-                   struct cs_arena *arena, struct cs_error *error) {
-    if (!multigrid->inner) {
-        multigrid->inner =
-            cs_arena_take_n(arena, 6 * multigrid->system->view.n, sizeof(double), error);
+static void load_contact(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchy,
+                         struct cs_arena *arena, struct cs_error *error) {
+    if (!multigrid->internal_blocks) {
+        multigrid->internal_blocks =
+            cs_arena_alloc_array(arena, 6 * multigrid->system->view.n, sizeof(double), error);
         if (!error->status)
-            cs_corners_init(&multigrid->corners, arena, error);
+            cs_pair_vertices_init(&multigrid->pair_vertices, arena, error);
     }
     if (!error->status)
         cs_coupling_init(hierarchy, arena, error);
@@ -57,17 +57,18 @@ static void couple(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarch
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error) {
     *multigrid = (struct cs_multigrid){.system = system};
-    if (!is_worth_it(system->scene))
+    if (!is_stiff_enough(system->scene))
         return CS_OK;
     const uint32_t n = system->scene->bodies.n;
-    multigrid->hierarchies = cs_arena_take_n(arena, n, sizeof *multigrid->hierarchies, error);
+    multigrid->hierarchies =
+        cs_arena_alloc_array(arena, n, sizeof *multigrid->hierarchies, error);
     for (uint32_t b = 0; b < n && !error->status; b++) {
         struct cs_hierarchy *hierarchy = multigrid->hierarchies + multigrid->n++;
         *hierarchy = hierarchy_of(system, b);
         (system->bodies[b].mesh ? cs_hierarchy_of_mesh : cs_hierarchy_of_grid)(hierarchy, arena,
                                                                                error);
-        if (hierarchy->linked && !error->status)
-            couple(multigrid, hierarchy, arena, error);
+        if (hierarchy->has_self_contact && !error->status)
+            load_contact(multigrid, hierarchy, arena, error);
     }
     return error->status;
 }
@@ -75,7 +76,7 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
 size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     size_t bytes = 0;
-    for (uint32_t b = 0; b < scene->bodies.n && is_worth_it(scene); b++) {
+    for (uint32_t b = 0; b < scene->bodies.n && is_stiff_enough(scene); b++) {
         uint32_t n_springs = 0;
         cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &n_springs);
         bytes += sizeof(struct cs_hierarchy);
@@ -129,7 +130,7 @@ static struct row row_of(const struct cs_hierarchy *hierarchy, uint32_t block, u
 }
 
 /* own of the first level from the matrix's mass and blocks, 0 where a particle is pinned */
-CS_CLONES static void load_own(void *arg, uint32_t block) {
+CS_CLONES static void load_diagonal(void *arg, uint32_t block) {
     static const bool on_diagonal[6] = {true, false, false, true, false, true};
     const struct loading *loading = arg;
     const struct cs_hierarchy *hierarchy = loading->exchange.hierarchy;
@@ -141,7 +142,7 @@ CS_CLONES static void load_own(void *arg, uint32_t block) {
     for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
         const struct row row = row_of(hierarchy, block, k);
         for (size_t c = 0; c < (level->form == CS_LEVEL_FACTORED ? 1 : 6); c++) {
-            float *own = level->own + c * level->n + row.cell;
+            float *own = level->diagonal + c * level->n + row.cell;
             for (size_t i = 0, at = row.particle; i < row.count; i++, at++) {
                 double value = on_diagonal[c] ? mass[at] : 0;
                 if (blocks)
@@ -163,7 +164,7 @@ CS_CLONES static void load_r(void *arg, uint32_t block) {
         const struct row row = row_of(hierarchy, block, k);
         for (size_t c = 0; c < 3; c++) {
             const double *from = exchange->from + c * n + row.particle;
-            float *to = hierarchy->levels->r + c * hierarchy->levels->n + row.cell;
+            float *to = hierarchy->levels->residual + c * hierarchy->levels->n + row.cell;
             for (size_t i = 0; i < row.count; i++)
                 to[i] = (float)(exchange->gain * from[i]);
         }
@@ -177,7 +178,8 @@ CS_CLONES static void store_x(void *arg, uint32_t block) {
     for (uint32_t k = 0; k < rows_of_block(hierarchy); k++) {
         const struct row row = row_of(hierarchy, block, k);
         for (size_t c = 0; c < 3; c++) {
-            const float *from = hierarchy->levels->x + c * hierarchy->levels->n + row.cell;
+            const float *from =
+                hierarchy->levels->solution + c * hierarchy->levels->n + row.cell;
             double *to = exchange->to + c * n + row.particle;
             for (size_t i = 0; i < row.count; i++)
                 to[i] = exchange->gain * (double)from[i];
@@ -191,17 +193,17 @@ static bool load_links(struct loading *loading, struct cs_hierarchy *hierarchy) 
     const struct cs_pairs *pairs = loading->matrix->pairs;
     struct cs_coupling coupling = {hierarchy,
                                    pairs,
-                                   &multigrid->corners,
+                                   &multigrid->pair_vertices,
                                    multigrid->system->inv_mass,
                                    loading->exchange.gain,
-                                   loading->matrix->least,
-                                   multigrid->inner};
-    if (!hierarchy->linked)
+                                   loading->matrix->trace_min,
+                                   multigrid->internal_blocks};
+    if (!hierarchy->has_self_contact)
         return true;
-    hierarchy->levels->links->any = false;
-    if (!pairs || !cs_corners_pairs(pairs))
+    hierarchy->levels->extra_springs->is_nonempty = false;
+    if (!pairs || !cs_pair_vertices_count(pairs))
         return true;
-    loading->inner = multigrid->inner;
+    loading->inner = multigrid->internal_blocks;
     return cs_coupling_load(&coupling);
 }
 
@@ -209,12 +211,12 @@ static bool load_links(struct loading *loading, struct cs_hierarchy *hierarchy) 
 static bool load_levels(struct loading *loading, struct cs_hierarchy *hierarchy) {
     struct cs_level *level = hierarchy->levels;
     bool done = load_links(loading, hierarchy);
-    run(&loading->exchange, load_own);
+    run(&loading->exchange, load_diagonal);
     hierarchy->kind->load(hierarchy, loading->matrix->factors, loading->matrix->scale);
     cs_level_invert(level);
     for (; level < hierarchy->levels + hierarchy->n_levels - 1; level++) {
         hierarchy->kind->coarsen(level, level + 1);
-        if (hierarchy->linked)
+        if (hierarchy->has_self_contact)
             done = cs_coupling_coarsen(level, level + 1) && done;
         cs_level_invert(level + 1);
     }
@@ -225,8 +227,8 @@ bool cs_multigrid_setup(struct cs_multigrid *multigrid,
                         const struct cs_multigrid_matrix *matrix) {
     bool done = true;
     multigrid->scale = matrix->scale;
-    if (multigrid->inner && cs_corners_pairs(matrix->pairs))
-        done = cs_corners_find(&multigrid->corners, matrix->pairs);
+    if (multigrid->internal_blocks && cs_pair_vertices_count(matrix->pairs))
+        done = cs_pair_vertices_find(&multigrid->pair_vertices, matrix->pairs);
     for (uint32_t k = 0; k < multigrid->n; k++) {
         struct cs_hierarchy *hierarchy = multigrid->hierarchies + k;
         struct loading loading = {

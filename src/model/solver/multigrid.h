@@ -2,14 +2,15 @@
  * precision, one V-cycle an application, body by body.
  *
  * It is symmetric and positive definite whatever the coarse levels do. With S the smoother (S A
- * has its eigenvalues in (0, 2), see level.h, so that 2 S - S A S is positive) and C >= 0 the
- * answer of the coarse levels, a cycle is 2 S - S A S + (I - S A) C (I - A S). Aggregates and
- * their halved springs: hierarchy.h; contact of a body with itself: coupling.h. */
+ * has its eigenvalues in (0, 2), see multigrid_level.h, so that 2 S - S A S is positive) and C
+ * >= 0 the answer of the coarse levels, a cycle is 2 S - S A S + (I - S A) C (I - A S).
+ * Aggregates and their halved springs: multigrid_hierarchy.h; contact of a body with itself:
+ * contact_coupling.h. */
 #ifndef CS_MULTIGRID_H
 #define CS_MULTIGRID_H
 
-#include "model/solver/corners.h"
-#include "model/solver/hierarchy.h"
+#include "model/solver/multigrid_hierarchy.h"
+#include "model/solver/pair_vertices.h"
 #include "model/system/system.h"
 
 /* Scenes have levels where one body has more particles than this. */
@@ -19,10 +20,10 @@ struct cs_multigrid {
     const struct cs_system *system;   /* borrowed */
     struct cs_hierarchy *hierarchies; /* (n) one a body, or none */
     uint32_t n;
-    double *inner; /* (6,n) blocks of pairs that are links (coupling.h); NULL: no body meets
-                      itself */
-    struct cs_corners corners; /* of these pairs */
-    double scale;              /* what the matrix is divided by for single precision */
+    double *internal_blocks; /* (6,n) blocks of pairs that are links (contact_coupling.h); NULL:
+                      no body meets itself */
+    struct cs_pair_vertices pair_vertices; /* of these pairs */
+    double scale; /* what the matrix is divided by for single precision */
 };
 
 /* Makes the structure. CS_ERR_MEMORY. */
@@ -39,8 +40,8 @@ struct cs_multigrid_matrix {
     const double *mass;           /* (n) */
     const double *blocks;         /* (6,n) positive semidefinite; NULL: 0 */
     const struct cs_pairs *pairs; /* whose diagonal blocks are in `blocks`; NULL: none */
-    double least; /* of the trace of a pair's block that is worth springs of its own */
-    double scale; /* about its largest number */
+    double trace_min; /* of the trace of a pair's block that is worth springs of its own */
+    double scale;     /* about its largest number */
 };
 
 /* Makes the numbers. false: there was no memory for pairs. */

@@ -2,7 +2,7 @@
 #ifndef CS_SPRINGS_H
 #define CS_SPRINGS_H
 
-#include "model/spring/runs.h"
+#include "model/spring/spring_runs.h"
 
 /* Runs of one body whose particles start at `first`, appended at runs[0..]: of a cloth's rows,
  * or one a kind of a mesh. lists takes the lengths and stiffnesses of a mesh, 2 doubles a
@@ -17,7 +17,7 @@ uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uin
 void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
 
 /* Adds the spring and damper forces of the chosen parts to f (3,n) at the particles of one of
- * the blocks, after cs_springs_wait_force with the same arguments.
+ * the blocks, after cs_springs_force_to_slots with the same arguments.
  *
  * For a spring of rest length L, stiffness k and damping d, with unit direction u from end a to
  * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial
@@ -30,8 +30,8 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                           const struct cs_eval *at, double *f);
 /* By all threads, before any block; does nothing where they do not share meshes. */
-void cs_springs_wait_force(const struct cs_springs *springs, uint32_t n,
-                           const struct cs_eval *at);
+void cs_springs_force_to_slots(const struct cs_springs *springs, uint32_t n,
+                               const struct cs_eval *at);
 
 /* Smallest rest length in m; 0 without springs. */
 double cs_springs_shortest(const struct cs_springs *springs);
@@ -48,11 +48,11 @@ double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n, c
 double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
 /* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df at the particles of a block; dx or dv
- * may be NULL. After cs_springs_wait_jvp, as above. */
+ * may be NULL. After cs_springs_jvp_to_slots, as above. */
 void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const struct cs_eval *at,
                         double *df);
-void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
-                         const struct cs_eval *at);
+void cs_springs_jvp_to_slots(const struct cs_springs *springs, uint32_t n,
+                             const struct cs_eval *at);
 
 /* After all blocks of cs_springs_add_force with at->kxx and at->dvv, which were 0 before, adds
  * what is left of the diagonal blocks of df/dx and df/dv: xx, xy, xz, yy, yz, zz. The position

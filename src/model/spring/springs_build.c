@@ -42,14 +42,16 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
     static const struct {
         int32_t right, down;
         uint32_t kind, way;
-    } forward[CS_WAYS] = {
-        {1, 0, CS_SPRING_STRETCH, CS_WAY_RIGHT},  {0, 1, CS_SPRING_STRETCH, CS_WAY_DOWN},
-        {1, 1, CS_SPRING_SHEAR, CS_WAY_FORTH},    {-1, 1, CS_SPRING_SHEAR, CS_WAY_BACK},
-        {2, 0, CS_SPRING_BEND, CS_WAY_RIGHT_TWO}, {0, 2, CS_SPRING_BEND, CS_WAY_DOWN_TWO}};
+    } forward[CS_DIRECTIONS] = {{1, 0, CS_SPRING_STRETCH, CS_DIRECTION_RIGHT},
+                                {0, 1, CS_SPRING_STRETCH, CS_DIRECTION_DOWN},
+                                {1, 1, CS_SPRING_SHEAR, CS_DIRECTION_DOWN_RIGHT},
+                                {-1, 1, CS_SPRING_SHEAR, CS_DIRECTION_DOWN_LEFT},
+                                {2, 0, CS_SPRING_BEND, CS_DIRECTION_RIGHT_TWO},
+                                {0, 2, CS_SPRING_BEND, CS_DIRECTION_DOWN_TWO}};
 
     uint32_t n_runs = 0;
     for (uint32_t i = 0; i < rows; i++)
-        for (uint32_t d = 0; d < CS_WAYS; d++) {
+        for (uint32_t d = 0; d < CS_DIRECTIONS; d++) {
             const int32_t right = forward[d].right, down = forward[d].down;
             const uint32_t reach = (uint32_t)(right < 0 ? -right : right);
             if (i + (uint32_t)down >= rows || reach >= columns ||
@@ -59,8 +61,8 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
             const double length = sqrt(right * dx * (right * dx) + down * dy * (down * dy));
             if (runs) {
                 runs[n_runs] = (struct cs_spring_run){
-                    .a = row + (right < 0 ? reach : 0),
-                    .b = below + (right > 0 ? reach : 0),
+                    .first_a = row + (right < 0 ? reach : 0),
+                    .first_b = below + (right > 0 ? reach : 0),
                     .count = columns - reach,
                     .kind = forward[d].kind,
                     .body = body_index,
@@ -68,10 +70,10 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
                     .length = length,
                     .damping = law->damping,
                     .axial = law->damping_model == CS_DAMPING_AXIAL,
-                    .way = forward[d].way,
+                    .direction = forward[d].way,
                     .row = row,
                     .columns = columns,
-                    .below = rows - 1 - i,
+                    .rows_below = rows - 1 - i,
                 };
                 cs_springs_stiffen(runs + n_runs, body);
             }
@@ -98,8 +100,8 @@ static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_bod
     for (uint32_t i = 0; i < like->count; i++) {
         double squared = 0;
         for (size_t c = 0; c < 3; c++) {
-            const double d = mesh->places[c * mesh->n + like->ends[2 * (size_t)i + 1]] -
-                             mesh->places[c * mesh->n + like->ends[2 * (size_t)i]];
+            const double d = mesh->positions[c * mesh->n + like->ends[2 * (size_t)i + 1]] -
+                             mesh->positions[c * mesh->n + like->ends[2 * (size_t)i]];
             squared += d * d;
         }
         lengths[i] = sqrt(squared);
@@ -118,14 +120,14 @@ static uint32_t mesh_runs(const struct cs_body *body, uint32_t body_index, uint3
         const uint32_t *ends;
     } kinds[CS_SPRING_KINDS] = {
         {CS_SPRING_STRETCH, mesh->n_edges, mesh->edges},
-        {CS_SPRING_SHEAR, mesh->n_inner, mesh->inner},
+        {CS_SPRING_SHEAR, mesh->n_network_springs, mesh->network_springs},
         {CS_SPRING_BEND, mesh->n_hinges, mesh->hinges},
     };
     uint32_t n_runs = 0, before = *n_springs;
     for (uint32_t k = 0; k < CS_SPRING_KINDS; k++) {
         const struct cs_spring_run like = {
-            .a = first,
-            .b = first,
+            .first_a = first,
+            .first_b = first,
             .count = kinds[k].count,
             .kind = kinds[k].kind,
             .body = body_index,

@@ -2,8 +2,8 @@
  */
 #include "model/spring/springs.h"
 
-#include "model/spring/fan.h"
-#include "model/spring/law.h"
+#include "model/spring/grid_stencil.h"
+#include "model/spring/spring_law.h"
 
 #include <string.h>
 
@@ -20,7 +20,7 @@ CS_INLINE void put_block(const double *block, size_t i, struct blocks *blocks) {
 /* Adds them to both ends, sums (6,n). */
 CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks, size_t n,
                           double *sums) {
-    double *a = sums + piece->run->a, *b = sums + piece->run->b;
+    double *a = sums + piece->run->first_a, *b = sums + piece->run->first_b;
     const uint32_t *ends = piece->run->ends + 2 * (size_t)piece->start;
     for (size_t i = 0; i < piece->count; i++)
         for (size_t c = 0; c < SYM; c++) {
@@ -55,7 +55,7 @@ CS_INLINE void damped_piece(const struct piece *piece, const struct ends e,
 
 CS_INLINE void run_diagonal(const struct cs_spring_run *run, size_t n, const double *x,
                             double *kxx, double *dvv) {
-    struct gathered places;
+    struct gather_buffer places;
     struct blocks blocks;
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
@@ -70,8 +70,8 @@ CS_INLINE void run_diagonal(const struct cs_spring_run *run, size_t n, const dou
 }
 
 /* The rest of a number times the identity, which grids have in the first row of dvv. */
-static void spread(const struct cs_spring_run *first, size_t n, double *dvv) {
-    const size_t particles = first->columns * ((size_t)first->below + 1);
+static void add_scalar_part(const struct cs_spring_run *first, size_t n, double *dvv) {
+    const size_t particles = first->columns * ((size_t)first->rows_below + 1);
     for (size_t c = 3; c < SYM; c += 2)
         memcpy(dvv + c * n + first->row, dvv + first->row, particles * sizeof *dvv);
 }
@@ -86,14 +86,14 @@ CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
         if (!run->columns)
-            run_diagonal(run, n, at->x, at->kxx, at->dvv);
+            run_diagonal(run, n, at->x, at->dfdx_blocks, at->dfdv_blocks);
         else if (begins_grid(springs, r) && run->damping != 0 && !run->axial)
-            spread(run, n, at->dvv);
+            add_scalar_part(run, n, at->dfdv_blocks);
     }
 }
 
-CS_INLINE void own_block(const struct fan_in *in, const struct fan_way *way, size_t i,
-                         double *out) {
+CS_INLINE void diagonal_block(const struct stencil_input *in,
+                              const struct stencil_direction *way, size_t i, double *out) {
     const double *s = way->factors;
     const size_t count = way->count;
     (void)in;
@@ -101,12 +101,12 @@ CS_INLINE void own_block(const struct fan_in *in, const struct fan_way *way, siz
               out);
 }
 
-CS_FAN_KERNEL(own_blocks, own_block, 0, SYM, 0);
+CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
 
 CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
                                           const double *factors, double *sums) {
     const struct job job = {
-        .springs = springs, .n = n, .at = {.kxx = sums}, .factors = factors};
+        .springs = springs, .n = n, .at = {.dfdx_blocks = sums}, .factors = factors};
     const struct cs_block all = {0, n, 0, springs->n_runs};
     struct blocks blocks;
     uint32_t n_runs = 1;
@@ -114,7 +114,7 @@ CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint
         const struct cs_spring_run *run = springs->runs + r;
         n_runs = 1;
         if (run->columns) {
-            n_runs = add_fan(&job, &all, run, asks_always, &own_blocks);
+            n_runs = add_row_stencil(&job, &all, run, has_anything, &own_blocks);
             continue;
         }
         const double *s = factors + 4 * (size_t)run->first, *w = s + run->count;

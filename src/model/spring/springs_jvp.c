@@ -2,13 +2,13 @@
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
-#include "model/spring/fan.h"
+#include "model/spring/grid_stencil.h"
 
 #include <float.h>
 #include <math.h>
 
 /* Copies of the loops. MOVED: dx is given; TURNED: dv is given. */
-enum how { MOVED = 1, TURNED = 2 };
+enum damper_form { MOVED = 1, TURNED = 2 };
 
 /* a spring's law */
 struct law {
@@ -55,39 +55,40 @@ CS_INLINE struct difference jvp_of(const struct law law, const struct bend at,
     return r;
 }
 
-CS_INLINE void jvp_from(const struct fan_in *in, const struct fan_way *way, size_t i,
-                        const unsigned how, double *out) {
+CS_INLINE void jvp_from(const struct stencil_input *in, const struct stencil_direction *way,
+                        size_t i, const unsigned how, double *out) {
     const struct law law = {way->length, way->k, in->axial ? in->c : 0, in->axial ? 0 : in->c};
-    struct bend at = {.p = fan_across(in->x, in->n, i, way->step)};
+    struct bend at = {.p = fan_across(in->x, in->n, i, way->offset)};
     if (how & MOVED) {
-        at.w = fan_across(in->v, in->n, i, way->step);
-        at.e = fan_across(in->dx, in->n, i, way->step);
+        at.w = fan_across(in->v, in->n, i, way->offset);
+        at.e = fan_across(in->dx, in->n, i, way->offset);
     }
     if (how & TURNED)
-        at.g = fan_across(in->dv, in->n, i, way->step);
+        at.g = fan_across(in->dv, in->n, i, way->offset);
     fan_put(jvp_of(law, at, how), out);
 }
 
-CS_INLINE void moved(const struct fan_in *in, const struct fan_way *way, size_t i,
-                     double *out) {
+CS_INLINE void moved(const struct stencil_input *in, const struct stencil_direction *way,
+                     size_t i, double *out) {
     jvp_from(in, way, i, MOVED, out);
 }
 
-CS_INLINE void turned(const struct fan_in *in, const struct fan_way *way, size_t i,
-                      double *out) {
+CS_INLINE void rotated(const struct stencil_input *in, const struct stencil_direction *way,
+                       size_t i, double *out) {
     jvp_from(in, way, i, TURNED, out);
 }
 
-CS_INLINE void both(const struct fan_in *in, const struct fan_way *way, size_t i, double *out) {
+CS_INLINE void elastic_and_damping(const struct stencil_input *in,
+                                   const struct stencil_direction *way, size_t i, double *out) {
     jvp_from(in, way, i, MOVED | TURNED, out);
 }
 
-CS_FAN_KERNEL(moved_jvp, moved, 3, 0, 0);
-CS_FAN_KERNEL(turned_jvp, turned, 3, 0, 0);
-CS_FAN_KERNEL(both_jvp, both, 3, 0, 0);
+CS_STENCIL_KERNEL(moved_jvp, moved, 3, 0, 0);
+CS_STENCIL_KERNEL(turned_jvp, rotated, 3, 0, 0);
+CS_STENCIL_KERNEL(both_jvp, elastic_and_damping, 3, 0, 0);
 
-static const struct fan_kernel *choose_jvp(const struct job *job,
-                                           const struct cs_spring_run *first) {
+static const struct stencil_kernel *choose_jvp(const struct job *job,
+                                               const struct cs_spring_run *first) {
     (void)first;
     if (job->at.dx && job->at.dv)
         return &both_jvp;
@@ -97,9 +98,9 @@ static const struct fan_kernel *choose_jvp(const struct job *job,
 /* of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
 CS_INLINE void jvp_rows(const struct job *job, const struct piece *piece, const unsigned how,
                         double *restrict fx, double *restrict fy, double *restrict fz) {
-    struct gathered places, speeds, moves, turns;
+    struct gather_buffer places, speeds, moves, turns;
     const struct cs_eval *at = &job->at;
-    const struct asked asked = asked_of(piece->run, at->parts);
+    const struct active_constants asked = active_constants_of(piece->run, at->parts);
     const size_t n = job->n, count = piece->count;
     /* a direction that is not given stands for itself, and is not read */
     const struct ends x = ends_of(piece, at->x, n, false, &places);
@@ -131,8 +132,8 @@ CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, doubl
 }
 
 CS_INLINE bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
-    return job->at.dx ? asks_force(job, run)
-                      : job->at.dv && asked_of(run, job->at.parts).c != 0;
+    return job->at.dx ? has_force(job, run)
+                      : job->at.dv && active_constants_of(run, job->at.parts).c != 0;
 }
 
 CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n,
@@ -141,12 +142,13 @@ CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n,
     add_runs(&job, at->block, asks_jvp, choose_jvp, jvp_piece);
 }
 
-CS_CLONES static void wait_jvp_lot(void *job, uint32_t lot) {
-    wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_jvp, jvp_piece);
+CS_CLONES static void wait_jvp_chunk(void *job, uint32_t chunk) {
+    compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk, asks_jvp,
+                           jvp_piece);
 }
 
-void cs_springs_wait_jvp(const struct cs_springs *springs, uint32_t n,
-                         const struct cs_eval *at) {
+void cs_springs_jvp_to_slots(const struct cs_springs *springs, uint32_t n,
+                             const struct cs_eval *at) {
     struct job job = {.springs = springs, .n = n, .at = *at};
-    cs_pool_run(springs->n_lots, wait_jvp_lot, &job);
+    cs_pool_run(springs->n_chunks, wait_jvp_chunk, &job);
 }

@@ -3,7 +3,7 @@
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
-#include "model/spring/fan.h"
+#include "model/spring/grid_stencil.h"
 
 #include <float.h>
 #include <math.h>
@@ -49,7 +49,7 @@ struct factoring {
 /* springs [begin, end) of a run, from a whole number of pieces on */
 CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spring_run *run,
                               uint32_t begin, uint32_t end) {
-    struct gathered places;
+    struct gather_buffer places;
     double *base = made->factors + 4 * (size_t)run->first;
     for (uint32_t start = begin; start < end; start += PIECE) {
         const struct piece piece = piece_of(run, start);
@@ -65,21 +65,21 @@ CS_CLONES static void factor_runs(void *arg, uint32_t block) {
     const struct factoring *made = arg;
     const struct cs_springs *springs = made->springs;
     for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
-        if (!springs->waits || !springs->runs[r].ends)
+        if (!springs->slots || !springs->runs[r].ends)
             factor_springs(made, springs->runs + r, 0, springs->runs[r].count);
 }
 
-CS_CLONES static void factor_lot(void *arg, uint32_t number) {
+CS_CLONES static void factor_chunk(void *arg, uint32_t number) {
     const struct factoring *made = arg;
-    const struct cs_lot *lot = made->springs->lots + number;
-    factor_springs(made, made->springs->runs + lot->run, lot->begin, lot->end);
+    const struct cs_spring_chunk *chunk = made->springs->chunks + number;
+    factor_springs(made, made->springs->runs + chunk->run, chunk->begin, chunk->end);
 }
 
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
                        const struct cs_matrix *matrix, double *factors) {
     struct factoring made = {springs, n, matrix, factors};
     cs_pool_run((springs->n_runs + RUNS - 1) / RUNS, factor_runs, &made);
-    cs_pool_run(springs->n_lots, factor_lot, &made);
+    cs_pool_run(springs->n_chunks, factor_chunk, &made);
 }
 
 /* w.(p_a - p_b), left to right: the sum order is part of the state hash */
@@ -90,25 +90,26 @@ CS_INLINE struct difference mul_of(double s, const struct difference w,
                                s * d.z + along * w.z};
 }
 
-CS_INLINE void mul(const struct fan_in *in, const struct fan_way *way, size_t i, double *out) {
+CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
+                   size_t i, double *out) {
     const double *p = in->x, *s = way->factors;
-    const size_t n = in->n, b = i + way->step, count = way->count;
+    const size_t n = in->n, b = i + way->offset, count = way->count;
     const struct difference w = {s[count + i], s[2 * count + i], s[3 * count + i]};
     const struct difference d = {p[i] - p[b], p[n + i] - p[n + b], p[2 * n + i] - p[2 * n + b]};
     fan_put(mul_of(s[i], w, d), out);
 }
 
-CS_FAN_KERNEL(product, mul, 3, 0, 0);
+CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
 
-static const struct fan_kernel *choose_mul(const struct job *job,
-                                           const struct cs_spring_run *first) {
+static const struct stencil_kernel *choose_mul(const struct job *job,
+                                               const struct cs_spring_run *first) {
     (void)job, (void)first;
     return &product;
 }
 
 CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, double *restrict fx,
                          double *restrict fy, double *restrict fz) {
-    struct gathered places;
+    struct gather_buffer places;
     const struct cs_spring_run *run = piece->run;
     const double *s = job->factors + 4 * (size_t)run->first + piece->start;
     const double *wx = s + run->count, *wy = wx + run->count, *wz = wy + run->count;
@@ -122,19 +123,20 @@ CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, doubl
     }
 }
 
-CS_CLONES static void wait_mul_lot(void *job, uint32_t lot) {
-    wait_lot(job, ((const struct job *)job)->springs->lots + lot, asks_always, mul_piece);
+CS_CLONES static void wait_mul_chunk(void *job, uint32_t chunk) {
+    compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk,
+                           has_anything, mul_piece);
 }
 
 CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_block block = cs_springs_block(job->springs, (uint32_t)job->n, number);
-    add_runs(job, &block, asks_always, choose_mul, mul_piece);
+    add_runs(job, &block, has_anything, choose_mul, mul_piece);
 }
 
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y) {
     struct job job = {.springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};
-    cs_pool_run(springs->n_lots, wait_mul_lot, &job);
+    cs_pool_run(springs->n_chunks, wait_mul_chunk, &job);
     cs_pool_run(springs->n_blocks, mul_add_block, &job);
 }

@@ -4,7 +4,7 @@
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
-#include "model/spring/rows.h"
+#include "model/spring/run_pieces.h"
 
 #include <math.h>
 
@@ -36,7 +36,7 @@ CS_INLINE double sum_lanes(const double *squares, size_t count) {
 }
 
 CS_CLONES static double run_energy(const struct cs_spring_run *run, size_t n, const double *x) {
-    struct gathered places;
+    struct gather_buffer places;
     double squares[PIECE], sum = 0;
     for (uint32_t start = 0; start < run->count; start += PIECE) {
         const struct piece piece = piece_of(run, start);
@@ -77,7 +77,7 @@ CS_INLINE double find_largest(const double *values, size_t count) {
 
 CS_CLONES double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n,
                                            const double *x) {
-    struct gathered places;
+    struct gather_buffer places;
     double strains[PIECE], largest = 0;
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;

@@ -34,19 +34,19 @@ enum cs_feature {
 
 struct cs_plan_row {
     bool built;
-    size_t bytes;    /* of arrays that exist for this feature alone */
-    const char *why; /* why it is built, or why it is left out */
+    size_t bytes;       /* of arrays that exist for this feature alone */
+    const char *reason; /* why it is built, or why it is left out */
 };
 
-enum { CS_TERMS_MOST = 16 };
+enum { CS_TERMS_MAX = 16 };
 
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
-    uint32_t n_surface, n_inner; /* springs on the surfaces of meshes, of networks in them */
-    size_t state_bytes;          /* state, masses, start and ranges of bodies */
+    uint32_t n_surface_springs,
+        n_network_springs; /* springs on the surfaces of meshes, of networks in them */
+    size_t state_bytes;    /* state, masses, start and ranges of bodies */
     struct cs_plan_row rows[CS_FEATURES];
-    struct cs_plan_row
-        forces[CS_TERMS_MOST]; /* of the list in terms.h; why NULL: not printed */
+    struct cs_plan_row forces[CS_TERMS_MAX]; /* of the list in terms.h; why NULL: not printed */
 };
 
 #endif

@@ -3,7 +3,7 @@
 #include "model/system/surfaces.h"
 
 #include "model/system/faces.h"
-#include "scene/pairs.h"
+#include "scene/body_pairs.h"
 
 /* edges of a grid: along rows, along columns, one across each cell */
 static size_t grid_edges(size_t columns, size_t rows) {
@@ -69,7 +69,7 @@ static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
             const uint32_t edge =
                 find_edge(surfaces->edges, surfaces->first_edge[body],
                           surfaces->first_edge[body + 1], corner[k], corner[(k + 1) % 3]);
-            uint32_t *owners = surfaces->owners + 2 * (size_t)edge;
+            uint32_t *owners = surfaces->edge_triangles + 2 * (size_t)edge;
             owners[owners[0] == CS_NO_TRIANGLE ? 0 : 1] = t;
         }
 }
@@ -78,10 +78,10 @@ static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
  * mesh */
 static struct cs_body_range range_of(const struct cs_system *system, uint32_t body,
                                      const struct cs_surfaces *surfaces) {
-    const struct cs_collider *obstacle = cs_scene_obstacle(system->scene, body);
-    if (!obstacle)
+    const struct cs_collider *collider = cs_scene_obstacle(system->scene, body);
+    if (!collider)
         return system->bodies[body];
-    const struct cs_trimesh *mesh = obstacle->mesh.geometry;
+    const struct cs_trimesh *mesh = collider->mesh.geometry;
     return (struct cs_body_range){.first = surfaces->first_point[body],
                                   .count = mesh ? mesh->n : 0,
                                   .columns = 1,
@@ -120,9 +120,9 @@ enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *erro
     const uint32_t n_bodies = cs_scene_surfaces(system->scene);
     if (system->surfaces)
         return CS_OK;
-    struct cs_surfaces *surfaces = cs_arena_take(arena, sizeof *surfaces, error);
+    struct cs_surfaces *surfaces = cs_arena_alloc(arena, sizeof *surfaces, error);
     uint32_t *firsts =
-        cs_arena_take_n(arena, 3 * ((size_t)n_bodies + 1), sizeof *firsts, error);
+        cs_arena_alloc_array(arena, 3 * ((size_t)n_bodies + 1), sizeof *firsts, error);
     if (error->status)
         return error->status;
     surfaces->n_bodies = n_bodies;
@@ -132,36 +132,36 @@ enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *erro
     count(system, surfaces);
     const size_t corners = 3 * (size_t)surfaces->n_triangles,
                  ends = 2 * (size_t)surfaces->n_edges;
-    surfaces->triangles = cs_arena_take_n(arena, corners, sizeof(uint32_t), error);
-    surfaces->edges = cs_arena_take_n(arena, ends, sizeof(uint32_t), error);
-    surfaces->owners = cs_arena_take_n(arena, ends, sizeof(uint32_t), error);
+    surfaces->triangles = cs_arena_alloc_array(arena, corners, sizeof(uint32_t), error);
+    surfaces->edges = cs_arena_alloc_array(arena, ends, sizeof(uint32_t), error);
+    surfaces->edge_triangles = cs_arena_alloc_array(arena, ends, sizeof(uint32_t), error);
     if (error->status)
         return error->status;
     for (size_t e = 0; e < ends; e++)
-        surfaces->owners[e] = CS_NO_TRIANGLE;
+        surfaces->edge_triangles[e] = CS_NO_TRIANGLE;
     for (uint32_t b = 0; b < n_bodies; b++)
         fill_body(system, b, surfaces);
     system->surfaces = surfaces;
     return CS_OK;
 }
 
-struct cs_surface_size cs_surface_size_of(const struct cs_scene *scene, uint32_t body) {
-    const struct cs_collider *obstacle = cs_scene_obstacle(scene, body);
-    const struct cs_body *of = obstacle ? NULL : cs_scene_bodies(scene) + body;
-    const struct cs_trimesh *mesh = obstacle ? obstacle->mesh.geometry : of->mesh.geometry;
+struct cs_surface_counts cs_surface_counts_of(const struct cs_scene *scene, uint32_t body) {
+    const struct cs_collider *collider = cs_scene_obstacle(scene, body);
+    const struct cs_body *of = collider ? NULL : cs_scene_bodies(scene) + body;
+    const struct cs_trimesh *mesh = collider ? collider->mesh.geometry : of->mesh.geometry;
     if (mesh)
-        return (struct cs_surface_size){mesh->n, mesh->n_triangles, mesh->n_edges};
-    if (obstacle)
-        return (struct cs_surface_size){0, 0, 0};
+        return (struct cs_surface_counts){mesh->n, mesh->n_triangles, mesh->n_edges};
+    if (collider)
+        return (struct cs_surface_counts){0, 0, 0};
     const size_t columns = (size_t)of->cloth.grid[0], rows = (size_t)of->cloth.grid[1];
-    return (struct cs_surface_size){columns * rows, 2 * (columns - 1) * (rows - 1),
-                                    grid_edges(columns, rows)};
+    return (struct cs_surface_counts){columns * rows, 2 * (columns - 1) * (rows - 1),
+                                      grid_edges(columns, rows)};
 }
 
 size_t cs_surfaces_points(const struct cs_scene *scene) {
     size_t points = 0;
     for (uint32_t b = 0; b < cs_scene_surfaces(scene); b++)
-        points += cs_surface_size_of(scene, b).points;
+        points += cs_surface_counts_of(scene, b).points;
     return points;
 }
 
@@ -169,7 +169,7 @@ size_t cs_surfaces_bytes(const struct cs_scene *scene) {
     const uint32_t n_bodies = cs_scene_surfaces(scene);
     size_t words = 3 * ((size_t)n_bodies + 1);
     for (uint32_t b = 0; b < n_bodies; b++) {
-        const struct cs_surface_size size = cs_surface_size_of(scene, b);
+        const struct cs_surface_counts size = cs_surface_counts_of(scene, b);
         words += 3 * size.triangles + 4 * size.edges;
     }
     return words * sizeof(uint32_t) + sizeof(struct cs_surfaces);

@@ -12,12 +12,14 @@
 
 #define CS_NO_TRIANGLE UINT32_MAX
 
-/* Bodies are the surfaces of scene/pairs.h. Points below view.n are the system's particles. */
+/* Bodies are the surfaces of scene/body_pairs.h. Points below view.n are the system's
+ * particles. */
 struct cs_surfaces {
     uint32_t n_bodies, n_points, n_triangles, n_edges;
     uint32_t *triangles; /* (n_triangles, 3) as cs_face_corners turns them */
     uint32_t *edges;     /* (n_edges, 2) first < second, ascending within a body */
-    uint32_t *owners; /* (n_edges, 2) triangles at an edge, ascending; CS_NO_TRIANGLE: none */
+    uint32_t *
+        edge_triangles; /* (n_edges, 2) triangles at an edge, ascending; CS_NO_TRIANGLE: none */
     uint32_t *first_point, *first_triangle, *first_edge; /* (n_bodies + 1) of each body */
 };
 
@@ -25,10 +27,10 @@ struct cs_surfaces {
 enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *error);
 
 /* What a body or an obstacle of a scene has, by its number. */
-struct cs_surface_size {
+struct cs_surface_counts {
     size_t points, triangles, edges;
 };
-struct cs_surface_size cs_surface_size_of(const struct cs_scene *scene, uint32_t body);
+struct cs_surface_counts cs_surface_counts_of(const struct cs_scene *scene, uint32_t body);
 
 /* Points of all of them. */
 size_t cs_surfaces_points(const struct cs_scene *scene);

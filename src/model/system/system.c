@@ -17,7 +17,7 @@ static void count_degrees(const struct cs_system *system, double *degree) {
 }
 
 /* a particle of mass 0 was refused by cs_scene_check */
-void cs_system_weigh(struct cs_system *system) {
+void cs_system_set_masses(struct cs_system *system) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     memset(system->mass, 0, system->view.n * sizeof *system->mass);
     /* the masses hold degrees until each body has set its own */

@@ -21,10 +21,10 @@ struct cs_body_range {
 };
 
 struct cs_events;
-struct cs_pairing;
+struct cs_collider_params;
 struct cs_pairs;
-struct cs_covers;
-struct cs_obstacle_motion;
+struct cs_contact_samples;
+struct cs_collider_motion;
 struct cs_surfaces;
 struct cs_points;
 struct cs_crossings;
@@ -39,22 +39,24 @@ struct cs_system {
     double *start;           /* (3,n) positions at time 0 */
     double *state;           /* 6n: x (3,n), v (3,n) at time 0 */
     double *area;            /* (n) share of the area in m2; NULL unless a law asks for it */
-    double *normals; /* (3,n) of the last positions asked for; NULL: no force uses them */
-    double *push;    /* (3,n) m/s2, of events over an interval; NULL where none can push */
-    uint32_t *pinned, n_pinned;                 /* (n_pinned) particles, ascending */
-    const struct cs_term *terms[CS_TERMS_MOST]; /* the forces that this scene has */
+    double *normals;     /* (3,n) of the last positions asked for; NULL: no force uses them */
+    double *event_force; /* (3,n) m/s2, of events over an interval; NULL where none can push */
+    uint32_t *pinned, n_pinned;                /* (n_pinned) particles, ascending */
+    const struct cs_term *terms[CS_TERMS_MAX]; /* the forces that this scene has */
     uint32_t n_terms;
-    struct cs_obstacle_motion
+    struct cs_collider_motion
         *motions;            /* (scene->colliders.n); NULL where no event moves one */
     double *collider_motion; /* (3, colliders, 3) what the view shows of them; NULL likewise */
-    const struct cs_pairing *pairings; /* (scene->colliders.n); NULL without contact by force */
-    struct cs_pairs *pairs;            /* bodies that keep off each other; NULL: none do */
-    struct cs_covers *covers; /* points between particles that colliders touch; NULL: none */
+    const struct cs_collider_params
+        *collider_params;   /* (scene->colliders.n); NULL without contact by force */
+    struct cs_pairs *pairs; /* bodies that keep off each other; NULL: none do */
+    struct cs_contact_samples
+        *contact_samples; /* points between particles that colliders touch; NULL: none */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
-    struct cs_points *points;             /* NULL unless colliders are meshes (points.h) */
-    struct cs_crossings *crossings;     /* NULL unless asked for (crossings.h) */
-    struct cs_events *events; /* NULL without; it then holds the scene that `scene` is */
-    struct cs_arena arena;    /* owns the arrays */
+    struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
+    struct cs_crossings *crossings; /* NULL unless asked for (crossing_policy.h) */
+    struct cs_events *events;       /* NULL without; it then holds the scene that `scene` is */
+    struct cs_arena arena;          /* owns the arrays */
 };
 
 /* Gives the memory back; *system is empty then. */
@@ -62,7 +64,7 @@ void cs_system_finish(struct cs_system *system);
 
 /* Sets mass (n) of all particles by the scene's values, and inv_mass (n) of those that are not
  * held. */
-void cs_system_weigh(struct cs_system *system);
+void cs_system_set_masses(struct cs_system *system);
 
 /* Adds "particle 312 (body 0, column 24, row 4)", or "(body 0, vertex 312)" of a mesh. */
 void cs_system_print_particle(const struct cs_system *system, uint32_t particle,

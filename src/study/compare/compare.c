@@ -3,14 +3,14 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "io/scene_write.h"
 #include "model/event/events.h"
-#include "scene/pairs.h"
-#include "study/compare/compare_ledger.h"
+#include "scene/body_pairs.h"
+#include "scene/file/scene_write.h"
+#include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_measure.h"
+#include "study/compare/compare_results.h"
 #include "study/compare/compare_time.h"
-#include "study/compare/sweep_list.h"
-#include "study/origin.h"
+#include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"
 
 #include <math.h>
@@ -18,14 +18,14 @@
 #include <string.h>
 
 /* m: the longest side of the scene's box, as a power of 10 */
-static double size_of(const struct cs_course *course) {
-    const size_t n = course->session.system.view.n;
+static double size_of(const struct cs_recorded_run *recording) {
+    const size_t n = recording->session.system.view.n;
     double longest = 0;
     for (size_t c = 0; c < 3; c++) {
         double least = HUGE_VAL, most = -HUGE_VAL;
         for (size_t i = 0; i < n; i++) {
-            least = fmin(least, course->start[c * n + i]);
-            most = fmax(most, course->start[c * n + i]);
+            least = fmin(least, recording->initial_state[c * n + i]);
+            most = fmax(most, recording->initial_state[c * n + i]);
         }
         longest = fmax(longest, most - least);
     }
@@ -33,47 +33,49 @@ static double size_of(const struct cs_course *course) {
 }
 
 /* The scene as it is, and what its smooth form comes to. */
-static enum cs_status look_at_scene(struct cs_compare *compare, struct cs_error *error) {
-    const struct cs_course_settings *settings = &compare->settings->course;
+static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_recorded_run_settings *settings = &compare->settings->run;
     struct cs_session_settings asked = settings->session;
     struct cs_session session = {0};
-    struct cs_course course = {0};
+    struct cs_recorded_run recording = {0};
     asked.integrator = "velocity-verlet";
     /* opened as it is first: the smooth form no longer has what it leaves out */
     if (!cs_session_open_plan(&session, &asked, error))
-        cs_course_describe_changes(&session.scene, &compare->changes);
+        cs_recorded_run_describe_changes(&session.scene, &compare->switched_off);
     cs_session_close(&session);
-    if (!error->status && !cs_course_open(&course, settings, asked.integrator, error)) {
-        const struct cs_system *system = &course.session.system;
+    if (!error->status &&
+        !cs_recorded_run_open(&recording, settings, asked.integrator, error)) {
+        const struct cs_system *system = &recording.session.system;
         snprintf(compare->scene, sizeof compare->scene, "%.255s", asked.scene);
         compare->particles = system->view.n;
-        compare->springs = course.session.plan.n_springs;
-        compare->fps = course.session.scene.time.fps;
+        compare->springs = recording.session.plan.n_springs;
+        compare->fps = recording.session.scene.time.fps;
         /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
-        compare->size = size_of(&course);
+        compare->scene_size = size_of(&recording);
         compare->time = settings->frames / compare->fps;
-        compare->contact =
-            course.session.scene.colliders.n > 0 || cs_scene_any_meet(&course.session.scene);
-        compare->cuts = system->events ? cs_events_cuts(system->events, compare->time) : 0;
+        compare->contact = recording.session.scene.colliders.n > 0 ||
+                           cs_scene_has_body_contact(&recording.session.scene);
+        compare->n_event_times =
+            system->events ? cs_events_count_stops(system->events, compare->time) : 0;
     }
-    cs_course_close(&course);
+    cs_recorded_run_close(&recording);
     return error->status;
 }
 
 /* The scene as it was given, with the options of its own method, and for how long. */
-static enum cs_status tell_origin(struct cs_compare *compare, struct cs_error *error) {
-    const struct cs_course_settings *course = &compare->settings->course;
-    const struct cs_session_settings *asked = &course->session;
-    struct cs_text *out = &compare->origin;
+static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *error) {
+    const struct cs_recorded_run_settings *recording = &compare->settings->run;
+    const struct cs_session_settings *asked = &recording->session;
+    struct cs_text *out = &compare->provenance;
     struct cs_scene scene = {0};
     char found[CS_DATA_PATH_MAX];
     if (cs_scene_read(&scene, cs_data_find(asked->scene, found, sizeof found), asked->overrides,
                       asked->n_overrides, error))
         return error->status;
     cs_text_add(out, "{\n  \"versions\": {\"clothsim\": \"%s\"},\n  \"frames\": %u,\n",
-                CS_VERSION, course->frames);
-    cs_origin_print_scene(&scene, out, error);
+                CS_VERSION, recording->frames);
+    cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     cs_scene_print(&scene, NULL, NULL, 2, out);
     cs_text_add(out, "\n}\n");
@@ -86,13 +88,13 @@ static enum cs_status tell_origin(struct cs_compare *compare, struct cs_error *e
 static enum cs_status write_origin(const struct cs_compare *compare, struct cs_error *error) {
     char path[4096];
     snprintf(path, sizeof path, "%s/origin.json", compare->settings->folder);
-    return cs_file_write(path, compare->origin.bytes, compare->origin.length, error);
+    return cs_file_write(path, compare->provenance.bytes, compare->provenance.length, error);
 }
 
 static struct cs_compare_reference_settings ask_reference(const struct cs_compare *compare) {
     const struct cs_compare_settings *settings = compare->settings;
     return (struct cs_compare_reference_settings){
-        .course = &settings->course,
+        .run = &settings->run,
         .methods = {settings->reference[0], settings->reference[1]},
         .accuracy = settings->accuracy,
         .cache = settings->cache,
@@ -103,29 +105,30 @@ static struct cs_compare_reference_settings ask_reference(const struct cs_compar
 /* Without a budget of the user's own, all cells together get a time. Steps are halved, so the
  * last run of a series that gets through takes as long as all before it; one more may be over
  * budget, and what got through is run once more in a round. */
-static void share_time(struct cs_compare *compare) {
-    const struct cs_sweep *sweep = &compare->sweep;
+static void divide_time_budget(struct cs_compare *compare) {
+    const struct cs_cell_list *sweep = &compare->cells;
     uint32_t n = 0;
     for (uint32_t k = 0; k < sweep->n; k++)
         n += k == 0 || !cs_cell_same_series(sweep->cells + k, sweep->cells + k - 1);
-    compare->budget = compare->settings->budget > 0
-                          ? compare->settings->budget
-                          : fmin(CS_COMPARE_SECONDS / (5 * fmax(n, 1)), CS_COMPARE_MOST);
-    compare->rounds_for = fmax(CS_COMPARE_ROUND_SECONDS, 5 * compare->settings->budget);
+    compare->budget =
+        compare->settings->budget > 0
+            ? compare->settings->budget
+            : fmin(CS_COMPARE_SECONDS / (5 * fmax(n, 1)), CS_COMPARE_RUN_SECONDS_MAX);
+    compare->rounds_seconds = fmax(CS_COMPARE_ROUND_SECONDS, 5 * compare->settings->budget);
 }
 
 /* A method that cannot follow the scene, which others can, is left out: one row says why. */
-static void refuse(struct cs_sweep *sweep, uint32_t first, struct cs_error *error) {
+static void refuse(struct cs_cell_list *sweep, uint32_t first, struct cs_error *error) {
     if (error->status != CS_ERR_SCENE)
         return;
-    cs_sweep_refuse(sweep, first, error->message);
+    cs_cell_list_refuse(sweep, first, error->message);
     *error = (struct cs_error){0};
 }
 
 /* An option that a method does not have is known before anything runs. */
 static enum cs_status check_methods(struct cs_compare *compare, struct cs_error *error) {
-    struct cs_sweep *sweep = &compare->sweep;
-    struct cs_session_settings asked = compare->settings->course.session;
+    struct cs_cell_list *sweep = &compare->cells;
+    struct cs_session_settings asked = compare->settings->run.session;
     char integrator[CS_CELL_INTEGRATOR];
     for (uint32_t k = 0; k < sweep->n && !error->status; k++) {
         const struct cs_cell *cell = sweep->cells + k;
@@ -142,8 +145,8 @@ static enum cs_status check_methods(struct cs_compare *compare, struct cs_error 
 }
 
 /* The cells that this process is to run. */
-static void keep_shard(struct cs_compare *compare) {
-    struct cs_sweep *sweep = &compare->sweep;
+static void store_shard(struct cs_compare *compare) {
+    struct cs_cell_list *sweep = &compare->cells;
     uint32_t kept = 0;
     for (uint32_t k = 0; k < sweep->n; k++)
         if (cs_shard_holds(&compare->settings->shard, k))
@@ -152,16 +155,16 @@ static void keep_shard(struct cs_compare *compare) {
 }
 
 static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *error) {
-    const struct cs_session_settings *session = &compare->settings->course.session;
-    const struct cs_sweep_settings asked = {.list = compare->settings->methods,
-                                            .plugins = session->plugins,
-                                            .n_plugins = session->n_plugins,
-                                            .fps = compare->fps,
-                                            .omega = compare->omega,
-                                            .size = compare->size};
-    if (!cs_sweep_make(&compare->sweep, &asked, error) && !check_methods(compare, error)) {
-        keep_shard(compare);
-        share_time(compare);
+    const struct cs_session_settings *session = &compare->settings->run.session;
+    const struct cs_cell_list_settings asked = {.list = compare->settings->methods,
+                                                .plugins = session->plugins,
+                                                .n_plugins = session->n_plugins,
+                                                .fps = compare->fps,
+                                                .omega = compare->omega,
+                                                .size = compare->scene_size};
+    if (!cs_cell_list_parse(&compare->cells, &asked, error) && !check_methods(compare, error)) {
+        store_shard(compare);
+        divide_time_budget(compare);
     }
     return error->status;
 }
@@ -173,8 +176,8 @@ static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *err
     struct cs_compare_reference reference;
     char of_reference[CS_HASH_DIGITS], of_cell[CS_HASH_DIGITS];
     cs_compare_reference_plan(&reference, &asked, of_reference, error);
-    for (uint32_t k = 0; k < compare->sweep.n && !error->status; k++) {
-        struct cs_cell *cell = compare->sweep.cells + k;
+    for (uint32_t k = 0; k < compare->cells.n && !error->status; k++) {
+        struct cs_cell *cell = compare->cells.cells + k;
         struct cs_text all = {0};
         cs_text_add(&all, "%s|%s|%s", cell->key, cell->method, cell->options);
         cs_hash_bytes(cs_text_get(&all), all.length, of_cell);
@@ -186,7 +189,7 @@ static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *err
 }
 
 static void report_row(struct cs_compare *compare, const struct cs_cell *cell, bool taken) {
-    compare->done++;
+    compare->n_done++;
     if (compare->settings->row)
         compare->settings->row(compare->settings->ctx, cell, taken);
 }
@@ -196,57 +199,60 @@ static bool is_ended(const struct cs_cell *cell) {
     return !*cell->outcome || !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
 }
 
-static enum cs_status measure_cells(struct cs_compare *compare, struct cs_ledger *ledger,
-                                    struct cs_error *error) {
-    for (uint32_t k = 0; k < compare->sweep.n; k++)
-        if (*compare->sweep.cells[k].outcome)
-            report_row(compare, compare->sweep.cells + k, true);
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        struct cs_cell *cell = compare->sweep.cells + k;
+static enum cs_status measure_cells(struct cs_compare *compare,
+                                    struct cs_compare_results *ledger, struct cs_error *error) {
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        if (*compare->cells.cells[k].outcome)
+            report_row(compare, compare->cells.cells + k, true);
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        struct cs_cell *cell = compare->cells.cells + k;
         if (*cell->outcome)
             continue;
         if (k > 0 && cs_cell_same_series(cell, cell - 1) && is_ended(cell - 1)) {
-            compare->done++;
+            compare->n_done++;
             continue;
         }
-        if (cs_compare_measure(compare, cell, error) || cs_ledger_append(ledger, cell, error))
+        if (cs_compare_measure(compare, cell, error) ||
+            cs_compare_results_append(ledger, cell, error))
             return error->status;
         report_row(compare, cell, false);
     }
-    compare->left_out = cs_sweep_drop_open(&compare->sweep, &compare->ended);
+    compare->n_not_run = cs_cell_list_drop_unrun(&compare->cells, &compare->n_ended_series);
     return CS_OK;
 }
 
 enum cs_status cs_compare_run(struct cs_compare *compare,
                               const struct cs_compare_settings *settings,
                               struct cs_error *error) {
-    struct cs_ledger ledger = {0};
+    struct cs_compare_results ledger = {0};
     *compare = (struct cs_compare){.settings = settings};
     cs_machine_name(compare->machine);
     const struct cs_compare_reference_settings reference = ask_reference(compare);
     // the folder is looked at before the reference, which may take long
-    if (!look_at_scene(compare, error) && !tell_origin(compare, error) &&
+    if (!read_scene_facts(compare, error) && !print_origin(compare, error) &&
         !make_cells(compare, error) && !make_keys(compare, error) &&
-        !cs_ledger_open(&ledger, compare, error) && !write_origin(compare, error) &&
+        !cs_compare_results_open(&ledger, compare, error) && !write_origin(compare, error) &&
         !cs_compare_reference_get(&compare->reference, &reference, error)) {
-        if (settings->begun)
-            settings->begun(settings->ctx);
+        if (settings->on_begin)
+            settings->on_begin(settings->ctx);
         if (!measure_cells(compare, &ledger, error) &&
-            !cs_ledger_refresh(&ledger, compare, error) && !cs_compare_time(compare, error)) {
-            cs_compare_find_orders(compare->sweep.cells, compare->sweep.n,
-                                   compare->reference.bar, compare->reference.scale);
-            cs_ledger_rewrite(&ledger, compare, error);
+            !cs_compare_results_refresh(&ledger, compare, error) &&
+            !cs_compare_time(compare, error)) {
+            cs_compare_find_orders(compare->cells.cells, compare->cells.n,
+                                   compare->reference.error_bar,
+                                   compare->reference.motion_scale);
+            cs_compare_results_rewrite(&ledger, compare, error);
         }
     }
-    cs_ledger_close(&ledger);
+    cs_compare_results_close(&ledger);
     return error->status;
 }
 
 void cs_compare_finish(struct cs_compare *compare) {
     cs_compare_reference_finish(&compare->reference);
-    cs_sweep_finish(&compare->sweep);
+    cs_cell_list_finish(&compare->cells);
     cs_rounds_finish(&compare->rounds);
-    cs_text_finish(&compare->changes);
-    cs_text_finish(&compare->origin);
+    cs_text_finish(&compare->switched_off);
+    cs_text_finish(&compare->provenance);
     *compare = (struct cs_compare){0};
 }

@@ -61,7 +61,7 @@ const struct cs_column cs_columns[] = {
 #define X(name, column)                                                                        \
     {"ledger_" column, NULL, CS_CELL_NUMBER,                                                   \
      offsetof(struct cs_cell, ledger) + CS_WORK_##name * sizeof(double), sizeof(double)},
-    CS_WORK_LIST(X)
+    CS_LEDGER_WORK_LIST(X)
 #undef X
         TEXT(machine),
     TEXT(version),
@@ -114,11 +114,11 @@ void cs_cell_init(struct cs_cell *cell, const char *method) {
 
 void cs_cell_name_machine(struct cs_cell *cell, const char *here) {
     char *end = cell->series + strcspn(cell->series, "@");
-    const size_t room = sizeof cell->series - (size_t)(end - cell->series);
+    const size_t capacity = sizeof cell->series - (size_t)(end - cell->series);
     const int host = (int)strcspn(cell->machine, ":");
     *end = 0;
     if (*cell->machine && strcmp(cell->machine, here) != 0)
-        snprintf(end, room, "@%.*s", host < 40 ? host : 40, cell->machine);
+        snprintf(end, capacity, "@%.*s", host < 40 ? host : 40, cell->machine);
 }
 
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b) {

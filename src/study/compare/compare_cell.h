@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "sim/account.h"
+#include "sim/energy_ledger.h"
 #include "sim/run.h"
 #include "sim/series.h"
 #include "study/machine.h"
@@ -45,7 +45,7 @@ struct cs_cell {
     double cpu, cpu_low, cpu_high; /* s: median and quartiles of rounds */
     double wall;                   /* s, of the first run */
     double runs, outliers;         /* timed ones; those far above the median */
-    double ledger[CS_WORKS];       /* J, where it was asked for: see sim/account.h */
+    double ledger[CS_WORKS];       /* J, where it was asked for: see sim/energy_ledger.h */
 };
 
 enum cs_cell_type { CS_CELL_TEXT, CS_CELL_NUMBER, CS_CELL_FLAG };

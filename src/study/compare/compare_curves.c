@@ -98,7 +98,7 @@ static void find_ranges(struct cs_curves *curves) {
             include(curves->x, cell->cpu_high);
         }
         if (is_position_error(settings->y))
-            curves->bar = fmax(curves->bar, cell->bar);
+            curves->error_bar = fmax(curves->error_bar, cell->bar);
     }
     widen(curves->x);
     widen(curves->y);
@@ -129,19 +129,21 @@ static void find_curves(struct cs_curves *curves) {
         const struct cs_cell *cell = settings->cells + k;
         double x, y;
         if (k == 0 || !cs_cell_same_series(cell, cell - 1)) {
-            if (curves->n == CS_CURVES_MOST)
+            if (curves->n == CS_CURVES_MAX)
                 return;
-            curves->list[curves->n++] = (struct cs_curve){
-                .first = k, .excess = HUGE_VAL, .family = family_of(cell), .style = -1};
+            curves->list[curves->n++] = (struct cs_curve){.first = k,
+                                                          .log_cost_excess = HUGE_VAL,
+                                                          .family = family_of(cell),
+                                                          .style = -1};
         }
         struct cs_curve *curve = curves->list + curves->n - 1;
         const bool drawn = cs_curves_point(settings, cell, &x, &y);
         curve->n++;
-        curve->drawn += drawn;
-        curve->excess = fmin(curve->excess, excess_of(settings, cell));
+        curve->is_drawn += drawn;
+        curve->log_cost_excess = fmin(curve->log_cost_excess, excess_of(settings, cell));
         curve->bars += drawn && cs_curves_quartiles(settings, cell);
-        curve->rings += drawn && cs_cell_has_crossings(cell);
-        curve->crosses += cs_curves_cross(curves, cell, &x);
+        curve->crossing_marks += drawn && cs_cell_has_crossings(cell);
+        curve->failed_marks += cs_curves_cross(curves, cell, &x);
     }
     for (uint32_t k = UINT32_MAX; cs_curves_front(curves, &k);)
         for (uint32_t c = 0; c < curves->n; c++)
@@ -150,14 +152,15 @@ static void find_curves(struct cs_curves *curves) {
 }
 
 static bool is_before(const struct cs_curve *a, const struct cs_curve *b) {
-    return a->on_front != b->on_front ? a->on_front > b->on_front : a->excess < b->excess;
+    return a->on_front != b->on_front ? a->on_front > b->on_front
+                                      : a->log_cost_excess < b->log_cost_excess;
 }
 
 /* Marks the one that comes first of those that are left; false: none is. */
 static bool choose(struct cs_curves *curves) {
     struct cs_curve *best = NULL;
     for (struct cs_curve *c = curves->list; c < curves->list + curves->n; c++)
-        if (c->style < 0 && c->drawn > 0 && (!best || is_before(c, best)))
+        if (c->style < 0 && c->is_drawn > 0 && (!best || is_before(c, best)))
             best = c;
     if (best)
         best->style = 0;
@@ -169,7 +172,7 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
     find_ranges(curves);
     find_curves(curves);
     // whoever asks for one family has all of it
-    const uint32_t most = settings->family ? CS_CURVES_MOST : CS_CURVES_DRAWN;
+    const uint32_t most = settings->family ? CS_CURVES_MAX : CS_CURVES_DRAWN;
     for (uint32_t k = 0; k < most && choose(curves); k++) {
     }
     int style = 0;
@@ -179,7 +182,7 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
                 curves->list[c].style = style++;
     uint32_t crosses = 0;
     for (uint32_t c = 0; c < curves->n; c++)
-        crosses += curves->list[c].crosses;
+        crosses += curves->list[c].failed_marks;
     if (crosses > 0)
         curves->y[1] += CROSS_ROOM * (curves->y[1] - curves->y[0]);
 }
@@ -187,12 +190,12 @@ void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *set
 uint32_t cs_curves_left_out(const struct cs_curves *curves) {
     uint32_t n = 0;
     for (uint32_t c = 0; c < curves->n; c++)
-        n += curves->list[c].style < 0 && curves->list[c].drawn > 0;
+        n += curves->list[c].style < 0 && curves->list[c].is_drawn > 0;
     return n;
 }
 
 bool cs_curves_show_bar(const struct cs_curves *curves) {
-    return curves->bar > 0 && log10(curves->bar) > curves->y[0];
+    return curves->error_bar > 0 && log10(curves->error_bar) > curves->y[0];
 }
 
 double cs_curves_edge(const struct cs_curves *curves) {
@@ -204,7 +207,7 @@ static int stride(double span) {
     return span > 20 ? 3 : span > 10 ? 2 : 1;
 }
 
-uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MOST]) {
+uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MAX]) {
     const double span = range[1] - range[0];
     const int every = stride(span);
     uint32_t n = 0;
@@ -214,7 +217,7 @@ uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MO
             const bool half = digit == 2 || digit == 5;
             const bool label =
                 (digit == 1 && decade % every == 0) || (span < 2 && half) || span < 1;
-            if (at >= range[0] && at <= range[1] && n < CS_TICKS_MOST)
+            if (at >= range[0] && at <= range[1] && n < CS_TICKS_MAX)
                 ticks[n++] = (struct cs_tick){at, digit, decade, label};
         }
     return n;

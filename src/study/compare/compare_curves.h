@@ -8,8 +8,8 @@
 
 enum {
     CS_CURVES_DRAWN = 12,
-    CS_CURVES_MOST = 256,
-    CS_TICKS_MOST = 512,
+    CS_CURVES_MAX = 256,
+    CS_TICKS_MAX = 512,
     CS_CURVE_COLOURS = 7,
     CS_CURVE_SHAPES = 5
 };
@@ -25,11 +25,12 @@ struct cs_plot_settings {
 
 /* The cells of one series, which stand together. */
 struct cs_curve {
-    uint32_t first, n, drawn, on_front;
-    uint32_t bars, crosses; /* cells with quartiles; that did not get through */
-    double excess;          /* least cost over that of the front at its error, as a logarithm */
-    uint32_t rings;         /* cells that are drawn and in which edges went through triangles */
-    int family;             /* number in cs_family_names */
+    uint32_t first, n, is_drawn, on_front;
+    uint32_t bars, failed_marks; /* cells with quartiles; that did not get through */
+    double log_cost_excess; /* least cost over that of the front at its error, as a logarithm */
+    uint32_t
+        crossing_marks; /* cells that are drawn and in which edges went through triangles */
+    int family;         /* number in cs_family_names */
     int style; /* colour and marker, in the order of the legend; below 0: it is not drawn */
 };
 
@@ -37,8 +38,8 @@ struct cs_curve {
 struct cs_curves {
     const struct cs_plot_settings *settings;
     double x[2], y[2];
-    double bar; /* m, the reference's own error where y is one of position; 0: none */
-    struct cs_curve list[CS_CURVES_MOST];
+    double error_bar; /* m, the reference's own error where y is one of position; 0: none */
+    struct cs_curve list[CS_CURVES_MAX];
     uint32_t n;
 };
 
@@ -75,12 +76,12 @@ bool cs_curves_front(const struct cs_curves *curves, uint32_t *k);
 
 /* A tick at digit times 10^decade; label: it is written beside it. */
 struct cs_tick {
-    double at; /* decimal logarithm */
+    double position; /* decimal logarithm */
     int digit, decade;
     bool label;
 };
 /* Decades have a label, within two of them 2 and 5 as well, and within one all digits; over ten
  * of them every second or third has. How many there are. */
-uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MOST]);
+uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MAX]);
 
 #endif

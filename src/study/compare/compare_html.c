@@ -22,7 +22,7 @@ static void add_head(const struct cs_compare *compare, struct cs_text *out) {
 }
 
 /* A text of other printers, as it is; frees it. */
-static void add_pre(const char *title, struct cs_text *text, struct cs_text *out) {
+static void add_preformatted(const char *title, struct cs_text *text, struct cs_text *out) {
     cs_text_add(out, "<h2>%s</h2>\n<pre>", title);
     cs_svg_add_text(out, cs_text_get(text));
     cs_text_add(out, "</pre>\n");
@@ -34,8 +34,8 @@ static void add_diagram(const struct cs_compare *compare, const struct cs_rankin
                         const char *x, struct cs_text *out) {
     const bool known = cs_norm_is_known(ranking->norm, &compare->reference);
     const struct cs_plot_settings settings = {
-        .cells = compare->sweep.cells,
-        .n = compare->sweep.n,
+        .cells = compare->cells.cells,
+        .n = compare->cells.n,
         .x = cs_column_find(x),
         .y = cs_norm_column(known ? ranking->norm : CS_NORM_ENERGY)};
     cs_svg_print(&settings, out);
@@ -77,19 +77,19 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         cs_text_add(out, "<th>%s</th>", names[k]);
     cs_text_add(out, "</tr>\n");
-    for (uint32_t k = 0; k < compare->sweep.n; k++)
-        add_row(compare->sweep.cells + k, ranking->front[k], out);
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        add_row(compare->cells.cells + k, ranking->on_pareto_front[k], out);
     cs_text_add(out, "</table>\n");
 }
 
 static void add_machine(struct cs_text *out) {
     struct cs_machine machine;
     struct cs_text text = {0};
-    cs_machine_look(&machine);
+    cs_machine_detect(&machine);
     cs_text_add(&text, "%s: %s, %ld processors, load %.1f\nclothsim %s, %s, %s\n", machine.host,
                 machine.processor, machine.processors, machine.load, machine.version,
                 machine.compiler, machine.flags);
-    add_pre("Machine", &text, out);
+    add_preformatted("Machine", &text, out);
 }
 
 void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ranking,
@@ -105,21 +105,21 @@ void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ra
     cs_table_add_series(compare, &series);
     cs_table_add_ledger(compare, &ledger);
     if (typed)
-        add_pre("Command", &command, out);
-    add_pre("Reference", &reference, out);
-    add_pre("Verdict", &verdict, out);
-    add_pre("To mind", &warnings, out);
+        add_preformatted("Command", &command, out);
+    add_preformatted("Reference", &reference, out);
+    add_preformatted("Verdict", &verdict, out);
+    add_preformatted("To mind", &warnings, out);
     cs_text_add(out, "<h2>Diagrams</h2>\n<p>Yellow: the front, where nothing is both cheaper "
                      "and more accurate. Bars: quartiles of the rounds. Crosses: "
                      "what did not get through. Grey: below the "
                      "reference's own error.</p>\n");
-    if (compare->reference.agree) {
+    if (compare->reference.families_agree) {
         add_diagram(compare, ranking, "cpu", out);
         add_diagram(compare, ranking, "work", out);
     }
-    add_pre("Series", &series, out);
+    add_preformatted("Series", &series, out);
     if (ledger.length)
-        add_pre("Where energy went", &ledger, out);
+        add_preformatted("Where energy went", &ledger, out);
     add_table(compare, ranking, out);
     add_machine(out);
     cs_text_add(out, "</body></html>\n");

@@ -2,7 +2,7 @@
  * step. */
 #include "study/compare/compare_measure.h"
 
-#include "study/origin.h"
+#include "study/provenance_write.h"
 #include "study/reference/compare_reference.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@
 /* Two successive slopes within that are steady. */
 #define STEADY 0.1
 
-static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
+static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_result *end) {
     const struct cs_counts *counts = &end->counts;
     cell->steps = (double)counts->steps;
     cell->evals = (double)counts->forces;
@@ -25,7 +25,7 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->solves = (double)counts->solves;
     cell->iterations = (double)counts->solve_iterations;
     cell->setups = (double)counts->solve_setups;
-    cell->clamped = (double)counts->clamped;
+    cell->clamped = (double)counts->clamped_setups;
     cell->rejected = (double)counts->method.rejected;
     cell->newton = (double)counts->method.newton;
     cell->work = cell->evals + cell->jvps + cell->iterations;
@@ -36,7 +36,8 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->wall = end->wall;
     cell->runs = 1;
     cell->outliers = 0;
-    cell->crossings = end->crossings.counted ? (double)end->crossings.most : (double)NAN;
+    cell->crossings =
+        end->crossings.is_counted ? (double)end->crossings.max_count : (double)NAN;
     cell->time = end->time;
     cell->step =
         end->outcome == CS_RUNNING && !end->failed ? end->time / cell->steps : (double)NAN;
@@ -45,15 +46,17 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     snprintf(cell->note, sizeof cell->note, "%s", end->note);
 }
 
-static void take_errors(const struct cs_compare *compare, const struct cs_course *course,
-                        const struct cs_track *track, struct cs_cell *cell) {
+static void take_errors(const struct cs_compare *compare,
+                        const struct cs_recorded_run *recording,
+                        const struct cs_trajectory *track, struct cs_cell *cell) {
     const struct cs_compare_reference *reference = &compare->reference;
-    struct cs_deviation deviation;
-    if (!reference->agree)
+    struct cs_trajectory_error deviation;
+    if (!reference->families_agree)
         return;
-    cs_deviation_take(&deviation, &course->session.system, track, &reference->track,
-                      track->frames, cs_compare_reference_pointwise_frames(reference));
-    cell->bar = reference->bar;
+    cs_trajectory_error_compute(&deviation, &recording->session.system, track,
+                                &reference->trajectory, track->frames,
+                                cs_compare_reference_pointwise_frames(reference));
+    cell->bar = reference->error_bar;
     cell->error = deviation.end;
     cell->max_error = deviation.end_max;
     cell->path_error = deviation.path;
@@ -64,52 +67,53 @@ static void take_errors(const struct cs_compare *compare, const struct cs_course
     cell->box_error = deviation.box;
     cell->strain = deviation.strain;
     cell->achieved =
-        cell->adaptive ? cell->error / (cell->value * reference->scale) : (double)NAN;
+        cell->adaptive ? cell->error / (cell->value * reference->motion_scale) : (double)NAN;
 }
 
 /* Where its energy went, in a run that is not timed. */
-static enum cs_status take_ledger(struct cs_course *course, struct cs_cell *cell,
+static enum cs_status take_ledger(struct cs_recorded_run *recording, struct cs_cell *cell,
                                   struct cs_error *error) {
-    struct cs_system *system = &course->session.system;
-    struct cs_account account = {0};
-    struct cs_course_end end;
-    memcpy(system->state, course->start, 6 * (size_t)system->view.n * sizeof *course->start);
-    if (!cs_account_open(&account, system, 0, error)) {
-        course->session.settings.run.account = &account;
-        if (!cs_course_run(course, 0, NULL, &end, error))
+    struct cs_system *system = &recording->session.system;
+    struct cs_energy_ledger account = {0};
+    struct cs_recorded_run_result end;
+    memcpy(system->state, recording->initial_state,
+           6 * (size_t)system->view.n * sizeof *recording->initial_state);
+    if (!cs_energy_ledger_open(&account, system, 0, error)) {
+        recording->session.settings.run.ledger = &account;
+        if (!cs_recorded_run_execute(recording, 0, NULL, &end, error))
             memcpy(cell->ledger, account.work, sizeof cell->ledger);
-        course->session.settings.run.account = NULL;
+        recording->session.settings.run.ledger = NULL;
     }
-    cs_account_close(&account);
+    cs_energy_ledger_close(&account);
     return error->status;
 }
 
 static void take_module(struct cs_session *session, struct cs_cell *cell) {
-    struct cs_origin_module module;
-    cs_origin_find_module(session, &module);
+    struct cs_provenance_out_module module;
+    cs_provenance_out_find_module(session, &module);
     memcpy(cell->module, module.hash, sizeof cell->module);
 }
 
 enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_cell *cell,
                                   struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
-    struct cs_course course = {0};
-    struct cs_track track = {0};
-    struct cs_course_end end;
+    struct cs_recorded_run recording = {0};
+    struct cs_trajectory track = {0};
+    struct cs_recorded_run_result end;
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    if (!cs_course_open(&course, &compare->settings->course, integrator, error) &&
-        !cs_track_init(&track, &course, error) &&
-        !cs_course_run(&course, compare->budget, &track, &end, error)) {
+    if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error) &&
+        !cs_trajectory_init(&track, &recording, error) &&
+        !cs_recorded_run_execute(&recording, compare->budget, &track, &end, error)) {
         take_counts(cell, &end);
-        take_module(&course.session, cell);
+        take_module(&recording.session, cell);
         if (cs_cell_is_finished(cell)) {
-            take_errors(compare, &course, &track, cell);
+            take_errors(compare, &recording, &track, cell);
             if (compare->settings->ledger)
-                take_ledger(&course, cell, error);
+                take_ledger(&recording, cell, error);
         }
     }
-    cs_track_finish(&track);
-    cs_course_close(&course);
+    cs_trajectory_finish(&track);
+    cs_recorded_run_close(&recording);
     return error->status;
 }
 

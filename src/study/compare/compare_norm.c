@@ -29,7 +29,7 @@ const struct cs_column *cs_norm_column(enum cs_norm norm) {
 }
 
 bool cs_norm_is_known(enum cs_norm norm, const struct cs_compare_reference *reference) {
-    return norms[norm].of_particles ? reference->pointwise : reference->agree;
+    return norms[norm].of_particles ? reference->pointwise : reference->families_agree;
 }
 
 double cs_norm_of(enum cs_norm norm, const struct cs_cell *cell,
@@ -38,9 +38,12 @@ double cs_norm_of(enum cs_norm norm, const struct cs_cell *cell,
     // the reference's own error is known for positions
     if (norm > CS_NORM_LARGEST || isnan(error))
         return error;
-    return fmax(error, norm == CS_NORM_LARGEST ? reference->bar_max : reference->bar);
+    return fmax(error,
+                norm == CS_NORM_LARGEST ? reference->error_bar_max : reference->error_bar);
 }
 
 double cs_norm_scale(enum cs_norm norm, const struct cs_compare_reference *reference) {
-    return norm <= CS_NORM_LARGEST ? reference->scale : norm == CS_NORM_ENERGY ? 1 : HUGE_VAL;
+    return norm <= CS_NORM_LARGEST  ? reference->motion_scale
+           : norm == CS_NORM_ENERGY ? 1
+                                    : HUGE_VAL;
 }

@@ -12,7 +12,7 @@ static const int shapes[CS_CURVE_SHAPES] = {7, 5, 9, 13, 11};
 
 /* Labels of an axis as a list: gnuplot's own are bare on less than a decade. */
 static void print_ticks(const char *axis, const double range[2], struct cs_text *out) {
-    struct cs_tick ticks[CS_TICKS_MOST];
+    struct cs_tick ticks[CS_TICKS_MAX];
     const uint32_t n = cs_curves_ticks(range, ticks);
     cs_text_add(out, "set %srange [%.6g:%.6g]\nset %stics (", axis, pow(10, range[0]),
                 pow(10, range[1]), axis);
@@ -48,7 +48,7 @@ static void print_head(const struct cs_curves *curves, struct cs_text *out) {
         cs_text_add(out,
                     "set object 1 rectangle from graph 0, graph 0 to graph 1, first %.6g "
                     "behind fillcolor rgb \"#dcdcdc\" fillstyle solid noborder\n",
-                    curves->bar);
+                    curves->error_bar);
 }
 
 static void print_pair(double x, double y, const char *behind, struct cs_text *out) {
@@ -113,12 +113,12 @@ static void plot_curve(const struct cs_curves *curves, uint32_t c, struct cs_tex
                     " $bars%u using 1:2:3:4 with xerrorbars pointtype 0 linewidth 1.5 "
                     "linecolor rgb \"%s\" notitle, \\\n",
                     c, colour);
-    if (style >= 0 && curve->rings > 0)
+    if (style >= 0 && curve->crossing_marks > 0)
         cs_text_add(out,
                     " $rings%u with points pointtype 6 pointsize 2.2 linewidth 1.6 linecolor "
                     "rgb \"%s\" notitle, \\\n",
                     c, CS_RING_COLOUR);
-    if (curve->crosses > 0)
+    if (curve->failed_marks > 0)
         cs_text_add(out,
                     " $crosses%u with points pointtype 2 pointsize 0.9 linewidth 1.5 "
                     "linecolor rgb \"%s\" notitle, \\\n",
@@ -151,7 +151,7 @@ static void print_plot(const struct cs_curves *curves, struct cs_text *out) {
     uint32_t first = UINT32_MAX, crosses = 0, rings = 0;
     cs_text_add(out, "plot");
     for (uint32_t c = 0; c < curves->n; c++)
-        crosses += curves->list[c].crosses, rings += curves->list[c].rings;
+        crosses += curves->list[c].failed_marks, rings += curves->list[c].crossing_marks;
     if (cs_curves_front(curves, &first))
         cs_text_add(
             out,

@@ -27,7 +27,7 @@ static void add_json_real(struct cs_text *out, const char *key, double value) {
 
 static void add_machine(struct cs_text *out) {
     struct cs_machine machine;
-    cs_machine_look(&machine);
+    cs_machine_detect(&machine);
     cs_text_add(out, "  \"machine\": {");
     add_json_text(out, "processor", machine.processor);
     cs_text_add(out, ", \"processors\": %ld, ", machine.processors);
@@ -45,13 +45,13 @@ static void add_reference(const struct cs_compare_reference *reference, struct c
     const struct {
         const char *key;
         double value;
-    } numbers[] = {{"bar", reference->bar},
-                   {"bar_max", reference->bar_max},
-                   {"motion", reference->scale},
+    } numbers[] = {{"bar", reference->error_bar},
+                   {"bar_max", reference->error_bar_max},
+                   {"motion", reference->motion_scale},
                    {"kinetic_energy", reference->kinetic},
                    {"strain", reference->strain},
                    {"accuracy", reference->accuracy},
-                   {"amplification", reference->horizon.amplification},
+                   {"amplification", reference->horizon.growth},
                    {"horizon", reference->horizon.time}};
     cs_text_add(out, "  \"reference\": {\"methods\": [");
     /* a family, its tighter twin, the other family, its tighter twin */
@@ -60,7 +60,8 @@ static void add_reference(const struct cs_compare_reference *reference, struct c
         cs_text_add_json(out, reference->methods[k]);
     }
     cs_text_add(out, "], \"agree\": %s, \"pointwise\": %s, ",
-                reference->agree ? "true" : "false", reference->pointwise ? "true" : "false");
+                reference->families_agree ? "true" : "false",
+                reference->pointwise ? "true" : "false");
     add_json_text(out, "reason", reference->reason);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         cs_text_add(out, ", ");
@@ -72,26 +73,26 @@ static void add_reference(const struct cs_compare_reference *reference, struct c
 static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
                      struct cs_text *out) {
     cs_text_add(out, "{\"best\": %td", rank->best - cells);
-    if (rank->next) {
-        cs_text_add(out, ", \"next\": %td, ", rank->next - cells);
-        add_json_real(out, "factor", rank->ratio.factor);
+    if (rank->runner_up) {
+        cs_text_add(out, ", \"next\": %td, ", rank->runner_up - cells);
+        add_json_real(out, "factor", rank->ratio.median);
         cs_text_add(out, ", \"interval\": [");
         cs_text_add_real(out, rank->ratio.low);
         cs_text_add(out, ", ");
         cs_text_add_real(out, rank->ratio.high);
         cs_text_add(out, "], \"pairs\": %u, \"told_apart\": %s", rank->ratio.pairs,
-                    rank->apart ? "true" : "false");
+                    rank->is_significant ? "true" : "false");
     }
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++)
-        if (rank->others[norm])
+        if (rank->better_by_norm[norm])
             cs_text_add(out, ", \"by_%s\": %td", cs_norm_names[norm],
-                        rank->others[norm] - cells);
+                        rank->better_by_norm[norm] - cells);
 }
 
 /* best and next are indices of cells */
 static void add_verdict(const struct cs_ranking *ranking, const struct cs_compare *compare,
                         struct cs_text *out) {
-    const struct cs_cell *cells = compare->sweep.cells;
+    const struct cs_cell *cells = compare->cells.cells;
     cs_text_add(out, "  \"rank\": \"%s\",\n  \"verdict\": [", cs_norm_names[ranking->norm]);
     for (uint32_t k = 0; k < ranking->n; k++) {
         cs_text_add(out, "%s\n    ", k ? "," : "");
@@ -135,16 +136,16 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
     cs_text_add(out, ",\n  ");
     add_json_text(out, "contact", compare->contact ? "force" : "");
     cs_text_add(out, ", ");
-    add_json_text(out, "switched_off", cs_text_get(&compare->changes));
+    add_json_text(out, "switched_off", cs_text_get(&compare->switched_off));
     cs_text_add(out, ",\n");
     add_machine(out);
     add_reference(&compare->reference, out);
     add_verdict(ranking, compare, out);
     /* in the order of the sweep: the verdict above refers to cells by index */
     cs_text_add(out, "  \"cells\": [");
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
         cs_text_add(out, "%s\n    ", k ? "," : "");
-        add_json_cell(compare->sweep.cells + k, ranking->front[k], out);
+        add_json_cell(compare->cells.cells + k, ranking->on_pareto_front[k], out);
     }
     cs_text_add(out, "\n  ]\n}\n");
 }
@@ -153,7 +154,7 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
 
 static void add_setting(const struct cs_compare *compare, struct cs_text *out) {
     struct cs_machine machine;
-    cs_machine_look(&machine);
+    cs_machine_detect(&machine);
     cs_text_add(out, "# Error against run time: %s\n\n```\n", compare->scene);
     cs_table_add_reference(compare, out);
     cs_text_add(
@@ -206,8 +207,8 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
                 "| series | options | error | largest | velocity | energy | order | error / "
                 "(rtol x motion) | force evaluations | solves | iterations | time | |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (uint32_t k = 0; k < compare->sweep.n; k++)
-        add_line(compare->sweep.cells + k, ranking->front[k], out);
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        add_line(compare->cells.cells + k, ranking->on_pareto_front[k], out);
 }
 
 static void print_markdown(const struct cs_compare *compare, const struct cs_ranking *ranking,
@@ -245,13 +246,14 @@ static enum cs_status draw(const struct cs_compare *compare, const char *name, c
     snprintf(title, sizeof title, "%.255s, %.4g s, %u particles", compare->scene, compare->time,
              compare->particles);
     const struct cs_plot_settings settings = {
-        .cells = compare->sweep.cells,
-        .n = compare->sweep.n,
+        .cells = compare->cells.cells,
+        .n = compare->cells.n,
         .x = cs_column_find(x),
         // beyond the horizon there is energy to compare
-        .y = cs_norm_column(cs_norm_is_known(compare->settings->rank, &compare->reference)
-                                ? compare->settings->rank
-                                : CS_NORM_ENERGY),
+        .y = cs_norm_column(
+            cs_norm_is_known(compare->settings->ranking_norm, &compare->reference)
+                ? compare->settings->ranking_norm
+                : CS_NORM_ENERGY),
         .title = title,
         .name = name};
     return cs_plot_write(&settings, compare->settings->folder, drawn, error);
@@ -277,7 +279,7 @@ enum cs_status cs_compare_write_report(const struct cs_compare *compare,
     if (cs_ranking_make(&ranking, compare, error))
         return error->status;
     // two families that disagree leave nothing to draw errors against
-    if (compare->reference.agree && !draw(compare, "error_time", "cpu", &drawn, error))
+    if (compare->reference.families_agree && !draw(compare, "error_time", "cpu", &drawn, error))
         draw(compare, "error_work", "work", &drawn, error);
     print_json(compare, &ranking, &json);
     print_markdown(compare, &ranking, drawn, &markdown);

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "io/gnuplot.h"
 #include "io/png.h"
-#include "sim/folders.h"
+#include "sim/install_paths.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ struct sheet {
 };
 
 static bool is_first_of_series(const struct cs_compare *compare, uint32_t k) {
-    const struct cs_cell *cells = compare->sweep.cells;
+    const struct cs_cell *cells = compare->cells.cells;
     return k == 0 || !cs_cell_same_series(cells + k, cells + k - 1);
 }
 
@@ -32,7 +32,7 @@ static bool has_step(const struct cs_cell *cell, double step) {
 
 /* the step with most finished methods, the longer one of two */
 static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
-    const struct cs_sweep *sweep = &compare->sweep;
+    const struct cs_cell_list *sweep = &compare->cells;
     double best = (double)NAN;
     uint32_t most = 0;
     for (uint32_t k = 0; k < sweep->n; k++) {
@@ -51,7 +51,7 @@ static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
 
 /* The cheapest cells of the methods: the dearest of them is what all can keep. */
 static double common_cost(const struct cs_compare *compare) {
-    const struct cs_sweep *sweep = &compare->sweep;
+    const struct cs_cell_list *sweep = &compare->cells;
     double cost = 0, least = HUGE_VAL;
     for (uint32_t k = 0; k <= sweep->n; k++) {
         if (k == sweep->n || is_first_of_series(compare, k)) {
@@ -65,7 +65,7 @@ static double common_cost(const struct cs_compare *compare) {
 }
 
 static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
-    const struct cs_sweep *sweep = &compare->sweep;
+    const struct cs_cell_list *sweep = &compare->cells;
     const double cost = common_cost(compare);
     const struct cs_cell *best = NULL;
     for (uint32_t k = 0; k <= sweep->n; k++) {
@@ -80,19 +80,20 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
     }
 }
 
-static enum cs_status paint(struct cs_course *course, const struct cs_frame *frame,
-                            const struct cs_obstacle *obstacles, enum cs_renderer_kind kind,
-                            const char *path, struct cs_error *error) {
-    struct cs_scene *scene = &course->session.scene;
+static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_frame *frame,
+                            const struct cs_posed_collider *obstacles,
+                            enum cs_renderer_kind kind, const char *path,
+                            struct cs_error *error) {
+    struct cs_scene *scene = &recording->session.scene;
     const struct cs_renderer *renderer = NULL;
     struct cs_canvas *canvas = NULL;
     struct cs_image image = {TILE_WIDTH, TILE_HEIGHT, malloc(3 * TILE_WIDTH * TILE_HEIGHT),
                              NULL};
     struct cs_image *textures = calloc(scene->bodies.n, sizeof *textures);
     const struct cs_canvas_settings settings = {.scene = scene,
-                                                .system = &course->session.system,
+                                                .system = &recording->session.system,
                                                 .textures = textures,
-                                                .obstacles = obstacles};
+                                                .colliders = obstacles};
     scene->render.size[0] = TILE_WIDTH;
     scene->render.size[1] = TILE_HEIGHT;
     scene->render.look = CS_LOOK_FORCE; // colours of what has no sign
@@ -115,39 +116,41 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
                                 const struct cs_compare *compare, enum cs_renderer_kind kind,
                                 struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR], file[CS_SERIES_BYTES], path[4400];
-    struct cs_course course;
-    struct cs_track track = {0};
-    struct cs_course_end end;
+    struct cs_recorded_run recording;
+    struct cs_trajectory track = {0};
+    struct cs_recorded_run_result end;
     double *distance = calloc(compare->particles, sizeof *distance);
-    struct cs_obstacle *obstacles = NULL;
+    struct cs_posed_collider *obstacles = NULL;
     cs_cell_integrator(cell, integrator, sizeof integrator);
     cs_series_file_name(cell->series, file);
     snprintf(path, sizeof path, "%s/pictures/%s_%s.png", compare->settings->folder, sheet->kind,
              file);
     if (!distance)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours");
-    else if (!cs_course_open(&course, &compare->settings->course, integrator, error)) {
-        if (!cs_track_init(&track, &course, error) &&
-            !cs_course_run(&course, 0, &track, &end, error) && track.done == track.frames) {
-            const double *x = cs_track_state(&track, track.frames);
+    else if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error)) {
+        if (!cs_trajectory_init(&track, &recording, error) &&
+            !cs_recorded_run_execute(&recording, 0, &track, &end, error) &&
+            track.n_recorded == track.frames) {
+            const double *x = cs_trajectory_state(&track, track.frames);
             cs_distance_each(track.n, x,
-                             cs_track_state(&compare->reference.track, track.frames), distance);
+                             cs_trajectory_state(&compare->reference.trajectory, track.frames),
+                             distance);
             for (uint32_t i = 0; i < track.n; i++)
                 distance[i] = log10(fmax(distance[i], pow(10, sheet->range[0])));
-            const struct cs_system *system = &course.session.system;
+            const struct cs_system *system = &recording.session.system;
             obstacles = calloc(system->scene->colliders.n + 1, sizeof *obstacles);
             if (obstacles)
-                cs_obstacles_at(system, compare->time, obstacles);
+                cs_posed_colliders_at(system, compare->time, obstacles);
             /* no time: what viewpoint forces saw was forgotten at the end of the run */
             const struct cs_frame frame = {.x = x,
                                            .scalar = distance,
                                            .range = {sheet->range[0], sheet->range[1]},
                                            .inv_mass = system->inv_mass,
-                                           .obstacles = obstacles};
-            paint(&course, &frame, obstacles, kind, path, error);
+                                           .colliders = obstacles};
+            paint(&recording, &frame, obstacles, kind, path, error);
         }
-        cs_track_finish(&track);
-        cs_course_close(&course);
+        cs_trajectory_finish(&track);
+        cs_recorded_run_close(&recording);
     }
     free(obstacles);
     free(distance);
@@ -188,7 +191,7 @@ static void set_range(struct sheet *sheet, const struct cs_compare *compare) {
         least = fmin(least, sheet->cells[k]->error);
         most = fmax(most, sheet->cells[k]->max_error);
     }
-    sheet->range[0] = floor(log10(fmax(least, compare->reference.bar)));
+    sheet->range[0] = floor(log10(fmax(least, compare->reference.error_bar)));
     sheet->range[1] = fmax(ceil(log10(most)), sheet->range[0] + 1);
 }
 
@@ -200,7 +203,7 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
     /* before the tiles, which all share it */
     set_range(sheet, compare);
     snprintf(path, sizeof path, "%s/pictures", compare->settings->folder);
-    if (sheet->n == 0 || cs_folder_make(path, error))
+    if (sheet->n == 0 || cs_folder_create(path, error))
         return error->status;
     for (uint32_t k = 0; k < sheet->n && !error->status; k++)
         draw_tile(sheet, sheet->cells[k], compare, kind, error);
@@ -215,8 +218,9 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
     return error->status;
 }
 
-enum cs_status cs_sheet_write(const struct cs_compare *compare, enum cs_renderer_kind kind,
-                              struct cs_error *error) {
+enum cs_status cs_compare_contact_sheet_write(const struct cs_compare *compare,
+                                              enum cs_renderer_kind kind,
+                                              struct cs_error *error) {
     struct sheet step = {.kind = "equal_step"}, cost = {.kind = "equal_cost"};
     if (!compare->reference.pointwise)
         return CS_OK;

@@ -11,7 +11,8 @@
  * equal_cost (what each method does within the time that all of them can keep). Colours stand
  * for powers of ten from the reference's bar to the largest error. Without errors of position
  * nothing is drawn. CS_ERR_MODULE (renderer), CS_ERR_FILE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
-enum cs_status cs_sheet_write(const struct cs_compare *compare, enum cs_renderer_kind kind,
-                              struct cs_error *error);
+enum cs_status cs_compare_contact_sheet_write(const struct cs_compare *compare,
+                                              enum cs_renderer_kind kind,
+                                              struct cs_error *error);
 
 #endif

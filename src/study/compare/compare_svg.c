@@ -46,7 +46,7 @@ static bool place(const struct cs_curves *curves, const struct cs_cell *cell, do
 /* One tick of an axis, with its grid line. */
 static void add_tick(const struct cs_curves *curves, bool vertical, const struct cs_tick *tick,
                      struct cs_text *out) {
-    const double p = vertical ? to_y(curves, tick->at) : to_x(curves, tick->at);
+    const double p = vertical ? to_y(curves, tick->position) : to_x(curves, tick->position);
     char mark[32] = "10";
     if (vertical)
         cs_text_add(out, "<path d=\"M%d %.1fH%d\" class=\"%s\"/>", LEFT, p, RIGHT,
@@ -65,7 +65,7 @@ static void add_tick(const struct cs_curves *curves, bool vertical, const struct
 }
 
 static void add_axis(const struct cs_curves *curves, bool vertical, struct cs_text *out) {
-    struct cs_tick ticks[CS_TICKS_MOST];
+    struct cs_tick ticks[CS_TICKS_MAX];
     const uint32_t n = cs_curves_ticks(vertical ? curves->y : curves->x, ticks);
     for (uint32_t k = 0; k < n; k++)
         add_tick(curves, vertical, ticks + k, out);
@@ -75,7 +75,7 @@ static void add_axis(const struct cs_curves *curves, bool vertical, struct cs_te
 static void add_bar(const struct cs_curves *curves, struct cs_text *out) {
     if (!cs_curves_show_bar(curves))
         return;
-    const double y = fmax(to_y(curves, log10(curves->bar)), TOP);
+    const double y = fmax(to_y(curves, log10(curves->error_bar)), TOP);
     cs_text_add(out,
                 "<rect x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%.1f\" "
                 "fill=\"#ddd\"/>\n",
@@ -168,7 +168,7 @@ static void add_ring_key(const struct cs_curves *curves, struct cs_text *out) {
     for (uint32_t c = 0; c < curves->n; c++)
         if (curves->list[c].style >= 0) {
             y += 20;
-            rings += curves->list[c].rings;
+            rings += curves->list[c].crossing_marks;
         }
     if (rings == 0)
         return;
@@ -178,10 +178,10 @@ static void add_ring_key(const struct cs_curves *curves, struct cs_text *out) {
 }
 
 /* The series that there was no room for, by name. */
-static void add_rest(const struct cs_curves *curves, struct cs_text *out) {
+static void add_omitted_series(const struct cs_curves *curves, struct cs_text *out) {
     bool any = false;
     for (uint32_t c = 0; c < curves->n; c++)
-        if (curves->list[c].style < 0 && curves->list[c].drawn > 0) {
+        if (curves->list[c].style < 0 && curves->list[c].is_drawn > 0) {
             cs_text_add(out, "%s", any ? ", " : "<p>Not drawn, but in the table: ");
             cs_svg_add_text(out, curves->settings->cells[curves->list[c].first].series);
             any = true;
@@ -227,5 +227,5 @@ void cs_svg_print(const struct cs_plot_settings *settings, struct cs_text *out) 
     add_ring_key(&curves, out);
     add_frame(&curves, out);
     cs_text_add(out, "</svg>\n");
-    add_rest(&curves, out);
+    add_omitted_series(&curves, out);
 }

@@ -8,22 +8,22 @@
 void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_compare_reference *reference = &compare->reference;
     const struct cs_horizon *horizon = &reference->horizon;
-    const char *changes = cs_text_get(&compare->changes);
+    const char *changes = cs_text_get(&compare->switched_off);
     cs_text_add(out, "%s: %u particles, %u springs, %.4g s in %u frames%s%s%s\n",
                 compare->scene, compare->particles, compare->springs, compare->time,
-                compare->settings->course.frames, compare->contact ? ", contact by force" : "",
+                compare->settings->run.frames, compare->contact ? ", contact by force" : "",
                 *changes ? "; off: " : "", changes);
     cs_text_add(out, "reference  %s\n   against %s\n", reference->methods[1],
                 reference->methods[3]);
     /* without a reference the figures below have no meaning */
-    if (!reference->agree) {
+    if (!reference->families_agree) {
         cs_text_add(out, "  no reference: %s\n", reference->reason);
         return;
     }
     cs_text_add(out,
                 " error bar %.1e m (twins %.1e, %.1e; families %.1e); the motion is %.2g m%s\n",
-                reference->bar, reference->differences[0], reference->differences[1],
-                reference->differences[2], reference->scale,
+                reference->error_bar, reference->differences[0], reference->differences[1],
+                reference->differences[2], reference->motion_scale,
                 reference->cached ? "; from the cache" : "");
     cs_text_add(out, "   horizon ");
     if (horizon->time <= compare->time)
@@ -31,7 +31,7 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
     else
         cs_text_add(out, "beyond %.3g s", compare->time);
     cs_text_add(out, " for %.0e m; a displacement at the start grows %.3g times\n",
-                reference->accuracy, horizon->amplification);
+                reference->accuracy, horizon->growth);
     if (!reference->pointwise)
         cs_text_add(out, "           statistics only: %s\n", reference->reason);
 }
@@ -39,8 +39,8 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
 /* of the column of names: as wide as the longest, within reason */
 static int name_width(const struct cs_compare *compare) {
     size_t width = 20;
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        const size_t length = strlen(compare->sweep.cells[k].series);
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        const size_t length = strlen(compare->cells.cells[k].series);
         width = length > width ? length : width;
     }
     return width < 48 ? (int)width : 48;
@@ -123,7 +123,7 @@ static void add_series(const struct cs_cell *cells, uint32_t n, int width,
 }
 
 void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out) {
-    const struct cs_sweep *sweep = &compare->sweep;
+    const struct cs_cell_list *sweep = &compare->cells;
     for (uint32_t first = 0, k = 1; k <= sweep->n; k++)
         if (k == sweep->n || !cs_cell_same_series(sweep->cells + k, sweep->cells + first)) {
             add_series(sweep->cells + first, k - first, name_width(compare), out);
@@ -133,12 +133,12 @@ void cs_table_add_series(const struct cs_compare *compare, struct cs_text *out) 
 
 static const char *const works[] = {
 #define X(name, column) column,
-    CS_WORK_LIST(X)
+    CS_LEDGER_WORK_LIST(X)
 #undef X
 };
 
 /* what is 0 everywhere has no column, but for what the method makes */
-static bool is_shown(const struct cs_sweep *sweep, int work) {
+static bool is_shown(const struct cs_cell_list *sweep, int work) {
     bool shown = false, any = false;
     for (uint32_t k = 0; k < sweep->n; k++) {
         any |= cs_cell_has_ledger(sweep->cells + k);
@@ -148,7 +148,7 @@ static bool is_shown(const struct cs_sweep *sweep, int work) {
 }
 
 void cs_table_add_ledger(const struct cs_compare *compare, struct cs_text *out) {
-    const struct cs_sweep *sweep = &compare->sweep;
+    const struct cs_cell_list *sweep = &compare->cells;
     const int width = name_width(compare);
     if (!is_shown(sweep, CS_WORK_INTEGRATOR))
         return;

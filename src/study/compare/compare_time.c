@@ -29,15 +29,15 @@ enum { LEAST_ROUNDS = 7 };
  * elsewhere in every round: where they lie has an effect of its own. */
 enum { SHIFT_BYTES = 1 << 16 };
 
-static enum cs_status run_warm(struct cs_course *course, double expected, double *seconds,
-                               struct cs_error *error) {
-    struct cs_course_end end;
+static enum cs_status run_warm(struct cs_recorded_run *recording, double expected,
+                               double *seconds, struct cs_error *error) {
+    struct cs_recorded_run_result end;
     double total = 0;
     uint32_t n = 0;
-    if (expected < WARM_SECONDS && cs_course_run(course, 0, NULL, &end, error))
+    if (expected < WARM_SECONDS && cs_recorded_run_execute(recording, 0, NULL, &end, error))
         return error->status;
     do {
-        if (cs_course_run(course, 0, NULL, &end, error))
+        if (cs_recorded_run_execute(recording, 0, NULL, &end, error))
             return error->status;
         total += end.cpu;
         n++;
@@ -50,18 +50,18 @@ static enum cs_status run_warm(struct cs_course *course, double expected, double
 static enum cs_status time_cell(const struct cs_compare *compare, const struct cs_cell *cell,
                                 uint32_t shift, double *seconds, struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
-    struct cs_course course = {0};
+    struct cs_recorded_run recording = {0};
     char *volatile memory = malloc(shift + 1);
     cs_cell_integrator(cell, integrator, sizeof integrator);
-    if (!cs_course_open(&course, &compare->settings->course, integrator, error))
-        run_warm(&course, cell->cpu, seconds, error);
-    cs_course_close(&course);
+    if (!cs_recorded_run_open(&recording, &compare->settings->run, integrator, error))
+        run_warm(&recording, cell->cpu, seconds, error);
+    cs_recorded_run_close(&recording);
     free(memory);
     return error->status;
 }
 
 static void take_times(struct cs_cell *cell, const double *sorted, uint32_t n) {
-    double away[CS_ROUNDS_MOST];
+    double away[CS_ROUNDS_MAX];
     cell->cpu = cs_quantile(sorted, n, 0.5);
     cell->cpu_low = cs_quantile(sorted, n, 0.25);
     cell->cpu_high = cs_quantile(sorted, n, 0.75);
@@ -87,10 +87,10 @@ static void shuffle(uint32_t *order, uint32_t n, uint64_t *state) {
 static enum cs_status make_round(struct cs_compare *compare, const uint32_t *order, uint32_t n,
                                  uint64_t *state, struct cs_error *error) {
     struct cs_rounds *rounds = &compare->rounds;
-    double times[CS_ROUNDS_MOST];
+    double times[CS_ROUNDS_MAX];
     double *round = rounds->seconds + (size_t)rounds->n++ * rounds->n_cells;
     for (uint32_t k = 0; k < n; k++) {
-        struct cs_cell *cell = compare->sweep.cells + order[k];
+        struct cs_cell *cell = compare->cells.cells + order[k];
         if (time_cell(compare, cell, cs_rounds_draw(state, SHIFT_BYTES), round + order[k],
                       error))
             return error->status;
@@ -106,11 +106,11 @@ static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, 
     *n = 0;
     if (cs_ranking_make(&ranking, compare, error))
         return error->status;
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        const struct cs_cell *cell = compare->sweep.cells + k;
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        const struct cs_cell *cell = compare->cells.cells + k;
         const bool once = compare->rounds.n == 0 && cs_cell_is_finished(cell) &&
                           cell->runs < 2 && !strcmp(cell->machine, compare->machine);
-        if (ranking.contends[k] || once)
+        if (ranking.is_contender[k] || once)
             order[(*n)++] = k;
     }
     *narrow = cs_ranking_is_narrow(&ranking, NARROW);
@@ -128,10 +128,11 @@ static enum cs_status make_rounds(struct cs_compare *compare, uint32_t *order,
         bool narrow;
         if (choose(compare, order, &n, &narrow, error))
             return error->status;
-        if (n == 0 || (k >= least && (narrow || cs_clock_cpu() - begin > compare->rounds_for)))
+        if (n == 0 ||
+            (k >= least && (narrow || cs_clock_cpu() - begin > compare->rounds_seconds)))
             break;
-        if (compare->settings->round)
-            compare->settings->round(compare->settings->ctx, k, most);
+        if (compare->settings->on_round)
+            compare->settings->on_round(compare->settings->ctx, k, most);
         shuffle(order, n, &state);
         if (make_round(compare, order, n, &state, error))
             return error->status;
@@ -140,10 +141,10 @@ static enum cs_status make_rounds(struct cs_compare *compare, uint32_t *order,
 }
 
 enum cs_status cs_compare_time(struct cs_compare *compare, struct cs_error *error) {
-    uint32_t *order = calloc(compare->sweep.n + 1, sizeof *order);
+    uint32_t *order = calloc(compare->cells.n + 1, sizeof *order);
     if (!order)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the order of a round");
-    if (!cs_rounds_init(&compare->rounds, compare->sweep.n, error))
+    if (!cs_rounds_init(&compare->rounds, compare->cells.n, error))
         make_rounds(compare, order, error);
     free(order);
     return error->status;

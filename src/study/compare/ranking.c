@@ -36,7 +36,8 @@ static bool is_accurate(const struct cs_cell *cell, const struct choice *choice)
 
 static bool takes_frames(const struct cs_cell *cell, const struct choice *choice) {
     return is_timed_here(cell, choice) && !cell->adaptive &&
-           cell->steps <= choice->compare->settings->course.frames + choice->compare->cuts;
+           cell->steps <=
+               choice->compare->settings->run.frames + choice->compare->n_event_times;
 }
 
 /* where energies are not known, getting through is all that can be asked for */
@@ -46,14 +47,14 @@ static bool keeps_energy(const struct cs_cell *cell, const struct choice *choice
 
 static void mark_front(struct cs_ranking *ranking, const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
-    const struct cs_cell *cells = compare->sweep.cells;
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
+    const struct cs_cell *cells = compare->cells.cells;
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
         const double error = cs_norm_of(choice->norm, cells + k, &compare->reference);
-        ranking->front[k] = is_ranked(cells + k, choice);
-        for (uint32_t i = 0; i < compare->sweep.n && ranking->front[k]; i++)
+        ranking->on_pareto_front[k] = is_ranked(cells + k, choice);
+        for (uint32_t i = 0; i < compare->cells.n && ranking->on_pareto_front[k]; i++)
             if (is_ranked(cells + i, choice) && cells[i].cpu < cells[k].cpu &&
                 cs_norm_of(choice->norm, cells + i, &compare->reference) <= error)
-                ranking->front[k] = false;
+                ranking->on_pareto_front[k] = false;
     }
 }
 
@@ -62,20 +63,20 @@ static bool is_cheaper(const struct cs_cell *cell, const struct cs_cell *than) {
 }
 
 /* How many times dearer, and whether that is told apart from 1. */
-static bool relate(const struct cs_compare *compare, const struct cs_cell *cell,
-                   const struct cs_cell *base, struct cs_ratio *ratio) {
-    const struct cs_cell *cells = compare->sweep.cells;
+static bool compare_costs(const struct cs_compare *compare, const struct cs_cell *cell,
+                          const struct cs_cell *base, struct cs_ratio *ratio) {
+    const struct cs_cell *cells = compare->cells.cells;
     *ratio = (struct cs_ratio){
-        .factor = cell->cpu / base->cpu, .low = (double)NAN, .high = (double)NAN};
+        .median = cell->cpu / base->cpu, .low = (double)NAN, .high = (double)NAN};
     if (compare->rounds.n == 0 || !cs_rounds_ratio(&compare->rounds, (uint32_t)(cell - cells),
                                                    (uint32_t)(base - cells), ratio))
-        return ratio->factor >= CS_APART_UNPAIRED;
+        return ratio->median >= CS_APART_UNPAIRED;
     return ratio->low > 1;
 }
 
 static const struct cs_cell *cheapest(const struct choice *choice, passes *pass,
                                       const struct cs_cell *but) {
-    const struct cs_sweep *sweep = &choice->compare->sweep;
+    const struct cs_cell_list *sweep = &choice->compare->cells;
     const struct cs_cell *found = NULL;
     for (uint32_t k = 0; k < sweep->n; k++)
         if (pass(sweep->cells + k, choice) && is_cheaper(sweep->cells + k, found) &&
@@ -87,7 +88,7 @@ static const struct cs_cell *cheapest(const struct choice *choice, passes *pass,
 /* The best, the cheapest of each series that is not far from it, and the next. */
 static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *rank,
                             const struct choice *choice, passes *pass) {
-    const struct cs_sweep *sweep = &choice->compare->sweep;
+    const struct cs_cell_list *sweep = &choice->compare->cells;
     const struct cs_cell *least = NULL;
     for (uint32_t k = 0; k < sweep->n; k++) {
         const struct cs_cell *cell = sweep->cells + k;
@@ -97,18 +98,19 @@ static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *ra
             least = cell;
         const bool last = k + 1 == sweep->n || !cs_cell_same_series(cell, cell + 1);
         if (last && least && least->cpu <= FAR * rank->best->cpu)
-            ranking->contends[least - sweep->cells] = true;
+            ranking->is_contender[least - sweep->cells] = true;
     }
-    if (rank->next && rank->next->cpu <= FAR_NEXT * rank->best->cpu)
-        ranking->contends[rank->next - sweep->cells] = true;
+    if (rank->runner_up && rank->runner_up->cpu <= FAR_NEXT * rank->best->cpu)
+        ranking->is_contender[rank->runner_up - sweep->cells] = true;
 }
 
 /* cheapest, and cheapest of another series, of the cells that pass */
 static void find_best(struct cs_rank *rank, const struct choice *choice, passes *pass) {
     rank->best = cheapest(choice, pass, NULL);
-    rank->next = rank->best ? cheapest(choice, pass, rank->best) : NULL;
-    if (rank->next)
-        rank->apart = relate(choice->compare, rank->next, rank->best, &rank->ratio);
+    rank->runner_up = rank->best ? cheapest(choice, pass, rank->best) : NULL;
+    if (rank->runner_up)
+        rank->is_significant =
+            compare_costs(choice->compare, rank->runner_up, rank->best, &rank->ratio);
 }
 
 static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
@@ -119,7 +121,7 @@ static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
 }
 
 /* whether the winner changes with the error that is looked at */
-static void look_at_others(struct cs_rank *rank, const struct choice *choice) {
+static void rank_by_other_norms(struct cs_rank *rank, const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
         struct choice by = {compare, norm, 0};
@@ -129,8 +131,9 @@ static void look_at_others(struct cs_rank *rank, const struct choice *choice) {
             continue;
         by.bound = cs_norm_of(norm, rank->best, &compare->reference);
         const struct cs_cell *found = cheapest(&by, is_accurate, rank->best);
-        if (found && found->cpu < rank->best->cpu && relate(compare, rank->best, found, &ratio))
-            rank->others[norm] = found;
+        if (found && found->cpu < rank->best->cpu &&
+            compare_costs(compare, rank->best, found, &ratio))
+            rank->better_by_norm[norm] = found;
     }
 }
 
@@ -138,10 +141,10 @@ static void look_at_others(struct cs_rank *rank, const struct choice *choice) {
 static int first_exponent(const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
     double most = 0;
-    for (uint32_t k = 0; k < compare->sweep.n; k++)
-        if (is_ranked(compare->sweep.cells + k, choice))
+    for (uint32_t k = 0; k < compare->cells.n; k++)
+        if (is_ranked(compare->cells.cells + k, choice))
             most = fmax(
-                most, cs_norm_of(choice->norm, compare->sweep.cells + k, &compare->reference));
+                most, cs_norm_of(choice->norm, compare->cells.cells + k, &compare->reference));
     // one as large as the motion says nothing
     const double scale = cs_norm_scale(choice->norm, &compare->reference);
     return (int)floor(log10(fmax(isfinite(scale) ? 0.1 * scale : most, 1e-300)) + 1e-9);
@@ -155,17 +158,17 @@ static void make_ranks(struct cs_ranking *ranking, struct choice *choice) {
         choose(ranking, &rank, choice, is_accurate);
         if (!rank.best)
             break;
-        look_at_others(&rank, choice);
+        rank_by_other_norms(&rank, choice);
         ranking->ranks[ranking->n++] = rank;
     }
 }
 
 static void make_frame(struct cs_ranking *ranking, const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        const struct cs_cell *cell = compare->sweep.cells + k;
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        const struct cs_cell *cell = compare->cells.cells + k;
         const bool through = takes_frames(cell, choice);
-        ranking->frame_through += through;
+        ranking->frame_finished += through;
         ranking->frame_tried +=
             through || (!strcmp(cell->control, "dt") && cell->value * compare->fps >= 1 - 1e-9);
         if (through && (!ranking->frame_nearest ||
@@ -177,11 +180,11 @@ static void make_frame(struct cs_ranking *ranking, const struct choice *choice) 
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error) {
-    struct choice choice = {.compare = compare, .norm = compare->settings->rank};
+    struct choice choice = {.compare = compare, .norm = compare->settings->ranking_norm};
     *ranking = (struct cs_ranking){.norm = choice.norm};
-    ranking->front = calloc(compare->sweep.n + 1, sizeof *ranking->front);
-    ranking->contends = calloc(compare->sweep.n + 1, sizeof *ranking->contends);
-    if (!ranking->front || !ranking->contends) {
+    ranking->on_pareto_front = calloc(compare->cells.n + 1, sizeof *ranking->on_pareto_front);
+    ranking->is_contender = calloc(compare->cells.n + 1, sizeof *ranking->is_contender);
+    if (!ranking->on_pareto_front || !ranking->is_contender) {
         cs_ranking_finish(ranking);
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the ranking");
     }
@@ -194,22 +197,22 @@ enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compa
 }
 
 void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank) {
-    const struct choice choice = {compare, compare->settings->rank, bound};
+    const struct choice choice = {compare, compare->settings->ranking_norm, bound};
     *rank = (struct cs_rank){.exponent = (int)floor(log10(bound))};
     find_best(rank, &choice, is_accurate);
 }
 
 void cs_ranking_finish(struct cs_ranking *ranking) {
-    free(ranking->front);
-    free(ranking->contends);
+    free(ranking->on_pareto_front);
+    free(ranking->is_contender);
     *ranking = (struct cs_ranking){0};
 }
 
 static bool is_narrow(const struct cs_rank *rank, double share) {
     const struct cs_ratio *ratio = &rank->ratio;
-    if (!rank->next || ratio->factor > FAR_NEXT)
+    if (!rank->runner_up || ratio->median > FAR_NEXT)
         return true;
-    return ratio->pairs > 0 && ratio->within <= share;
+    return ratio->pairs > 0 && ratio->pair_uncertainty <= share;
 }
 
 bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share) {

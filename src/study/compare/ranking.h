@@ -16,24 +16,25 @@ enum { CS_RANKS_MAX = 24 };
 /* The cheapest cell with an error of at most 10^exponent, and that of the next series. */
 struct cs_rank {
     int exponent;
-    const struct cs_cell *best, *next; /* borrowed; next NULL: no other series was run to it */
-    struct cs_ratio ratio;             /* next over best */
-    bool apart;                        /* the two are told apart */
+    const struct cs_cell *best,
+        *runner_up;        /* borrowed; next NULL: no other series was run to it */
+    struct cs_ratio ratio; /* next over best */
+    bool is_significant;   /* the two are told apart */
     /* by another error: the cheapest cell that is no worse than best, where it is another
      * series and told apart from it; NULL: best wins by that one too */
-    const struct cs_cell *others[CS_NORMS];
+    const struct cs_cell *better_by_norm[CS_NORMS];
 };
 
 struct cs_ranking {
     enum cs_norm norm;
     struct cs_rank ranks[CS_RANKS_MAX]; /* from large errors to small ones */
     uint32_t n;
-    bool *front;    /* (cells) nothing is both cheaper and more accurate; owned */
-    bool *contends; /* (cells) the verdict rests on them: to be timed in rounds; owned */
+    bool *on_pareto_front; /* (cells) nothing is both cheaper and more accurate; owned */
+    bool *is_contender;    /* (cells) the verdict rests on them: to be timed in rounds; owned */
     /* one step a frame: the cheapest that keeps the energy and the next; best NULL: none */
     struct cs_rank frame;
-    const struct cs_cell *frame_nearest; /* with the least energy error of them; or NULL */
-    uint32_t frame_tried, frame_through; /* cells with a dt of a frame; of these to the end */
+    const struct cs_cell *frame_nearest;  /* with the least energy error of them; or NULL */
+    uint32_t frame_tried, frame_finished; /* cells with a dt of a frame; of these to the end */
 };
 
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,

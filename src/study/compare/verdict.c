@@ -18,33 +18,33 @@ static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
 
 static void add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
     const struct cs_ratio *ratio = &rank->ratio;
-    if (!rank->next) {
+    if (!rank->runner_up) {
         cs_text_add(out, "; %s\n", none);
         return;
     }
-    if (!rank->apart)
+    if (!rank->is_significant)
         cs_text_add(out, "; not told apart from ");
     else if (ratio->pairs > 0)
-        cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", ratio->factor, ratio->low,
+        cs_text_add(out, "; %.2f times (%.2f to %.2f) cheaper than ", ratio->median, ratio->low,
                     ratio->high);
     else
-        cs_text_add(out, "; about %.1f times cheaper than ", ratio->factor);
-    add_cell(rank->next, out);
+        cs_text_add(out, "; about %.1f times cheaper than ", ratio->median);
+    add_cell(rank->runner_up, out);
     cs_text_add(out, "\n");
 }
 
 /* what wins where another error is looked at; cells that win by several are said once */
 static void add_others(const struct cs_rank *rank, const char *bullet, struct cs_text *out) {
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
-        const struct cs_cell *other = rank->others[norm];
+        const struct cs_cell *other = rank->better_by_norm[norm];
         bool said = false;
         for (enum cs_norm before = 0; before < norm; before++)
-            said |= rank->others[before] == other;
+            said |= rank->better_by_norm[before] == other;
         if (!other || said)
             continue;
         cs_text_add(out, "%s  no worse by ", bullet);
         for (enum cs_norm also = norm; also < CS_NORMS; also++)
-            if (rank->others[also] == other)
+            if (rank->better_by_norm[also] == other)
                 cs_text_add(out, "%s%s", also > norm ? ", " : "", cs_norm_words(also));
         cs_text_add(out, ", and cheaper: ");
         add_cell(other, out);
@@ -72,14 +72,14 @@ static void add_frame(const struct cs_ranking *ranking, const char *bullet,
     cs_text_add(out, "%sone step a frame (%.3g ms): ", bullet, 1e3 / compare->fps);
     if (ranking->frame_tried == 0)
         cs_text_add(out, "no row has that step\n");
-    else if (ranking->frame_through == 0)
+    else if (ranking->frame_finished == 0)
         cs_text_add(out, "of %u row%s with that step none got through with it\n",
                     ranking->frame_tried, ranking->frame_tried == 1 ? "" : "s");
     else if (!best) {
         cs_text_add(out,
                     "%u of %u rows got through, none with an energy error of %.0f %% or "
                     "less; the least is %.0f %%, of ",
-                    ranking->frame_through, ranking->frame_tried, 100 * CS_FRAME_ENERGY,
+                    ranking->frame_finished, ranking->frame_tried, 100 * CS_FRAME_ENERGY,
                     100 * nearest->energy_error);
         add_cell(nearest, out);
         cs_text_add(out, "\n");
@@ -102,7 +102,7 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
         const struct cs_rank *rank = ranking->ranks + k;
         // what the next decades share is said once
         for (last = k; last + 1 < ranking->n && rank[last + 1 - k].best == rank->best &&
-                       rank[last + 1 - k].next == rank->next;)
+                       rank[last + 1 - k].runner_up == rank->runner_up;)
             last++;
         add_rank(ranking, rank, ranking->ranks[last].exponent, bullet, out);
     }
@@ -110,11 +110,11 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
 }
 
 static const struct cs_cell *most_accurate(const struct cs_compare *compare) {
-    const enum cs_norm norm = compare->settings->rank;
+    const enum cs_norm norm = compare->settings->ranking_norm;
     const struct cs_cell *found = NULL;
     double least = HUGE_VAL;
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        const struct cs_cell *cell = compare->sweep.cells + k;
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        const struct cs_cell *cell = compare->cells.cells + k;
         const double error = cs_norm_of(norm, cell, &compare->reference);
         if (cs_cell_is_finished(cell) && error < least) {
             least = error;
@@ -125,7 +125,7 @@ static const struct cs_cell *most_accurate(const struct cs_compare *compare) {
 }
 
 void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out) {
-    const enum cs_norm norm = compare->settings->rank;
+    const enum cs_norm norm = compare->settings->ranking_norm;
     char integrator[CS_CELL_INTEGRATOR];
     struct cs_rank rank;
     if (!cs_norm_is_known(norm, &compare->reference)) {
@@ -138,7 +138,7 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
         cs_cell_integrator(rank.best, integrator, sizeof integrator);
         cs_text_add(out, "%s of at most %.3g %s after %.4g s: -i %s, %.3g ms a frame",
                     cs_norm_words(norm), bound, cs_norm_unit(norm), compare->time, integrator,
-                    1e3 * rank.best->cpu / compare->settings->course.frames);
+                    1e3 * rank.best->cpu / compare->settings->run.frames);
         add_factor(&rank, "no other series was run to that error", out);
     } else if (nearest) {
         cs_cell_integrator(nearest, integrator, sizeof integrator);
@@ -154,20 +154,20 @@ struct tally {
 };
 
 static struct tally count(const struct cs_compare *compare) {
-    struct tally tally = {0};
-    for (uint32_t k = 0; k < compare->sweep.n; k++) {
-        const struct cs_cell *cell = compare->sweep.cells + k;
+    struct tally stats = {0};
+    for (uint32_t k = 0; k < compare->cells.n; k++) {
+        const struct cs_cell *cell = compare->cells.cells + k;
         if (cs_cell_is_finished(cell)) {
-            tally.brief += cell->cpu < 5e-3;
-            tally.unquiet += cell->runs > 4 && cell->outliers > 0.2 * cell->runs;
-            tally.spread += cell->cpu_high - cell->cpu_low > 0.1 * cell->cpu;
-            tally.below += cell->error < compare->reference.bar;
+            stats.brief += cell->cpu < 5e-3;
+            stats.unquiet += cell->runs > 4 && cell->outliers > 0.2 * cell->runs;
+            stats.spread += cell->cpu_high - cell->cpu_low > 0.1 * cell->cpu;
+            stats.below += cell->error < compare->reference.error_bar;
         }
-        tally.over += !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
-        tally.failed += !strcmp(cell->outcome, "failed");
-        tally.blown += !strncmp(cell->outcome, "blew up", 7);
+        stats.over += !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
+        stats.failed += !strcmp(cell->outcome, "failed");
+        stats.blown += !strncmp(cell->outcome, "blew up", 7);
     }
-    return tally;
+    return stats;
 }
 
 static void add(struct cs_text *out, const char *bullet, uint32_t n, const char *what,
@@ -178,31 +178,32 @@ static void add(struct cs_text *out, const char *bullet, uint32_t n, const char 
 
 void cs_compare_warn(const struct cs_compare *compare, const char *bullet,
                      struct cs_text *out) {
-    const struct tally tally = count(compare);
+    const struct tally stats = count(compare);
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     double load = 0;
     if (!compare->reference.pointwise)
         cs_text_add(out, "%sno errors of position: %s%s\n", bullet, compare->reference.reason,
-                    compare->reference.agree ? " (a shorter --time, or a larger --accuracy)"
-                                             : "");
-    if (cs_text_get(&compare->changes)[0])
+                    compare->reference.families_agree
+                        ? " (a shorter --time, or a larger --accuracy)"
+                        : "");
+    if (cs_text_get(&compare->switched_off)[0])
         cs_text_add(out, "%s%s switched off: no part of the equation of motion\n", bullet,
-                    cs_text_get(&compare->changes));
+                    cs_text_get(&compare->switched_off));
     /* one line for all cells of a kind, however many there are */
-    add(out, bullet, tally.below, "below the reference's own error",
+    add(out, bullet, stats.below, "below the reference's own error",
         ": not drawn, and ranked as if at it");
-    add(out, bullet, tally.blown, "blew up", ": the step is beyond the stable one");
-    add(out, bullet, tally.over, "over budget",
+    add(out, bullet, stats.blown, "blew up", ": the step is beyond the stable one");
+    add(out, bullet, stats.over, "over budget",
         ": stopped (a larger --budget lets them finish)");
-    if (compare->left_out > 0)
+    if (compare->n_not_run > 0)
         cs_text_add(out, "%s%u series ended there, %u cells were not run\n", bullet,
-                    compare->ended, compare->left_out);
-    add(out, bullet, tally.failed, "failed", ": the notes in compare.csv say why");
-    add(out, bullet, tally.brief, "ran for less than 5 ms",
+                    compare->n_ended_series, compare->n_not_run);
+    add(out, bullet, stats.failed, "failed", ": the notes in compare.csv say why");
+    add(out, bullet, stats.brief, "ran for less than 5 ms",
         ": trust the counts rather than the times, or take a longer --time");
-    add(out, bullet, tally.spread, "with quartiles further apart than 10 %",
+    add(out, bullet, stats.spread, "with quartiles further apart than 10 %",
         ": close other programs, or take more --runs");
-    add(out, bullet, tally.unquiet, "with outliers in more than a fifth of the runs",
+    add(out, bullet, stats.unquiet, "with outliers in more than a fifth of the runs",
         ": something else used the processor now and then");
     if (getloadavg(&load, 1) == 1 && load > 0.75 * (double)processors)
         cs_text_add(out,

@@ -26,7 +26,8 @@ static bool is_named(const struct cs_integrator *method, const char *check) {
 
 /* what the method says of itself turns a failure into an expected one, and a pass into a claim
  * that is no longer true */
-static void weigh(const struct cs_integrator *method, struct cs_conform_row *row) {
+static void apply_expected_failures(const struct cs_integrator *method,
+                                    struct cs_conform_row *row) {
     if (!is_named(method, row->check))
         return;
     if (row->verdict == CS_VERDICT_FAIL)
@@ -39,15 +40,15 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
     const char *names[CHECKS + 1] = {NULL};
     bool found = false;
     memset(card->counts, 0, sizeof card->counts);
-    card->starved = error;
+    card->memory_error = error;
     for (uint32_t k = 0; k < CHECKS; k++) {
         /* all names, also those of checks not run: one of them may have been meant */
         names[k] = checks[k].name;
-        if (card->only && strcmp(card->only, checks[k].name) != 0)
+        if (card->only_check && strcmp(card->only_check, checks[k].name) != 0)
             continue;
         found = true;
         struct cs_conform_row row = {.check = checks[k].name,
-                                     .what = checks[k].what,
+                                     .description = checks[k].what,
                                      .figure = (double)NAN,
                                      .bound = (double)NAN};
         if (checks[k].of == CS_CONFORM_SPRINGS && card->method->fidelity == CS_FIDELITY_OTHER)
@@ -56,16 +57,16 @@ enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error)
             checks[k].run(card, &row);
         if (error->status)
             return error->status;
-        weigh(card->method, &row);
+        apply_expected_failures(card->method, &row);
         card->counts[row.verdict]++;
         if (card->report)
             card->report(card->ctx, &row);
     }
     if (found)
         return CS_OK;
-    const char *nearest = cs_nearest(card->only, names);
+    const char *nearest = cs_nearest_word(card->only_check, names);
     return cs_fail(error, CS_ERR_USAGE,
-                   "no check \"%.60s\"%s%s%s (see: clothsim conform --list)", card->only,
+                   "no check \"%.60s\"%s%s%s (see: clothsim conform --list)", card->only_check,
                    nearest ? "; did you mean \"" : "", nearest ? nearest : "",
                    nearest ? "\"?" : "");
 }

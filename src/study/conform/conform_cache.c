@@ -20,8 +20,8 @@ const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const 
     return NULL;
 }
 
-void cs_conform_cache_keep(struct cs_conform_cache *cache, const char *name,
-                           const double *values, size_t n) {
+void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
+                            const double *values, size_t n) {
     struct cs_conform_kept *kept = NULL;
     // a name that is cut short could be another one's
     if (cache && strlen(name) < sizeof kept->name)

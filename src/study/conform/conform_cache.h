@@ -20,8 +20,8 @@ const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const 
 
 /* Keeps a copy under that name. Without a cache, or out of memory, nothing is kept: the next
  * card runs the reference again. */
-void cs_conform_cache_keep(struct cs_conform_cache *cache, const char *name,
-                           const double *values, size_t n);
+void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
+                            const double *values, size_t n);
 
 void cs_conform_cache_finish(struct cs_conform_cache *cache);
 

@@ -23,7 +23,7 @@ enum cs_verdict {
 const char *cs_verdict_text(enum cs_verdict verdict);
 
 struct cs_conform_row {
-    const char *check, *what; /* its name, and what it shows */
+    const char *check, *description; /* its name, and what it shows */
     enum cs_verdict verdict;
     double figure, bound; /* passes where figure <= bound; both NAN: nothing was measured */
     char note[320];       /* what the figure is, or why there is none */
@@ -36,11 +36,11 @@ struct cs_conform {
     const void *options; /* filled, before the checks' own; NULL: the defaults */
     /* the method that CS_FIDELITY_IMPLICIT_EULER is held against; NULL: there is none */
     const struct cs_integrator *implicit_euler;
-    const char *only; /* one check by its name; NULL: all */
+    const char *only_check; /* one check by its name; NULL: all */
     /* references that earlier cards have run, and where this one's go; NULL: none are kept */
     struct cs_conform_cache *cache;
     /* lack of memory, which is no fault of the method's: it ends the card; set by check */
-    struct cs_error *starved;
+    struct cs_error *memory_error;
     /* called after each check */
     void (*report)(void *ctx, const struct cs_conform_row *row);
     void *ctx;

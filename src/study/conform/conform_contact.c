@@ -1,6 +1,6 @@
 /* Checks contact by force against what is known of it in closed form: the incline, rest on a
  * floor, and the energy of a bounce. Its order is measured in conform_order.c. */
-#include "model/contact/law.h"
+#include "model/contact/barrier_law.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -58,10 +58,10 @@ static bool takes_contact(const struct cs_conform *card, struct cs_conform_row *
 
 /* where the law carries that force, by bisection */
 static double height_of(double force) {
-    double low = CS_LAW_CORE * RANGE, high = RANGE;
+    double low = CS_BARRIER_CORE * RANGE, high = RANGE;
     for (int k = 0; k < 60; k++) {
         const double d = (low + high) / 2;
-        *(cs_law_at(d, RANGE, STIFF).force > force ? &low : &high) = d;
+        *(cs_barrier_at(d, RANGE, STIFF).force > force ? &low : &high) = d;
     }
     return low;
 }
@@ -81,7 +81,7 @@ static void slide(const struct cs_conform *card, struct cs_conform_row *row, dou
                   cos(a / 2), sin(a), cos(a));
     cs_probe_set_level(&block, STEP, 1, 1, 0);
     cs_probe_run(&block, 5);
-    const double before = block.ended ? 0 : sliding(&block, a);
+    const double before = block.has_ended ? 0 : sliding(&block, a);
     if (!cs_probe_run(&block, 5))
         cs_row_fail(row, "%s", block.error.message);
     else if (tangent > MU) {
@@ -118,9 +118,9 @@ void cs_check_contact_rest(const struct cs_conform *card, struct cs_conform_row 
     cs_probe_set_level(&sheet, STEP, 1, 1, 0);
     if (!cs_probe_run(&sheet, 30))
         cs_row_fail(row, "%s", sheet.error.message);
-    for (size_t i = 0; i < 3 * sheet.n && !sheet.ended; i++)
+    for (size_t i = 0; i < 3 * sheet.n && !sheet.has_ended; i++)
         squares += sheet.v[i] * sheet.v[i];
-    if (!sheet.ended)
+    if (!sheet.has_ended)
         cs_row_state(row, sqrt(squares / (double)sheet.n) / SPEED, 0.1,
                      "of friction_speed left on a floor after 1.5 s");
     cs_probe_close(&sheet);
@@ -147,7 +147,7 @@ void cs_check_contact_energy(const struct cs_conform *card, struct cs_conform_ro
         worst = fmax(worst, (cs_probe_energy(&sheet) - start) / start);
         low = fmin(low, lowest(&sheet));
     }
-    if (sheet.ended)
+    if (sheet.has_ended)
         cs_row_fail(row, "%s", sheet.error.message);
     else if (low > 0.8)
         cs_row_fail(row, "it came no nearer to the plane than %.2f of the range", low);

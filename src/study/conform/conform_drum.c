@@ -30,7 +30,8 @@ double cs_drum_step(void) {
     return CS_DRUM_FRAME / ceil(CS_DRUM_FRAME * CS_DRUM_OMEGA / 0.25);
 }
 
-static bool kick(struct cs_probe *probe, double t, double dt, double *x, double *v) {
+static bool reverse_velocities(struct cs_probe *probe, double t, double dt, double *x,
+                               double *v) {
     (void)x, (void)dt;
     if (fabs(t - CS_DRUM_FRAME) > 1e-9)
         return false;
@@ -41,10 +42,11 @@ static bool kick(struct cs_probe *probe, double t, double dt, double *x, double 
 
 bool cs_drum_open(struct cs_probe *probe, const struct cs_conform *card,
                   const struct cs_integrator *method, const struct cs_drum *drum) {
-    if (!cs_probe_open(probe, card, method, DRUM, drum->damping, drum->touches ? PLANE : ""))
+    if (!cs_probe_open(probe, card, method, DRUM, drum->damping,
+                       drum->has_contact ? PLANE : ""))
         return false;
-    if (drum->kicked)
-        probe->watch = kick;
+    if (drum->has_velocity_jump)
+        probe->on_commit = reverse_velocities;
     return true;
 }
 
@@ -53,7 +55,7 @@ bool cs_drum_state(const struct cs_conform *card, const struct cs_integrator *me
                    struct cs_conform_row *row) {
     struct cs_probe probe;
     cs_drum_open(&probe, card, method, drum);
-    if (method->traits & CS_ADAPTIVE && !drum->fixed)
+    if (method->traits & CS_ADAPTIVE && !drum->fixed_steps)
         cs_probe_set_tolerance(&probe, step_or_rtol);
     else
         cs_probe_set_step(&probe, step_or_rtol);
@@ -87,12 +89,12 @@ bool cs_drum_reference(const struct cs_conform *card, const struct cs_drum *drum
     double made[STATE + 2];
     char name[64];
     snprintf(name, sizeof name, "drum, damping %g%s%s", drum->damping,
-             drum->kicked ? ", kicked" : "", drum->touches ? ", touching" : "");
+             drum->has_velocity_jump ? ", kicked" : "", drum->has_contact ? ", touching" : "");
     const double *kept = cs_conform_cache_find(card->cache, name, STATE + 2);
     if (!kept) {
         if (!run_reference(card, drum, made, made + STATE, row))
             return false;
-        cs_conform_cache_keep(card->cache, name, made, STATE + 2);
+        cs_conform_cache_store(card->cache, name, made, STATE + 2);
         kept = made;
     }
     memcpy(state, kept, STATE * sizeof *state);

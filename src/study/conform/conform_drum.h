@@ -9,10 +9,11 @@ enum { CS_DRUM_FRAMES = 3, CS_DRUM_PARTICLES = 49, CS_DRUM_VALUES = 3 * CS_DRUM_
 #define CS_DRUM_OMEGA 70  /* 1/s, near the bound on its frequencies */
 
 struct cs_drum {
-    double damping; /* N s/m, axial */
-    bool fixed;     /* steps of dt, also of a method that can choose its own */
-    bool kicked;    /* all velocities are turned and halved at the end of the first frame */
-    bool touches;   /* a plane behind it is in range all the time, with friction */
+    double damping;         /* N s/m, axial */
+    bool fixed_steps;       /* steps of dt, also of a method that can choose its own */
+    bool has_velocity_jump; /* all velocities are turned and halved at the end of the first
+                               frame */
+    bool has_contact;       /* a plane behind it is in range all the time, with friction */
 };
 
 /* The longest step that orders are measured from: h w is a quarter. A whole part of a frame. */

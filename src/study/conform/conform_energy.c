@@ -37,8 +37,8 @@ void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *r
             cs_row_state(row, cs_rms_difference(back.x, start, CS_DRUM_VALUES) / move, 1e-9,
                          "of the motion away from the start");
     }
-    if (there.ended || back.ended)
-        cs_row_fail(row, "%s", there.ended ? there.error.message : back.error.message);
+    if (there.has_ended || back.has_ended)
+        cs_row_fail(row, "%s", there.has_ended ? there.error.message : back.error.message);
     cs_probe_close(&there);
     cs_probe_close(&back);
 }
@@ -76,7 +76,7 @@ void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) 
         const double gained = (cs_probe_energy(&drum) - start) / motion;
         worst = fmax(worst, both ? fabs(gained) : gained);
     }
-    if (drum.ended)
+    if (drum.has_ended)
         cs_row_fail(row, "%s", drum.error.message);
     else
         cs_row_state(row, worst, adaptive ? 10 * share : share,

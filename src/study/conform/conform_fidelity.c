@@ -34,8 +34,8 @@ static void meets_implicit_euler(const struct cs_conform *card, struct cs_confor
 }
 
 /* What more iterations still change must be little against the distance to implicit Euler. */
-static void has_plateau(const struct cs_conform *card, struct cs_conform_row *row,
-                        const double *target, double motion) {
+static void has_converged(const struct cs_conform *card, struct cs_conform_row *row,
+                          const double *target, double motion) {
     double many[CS_DRUM_VALUES], more[CS_DRUM_VALUES];
     if (!state_at(card, card->method, 500, many, row) ||
         !state_at(card, card->method, 2000, more, row))
@@ -78,5 +78,5 @@ void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row
     if (method->fidelity == CS_FIDELITY_IMPLICIT_EULER)
         meets_implicit_euler(card, row, target, motion);
     else
-        has_plateau(card, row, target, motion);
+        has_converged(card, row, target, motion);
 }

@@ -39,7 +39,7 @@ static bool run_reference(const struct cs_conform *card, const struct cs_force_s
     cs_probe_set_step(&probe, REFERENCE_STEP);
     const bool done = cs_probe_run(&probe, CS_FORCE_FRAMES);
     if (!done)
-        cs_row_fail(row, "%s: %s", scene->what, probe.error.message);
+        cs_row_fail(row, "%s: %s", scene->description, probe.error.message);
     for (size_t k = 0; k < 2 && done; k++) {
         const size_t part = k * 3 * probe.n;
         memcpy(truth->state + part, probe.x + part, 3 * probe.n * sizeof *start);
@@ -49,9 +49,9 @@ static bool run_reference(const struct cs_conform *card, const struct cs_force_s
     return done;
 }
 
-static bool find_truth(const struct cs_conform *card, const struct cs_force_scene *scene,
-                       struct truth *truth, struct cs_conform_row *row) {
-    const double *kept = cs_conform_cache_find(card->cache, scene->what, TRUTH);
+static bool compute_reference(const struct cs_conform *card, const struct cs_force_scene *scene,
+                              struct truth *truth, struct cs_conform_row *row) {
+    const double *kept = cs_conform_cache_find(card->cache, scene->description, TRUTH);
     if (kept) {
         memcpy(truth, kept, sizeof *truth);
         return true;
@@ -59,7 +59,7 @@ static bool find_truth(const struct cs_conform *card, const struct cs_force_scen
     *truth = (struct truth){.scale = {0}};
     if (!run_reference(card, scene, truth, row))
         return false;
-    cs_conform_cache_keep(card->cache, scene->what, (const double *)truth, TRUTH);
+    cs_conform_cache_store(card->cache, scene->description, (const double *)truth, TRUTH);
     return true;
 }
 
@@ -85,20 +85,20 @@ static void follow(const struct cs_conform *card, struct cs_conform_row *row,
     static const char *const parts[2] = {"position", "velocity"};
     struct truth truth;
     struct cs_probe probe;
-    if (!find_truth(card, scene, &truth, row))
+    if (!compute_reference(card, scene, &truth, row))
         return;
     cs_probe_open(&probe, card, card->method, "%s", scene->json);
     const double share = set_accuracy(&probe, scene, accuracy);
     if (!cs_probe_run(&probe, CS_FORCE_FRAMES))
-        cs_row_fail(row, "%s: %s", scene->what, probe.error.message);
-    for (size_t k = 0; k < 2 && !probe.ended; k++) {
+        cs_row_fail(row, "%s: %s", scene->description, probe.error.message);
+    for (size_t k = 0; k < 2 && !probe.has_ended; k++) {
         const size_t part = k * 3 * probe.n;
         const double off =
             cs_rms_difference(probe.x + part, truth.state + part, 3 * probe.n) / truth.scale[k];
         /* twice the error that the order explains, but never less than rounding leaves */
         cs_row_state(row, off, fmax(2 * share * fmax(scene->rate * DURATION, 1), FLOOR),
                      "of the motion off the reference in %s, %s: %s", parts[k],
-                     accuracy->level ? "fine" : "coarse", scene->what);
+                     accuracy->level ? "fine" : "coarse", scene->description);
     }
     cs_probe_close(&probe);
 }
@@ -121,7 +121,7 @@ static void check_scenes(const struct cs_conform *card, struct cs_conform_row *r
         any = true;
         for (int level = 0; level < 2; level++)
             follow(card, row, scene,
-                   &(struct accuracy){.order = cs_probe_order(card, scene->by_velocity),
+                   &(struct accuracy){.order = cs_probe_order(card, scene->depends_on_velocity),
                                       .level = level});
     }
     if (!any)
@@ -170,7 +170,7 @@ void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *
         /* fixed: a method that chose its own steps would hide the order */
         for (int level = 0; level < 2; level++)
             follow(card, row, scene,
-                   &(struct accuracy){.order = cs_probe_order(card, scene->by_velocity),
+                   &(struct accuracy){.order = cs_probe_order(card, scene->depends_on_velocity),
                                       .level = level,
                                       .fixed = true});
     }

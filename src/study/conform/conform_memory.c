@@ -20,7 +20,7 @@ struct ledger {
 };
 
 /* bytes, 0 where there is no such account */
-static size_t handed_out(void) {
+static size_t bytes_allocated(void) {
 #if defined(__GLIBC__) && defined(__GLIBC_PREREQ)
 #if __GLIBC_PREREQ(2, 33)
     const struct mallinfo2 account = mallinfo2();
@@ -30,10 +30,11 @@ static size_t handed_out(void) {
     return 0;
 }
 
-static bool look(struct cs_probe *probe, double t, double dt, double *x, double *v) {
+static bool count_allocations(struct cs_probe *probe, double t, double dt, double *x,
+                              double *v) {
     (void)t, (void)dt, (void)x, (void)v;
-    struct ledger *ledger = probe->watcher;
-    const size_t now = ledger ? handed_out() : 0;
+    struct ledger *ledger = probe->on_commit_ctx;
+    const size_t now = ledger ? bytes_allocated() : 0;
     if (ledger && now > ledger->before && now - ledger->before > ledger->most)
         ledger->most = now - ledger->before;
     return false;
@@ -43,11 +44,11 @@ static bool watched_frame(struct cs_probe *probe, struct ledger *ledger) {
     for (int k = 0; k < SIZES; k++)
         for (int j = 0; j < SHELF; j++)
             ledger->held[k][j] = malloc((size_t)(k + 1) * SIZE_STEP);
-    ledger->before = handed_out();
-    probe->watcher = ledger;
+    ledger->before = bytes_allocated();
+    probe->on_commit_ctx = ledger;
     const bool done = cs_probe_run(probe, 1);
-    look(probe, 0, 0, NULL, NULL);
-    probe->watcher = NULL;
+    count_allocations(probe, 0, 0, NULL, NULL);
+    probe->on_commit_ctx = NULL;
     for (int k = 0; k < SIZES; k++)
         for (int j = 0; j < SHELF; j++)
             free(ledger->held[k][j]);
@@ -60,18 +61,18 @@ void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *r
         " \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"
         " \"pins\": [\"top-left\"]}], \"colliders\": [{\"floor\": {\"height\": -0.55}}]}";
     /* without an account nothing can be seen, which is no pass */
-    if (handed_out() == 0) {
+    if (bytes_allocated() == 0) {
         cs_row_skip(row, "this C library keeps no account of its memory");
         return;
     }
     struct cs_probe sheet;
     struct ledger ledger = {.most = 0};
     cs_probe_open(&sheet, card, card->method, "%s", scene);
-    sheet.watch = look;
+    sheet.on_commit = count_allocations;
     cs_probe_run(&sheet, WARM_UP);
-    for (int k = 0; k < WATCHED && !sheet.ended; k++)
+    for (int k = 0; k < WATCHED && !sheet.has_ended; k++)
         watched_frame(&sheet, &ledger);
-    if (sheet.ended)
+    if (sheet.has_ended)
         cs_row_fail(row, "%s", sheet.error.message);
     else
         cs_row_state(row, (double)ledger.most, 0,

@@ -51,7 +51,8 @@ static double mean_shift(const struct cs_probe *probe, size_t component) {
 
 /* One second from rest. Sums of constant acceleration are right to (h/T)^2, or h/T of it where
  * the order is 1, and all springs stay at their rest length. */
-static void fall(const struct cs_conform *card, struct cs_conform_row *row, int level) {
+static void check_free_fall(const struct cs_conform *card, struct cs_conform_row *row,
+                            int level) {
     struct cs_probe sheet;
     cs_probe_open(&sheet, card, card->method, SHEET, 0.0, 0.0, 0.0, -G);
     const uint32_t order = lower_order(card->method) > 1 ? 2 : 1;
@@ -71,8 +72,8 @@ static void fall(const struct cs_conform *card, struct cs_conform_row *row, int 
 void cs_check_free_fall(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!cs_probe_can_be_set(card, row))
         return;
-    fall(card, row, 0);
-    fall(card, row, 1);
+    check_free_fall(card, row, 0);
+    check_free_fall(card, row, 1);
 }
 
 void cs_check_translation(const struct cs_conform *card, struct cs_conform_row *row) {
@@ -90,7 +91,8 @@ void cs_check_translation(const struct cs_conform *card, struct cs_conform_row *
 
 /* Two particles whose spring is pulled out by just what keeps them on their circle: m w^2 l/2 =
  * k (l - 1). */
-static void turn(const struct cs_conform *card, struct cs_conform_row *row, int level) {
+static void check_rotation(const struct cs_conform *card, struct cs_conform_row *row,
+                           int level) {
     const double length = 1.1, w = sqrt(2 * 25 * (length - 1) / length / 0.5), time = 0.5;
     struct cs_probe pair;
     if (cs_probe_open(&pair, card, card->method, PAIR)) {
@@ -117,8 +119,8 @@ static void turn(const struct cs_conform *card, struct cs_conform_row *row, int 
 void cs_check_rotation(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!cs_probe_can_be_set(card, row))
         return;
-    turn(card, row, 0);
-    turn(card, row, 1);
+    check_rotation(card, row, 0);
+    check_rotation(card, row, 1);
 }
 
 /* p and l: momentum and angular momentum about the origin; scale: sums of magnitudes. */

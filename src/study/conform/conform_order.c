@@ -12,8 +12,8 @@
     " \"springs\": {\"stretch\": 25, \"damping\": 0.6, \"damping_model\": \"%s\"}}],"          \
     " \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": {\"fps\": 20}}"
 
-static void swing(const struct cs_conform *card, struct cs_conform_row *row, const char *model,
-                  int level) {
+static void check_oscillator(const struct cs_conform *card, struct cs_conform_row *row,
+                             const char *model, int level) {
     const double d = 0.6 / 0.5, w = 10, u = sqrt(w * w - d * d), reach = 0.1;
     const double expected = reach * exp(-d) * (cos(u) + d / u * sin(u));
     struct cs_probe pair;
@@ -38,8 +38,8 @@ static void oscillator(const struct cs_conform *card, struct cs_conform_row *row
                        const char *model) {
     if (!cs_probe_can_be_set(card, row))
         return;
-    swing(card, row, model, 0);
-    swing(card, row, model, 1);
+    check_oscillator(card, row, model, 0);
+    check_oscillator(card, row, model, 1);
 }
 
 void cs_check_oscillator_axial(const struct cs_conform *card, struct cs_conform_row *row) {
@@ -118,7 +118,7 @@ static void measure_tolerance(const struct cs_conform *card, struct cs_conform_r
  * looked at, since one can be right and the other wrong. */
 static void order_on(const struct cs_conform *card, struct cs_conform_row *row,
                      double damping) {
-    const struct cs_drum drum = {.damping = damping, .fixed = true};
+    const struct cs_drum drum = {.damping = damping, .fixed_steps = true};
     if (cs_method_has(card->method, "dt"))
         measure_order(card, row, cs_probe_order(card, damping > 0), &drum);
     else
@@ -143,7 +143,7 @@ void cs_check_tolerance(const struct cs_conform *card, struct cs_conform_row *ro
 }
 
 void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
-    const struct cs_drum kicked = {.kicked = true};
+    const struct cs_drum kicked = {.has_velocity_jump = true};
     if (!cs_probe_can_be_set(card, row))
         return;
     if (card->method->traits & CS_ADAPTIVE)
@@ -154,7 +154,7 @@ void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
 
 /* The law is smooth: contact costs no order, and no tolerance. */
 void cs_check_contact_order(const struct cs_conform *card, struct cs_conform_row *row) {
-    static const struct cs_drum drum = {.touches = true};
+    static const struct cs_drum drum = {.has_contact = true};
     if (card->method->traits & CS_EXPLICIT_OUTER)
         cs_row_skip(row, "it is refused with contact by force");
     else if (cs_probe_can_be_set(card, row) && card->method->traits & CS_ADAPTIVE)

@@ -2,7 +2,7 @@
 #include "study/conform/conform_probe.h"
 
 #include "base/options.h"
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "study/conform/conform_checks.h"
 
 #include <math.h>
@@ -88,7 +88,7 @@ uint32_t cs_probe_order(const struct cs_conform *card, bool damped) {
 /* the check's own look at the state after each commit */
 static bool observe(void *ctx, double t, double dt, double *x, double *v) {
     struct cs_probe *probe = ctx;
-    return probe->watch && probe->watch(probe, t, dt, x, v);
+    return probe->on_commit && probe->on_commit(probe, t, dt, x, v);
 }
 
 bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
@@ -107,10 +107,13 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
         .n_overrides = method->needs & CS_NEED_CLUSTERS ? 1 : 0,
         .method = method,
         .options = method == card->method ? card->options : NULL,
-        .run = {.unchecked = true, .budget = BUDGET, .observe = observe, .ctx = probe}};
-    *probe = (struct cs_probe){.starved = card->starved};
-    probe->ended = cs_session_open_system(&probe->session, &settings, &probe->error);
-    if (probe->ended)
+        .run = {.skip_advance_check = true,
+                .budget = BUDGET,
+                .after_commit = observe,
+                .ctx = probe}};
+    *probe = (struct cs_probe){.memory_error = card->memory_error};
+    probe->has_ended = cs_session_open_system(&probe->session, &settings, &probe->error);
+    if (probe->has_ended)
         return false;
     probe->n = probe->session.system.view.n;
     probe->x = probe->session.system.state;
@@ -120,26 +123,26 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *card,
 }
 
 void cs_probe_close(struct cs_probe *probe) {
-    if (probe->error.status == CS_ERR_MEMORY && probe->starved)
-        cs_fail(probe->starved, CS_ERR_MEMORY, "%s", probe->error.message);
+    if (probe->error.status == CS_ERR_MEMORY && probe->memory_error)
+        cs_fail(probe->memory_error, CS_ERR_MEMORY, "%s", probe->error.message);
     cs_session_close(&probe->session);
 }
 
 bool cs_probe_run(struct cs_probe *probe, uint32_t frames) {
     struct cs_run *run = &probe->session.run;
-    if (!probe->ended && !run->host)
-        probe->ended = cs_session_begin(&probe->session, NULL, &probe->error);
-    for (uint32_t k = 0; k < frames && !probe->ended; k++) {
+    if (!probe->has_ended && !run->host)
+        probe->has_ended = cs_session_begin(&probe->session, NULL, &probe->error);
+    for (uint32_t k = 0; k < frames && !probe->has_ended; k++) {
         if (!cs_run_frame(run, &probe->error) && run->outcome != CS_RUNNING)
             cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s",
                     cs_outcome_text(run->outcome), run->blow_up.time);
-        probe->ended = probe->error.status;
+        probe->has_ended = probe->error.status;
     }
-    return !probe->ended;
+    return !probe->has_ended;
 }
 
 double cs_probe_energy(const struct cs_probe *probe) {
     const struct cs_energy energy =
-        cs_measure_energy(&probe->session.system, probe->session.run.t, probe->x, probe->v);
-    return cs_energy_whole(&energy);
+        cs_diagnostics_energy(&probe->session.system, probe->session.run.t, probe->x, probe->v);
+    return cs_energy_total(&energy);
 }

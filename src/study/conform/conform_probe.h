@@ -3,9 +3,9 @@
 #define CS_CONFORM_PROBE_H
 
 #include "study/conform/conform_card.h"
-#include "study/deviation.h"
 #include "study/perturb.h"
 #include "study/session.h"
+#include "study/trajectory_error.h"
 
 /* Must stay where it is while open. */
 struct cs_probe {
@@ -13,14 +13,14 @@ struct cs_probe {
     size_t n;                  /* particles */
     double *x, *v;             /* (3,n): the state; to be moved before the first frame only */
     double frame;              /* s */
-    bool ended;                /* blew up or failed: error says how */
+    bool has_ended;            /* blew up or failed: error says how */
     struct cs_error error;
-    struct cs_error *starved; /* of the card */
+    struct cs_error *memory_error; /* of the card */
 
     /* called within every commit once it has been done; may be NULL. Moves the state or only
      * looks; returns whether it moved. */
-    bool (*watch)(struct cs_probe *probe, double t, double dt, double *x, double *v);
-    void *watcher;
+    bool (*on_commit)(struct cs_probe *probe, double t, double dt, double *x, double *v);
+    void *on_commit_ctx;
 };
 
 /* Reads the scene and builds it for the card's method (or another one), options as the card has

@@ -19,13 +19,13 @@
 enum { FRAMES = 10, BROKEN = 5 };
 
 /* Makes a record after BROKEN frames, or goes on from one. */
-static bool pass_break(struct cs_probe *probe, struct cs_record *record) {
+static bool pass_break(struct cs_probe *probe, struct cs_serialiser *record) {
     struct cs_run *run = &probe->session.run;
-    if (!probe->ended && record->loading)
-        probe->ended = cs_run_load(run, record, &probe->error);
-    else if (!probe->ended)
-        probe->ended = cs_run_save(run, record, &probe->error);
-    return !probe->ended;
+    if (!probe->has_ended && record->is_reading)
+        probe->has_ended = cs_run_load(run, record, &probe->error);
+    else if (!probe->has_ended)
+        probe->has_ended = cs_run_save(run, record, &probe->error);
+    return !probe->has_ended;
 }
 
 static bool is_same(const struct cs_probe *one, const struct cs_probe *two) {
@@ -37,27 +37,28 @@ static bool is_same(const struct cs_probe *one, const struct cs_probe *two) {
 
 void cs_check_resume(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe whole, resumed;
-    struct cs_record record = {0};
+    struct cs_serialiser record = {0};
     uint32_t differ = 0;
     cs_probe_open(&whole, card, card->method, EVENTFUL);
     cs_probe_open(&resumed, card, card->method, EVENTFUL);
     if (cs_probe_run(&whole, BROKEN) && pass_break(&whole, &record) &&
         cs_probe_run(&resumed, 0)) {
-        record.loading = true;
+        record.is_reading = true;
         pass_break(&resumed, &record);
-        if (!resumed.ended && !cs_record_is_done(&record))
+        if (!resumed.has_ended && !cs_serialiser_is_done(&record))
             cs_row_fail(row, "load asks for less than save gave");
     }
     for (int k = BROKEN; k < FRAMES && cs_probe_run(&whole, 1) && cs_probe_run(&resumed, 1);
          k++)
         differ += !is_same(&whole, &resumed);
-    if (whole.ended || resumed.ended)
-        cs_row_fail(row, "%s", whole.ended ? whole.error.message : resumed.error.message);
+    if (whole.has_ended || resumed.has_ended)
+        cs_row_fail(row, "%s", whole.has_ended ? whole.error.message : resumed.error.message);
     else
         cs_row_state(row, differ, 0, "of %d frames with other bits (%s)", FRAMES - BROKEN,
-                     cs_run_remembers(card->method) ? "it saves its memory"
-                                                    : "it is restarted at checkpoints");
-    cs_record_finish(&record);
+                     cs_run_method_has_history(card->method)
+                         ? "it saves its memory"
+                         : "it is restarted at checkpoints");
+    cs_serialiser_finish(&record);
     cs_probe_close(&whole);
     cs_probe_close(&resumed);
 }

@@ -90,9 +90,9 @@ struct ledger {
     double gap; /* s, the farthest that a step did not begin there */
 };
 
-static bool keep_account(struct cs_probe *probe, double t, double dt, double *x, double *v) {
+static bool store_account(struct cs_probe *probe, double t, double dt, double *x, double *v) {
     (void)x, (void)v;
-    struct ledger *ledger = probe->watcher;
+    struct ledger *ledger = probe->on_commit_ctx;
     ledger->gap = fmax(ledger->gap, dt > 0 ? fabs(t - dt - ledger->t) : HUGE_VAL);
     ledger->t = t;
     return false;
@@ -102,8 +102,8 @@ void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) 
     struct cs_probe sheet;
     struct ledger ledger = {0};
     cs_probe_open(&sheet, card, card->method, HANGING, "axial");
-    sheet.watch = keep_account;
-    sheet.watcher = &ledger;
+    sheet.on_commit = store_account;
+    sheet.on_commit_ctx = &ledger;
     if (!cs_probe_run(&sheet, HANGING_FRAMES))
         cs_row_fail(row, "%s", sheet.error.message);
     else
@@ -151,9 +151,9 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
     for (int k = 0; k < 3; k++) {
         struct cs_probe sheet;
         cs_probe_open(&sheet, card, card->method, HANGING, "axial");
-        if (k == 0 && !sheet.ended)
+        if (k == 0 && !sheet.has_ended)
             sheet.x[sheet.n / 2] = (double)NAN;
-        if (k == 1 && !sheet.ended)
+        if (k == 1 && !sheet.has_ended)
             sheet.v[sheet.n / 2] = 1e200;
         if (k == 2)
             cs_probe_set(&sheet, "dt", 1);
@@ -195,8 +195,8 @@ void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *ro
         for (size_t i = 0; i < 6 * one.n; i++)
             differ += memcmp(one.x + i, two.x + i, sizeof *one.x) != 0;
     }
-    if (one.ended || two.ended)
-        cs_row_fail(row, "%s", one.ended ? one.error.message : two.error.message);
+    if (one.has_ended || two.has_ended)
+        cs_row_fail(row, "%s", one.has_ended ? one.error.message : two.error.message);
     else
         cs_row_state(row, differ, 0, "values differ after frame %u", one.session.run.frame);
     cs_probe_close(&one);

@@ -59,8 +59,8 @@
     " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
     "}, \"colliders\": [{\"capsule\": {\"from\": [-2, 0, -0.25], \"to\": [2, 0, -0.25],"       \
     " \"radius\": 0.02}, \"thickness\": 0.4, \"friction\": 0.5}], \"contact\": {\"law\":"      \
-    " \"force\", \"stiffness\": 1, \"damping\": 0.02, \"friction_speed\": 0.2}, "              \
-    FIVE_FRAMES "}"
+    " \"force\", \"stiffness\": 1, \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES  \
+    "}"
 
 /* Two sheets that come near each other, and slide; they stay in the range. */
 #define PAIRS(friction)                                                                        \

@@ -7,13 +7,14 @@
 #include <stdint.h>
 
 struct cs_force_scene {
-    const char *check; /* of the card, that runs it */
-    const char *what;  /* for the note: the force and how it acts */
+    const char *check;       /* of the card, that runs it */
+    const char *description; /* for the note: the force and how it acts */
     const char *json;
-    double rate;      /* 1/s, of the fastest change: that of an oscillation or a decay, or the
-                         inverse of the time over which a force builds up motion */
-    bool by_velocity; /* some force depends on the velocity: the order with damping holds */
-    bool deforms;     /* bodies change their shape: no scene for a method of another model */
+    double rate; /* 1/s, of the fastest change: that of an oscillation or a decay, or the
+                    inverse of the time over which a force builds up motion */
+    bool depends_on_velocity; /* some force depends on the velocity: the order with damping
+                                 holds */
+    bool deforms; /* bodies change their shape: no scene for a method of another model */
 };
 
 /* Every scene runs CS_FORCE_FRAMES frames of CS_FORCE_FRAME, and has at most

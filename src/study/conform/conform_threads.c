@@ -34,7 +34,7 @@ static bool hash_with(uint32_t threads, const struct cs_conform *card,
     else
         cs_row_fail(row, "with %u thread%s: %s", threads, threads == 1 ? "" : "s",
                     probe.error.message);
-    const bool ended = probe.ended;
+    const bool ended = probe.has_ended;
     cs_probe_close(&probe);
     cs_pool_stop();
     return !ended;

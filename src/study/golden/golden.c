@@ -133,8 +133,8 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
 }
 
 static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row *row) {
-    return !golden->only || strstr(row->run.scene, golden->only) ||
-           strstr(row->run.integrator, golden->only);
+    return !golden->only_rows || strstr(row->run.scene, golden->only_rows) ||
+           strstr(row->run.integrator, golden->only_rows);
 }
 
 /* whether the table has a row of the same run for the library of this build */
@@ -161,7 +161,7 @@ static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
         golden->skipped++;
     else if (row->message.length == 0)
         golden->passed++;
-    else if (golden->accept)
+    else if (golden->accept_all)
         golden->accepted++;
     else
         golden->failed++;
@@ -181,11 +181,11 @@ check_table(struct cs_golden *golden, const char *name, const char *head, int n_
         if (!is_wanted(golden, row) || check(golden, row, error))
             continue;
         row->added =
-            golden->accept && row->skipped && *row->library && !is_in_table(&table, row);
+            golden->accept_all && row->skipped && *row->library && !is_in_table(&table, row);
         count(golden, row);
         if (golden->report)
             golden->report(golden->ctx, row);
-        if (golden->accept && row->message.length > 0 && !row->skipped)
+        if (golden->accept_all && row->message.length > 0 && !row->skipped)
             accept_row(row);
     }
     if (!error->status && golden->accepted > before)

@@ -2,9 +2,9 @@
  * own, else within the calibrated tolerance. */
 #include "study/golden/golden_image.h"
 
-#include "draw/compare.h"
+#include "draw/image_diff.h"
 #include "io/png.h"
-#include "study/still.h"
+#include "study/snapshot.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,9 +72,9 @@ static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row
 
 /* --accept: only the renderer whose pixels are the same everywhere may bless, so that goldens
  * are everyone's */
-static enum cs_status bless(const struct cs_golden *golden, struct cs_golden_row *row,
-                            const struct cs_image *found, struct cs_text *renderer,
-                            struct cs_error *error) {
+static enum cs_status accept_image(const struct cs_golden *golden, struct cs_golden_row *row,
+                                   const struct cs_image *found, struct cs_text *renderer,
+                                   struct cs_error *error) {
     if (strncmp(cs_text_get(renderer), "cpu", 3))
         return cs_fail(error, CS_ERR_CHECK,
                        "%s: only --renderer cpu may accept images, found %s", row->image,
@@ -92,10 +92,10 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
                                  struct cs_error *error) {
     struct cs_image found = {0};
     struct cs_text renderer = {0};
-    if (!cs_still_paint(session, kind, &found, &renderer, error)) {
+    if (!cs_snapshot_draw(session, kind, &found, &renderer, error)) {
         cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->found);
-        if (golden->accept)
-            bless(golden, row, &found, &renderer, error);
+        if (golden->accept_all)
+            accept_image(golden, row, &found, &renderer, error);
         else
             judge(golden, row, &found, cs_text_get(&renderer), error);
     }

@@ -29,12 +29,12 @@ struct cs_golden_row {
 };
 
 struct cs_golden {
-    const char *folder;  /* "golden" */
-    const char *only;    /* rows whose scene or integrator holds this text; NULL: all */
-    bool hashes, images; /* what to do */
-    bool accept;         /* write what was found instead of failing */
-    uint32_t renderers;  /* set of 1 << enum cs_renderer_kind: each draws every picture */
-    uint32_t threads;    /* as in struct cs_session_settings */
+    const char *folder;    /* "golden" */
+    const char *only_rows; /* rows whose scene or integrator holds this text; NULL: all */
+    bool hashes, images;   /* what to do */
+    bool accept_all;       /* write what was found instead of failing */
+    uint32_t renderers;    /* set of 1 << enum cs_renderer_kind: each draws every picture */
+    uint32_t threads;      /* as in struct cs_session_settings */
     const volatile sig_atomic_t *stop;
     /* called after each row; may be NULL */
     void (*report)(void *ctx, const struct cs_golden_row *row);

@@ -2,7 +2,7 @@
 #include "study/reference/compare_reference.h"
 
 #include "base/hash.h"
-#include "model/force/measure.h"
+#include "model/force/diagnostics.h"
 #include "study/reference/compare_reference_cache.h"
 #include "study/reference/compare_reference_choice.h"
 
@@ -29,27 +29,27 @@ static void tell(const struct cs_compare_reference_settings *settings, uint32_t 
 /* Runs one of the four; *good: it got to the end. */
 static enum cs_status run_one(struct cs_compare_reference *reference, int k,
                               const struct cs_compare_reference_settings *settings,
-                              struct cs_track *track, bool *good, struct cs_error *error) {
-    struct cs_course course;
-    struct cs_course_end end = {0};
+                              struct cs_trajectory *track, bool *good, struct cs_error *error) {
+    struct cs_recorded_run recording;
+    struct cs_recorded_run_result end = {0};
     tell(settings, (uint32_t)k, reference->methods[k]);
-    if (!cs_course_open(&course, settings->course, reference->methods[k], error) &&
-        !cs_track_init(track, &course, error))
-        cs_course_run(&course, 0, track, &end, error);
+    if (!cs_recorded_run_open(&recording, settings->run, reference->methods[k], error) &&
+        !cs_trajectory_init(track, &recording, error))
+        cs_recorded_run_execute(&recording, 0, track, &end, error);
     *good = !error->status && !end.failed && end.outcome == CS_RUNNING;
     if (!error->status && !*good)
         snprintf(reference->reason, sizeof reference->reason, "%.100s: %.200s",
                  reference->methods[k], end.failed ? end.note : cs_outcome_text(end.outcome));
-    cs_course_close(&course);
+    cs_recorded_run_close(&recording);
     return error->status;
 }
 
 /* largest RMS and particle distance of two runs at any frame */
-static void compare(const struct cs_system *system, const struct cs_track *a,
-                    const struct cs_track *b, double *rms, double *largest) {
+static void compare(const struct cs_system *system, const struct cs_trajectory *a,
+                    const struct cs_trajectory *b, double *rms, double *largest) {
     *rms = *largest = 0;
     for (uint32_t k = 1; k <= a->frames; k++) {
-        const double *x = cs_track_state(a, k), *y = cs_track_state(b, k);
+        const double *x = cs_trajectory_state(a, k), *y = cs_trajectory_state(b, k);
         *rms = fmax(*rms, cs_distance_rms(system, x, y));
         *largest = fmax(*largest, cs_distance_max(system, x, y));
     }
@@ -57,41 +57,42 @@ static void compare(const struct cs_system *system, const struct cs_track *a,
 
 static void measure_motion(struct cs_compare_reference *reference,
                            const struct cs_system *system) {
-    const struct cs_track *track = &reference->track;
+    const struct cs_trajectory *track = &reference->trajectory;
     for (uint32_t k = 0; k <= track->frames; k++) {
-        const double *x = cs_track_state(track, k);
-        const struct cs_energy energy =
-            cs_measure_energy(system, k / system->scene->time.fps, x, x + 3 * (size_t)track->n);
+        const double *x = cs_trajectory_state(track, k);
+        const struct cs_energy energy = cs_diagnostics_energy(
+            system, k / system->scene->time.fps, x, x + 3 * (size_t)track->n);
         reference->kinetic = fmax(reference->kinetic, energy.kinetic);
-        reference->strain = fmax(reference->strain, cs_measure_strain(system, x));
-        reference->scale =
-            fmax(reference->scale, cs_distance_rms(system, x, cs_track_state(track, 0)));
+        reference->strain = fmax(reference->strain, cs_diagnostics_strain(system, x));
+        reference->motion_scale = fmax(
+            reference->motion_scale, cs_distance_rms(system, x, cs_trajectory_state(track, 0)));
     }
 }
 
 static void measure_bar(struct cs_compare_reference *reference, const struct cs_system *system,
-                        const struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS]) {
+                        const struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS]) {
     double largest[3];
     compare(system, tracks, tracks + 1, reference->differences, largest);
     compare(system, tracks + 2, tracks + 3, reference->differences + 1, largest + 1);
     compare(system, tracks + 1, tracks + 3, reference->differences + 2, largest + 2);
     // what the looser twin of the other family is off by is no error of the reference
-    reference->bar = fmax(reference->differences[0], reference->differences[2]);
-    reference->bar_max = fmax(largest[0], largest[2]);
+    reference->error_bar = fmax(reference->differences[0], reference->differences[2]);
+    reference->error_bar_max = fmax(largest[0], largest[2]);
 }
 
-static bool is_rough(const struct cs_compare_reference *reference) {
+static bool has_disagreement(const struct cs_compare_reference *reference) {
     const double *differences = reference->differences;
     return differences[2] > ROUGH * differences[0] &&
-           differences[2] > ROUNDING * reference->scale;
+           differences[2] > ROUNDING * reference->motion_scale;
 }
 
 static void judge(struct cs_compare_reference *reference) {
     const double *differences = reference->differences;
     const double own = fmax(differences[0], differences[1]);
     const char *first = reference->methods[0], *second = reference->methods[2];
-    reference->agree = differences[2] <= fmax(EXPLAINED * own, FLOOR * reference->scale);
-    if (!reference->agree)
+    reference->families_agree =
+        differences[2] <= fmax(EXPLAINED * own, FLOOR * reference->motion_scale);
+    if (!reference->families_agree)
         snprintf(reference->reason, sizeof reference->reason,
                  "%.*s and %.*s differ by %.2g m, but by %.2g m and %.2g m from their own "
                  "tighter twins: the two families do not solve the same problem",
@@ -100,20 +101,20 @@ static void judge(struct cs_compare_reference *reference) {
 }
 
 static void judge_horizon(struct cs_compare_reference *reference) {
-    const double time = reference->track.frames / reference->track.fps;
+    const double time = reference->trajectory.frames / reference->trajectory.fps;
     const struct cs_horizon *horizon = &reference->horizon;
     reference->pointwise = false;
-    if (!reference->agree)
+    if (!reference->families_agree)
         return;
     if (!(horizon->time > time))
         snprintf(reference->reason, sizeof reference->reason,
                  "a displacement of %.0g m in one particle grows %.2g times and reaches %.0g m "
                  "at %.3g s: no error of a single particle means anything beyond it",
-                 CS_HORIZON_START, horizon->amplification, reference->accuracy, horizon->time);
-    else if (reference->bar > reference->accuracy)
+                 CS_HORIZON_START, horizon->growth, reference->accuracy, horizon->time);
+    else if (reference->error_bar > reference->accuracy)
         snprintf(reference->reason, sizeof reference->reason,
                  "the reference itself is only known to %.2g m, and %.2g m were asked for",
-                 reference->bar, reference->accuracy);
+                 reference->error_bar, reference->accuracy);
     else
         reference->pointwise = true;
 }
@@ -121,7 +122,7 @@ static void judge_horizon(struct cs_compare_reference *reference) {
 /* Runs `from` to `to` of the four; false: one did not get to its end, or *error says why. */
 static bool run_some(struct cs_compare_reference *reference, int from, int to,
                      const struct cs_compare_reference_settings *settings,
-                     struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS],
+                     struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
                      struct cs_error *error) {
     bool good = true;
     for (int k = from; k < to && good; k++)
@@ -140,16 +141,16 @@ static enum cs_status name_twins(struct cs_compare_reference *reference, int fam
 /* The second family; another one where it does not get to the end. */
 static bool run_second(struct cs_compare_reference *reference,
                        const struct cs_compare_reference_settings *settings,
-                       struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS],
+                       struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
                        struct cs_error *error) {
     if (run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error))
         return true;
-    if (error->status || !*reference->instead ||
-        name_twins(reference, 1, reference->instead, error))
+    if (error->status || !*reference->replacement ||
+        name_twins(reference, 1, reference->replacement, error))
         return false;
-    *reference->instead = *reference->reason = 0;
-    cs_track_finish(tracks + 2);
-    cs_track_finish(tracks + 3);
+    *reference->replacement = *reference->reason = 0;
+    cs_trajectory_finish(tracks + 2);
+    cs_trajectory_finish(tracks + 3);
     return run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error);
 }
 
@@ -158,47 +159,47 @@ static bool run_second(struct cs_compare_reference *reference,
 static enum cs_status ask_another(struct cs_compare_reference *reference,
                                   const struct cs_system *system,
                                   const struct cs_compare_reference_settings *settings,
-                                  struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS],
+                                  struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
                                   struct cs_error *error) {
     struct cs_compare_reference other = *reference;
-    struct cs_track own[CS_COMPARE_REFERENCE_RUNS] = {tracks[0], tracks[1], {0}, {0}};
-    if (name_twins(&other, 1, reference->instead, error))
+    struct cs_trajectory own[CS_COMPARE_REFERENCE_RUNS] = {tracks[0], tracks[1], {0}, {0}};
+    if (name_twins(&other, 1, reference->replacement, error))
         return error->status;
     if (run_some(&other, 2, CS_COMPARE_REFERENCE_RUNS, settings, own, error)) {
         measure_bar(&other, system, own);
-        if (other.bar < reference->bar)
+        if (other.error_bar < reference->error_bar)
             *reference = other;
     }
-    cs_track_finish(own + 2);
-    cs_track_finish(own + 3);
+    cs_trajectory_finish(own + 2);
+    cs_trajectory_finish(own + 3);
     return error->status;
 }
 
 /* The four runs; the tighter twin of the first family becomes the reference. */
 static enum cs_status compute(struct cs_compare_reference *reference,
-                              const struct cs_course *probe,
+                              const struct cs_recorded_run *probe,
                               const struct cs_compare_reference_settings *settings,
                               struct cs_error *error) {
     const struct cs_system *system = &probe->session.system;
-    struct cs_track tracks[CS_COMPARE_REFERENCE_RUNS] = {0};
+    struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS] = {0};
     if (run_some(reference, 0, 2, settings, tracks, error) &&
         run_second(reference, settings, tracks, error)) {
-        reference->track = tracks[1];
+        reference->trajectory = tracks[1];
         measure_motion(reference, system);
         measure_bar(reference, system, tracks);
-        if (*reference->instead && is_rough(reference))
+        if (*reference->replacement && has_disagreement(reference))
             ask_another(reference, system, settings, tracks, error);
         judge(reference);
         /* its states now belong to the reference and must not be freed below */
-        tracks[1] = (struct cs_track){0};
+        tracks[1] = (struct cs_trajectory){0};
         tell(settings, CS_COMPARE_REFERENCE_RUNS, "horizon");
         if (!error->status)
-            cs_horizon_measure(&reference->horizon, settings->course, settings->accuracy,
+            cs_horizon_measure(&reference->horizon, settings->run, settings->accuracy,
                                reference->methods[0], error);
         judge_horizon(reference);
     }
     for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
-        cs_track_finish(tracks + k);
+        cs_trajectory_finish(tracks + k);
     return error->status;
 }
 
@@ -206,15 +207,15 @@ enum cs_status cs_compare_reference_plan(struct cs_compare_reference *reference,
                                          const struct cs_compare_reference_settings *settings,
                                          char *key, struct cs_error *error) {
     char chosen[2][256];
-    struct cs_course probe = {0};
+    struct cs_recorded_run probe = {0};
     *reference = (struct cs_compare_reference){.accuracy = settings->accuracy};
-    if (cs_compare_reference_choose(settings, chosen, reference->instead, error) ||
+    if (cs_compare_reference_choose(settings, chosen, reference->replacement, error) ||
         name_twins(reference, 0, chosen[0], error) ||
         name_twins(reference, 1, chosen[1], error))
         return error->status;
-    if (!cs_course_open(&probe, settings->course, chosen[0], error))
+    if (!cs_recorded_run_open(&probe, settings->run, chosen[0], error))
         cs_compare_reference_key(reference, &probe, settings, key, error);
-    cs_course_close(&probe);
+    cs_recorded_run_close(&probe);
     return error->status;
 }
 
@@ -222,27 +223,27 @@ enum cs_status cs_compare_reference_get(struct cs_compare_reference *reference,
                                         const struct cs_compare_reference_settings *settings,
                                         struct cs_error *error) {
     char key[CS_HASH_DIGITS];
-    struct cs_course probe = {0};
+    struct cs_recorded_run probe = {0};
     if (cs_compare_reference_plan(reference, settings, key, error) ||
-        cs_course_open(&probe, settings->course, reference->methods[0], error))
+        cs_recorded_run_open(&probe, settings->run, reference->methods[0], error))
         return error->status;
     const bool found =
         settings->cache && cs_compare_reference_read(reference, settings->cache, key, &probe);
-    if (!found && !compute(reference, &probe, settings, error) && reference->agree &&
+    if (!found && !compute(reference, &probe, settings, error) && reference->families_agree &&
         settings->cache)
         cs_compare_reference_write(reference, settings->cache, key, error);
     tell(settings, CS_COMPARE_REFERENCE_RUNS + 1, "");
-    cs_course_close(&probe);
+    cs_recorded_run_close(&probe);
     if (error->status)
         cs_compare_reference_finish(reference);
     return error->status;
 }
 
 uint32_t cs_compare_reference_pointwise_frames(const struct cs_compare_reference *reference) {
-    return reference->pointwise ? reference->track.frames : 0;
+    return reference->pointwise ? reference->trajectory.frames : 0;
 }
 
 void cs_compare_reference_finish(struct cs_compare_reference *reference) {
-    cs_track_finish(&reference->track);
+    cs_trajectory_finish(&reference->trajectory);
     *reference = (struct cs_compare_reference){0};
 }

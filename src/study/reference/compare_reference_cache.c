@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "io/scene_hash.h"
+#include "scene/file/scene_hash.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,22 +23,22 @@ struct header {
 };
 
 enum cs_status cs_compare_reference_key(const struct cs_compare_reference *reference,
-                                        const struct cs_course *course,
+                                        const struct cs_recorded_run *recording,
                                         const struct cs_compare_reference_settings *settings,
                                         char *key, struct cs_error *error) {
-    const struct cs_session_settings *session = &settings->course->session;
-    const struct cs_scene *scene = &course->session.scene;
-    const size_t values = 6 * (size_t)course->session.system.view.n;
-    const struct cs_method *method = &course->session.method;
+    const struct cs_session_settings *session = &settings->run->session;
+    const struct cs_scene *scene = &recording->session.scene;
+    const size_t values = 6 * (size_t)recording->session.system.view.n;
+    const struct cs_method *method = &recording->session.method;
     char start[CS_HASH_DIGITS], of_scene[CS_HASH_DIGITS];
     struct cs_text all = {0};
     if (cs_scene_hash(scene, &method->table, method->options, of_scene, error))
         return error->status;
     // meshes are files of their own or made here: the start is as they came out
-    cs_hash_doubles(course->start, values, start);
+    cs_hash_doubles(recording->initial_state, values, start);
     cs_text_add(&all, "%s|", start);
     cs_text_add(&all, "%s|%zu|%u|%.17g|%.17g|", CS_VERSION, sizeof(struct header),
-                settings->course->frames, scene->time.fps, settings->accuracy);
+                settings->run->frames, scene->time.fps, settings->accuracy);
     for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
         cs_text_add(&all, "%s|", reference->methods[k]);
     // where the methods are chosen here, a module that is added changes nothing
@@ -58,7 +58,7 @@ static void file_path(const char *folder, const char *key, char *path, size_t si
 }
 
 bool cs_compare_reference_read(struct cs_compare_reference *reference, const char *folder,
-                               const char *key, const struct cs_course *course) {
+                               const char *key, const struct cs_recorded_run *recording) {
     char path[4096], *bytes, hash[CS_HASH_DIGITS];
     size_t length;
     struct cs_error missing = {0};
@@ -66,8 +66,8 @@ bool cs_compare_reference_read(struct cs_compare_reference *reference, const cha
     file_path(folder, key, path, sizeof path);
     if (cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, &missing))
         return false;
-    struct cs_track track;
-    bool good = length > sizeof header && !cs_track_init(&track, course, &missing);
+    struct cs_trajectory track;
+    bool good = length > sizeof header && !cs_trajectory_init(&track, recording, &missing);
     /* a file that does not fit or was damaged is passed over, and the reference is computed */
     if (good) {
         memcpy(&header, bytes, sizeof header);
@@ -82,11 +82,11 @@ bool cs_compare_reference_read(struct cs_compare_reference *reference, const cha
         }
         if (good) {
             *reference = header.reference;
-            track.done = track.frames;
-            reference->track = track;
+            track.n_recorded = track.frames;
+            reference->trajectory = track;
             reference->cached = true;
         } else
-            cs_track_finish(&track);
+            cs_trajectory_finish(&track);
     }
     free(bytes);
     return good;
@@ -95,7 +95,7 @@ bool cs_compare_reference_read(struct cs_compare_reference *reference, const cha
 enum cs_status cs_compare_reference_write(const struct cs_compare_reference *reference,
                                           const char *folder, const char *key,
                                           struct cs_error *error) {
-    const struct cs_track *track = &reference->track;
+    const struct cs_trajectory *track = &reference->trajectory;
     const size_t values = ((size_t)track->frames + 1) * 6 * track->n;
     struct header *header = calloc(1, sizeof *header);
     struct cs_file_out out = {0};
@@ -109,9 +109,9 @@ enum cs_status cs_compare_reference_write(const struct cs_compare_reference *ref
     header->frames = track->frames;
     header->reference = *reference;
     /* an address means nothing to the next run */
-    header->reference.track.states = NULL;
+    header->reference.trajectory.states = NULL;
     cs_hash_doubles(track->states, values, header->hash);
-    if (!cs_folder_make(folder, error) && !cs_file_create(&out, path, error)) {
+    if (!cs_folder_create(folder, error) && !cs_file_create(&out, path, error)) {
         /* failures of fwrite are seen by cs_file_finish */
         fwrite(header, sizeof *header, 1, out.file);
         fwrite(track->states, sizeof(double), values, out.file);

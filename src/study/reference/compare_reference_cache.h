@@ -7,13 +7,13 @@
 
 /* Hash of all that it depends on: CS_HASH_DIGITS characters. CS_ERR_MEMORY. */
 enum cs_status cs_compare_reference_key(const struct cs_compare_reference *reference,
-                                        const struct cs_course *course,
+                                        const struct cs_recorded_run *recording,
                                         const struct cs_compare_reference_settings *settings,
                                         char *key, struct cs_error *error);
 
 /* Reads or writes DIR/reference-KEY.state; a file that does not fit counts as none. */
 bool cs_compare_reference_read(struct cs_compare_reference *reference, const char *folder,
-                               const char *key, const struct cs_course *course);
+                               const char *key, const struct cs_recorded_run *recording);
 enum cs_status cs_compare_reference_write(const struct cs_compare_reference *reference,
                                           const char *folder, const char *key,
                                           struct cs_error *error);

@@ -35,7 +35,7 @@ static void fill_step(const char *pattern, double omega, char *out, size_t size)
 static bool is_there(const struct cs_compare_reference_settings *settings,
                      const char *integrator) {
     struct cs_session session;
-    struct cs_session_settings asked = settings->course->session;
+    struct cs_session_settings asked = settings->run->session;
     struct cs_error ignored = {0};
     asked.integrator = integrator;
     const bool there = !cs_session_open_plan(&session, &asked, &ignored);
@@ -46,10 +46,10 @@ static bool is_there(const struct cs_compare_reference_settings *settings,
 /* omega of the smooth scene, by a method that asks for nothing */
 static enum cs_status measure_omega(const struct cs_compare_reference_settings *settings,
                                     double *omega, struct cs_error *error) {
-    struct cs_course course;
-    if (!cs_course_open(&course, settings->course, "velocity-verlet", error))
-        *omega = fmax(course.session.system.view.omega, 1);
-    cs_course_close(&course);
+    struct cs_recorded_run recording;
+    if (!cs_recorded_run_open(&recording, settings->run, "velocity-verlet", error))
+        *omega = fmax(recording.session.system.view.omega, 1);
+    cs_recorded_run_close(&recording);
     return error->status;
 }
 
@@ -125,7 +125,7 @@ enum cs_status cs_compare_reference_tighten(const char *integrator, char *out, s
     struct cs_text text = {0};
     cs_text_add(&text, "%s", name);
     /* a pair that cannot be read ends the loop: its message is in *error */
-    for (char mark = ':'; rest && !cs_method_take_pair(name, &rest, &key, &value, error);
+    for (char mark = ':'; rest && !cs_method_parse_pair(name, &rest, &key, &value, error);
          mark = ',') {
         cs_text_add(&text, "%c", mark);
         tighten(key, value, &text);

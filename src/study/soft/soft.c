@@ -2,8 +2,8 @@
 #include "study/soft/soft.h"
 
 #include "base/clock.h"
-#include "sim/folders.h"
-#include "study/picture.h"
+#include "sim/install_paths.h"
+#include "study/frame_picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ const char *const cs_soft_names[] = {"springs-small", "springs-large", "surface"
                                      "implicit",      "matched",       NULL};
 
 /* Of the shape "limbs": 1586 and 6432 vertices, near the thesis's 1598 and 6308. */
-enum { SMALL = 31, LARGE = 62, FRAMES_MOST = 60, PICTURES = 5 };
+enum { SMALL = 31, LARGE = 62, FRAMES_MAX = 60, PICTURES = 5 };
 static const uint32_t densities[] = {0, 1, 2, 4, 8, 16, 32};
 static const uint32_t details[] = {12, 16, 22, 31, 44, 62, 88, 124};
 
@@ -56,12 +56,12 @@ static double median(double *values, uint32_t n) {
  * takes depends on the motion, so that of a fall, a blow and a rest is wanted. */
 static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
                                  struct cs_soft_row *row, struct cs_error *error) {
-    double samples[FRAMES_MOST];
-    const uint32_t least = row->series == CS_SOFT_IMPLICIT ? FRAMES_MOST : 1;
+    double samples[FRAMES_MAX];
+    const uint32_t least = row->series == CS_SOFT_IMPLICIT ? FRAMES_MAX : 1;
     const double begin = cs_clock_cpu();
     uint32_t n = 0;
     uint64_t steps = 0;
-    for (bool warm = false; n < FRAMES_MOST && run->outcome == CS_RUNNING;) {
+    for (bool warm = false; n < FRAMES_MAX && run->outcome == CS_RUNNING;) {
         const uint64_t before = run->counts.steps;
         const double start = cs_clock_cpu();
         if (cs_run_frame(run, error))

@@ -1,7 +1,7 @@
 /* Finds a safe step for each method from linear theory, and confirms it by runs. */
 #include "study/stability/advise.h"
 
-#include "study/workers.h"
+#include "study/process_pool.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,27 +15,28 @@ enum { SAMPLES = 32, HALVINGS = 6 };
 
 struct work {
     struct cs_advise *advise;
-    struct cs_workers workers;
+    struct cs_process_pool workers;
 };
 
 /* A run with the advised step: its verdict and what a frame costs. */
-static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_settings *settings,
+static enum cs_status try_safe(struct cs_advice *row,
+                               const struct cs_sampled_run_settings *settings,
                                const struct cs_reference *reference, double frame,
                                struct cs_error *error) {
-    struct cs_trial_settings asked = *settings;
-    struct cs_trial trial;
+    struct cs_sampled_run_settings asked = *settings;
+    struct cs_sampled_run trial;
     asked.session.dt = row->safe;
     asked.seconds = reference->seconds;
-    asked.limits = cs_stability_limits(&reference->trial);
-    if (cs_trial_run(&trial, &asked, error))
+    asked.limits = cs_stability_limits(&reference->run);
+    if (cs_sampled_run_execute(&trial, &asked, error))
         return error->status;
-    row->verdict = cs_stability_judge(&trial, &reference->trial, true);
-    row->watched = trial.end;
+    row->verdict = cs_stability_judge(&trial, &reference->run, true);
+    row->checked_seconds = trial.end_time;
     if (trial.failed)
         snprintf(row->message, sizeof row->message, "%s", trial.message);
-    if (trial.end > 0) {
-        row->frame_cost = trial.seconds / trial.end * frame;
-        row->steps = (double)trial.steps / trial.end * frame;
+    if (trial.end_time > 0) {
+        row->frame_cost = trial.seconds / trial.end_time * frame;
+        row->steps = (double)trial.steps / trial.end_time * frame;
     }
     return CS_OK;
 }
@@ -43,7 +44,7 @@ static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_sett
 /* The safe step, or a shorter one: what the watch of its own run calls unstable is not advised.
  */
 static enum cs_status try_shorter(struct cs_advice *row,
-                                  const struct cs_trial_settings *settings,
+                                  const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference, double frame,
                                   struct cs_error *error) {
     for (int k = 0; k < HALVINGS; k++) {
@@ -60,7 +61,8 @@ static enum cs_status try_shorter(struct cs_advice *row,
 }
 
 /* Theory has no limit: one step a frame is tried, and what is wrong with it is bisected. */
-static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_settings *settings,
+static enum cs_status try_frame(struct cs_advice *row,
+                                const struct cs_sampled_run_settings *settings,
                                 const struct cs_reference *reference, double frame,
                                 struct cs_error *error) {
     row->kind = CS_ADVICE_FRAME;
@@ -69,7 +71,7 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
     if (try_safe(row, settings, reference, frame, error) || !cs_advice_is_unstable(row))
         return error->status;
     row->kind = CS_ADVICE_MEASURED;
-    if (cs_stability_border(settings, reference, 0, row->safe, &row->limit, error))
+    if (cs_stability_boundary(settings, reference, 0, row->safe, &row->limit, error))
         return error->status;
     if (isnan(row->limit)) {
         row->kind = CS_ADVICE_REFUSED;
@@ -89,11 +91,12 @@ static enum cs_status try_frame(struct cs_advice *row, const struct cs_trial_set
 
 /* If even a part of theory's limit is unstable, the stable step is bisected: a motion that is
  * large from the start passes the bound with less growth than theory allows. */
-static enum cs_status try_lower(struct cs_advice *row, const struct cs_trial_settings *settings,
+static enum cs_status try_lower(struct cs_advice *row,
+                                const struct cs_sampled_run_settings *settings,
                                 const struct cs_reference *reference, double frame,
                                 struct cs_error *error) {
     double border;
-    if (cs_stability_border(settings, reference, 0, row->safe, &border, error))
+    if (cs_stability_boundary(settings, reference, 0, row->safe, &border, error))
         return error->status;
     if (!(border > 0 && border < HUGE_VAL)) {
         row->safe /= 2;
@@ -107,27 +110,28 @@ static enum cs_status try_lower(struct cs_advice *row, const struct cs_trial_set
 }
 
 static enum cs_status check_limit(struct cs_advice *row,
-                                  const struct cs_trial_settings *settings,
+                                  const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference,
                                   struct cs_error *error) {
-    return cs_stability_border(settings, reference, 0, 1.5 * row->limit, &row->measured, error);
+    return cs_stability_boundary(settings, reference, 0, 1.5 * row->limit, &row->measured,
+                                 error);
 }
 
 static enum cs_status advise_fixed(struct cs_advice *row,
-                                   const struct cs_trial_settings *settings, double frame,
+                                   const struct cs_sampled_run_settings *settings, double frame,
                                    bool check, struct cs_error *error) {
     struct cs_reference reference;
     if (cs_reference_run(&reference, settings, error))
         return error->status;
-    if (!reference.found) {
+    if (!reference.exists) {
         row->kind = CS_ADVICE_REFUSED;
         snprintf(row->message, sizeof row->message, "no run to judge by: %.280s",
                  reference.message);
         return CS_OK;
     }
-    row->speed = reference.trial.speed;
-    row->limit = row->theory = reference.worst.dt;
-    row->mode = reference.worst.mode;
+    row->speed = reference.run.speed_max;
+    row->limit = row->theory = reference.smallest_limit.dt;
+    row->mode = reference.smallest_limit.mode;
     /* theory knows no limit */
     if (row->limit > 1e100)
         return try_frame(row, settings, &reference, frame, error);
@@ -145,21 +149,22 @@ static enum cs_status advise_fixed(struct cs_advice *row,
 /* What theory calls stable may grow, if too slowly to show in the time of the advice. */
 static enum cs_status measure_growth(struct cs_advice *row, const struct cs_method *method,
                                      struct cs_error *error) {
-    const struct cs_amplify amplify = {method->integrator, method->options, 0};
+    const struct cs_amplification amplify = {method->integrator, method->options, 0};
     double radius;
     if (!(row->safe > 0) || !(row->theory > 0 && row->theory < HUGE_VAL) ||
-        cs_amplify_measure(&amplify, row->safe, fmax(row->mode.square, 0),
-                           fmax(row->mode.rate, 0), &radius, error))
+        cs_amplification_measure(&amplify, row->safe, fmax(row->mode.omega_squared, 0),
+                                 fmax(row->mode.damping_rate, 0), &radius, error))
         return error->status;
-    row->growth = radius > 1 + GROWTH_SEEN && isfinite(radius) ? log(radius) / row->safe : 0;
+    row->mode_growth =
+        radius > 1 + GROWTH_SEEN && isfinite(radius) ? log(radius) / row->safe : 0;
     return CS_OK;
 }
 
 static enum cs_status advise_adaptive(struct cs_advice *row,
-                                      const struct cs_trial_settings *settings, double frame,
-                                      struct cs_error *error) {
+                                      const struct cs_sampled_run_settings *settings,
+                                      double frame, struct cs_error *error) {
     struct cs_reference none = {.seconds = settings->seconds,
-                                .trial = {.speed = 1e100, .held = 1e100}};
+                                .run = {.speed_max = 1e100, .energy_max = 1e100}};
     row->kind = CS_ADVICE_ADAPTIVE;
     return try_safe(row, settings, &none, frame, error);
 }
@@ -179,24 +184,24 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
     struct cs_advise *advise = work->advise;
     struct cs_advice *row = advise->rows + task;
     struct cs_session session;
-    struct cs_trial_settings trial = {
+    struct cs_sampled_run_settings trial = {
         .session = advise->session, .seconds = advise->seconds, .samples = SAMPLES};
-    const double frame = 1 / advise->opened.scene.time.fps;
+    const double frame = 1 / advise->was_opened.scene.time.fps;
     trial.session.perturbation =
-        PERTURBATION * cs_springs_shortest(&advise->opened.system.springs);
+        PERTURBATION * cs_springs_shortest(&advise->was_opened.system.springs);
     trial.session.run.budget = advise->budget;
     trial.session.integrator = row->method = advise->names[task];
     /* only to learn whether the method can follow the scene, and whether it takes dt */
     if (cs_session_open_plan(&session, &trial.session, error)) {
-        cs_workers_tick(&work->workers, 1);
+        cs_process_pool_tick(&work->workers, 1);
         return refuse(row, error);
     }
     if (!cs_method_takes_dt(session.method.integrator))
         advise_adaptive(row, &trial, frame, error);
-    else if (!advise_fixed(row, &trial, frame, advise->check, error))
+    else if (!advise_fixed(row, &trial, frame, advise->bisect_too, error))
         measure_growth(row, &session.method, error);
     cs_session_close(&session);
-    cs_workers_tick(&work->workers, 1);
+    cs_process_pool_tick(&work->workers, 1);
     return error->status;
 }
 
@@ -225,7 +230,7 @@ static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *er
 
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
     struct work work = {advise, {.task = advise_task, .progress = report}};
-    if (cs_session_open_system(&advise->opened, &advise->session, error) ||
+    if (cs_session_open_system(&advise->was_opened, &advise->session, error) ||
         list_methods(advise, error))
         return error->status;
     work.workers.ctx = &work;
@@ -233,18 +238,18 @@ enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
     work.workers.n_workers = advise->workers;
     work.workers.n_tasks = advise->n;
     work.workers.stop = advise->stop;
-    advise->rows = cs_workers_take(advise->n * sizeof *advise->rows, error);
-    work.workers.ticks = cs_workers_take(sizeof(uint32_t), error);
+    advise->rows = cs_process_pool_shared_alloc(advise->n * sizeof *advise->rows, error);
+    work.workers.ticks = cs_process_pool_shared_alloc(sizeof(uint32_t), error);
     if (!error->status)
-        cs_workers_run(&work.workers, error);
-    cs_workers_give_back(work.workers.ticks, sizeof(uint32_t));
+        cs_process_pool_run(&work.workers, error);
+    cs_process_pool_shared_free(work.workers.ticks, sizeof(uint32_t));
     return error->status;
 }
 
 void cs_advise_finish(struct cs_advise *advise) {
-    cs_workers_give_back(advise->rows, advise->n * sizeof *advise->rows);
+    cs_process_pool_shared_free(advise->rows, advise->n * sizeof *advise->rows);
     free(advise->names);
     cs_registry_finish(&advise->registry);
-    cs_session_close(&advise->opened);
+    cs_session_close(&advise->was_opened);
     *advise = (struct cs_advise){0};
 }

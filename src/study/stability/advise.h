@@ -2,7 +2,7 @@
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
 
-#include "study/stability/stability_border.h"
+#include "study/stability/stability_boundary.h"
 
 enum cs_advice_kind {
     CS_ADVICE_THEORY,   /* the limit of linear theory along a trusted run */
@@ -21,8 +21,8 @@ struct cs_advice {
     double theory;                     /* s, limit of linear theory; HUGE_VAL: none */
     struct cs_mode mode;               /* that limits it, where theory has a limit */
     enum cs_stability_verdict verdict; /* of a run with the safe step */
-    double watched;                    /* s, that this run lasted */
-    double growth;            /* 1/s, of the worst mode at the safe step; 0: it does not grow */
+    double checked_seconds;            /* s, that this run lasted */
+    double mode_growth;       /* 1/s, of the worst mode at the safe step; 0: it does not grow */
     double measured;          /* s, bisected; 0: not asked for; NAN: unknown */
     double speed;             /* m/s, largest of a particle in the trusted run; 0: none */
     double steps, frame_cost; /* steps and wall time in s of a frame with the safe step */
@@ -41,13 +41,13 @@ struct cs_advise {
     double
         seconds;   /* that the advice is for: of the trusted run and the probe runs, at least */
     double budget; /* s of processor time of a probe run */
-    bool check;    /* bisect the limit too */
+    bool bisect_too; /* bisect the limit too */
     uint32_t workers;
     const volatile sig_atomic_t *stop;
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
     /* out */
-    struct cs_session opened; /* the scene as it is given */
+    struct cs_session was_opened; /* the scene as it is given */
     struct cs_registry registry;
     const char **names;
     struct cs_advice *rows; /* (n) by method; workers see them */

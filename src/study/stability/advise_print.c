@@ -1,8 +1,8 @@
 /* Prints advice: a line a method, and below it what limits the step. */
 #include "study/stability/advise_print.h"
 
-#include "scene/pairs.h"
-#include "study/stability/contact_line.h"
+#include "scene/body_pairs.h"
+#include "study/stability/contact_note.h"
 
 #include <math.h>
 
@@ -30,16 +30,16 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
                         struct cs_text *out) {
     static const char *const kinds[CS_SPRING_KINDS] = {"stretch", "shear", "bend"};
     const struct spring spring = stiffest_at(system, mode->particle);
-    const bool damped = mode->rate * mode->rate > 4 * mode->square;
+    const bool damped = mode->damping_rate * mode->damping_rate > 4 * mode->omega_squared;
     cs_system_print_particle(system, mode->particle, out);
     if (damped)
-        cs_text_add(out, " is damped at %.4g /s", mode->rate);
+        cs_text_add(out, " is damped at %.4g /s", mode->damping_rate);
     else
-        cs_text_add(out, " swings at %.4g /s, damped at %.3g /s", sqrt(fmax(mode->square, 0)),
-                    mode->rate);
+        cs_text_add(out, " swings at %.4g /s, damped at %.3g /s",
+                    sqrt(fmax(mode->omega_squared, 0)), mode->damping_rate);
     // the bounds of the view do not hold contact
-    if (mode->rate > 2 * system->view.delta ||
-        mode->square > system->view.omega * system->view.omega)
+    if (mode->damping_rate > 2 * system->view.delta ||
+        mode->omega_squared > system->view.omega * system->view.omega)
         cs_text_add(out, " by contact");
     if (spring.stiffness > 0)
         cs_text_add(out, ": %.3g kg on %s springs of %.4g N/m", system->mass[mode->particle],
@@ -50,10 +50,10 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
                     struct cs_text *out) {
     switch (row->kind) {
     case CS_ADVICE_THEORY:
-        add_binding(&advise->opened.system, &row->mode, out);
+        add_binding(&advise->was_opened.system, &row->mode, out);
         break;
     case CS_ADVICE_LOWERED:
-        add_binding(&advise->opened.system, &row->mode, out);
+        add_binding(&advise->was_opened.system, &row->mode, out);
         cs_text_add(out, "; bisected, linear theory allows %.4g s", row->theory);
         break;
     case CS_ADVICE_MEASURED:
@@ -73,8 +73,8 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     case CS_ADVICE_REFUSED:
         break;
     }
-    if (row->growth > 0)
-        cs_text_add(out, "; its worst mode grows at %.2g /s", row->growth);
+    if (row->mode_growth > 0)
+        cs_text_add(out, "; its worst mode grows at %.2g /s", row->mode_growth);
     /* a message says more than the verdict; a sound run needs neither */
     if (*row->message)
         cs_text_add(out, "%s%s",
@@ -83,7 +83,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
     else if (row->verdict != CS_STABILITY_BOUNDED && row->kind != CS_ADVICE_NONE)
         cs_text_add(out, "; %s", cs_stability_word(row->verdict));
     if (row->verdict == CS_STABILITY_OVER_BUDGET)
-        cs_text_add(out, " after %.3g s: not watched longer", row->watched);
+        cs_text_add(out, " after %.3g s: not watched longer", row->checked_seconds);
 }
 
 static void add_number(struct cs_text *out, double value, int width) {
@@ -94,22 +94,22 @@ static void add_number(struct cs_text *out, double value, int width) {
 }
 
 static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
-    const struct cs_system *system = &advise->opened.system;
+    const struct cs_system *system = &advise->was_opened.system;
     double speed = 0;
     for (uint32_t k = 0; k < advise->n; k++)
         speed = fmax(speed, advise->rows[k].speed);
-    if (!system->scene->colliders.n && !cs_scene_any_meet(system->scene))
+    if (!system->scene->colliders.n && !cs_scene_has_body_contact(system->scene))
         return;
-    cs_contact_line_add(system->scene, "", out);
+    cs_contact_note_add(system->scene, "", out);
     cs_text_add(out, "\n");
-    cs_contact_line_add_crossing(system, speed, out);
+    cs_contact_note_add_crossing(system, speed, out);
 }
 
 void cs_advise_print(const struct cs_advise *advise, struct cs_text *out) {
     add_contact(advise, out);
     cs_text_add(out, "steps for runs of %.4g s, and watched for so long\n", advise->seconds);
     cs_text_add(out, "%-22s%12s%12s%s%12s%14s\n", "method", "limit [s]", "advised [s]",
-                advise->check ? "   found [s]" : "", "steps/frame", "ms a frame");
+                advise->bisect_too ? "   found [s]" : "", "steps/frame", "ms a frame");
     for (uint32_t k = 0; k < advise->n; k++) {
         const struct cs_advice *row = advise->rows + k;
         const bool fixed = row->kind != CS_ADVICE_ADAPTIVE && row->kind != CS_ADVICE_NONE &&
@@ -117,7 +117,7 @@ void cs_advise_print(const struct cs_advise *advise, struct cs_text *out) {
         cs_text_add(out, "%-22s", row->method);
         add_number(out, row->limit, 12);
         add_number(out, fixed ? row->safe : 0, 12);
-        if (advise->check)
+        if (advise->bisect_too)
             add_number(out, row->measured, 12);
         add_number(out, row->steps, 12);
         add_number(out, 1e3 * row->frame_cost, 14);

@@ -3,8 +3,8 @@
 
 #include "base/clock.h"
 #include "study/perturb.h"
+#include "study/process_pool.h"
 #include "study/stability/extreme_scene.h"
-#include "study/workers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,20 +27,20 @@ static void say(struct cs_extreme_row *row, const char *text) {
 static void step(struct cs_extreme_row *row, struct cs_session *session, double seconds,
                  struct ending *ending, struct cs_error *error) {
     struct cs_run *run = &session->run;
-    struct cs_watch watch;
-    struct cs_watch_row look;
+    struct cs_energy_monitor monitor;
+    struct cs_energy_monitor_row look;
     struct cs_error failure = {0};
     struct cs_text text = {0};
     const double frames = ceil(seconds * session->scene.time.fps * (1 - 1e-9));
-    if (cs_watch_begin(&watch, run, error))
+    if (cs_energy_monitor_begin(&monitor, run, error))
         return;
     while (run->frame < frames && run->outcome == CS_RUNNING && !cs_run_frame(run, &failure))
         if (run->outcome == CS_RUNNING) {
-            cs_watch_look(&watch, run, &look);
+            cs_energy_monitor_sample(&monitor, run, &look);
             ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
         }
-    row->verdict = watch.worst;
-    cs_watch_print(&watch, run->system, &text);
+    row->verdict = monitor.worst_verdict;
+    cs_energy_monitor_print(&monitor, run->system, &text);
     /* the method's own error is an outcome, any other one ends the study */
     if (failure.status == CS_ERR_MODULE) {
         ending->refused = true;
@@ -137,9 +137,9 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
     }
     if (error->status)
         take_refusal(row, &ending, error);
-    row->met = is_met(row, dt, &ending);
+    row->as_expected = is_met(row, dt, &ending);
     row->seconds = cs_clock_wall() - begin;
-    row->done = true;
+    row->is_done = true;
     cs_session_close(&session);
     return error->status;
 }
@@ -151,7 +151,7 @@ struct catalogue {
     struct cs_extreme_row *rows; /* (n_scenes, n_methods), seen by all workers */
     const char **methods;
     uint32_t n_scenes, n_methods;
-    struct cs_workers workers;
+    struct cs_process_pool workers;
 };
 
 static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error) {
@@ -194,14 +194,14 @@ static void filter_scenes(struct catalogue *catalogue, const char *part) {
 static void report_rows(struct catalogue *catalogue, bool all) {
     struct cs_extreme *extreme = catalogue->extreme;
     const uint32_t n = catalogue->n_scenes * catalogue->n_methods;
-    while (catalogue->reported < n && (all || catalogue->rows[catalogue->reported].done)) {
+    while (catalogue->reported < n && (all || catalogue->rows[catalogue->reported].is_done)) {
         struct cs_extreme_row *row = catalogue->rows + catalogue->reported++;
-        if (!row->done) {
-            row->met = cs_extreme_expects(row->expected, "over budget");
+        if (!row->is_done) {
+            row->as_expected = cs_extreme_expects(row->expected, "over budget");
             row->verdict = CS_STABILITY_OVER_BUDGET;
             say(row, "no step ended within twice the budget");
         }
-        *(row->met ? &extreme->met : &extreme->missed) += 1;
+        *(row->as_expected ? &extreme->n_met : &extreme->n_missed) += 1;
         if (extreme->report)
             extreme->report(extreme->ctx, row);
     }
@@ -215,8 +215,8 @@ static void progress(void *ctx, uint32_t ticks) {
 static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
                               struct cs_error *error) {
     const uint32_t n = catalogue->n_scenes * catalogue->n_methods;
-    catalogue->rows = cs_workers_take(n * sizeof *catalogue->rows, error);
-    catalogue->workers.ticks = cs_workers_take(sizeof(uint32_t), error);
+    catalogue->rows = cs_process_pool_shared_alloc(n * sizeof *catalogue->rows, error);
+    catalogue->workers.ticks = cs_process_pool_shared_alloc(sizeof(uint32_t), error);
     if (!catalogue->rows || !catalogue->workers.ticks)
         return error->status;
     /* these texts are from before the fork: their addresses hold in every worker */
@@ -232,15 +232,15 @@ static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
     catalogue->workers.progress = progress;
     catalogue->workers.progress_ctx = catalogue;
     /* a run ends itself at its budget: only a step that never ends is cut off */
-    catalogue->workers.most_seconds = 2 * catalogue->extreme->budget + 1;
+    catalogue->workers.task_seconds_max = 2 * catalogue->extreme->budget + 1;
     catalogue->workers.stop = catalogue->extreme->stop;
-    return cs_workers_run(&catalogue->workers, error);
+    return cs_process_pool_run(&catalogue->workers, error);
 }
 
 enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error) {
     struct catalogue catalogue = {.extreme = extreme};
     struct cs_registry registry = {0};
-    extreme->met = extreme->missed = 0;
+    extreme->n_met = extreme->n_missed = 0;
     if (cs_extreme_scenes(extreme->folder, &catalogue.scenes, &catalogue.n_scenes, error) ||
         list_methods(&catalogue, &registry, error))
         goto done;
@@ -251,14 +251,14 @@ enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error
     else if (!run_all(&catalogue, extreme->n_workers, error)) {
         /* rows that no worker finished are reported too */
         report_rows(&catalogue, true);
-        if (extreme->missed)
+        if (extreme->n_missed)
             cs_fail(error, CS_ERR_CHECK, "%u of %u runs did not end as expected",
-                    extreme->missed, extreme->missed + extreme->met);
+                    extreme->n_missed, extreme->n_missed + extreme->n_met);
     }
 done:
-    cs_workers_give_back(catalogue.rows,
-                         catalogue.n_scenes * catalogue.n_methods * sizeof *catalogue.rows);
-    cs_workers_give_back(catalogue.workers.ticks, sizeof(uint32_t));
+    cs_process_pool_shared_free(catalogue.rows, catalogue.n_scenes * catalogue.n_methods *
+                                                    sizeof *catalogue.rows);
+    cs_process_pool_shared_free(catalogue.workers.ticks, sizeof(uint32_t));
     free(catalogue.methods);
     free(catalogue.scenes);
     cs_registry_finish(&registry);

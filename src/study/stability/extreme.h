@@ -4,7 +4,7 @@
  *   "x-extreme": {"seconds": 0.5, "dt": 0.1, "explicit": "theory", "implicit": "bounded",
  *                 "adaptive": "bounded|refused"}
  * dt (0 or absent: the method's own) is that of methods with a fixed step. What is expected:
- *   bounded   the run ends, and its energy is physically possible (watch.h)
+ *   bounded   the run ends, and its energy is physically possible (energy_monitor.h)
  *   finite    the run ends, and its state is finite
  *   blows up  the energy leaves all bound, and that is said
  *   refused   the method gives up and says why
@@ -16,14 +16,14 @@
 #ifndef CS_EXTREME_H
 #define CS_EXTREME_H
 
-#include "study/stability/reference.h"
-#include "study/watch.h"
+#include "study/energy_monitor.h"
+#include "study/stability/stability_reference.h"
 
 struct cs_extreme_row {
     const char *scene; /* file name without folder and ending */
     const char *method;
     const char *expected;
-    bool met, done;
+    bool as_expected, is_done;
     enum cs_stability_verdict verdict;
     char message[320]; /* more about it, or "" */
     double seconds;    /* wall time */
@@ -41,7 +41,7 @@ struct cs_extreme {
     const volatile sig_atomic_t *stop;
     void (*report)(void *ctx, const struct cs_extreme_row *row);
     void *ctx;
-    uint32_t met, missed; /* out */
+    uint32_t n_met, n_missed; /* out */
 };
 
 /* Runs every scene with every method. CS_ERR_CHECK where an expectation was not met. */

@@ -2,7 +2,7 @@
 #include "study/stability/extreme_scene.h"
 
 #include "base/file.h"
-#include "io/json.h"
+#include "scene/file/json.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -55,20 +55,20 @@ static enum cs_status check_words(const char *expected, const char *path,
 /* "methods": {NAME: EXPECTED, ...}, which may be absent */
 static enum cs_status take_own(struct cs_extreme_scene *scene, const struct cs_json *values,
                                struct cs_error *error) {
-    const uint32_t most = sizeof scene->own / sizeof *scene->own;
+    const uint32_t most = sizeof scene->per_method / sizeof *scene->per_method;
     const struct cs_json *methods = cs_json_find(values, "methods");
     const struct cs_json *member = methods ? cs_json_first(methods) : NULL;
     for (; member; member = cs_json_next(member)) {
-        if (scene->n_own == most || !cs_json_key(member) ||
+        if (scene->n_per_method == most || !cs_json_key(member) ||
             cs_json_kind_of(member) != CS_JSON_TEXT)
             return cs_fail(error, CS_ERR_SCENE,
                            "%s: x-extreme.methods: expected up to %u texts by method",
                            scene->path, most);
-        snprintf(scene->own[scene->n_own].method, sizeof scene->own->method, "%s",
-                 cs_json_key(member));
-        snprintf(scene->own[scene->n_own].expected, sizeof scene->own->expected, "%s",
-                 cs_json_text(member));
-        if (check_words(scene->own[scene->n_own++].expected, scene->path, error))
+        snprintf(scene->per_method[scene->n_per_method].method,
+                 sizeof scene->per_method->method, "%s", cs_json_key(member));
+        snprintf(scene->per_method[scene->n_per_method].expected,
+                 sizeof scene->per_method->expected, "%s", cs_json_text(member));
+        if (check_words(scene->per_method[scene->n_per_method++].expected, scene->path, error))
             return error->status;
     }
     return CS_OK;
@@ -76,9 +76,9 @@ static enum cs_status take_own(struct cs_extreme_scene *scene, const struct cs_j
 
 const char *cs_extreme_expected(const struct cs_extreme_scene *scene,
                                 const struct cs_integrator *integrator) {
-    for (uint32_t k = 0; k < scene->n_own; k++)
-        if (!strcmp(scene->own[k].method, integrator->name))
-            return scene->own[k].expected;
+    for (uint32_t k = 0; k < scene->n_per_method; k++)
+        if (!strcmp(scene->per_method[k].method, integrator->name))
+            return scene->per_method[k].expected;
     return scene->expected[cs_class_of(integrator)];
 }
 

@@ -16,8 +16,8 @@ struct cs_extreme_scene {
     char expected[CS_CLASSES][64];
     struct {
         char method[64], expected[64];
-    } own[16]; /* methods that are not like their class */
-    uint32_t n_own;
+    } per_method[16]; /* methods that are not like their class */
+    uint32_t n_per_method;
 };
 
 /* Reads "x-extreme" of a scene file. CS_ERR_FILE, CS_ERR_SCENE. */

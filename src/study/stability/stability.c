@@ -2,8 +2,8 @@
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
+#include "study/process_pool.h"
 #include "study/stability/stability_journal.h"
-#include "study/workers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,49 +17,50 @@ enum { SAMPLES = 32, TRIALS_OF_BORDER = 7 };
 /* A map in the making. */
 struct work {
     struct cs_stability *map;
-    struct cs_workers workers;
+    struct cs_process_pool workers;
 };
 
 /* between the highest row that is stable with all below it and the next one; a row that was not
  * run to the end does not stand for a stable one */
 static enum cs_status find_border(struct cs_stability_column *column, uint32_t n_rows,
-                                  const struct cs_trial_settings *trial,
+                                  const struct cs_sampled_run_settings *trial,
                                   struct cs_error *error) {
     uint32_t row = 0;
     while (row < n_rows && cs_stability_is_sound(column->cells[row].verdict))
         row++;
-    column->border = HUGE_VAL;
+    column->boundary = HUGE_VAL;
     if (row == n_rows)
         return CS_OK;
     /* a row that ran out of time says nothing, nor does one that was not judged */
     if (column->cells[row].verdict >= CS_STABILITY_OVER_BUDGET) {
-        column->border = (double)NAN;
+        column->boundary = (double)NAN;
         return CS_OK;
     }
     const bool known = row && cs_stability_is_stable(column->cells[row - 1].verdict);
-    return cs_stability_border(trial, &column->reference, known ? column->cells[row - 1].dt : 0,
-                               column->cells[row].dt, &column->border, error);
+    return cs_stability_boundary(trial, &column->reference,
+                                 known ? column->cells[row - 1].dt : 0, column->cells[row].dt,
+                                 &column->boundary, error);
 }
 
 /* All cells of a column are judged by it: it may take the time of all. */
 static enum cs_status find_reference(const struct cs_stability *map,
-                                     const struct cs_trial_settings *trial,
+                                     const struct cs_sampled_run_settings *trial,
                                      struct cs_stability_column *column,
                                      struct cs_error *error) {
-    struct cs_trial_settings patient = *trial;
+    struct cs_sampled_run_settings patient = *trial;
     patient.session.run.budget *= map->n_rows;
     if (cs_reference_run(&column->reference, &patient, error))
         return error->status;
-    if (!column->reference.found)
-        column->reference.worst.dt = (double)NAN;
+    if (!column->reference.exists)
+        column->reference.smallest_limit.dt = (double)NAN;
     return CS_OK;
 }
 
-static enum cs_status try_cell(const struct cs_trial_settings *trial,
+static enum cs_status try_cell(const struct cs_sampled_run_settings *trial,
                                const struct cs_stability_column *column, double dt,
                                struct cs_stability_cell *cell, struct cs_error *error) {
-    if (column->reference.found)
-        return cs_stability_try(trial, &column->reference, dt, cell, error);
+    if (column->reference.exists)
+        return cs_stability_run_cell(trial, &column->reference, dt, cell, error);
     *cell = (struct cs_stability_cell){.dt = dt,
                                        .verdict = CS_STABILITY_UNJUDGED,
                                        .drift = (double)NAN,
@@ -70,32 +71,32 @@ static enum cs_status try_cell(const struct cs_trial_settings *trial,
 static enum cs_status make_column(struct work *work, struct cs_stability_column *column,
                                   struct cs_arena *arena, struct cs_error *error) {
     const struct cs_stability *map = work->map;
-    struct cs_trial_settings trial = {.session = map->settings->session,
-                                      .seconds = map->settings->seconds,
-                                      .samples = SAMPLES};
+    struct cs_sampled_run_settings trial = {.session = map->settings->session,
+                                            .seconds = map->settings->seconds,
+                                            .samples = SAMPLES};
     trial.session.perturbation =
         PERTURBATION * cs_springs_shortest(&map->session.system.springs);
     trial.session.run.budget = map->settings->budget;
     /* springs get shorter as columns are added, and so must the perturbation */
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
-        trial.session.perturbation *= map->own / column->value;
+        trial.session.perturbation *= map->scene_value / column->value;
     const uint32_t number = (uint32_t)(column - map->columns);
     if (cs_axis_overrides(&map->session.system, map->settings->axis, column->value, arena,
                           &trial.session, error))
         return error->status;
     if (!column->has_reference && (find_reference(map, &trial, column, error) ||
-                                   cs_journal_keep_reference(map, number, error)))
+                                   cs_journal_append_reference(map, number, error)))
         return error->status;
     for (uint32_t r = 0; r < map->n_rows; r++) {
         if (!(column->cells[r].dt > 0) &&
             (try_cell(&trial, column, map->dt[r], column->cells + r, error) ||
-             cs_journal_keep_cell(map, number, r, error)))
+             cs_journal_append_cell(map, number, r, error)))
             return error->status;
-        cs_workers_tick(&work->workers, 1);
+        cs_process_pool_tick(&work->workers, 1);
     }
-    if (!column->has_border && !find_border(column, map->n_rows, &trial, error))
-        cs_journal_keep_border(map, number, error);
-    cs_workers_tick(&work->workers, TRIALS_OF_BORDER);
+    if (!column->has_boundary && !find_border(column, map->n_rows, &trial, error))
+        cs_journal_append_boundary(map, number, error);
+    cs_process_pool_tick(&work->workers, TRIALS_OF_BORDER);
     return error->status;
 }
 
@@ -107,7 +108,7 @@ static enum cs_status make_task(void *ctx, uint32_t task, struct cs_error *error
     if (cs_shard_holds(&work->map->settings->shard, column))
         make_column(work, work->map->columns + column, &arena, error);
     else
-        cs_workers_tick(&work->workers, work->map->n_rows + TRIALS_OF_BORDER);
+        cs_process_pool_tick(&work->workers, work->map->n_rows + TRIALS_OF_BORDER);
     cs_arena_finish(&arena);
     return error->status;
 }
@@ -119,7 +120,7 @@ static void report(void *ctx, uint32_t ticks) {
                                 map->n_columns * (map->n_rows + TRIALS_OF_BORDER));
 }
 
-static enum cs_status share_out(struct cs_stability *map, struct cs_error *error) {
+static enum cs_status distribute(struct cs_stability *map, struct cs_error *error) {
     struct work work = {map,
                         {.n_workers = map->settings->workers,
                          .n_tasks = map->n_columns,
@@ -128,10 +129,10 @@ static enum cs_status share_out(struct cs_stability *map, struct cs_error *error
                          .progress_ctx = map,
                          .stop = map->settings->session.run.stop}};
     work.workers.ctx = &work;
-    work.workers.ticks = cs_workers_take(sizeof *work.workers.ticks, error);
+    work.workers.ticks = cs_process_pool_shared_alloc(sizeof *work.workers.ticks, error);
     if (work.workers.ticks)
-        cs_workers_run(&work.workers, error);
-    cs_workers_give_back(work.workers.ticks, sizeof *work.workers.ticks);
+        cs_process_pool_run(&work.workers, error);
+    cs_process_pool_shared_free(work.workers.ticks, sizeof *work.workers.ticks);
     return error->status;
 }
 
@@ -154,12 +155,12 @@ static double share(double from, double to, uint32_t i, uint32_t n) {
 static struct cs_range choose_dt(const struct cs_stability *map, struct cs_range values) {
     const struct cs_view *view = &map->session.system.view;
     double fast = view->omega > 0 ? view->omega : 60, slow = fast;
-    if (map->settings->axis == CS_AXIS_STIFFNESS && map->own > 0) {
-        slow *= sqrt(values.from / map->own);
-        fast *= sqrt(values.to / map->own);
-    } else if (map->settings->axis == CS_AXIS_MASS && map->own > 0) {
-        slow *= sqrt(map->own / values.to);
-        fast *= sqrt(map->own / values.from);
+    if (map->settings->axis == CS_AXIS_STIFFNESS && map->scene_value > 0) {
+        slow *= sqrt(values.from / map->scene_value);
+        fast *= sqrt(values.to / map->scene_value);
+    } else if (map->settings->axis == CS_AXIS_MASS && map->scene_value > 0) {
+        slow *= sqrt(map->scene_value / values.to);
+        fast *= sqrt(map->scene_value / values.from);
     } else if (map->settings->axis == CS_AXIS_DAMPING)
         fast *= 8;
     return (struct cs_range){0.5 / fast, fmin(16 / slow, 10)};
@@ -174,7 +175,7 @@ static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) 
     const struct cs_stability_settings *settings = map->settings;
     const bool whole = settings->axis == CS_AXIS_RESOLUTION;
     struct cs_range values = settings->values, dt = settings->dt;
-    map->own = cs_axis_own(&map->session.system, settings->axis);
+    map->scene_value = cs_axis_scene_value(&map->session.system, settings->axis);
     if (values.to <= 0)
         values = cs_axis_range(&map->session.system, settings->axis);
     if (!(values.from > 0))
@@ -185,8 +186,8 @@ static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) 
     map->n_columns = settings->columns;
     map->n_rows = settings->rows;
     /* shared by the workers, in one block with all cells */
-    map->columns = cs_workers_take(bytes_of(map), error);
-    map->dt = cs_arena_take_n(&map->arena, map->n_rows, sizeof *map->dt, error);
+    map->columns = cs_process_pool_shared_alloc(bytes_of(map), error);
+    map->dt = cs_arena_alloc_array(&map->arena, map->n_rows, sizeof *map->dt, error);
     if (error->status)
         return error->status;
     for (uint32_t r = 0; r < map->n_rows; r++)
@@ -205,7 +206,7 @@ static enum cs_status check_references(const struct cs_stability *map, struct cs
     const struct cs_stability_column *without = NULL;
     for (uint32_t c = 0; c < map->n_columns; c++) {
         const struct cs_stability_column *column = map->columns + c;
-        if (column->reference.found)
+        if (column->reference.exists)
             return CS_OK;
         if (*column->reference.message)
             without = column;
@@ -221,7 +222,7 @@ static enum cs_status check_references(const struct cs_stability *map, struct cs
 /* Columns of other shards may be there too, by way of the journal. */
 static bool is_complete(const struct cs_stability *map) {
     for (uint32_t c = 0; c < map->n_columns; c++)
-        if (!cs_shard_holds(&map->settings->shard, c) && !map->columns[c].has_border)
+        if (!cs_shard_holds(&map->settings->shard, c) && !map->columns[c].has_boundary)
             return false;
     return true;
 }
@@ -240,19 +241,19 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                        map->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                              : "has no option dt");
     if (name_series(map, error) || cs_session_build(&map->session, error) ||
-        lay_out(map, error) || cs_journal_open(map, error) || share_out(map, error) ||
+        lay_out(map, error) || cs_journal_open(map, error) || distribute(map, error) ||
         check_references(map, error)) {
         cs_journal_close(map, false);
         return error->status;
     }
-    map->complete = is_complete(map);
-    cs_journal_close(map, map->complete);
+    map->is_complete = is_complete(map);
+    cs_journal_close(map, map->is_complete);
     map->wall = cs_clock_wall() - begin;
     return CS_OK;
 }
 
 void cs_stability_finish(struct cs_stability *map) {
-    cs_workers_give_back(map->columns, bytes_of(map));
+    cs_process_pool_shared_free(map->columns, bytes_of(map));
     cs_session_close(&map->session);
     cs_arena_finish(&map->arena);
     *map = (struct cs_stability){0};

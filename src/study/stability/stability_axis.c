@@ -12,7 +12,7 @@ const char *cs_axis_unit(enum cs_axis axis) {
     return units[axis];
 }
 
-double cs_axis_own(const struct cs_system *system, enum cs_axis axis) {
+double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis) {
     const struct cs_body *body = cs_scene_bodies(system->scene);
     switch (axis) {
     case CS_AXIS_STIFFNESS:
@@ -27,12 +27,12 @@ double cs_axis_own(const struct cs_system *system, enum cs_axis axis) {
 }
 
 struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis) {
-    const double own = cs_axis_own(system, axis);
+    const double own = cs_axis_scene_value(system, axis);
     if (axis == CS_AXIS_RESOLUTION)
         return (struct cs_range){fmin(8, own), fmin(48, fmax(1.5 * own, 24))};
     if (axis == CS_AXIS_DAMPING && own <= 0) {
         /* up to what damps a lone spring at its critical rate */
-        const double k = cs_axis_own(system, CS_AXIS_STIFFNESS);
+        const double k = cs_axis_scene_value(system, CS_AXIS_STIFFNESS);
         const double critical = 2 * sqrt(k * system->mass[0]);
         return (struct cs_range){1e-4 * critical, critical};
     }
@@ -51,8 +51,8 @@ struct growing {
 static void add(struct growing *to, const char *key, const char *value) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u].%s", to->body, key);
-    to->list[to->n].path = cs_arena_take_text(to->arena, path, to->error);
-    to->list[to->n].value = cs_arena_take_text(to->arena, value, to->error);
+    to->list[to->n].path = cs_arena_copy_text(to->arena, path, to->error);
+    to->list[to->n].value = cs_arena_copy_text(to->arena, value, to->error);
     to->n++;
 }
 
@@ -105,10 +105,10 @@ enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis ax
                                  struct cs_session_settings *session, struct cs_error *error) {
     enum { MOST_A_BODY = 4 };
     const struct cs_scene *scene = system->scene;
-    const double own = cs_axis_own(system, axis);
+    const double own = cs_axis_scene_value(system, axis);
     const size_t most = session->n_overrides + (size_t)MOST_A_BODY * scene->bodies.n;
     struct growing to = {.n = session->n_overrides, .arena = arena, .error = error};
-    to.list = cs_arena_take_n(arena, most, sizeof *to.list, error);
+    to.list = cs_arena_alloc_array(arena, most, sizeof *to.list, error);
     if (!to.list)
         return error->status;
     if (to.n)

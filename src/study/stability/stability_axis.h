@@ -21,7 +21,7 @@ enum cs_status cs_axis_overrides(const struct cs_system *system, enum cs_axis ax
                                  struct cs_session_settings *session, struct cs_error *error);
 /* The scene's own value: that of the first body (stretch stiffness, damping, mass of a
  * particle, columns of the grid); 0 where it has none. */
-double cs_axis_own(const struct cs_system *system, enum cs_axis axis);
+double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis);
 /* Values that the axis covers where none are asked for. */
 struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
 

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "io/scene_hash.h"
+#include "scene/file/scene_hash.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -62,8 +62,8 @@ static void take(struct cs_stability *map, const struct record *record) {
     } else if (record->kind == CELL)
         column->cells[record->row] = record->of.cell;
     else if (record->kind == BORDER) {
-        column->border = record->of.border;
-        column->has_border = true;
+        column->boundary = record->of.border;
+        column->has_boundary = true;
     }
 }
 
@@ -99,7 +99,7 @@ enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error)
         return CS_OK;
     cs_series_file_name(map->series, name);
     snprintf(journal->path, sizeof journal->path, "%s/%s.partial", folder, name);
-    if (cs_folder_make(folder, error) || make_key(map, journal->key, error) ||
+    if (cs_folder_create(folder, error) || make_key(map, journal->key, error) ||
         read_back(map, error))
         return error->status;
     journal->descriptor = open(journal->path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
@@ -119,24 +119,24 @@ static enum cs_status append(const struct cs_stability *map, struct record *reco
     return error->status;
 }
 
-enum cs_status cs_journal_keep_reference(const struct cs_stability *map, uint32_t column,
-                                         struct cs_error *error) {
+enum cs_status cs_journal_append_reference(const struct cs_stability *map, uint32_t column,
+                                           struct cs_error *error) {
     struct record record = {.kind = REFERENCE, .column = column};
     record.of.reference = map->columns[column].reference;
     return append(map, &record, error);
 }
 
-enum cs_status cs_journal_keep_cell(const struct cs_stability *map, uint32_t column,
-                                    uint32_t row, struct cs_error *error) {
+enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t column,
+                                      uint32_t row, struct cs_error *error) {
     struct record record = {.kind = CELL, .column = column, .row = row};
     record.of.cell = map->columns[column].cells[row];
     return append(map, &record, error);
 }
 
-enum cs_status cs_journal_keep_border(const struct cs_stability *map, uint32_t column,
-                                      struct cs_error *error) {
+enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
+                                          struct cs_error *error) {
     struct record record = {.kind = BORDER, .column = column};
-    record.of.border = map->columns[column].border;
+    record.of.border = map->columns[column].boundary;
     return append(map, &record, error);
 }
 

@@ -10,12 +10,12 @@
 enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error);
 
 /* Keep the reference of a column, one of its cells, or its border. */
-enum cs_status cs_journal_keep_reference(const struct cs_stability *map, uint32_t column,
-                                         struct cs_error *error);
-enum cs_status cs_journal_keep_cell(const struct cs_stability *map, uint32_t column,
-                                    uint32_t row, struct cs_error *error);
-enum cs_status cs_journal_keep_border(const struct cs_stability *map, uint32_t column,
-                                      struct cs_error *error);
+enum cs_status cs_journal_append_reference(const struct cs_stability *map, uint32_t column,
+                                           struct cs_error *error);
+enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t column,
+                                      uint32_t row, struct cs_error *error);
+enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
+                                          struct cs_error *error);
 
 /* Closes it; a map that is complete needs none. */
 void cs_journal_close(struct cs_stability *map, bool complete);

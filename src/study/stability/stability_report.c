@@ -2,20 +2,20 @@
  * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
 #include "study/stability/stability_report.h"
 
-#include "study/stability/contact_line.h"
+#include "study/stability/contact_note.h"
 
 #include <math.h>
 
 /* --- text --- */
 
-enum { NAME_WIDTH = 16, CELL_WIDTH = 10, TABLE_MOST = 64 };
+enum { NAME_WIDTH = 16, CELL_WIDTH = 10, TABLE_MAX = 64 };
 
 /* Half the width of a single column or row, as a factor. */
 #define ALONE 1.3
 
 /* Every so many columns or rows of a large map are in the table. */
 static uint32_t stride(uint32_t n) {
-    return (n + TABLE_MOST - 1) / TABLE_MOST;
+    return (n + TABLE_MAX - 1) / TABLE_MAX;
 }
 
 /* a step in seconds, or what stands for none */
@@ -44,13 +44,13 @@ static double value_of(const struct cs_stability_column *column, enum line line)
     const struct cs_reference *reference = &column->reference;
     switch (line) {
     case LINE_BORDER:
-        return column->border;
+        return column->boundary;
     case LINE_WORST:
-        return reference->worst.dt;
+        return reference->smallest_limit.dt;
     case LINE_REST:
-        return reference->at_rest.dt;
+        return reference->start_limit.dt;
     default:
-        return reference->gershgorin;
+        return reference->gershgorin_limit;
     }
 }
 
@@ -65,7 +65,8 @@ static void add_lines(const struct cs_stability *map, struct cs_text *out) {
     }
     cs_text_add(out, "%-*s", NAME_WIDTH, "border / worst");
     for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns)) {
-        const double ratio = map->columns[c].border / map->columns[c].reference.worst.dt;
+        const double ratio =
+            map->columns[c].boundary / map->columns[c].reference.smallest_limit.dt;
         if (isfinite(ratio) && ratio > 0)
             cs_text_add(out, "%*.3f", CELL_WIDTH, ratio);
         else
@@ -126,7 +127,7 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
 /* columns that have no reference, and why */
 static void add_unjudged(const struct cs_stability *map, struct cs_text *out) {
     for (uint32_t c = 0; c < map->n_columns; c++)
-        if (!map->columns[c].reference.found)
+        if (!map->columns[c].reference.exists)
             cs_text_add(out,
                         "  %s = %.4g: no run to judge by (%s); a shorter --time or a longer "
                         "--budget may help\n",
@@ -147,7 +148,7 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
     cs_text_add(out, "%s on %s: %.6g s a cell, dt [s] against %s [%s]", map->series,
                 map->session.scene.path, settings->seconds, cs_axis_names[settings->axis],
                 cs_axis_unit(settings->axis));
-    cs_contact_line_add(&map->session.scene, "; ", out);
+    cs_contact_note_add(&map->session.scene, "; ", out);
     cs_text_add(out, "\n\n");
     cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
     for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
@@ -231,17 +232,17 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
     for (uint32_t c = 0; c < map->n_columns; c++) {
         const struct cs_stability_column *column = map->columns + c;
         const struct cs_reference *reference = &column->reference;
-        const struct cs_mode *mode = &reference->worst.mode;
-        const double dts[] = {column->border, reference->worst.dt, reference->at_rest.dt,
-                              reference->gershgorin};
+        const struct cs_mode *mode = &reference->smallest_limit.mode;
+        const double dts[] = {column->boundary, reference->smallest_limit.dt,
+                              reference->start_limit.dt, reference->gershgorin_limit};
         cs_text_add_real(out, column->value);
         /* 0 stands for no stable step, which no logarithmic scale shows */
         for (int k = 0; k < 4; k++)
             add_field(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
-        add_field(out, mode->square > 0 ? sqrt(mode->square) : 0);
-        add_field(out, mode->rate);
+        add_field(out, mode->omega_squared > 0 ? sqrt(mode->omega_squared) : 0);
+        add_field(out, mode->damping_rate);
         cs_text_add(out, ",%u", mode->particle);
-        add_field(out, mode->share);
+        add_field(out, mode->participation);
         cs_text_add(out, "\n");
     }
 }
@@ -257,11 +258,11 @@ static void add_json_column(const struct cs_stability *map, uint32_t c, struct c
     /* limits that do not exist are NAN or infinite, which are written as null */
     add_member(out, "    {\"value\": ", column->value);
     add_member(out, ", \"seconds\": ", reference->seconds);
-    add_member(out, ", \"border\": ", column->border);
-    add_member(out, ", \"worst_on_way\": ", reference->worst.dt);
-    add_member(out, ", \"at_start\": ", reference->at_rest.dt);
-    add_member(out, ", \"gershgorin\": ", reference->gershgorin);
-    add_member(out, ", \"reference_step\": ", reference->trial.step);
+    add_member(out, ", \"border\": ", column->boundary);
+    add_member(out, ", \"worst_on_way\": ", reference->smallest_limit.dt);
+    add_member(out, ", \"at_start\": ", reference->start_limit.dt);
+    add_member(out, ", \"gershgorin\": ", reference->gershgorin_limit);
+    add_member(out, ", \"reference_step\": ", reference->run.mean_step);
     cs_text_add(out, ", \"cells\": [");
     for (uint32_t r = 0; r < map->n_rows; r++) {
         const struct cs_stability_cell *cell = column->cells + r;

@@ -6,7 +6,7 @@
 #include "sim/series.h"
 #include "study/shard.h"
 #include "study/stability/stability_axis.h"
-#include "study/stability/stability_border.h"
+#include "study/stability/stability_boundary.h"
 
 struct cs_stability_settings {
     struct cs_session_settings session; /* integrator: NAME or NAME:key=value,... */
@@ -23,13 +23,13 @@ struct cs_stability_settings {
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
 };
-enum { CS_MAP_MOST = 1024 };
+enum { CS_MAP_CELLS_MAX = 1024 };
 
 struct cs_stability_column {
-    double value;                   /* of the axis */
-    struct cs_reference reference;  /* with the curves of theory */
-    bool has_reference, has_border; /* found already */
-    double border; /* s; 0: below all that was tried; HUGE_VAL: above; NAN: unknown */
+    double value;                     /* of the axis */
+    struct cs_reference reference;    /* with the curves of theory */
+    bool has_reference, has_boundary; /* found already */
+    double boundary; /* s; 0: below all that was tried; HUGE_VAL: above; NAN: unknown */
     struct cs_stability_cell *cells; /* (rows), by rising dt; dt 0: not tried yet */
 };
 
@@ -46,10 +46,10 @@ struct cs_stability {
     struct cs_session session;           /* the scene as it is given */
     struct cs_stability_column *columns; /* (n_columns); workers see them */
     uint32_t n_columns, n_rows;
-    double own;    /* the scene's own value on the axis */
-    double *dt;    /* (n_rows) rising */
-    bool complete; /* else columns of other shards are not there */
-    double wall;   /* s */
+    double scene_value; /* the scene's own value on the axis */
+    double *dt;         /* (n_rows) rising */
+    bool is_complete;   /* else columns of other shards are not there */
+    double wall;        /* s */
     struct cs_journal journal;
     struct cs_arena arena;
 };

@@ -1,7 +1,7 @@
 /* Finds the largest stable step of a method on a system by linear theory. */
 #include "study/stability/theory.h"
 
-#include "model/force/bounds.h"
+#include "model/force/spectral_bounds.h"
 
 #include <math.h>
 
@@ -10,22 +10,24 @@ enum { MOST_TURNS = 5 };
 enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
                               const struct cs_integrator *integrator, const void *options,
                               double growth, struct cs_error *error) {
-    *theory = (struct cs_theory){.amplify = {integrator, options, growth}, .direction = {1, 0}};
-    return cs_modes_init(&theory->modes, system, error);
+    *theory = (struct cs_theory){.amplification = {integrator, options, growth},
+                                 .stiffness_damping_direction = {1, 0}};
+    return cs_stiffest_modes_init(&theory->modes, system, error);
 }
 
 void cs_theory_finish(struct cs_theory *theory) {
-    cs_modes_finish(&theory->modes);
+    cs_stiffest_modes_finish(&theory->modes);
 }
 
 enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
                                     struct cs_error *error) {
-    const struct cs_modes *modes = &theory->modes;
-    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zero, .parts = CS_PART_ALL};
+    const struct cs_stiffest_modes *modes = &theory->modes;
+    const struct cs_eval at = {.t = modes->t, .x = x, .v = modes->zeros, .parts = CS_PART_ALL};
     double omega, delta, free = HUGE_VAL, damped = HUGE_VAL;
-    cs_bounds_rate(modes->system, &at, modes->dx, &omega, &delta);
-    if (cs_amplify_limit(&theory->amplify, omega * omega, 0, &free, error) ||
-        cs_amplify_limit(&theory->amplify, omega * omega, 2 * delta, &damped, error))
+    cs_spectral_bounds_rate(modes->system, &at, modes->dx, &omega, &delta);
+    if (cs_amplification_limit(&theory->amplification, omega * omega, 0, &free, error) ||
+        cs_amplification_limit(&theory->amplification, omega * omega, 2 * delta, &damped,
+                               error))
         return error->status;
     *dt = fmin(*dt, fmin(free, damped));
     return CS_OK;
@@ -36,9 +38,9 @@ enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, d
 static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *mode,
                                struct cs_theory_limit *limit, struct cs_error *error) {
     struct cs_theory_limit found = {HUGE_VAL, *mode};
-    const double square = mode->square > 0 ? mode->square : 0;
-    const double rate = mode->rate > 0 ? mode->rate : 0;
-    if (cs_amplify_limit(&theory->amplify, square, rate, &found.dt, error))
+    const double square = mode->omega_squared > 0 ? mode->omega_squared : 0;
+    const double rate = mode->damping_rate > 0 ? mode->damping_rate : 0;
+    if (cs_amplification_limit(&theory->amplification, square, rate, &found.dt, error))
         return error->status;
     if (found.dt < limit->dt)
         *limit = found;
@@ -46,19 +48,20 @@ static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *m
 }
 
 /* the search turns to the normal of the stable set just outside the limit */
-static enum cs_status turn(struct cs_theory *theory, const struct cs_theory_limit *limit,
-                           struct cs_error *error) {
+static enum cs_status update_search_direction(struct cs_theory *theory,
+                                              const struct cs_theory_limit *limit,
+                                              struct cs_error *error) {
     const double h = limit->dt;
     double normal[2];
-    if (!(limit->mode.square > 0) ||
-        cs_amplify_normal(&theory->amplify, 1.002 * h, limit->mode.square,
-                          fmax(limit->mode.rate, 0), normal, error))
+    if (!(limit->mode.omega_squared > 0) ||
+        cs_amplification_normal(&theory->amplification, 1.002 * h, limit->mode.omega_squared,
+                                fmax(limit->mode.damping_rate, 0), normal, error))
         return error->status;
     const double a = h * h * normal[0], b = h * normal[1];
     const double scale = fabs(a) + fabs(b) / h;
     if (isfinite(scale) && scale > 0) {
-        theory->direction[0] = a / scale;
-        theory->direction[1] = b / scale;
+        theory->stiffness_damping_direction[0] = a / scale;
+        theory->stiffness_damping_direction[1] = b / scale;
     }
     return CS_OK;
 }
@@ -70,16 +73,18 @@ static bool has_limit(const struct cs_theory_limit *limit) {
 /* From one direction on, as long as turning it finds a smaller limit. */
 static enum cs_status descend(struct cs_theory *theory, const double *x, double a, double b,
                               struct cs_theory_limit *limit, struct cs_error *error) {
-    theory->direction[0] = a;
-    theory->direction[1] = b;
-    theory->modes.warm = false;
+    theory->stiffness_damping_direction[0] = a;
+    theory->stiffness_damping_direction[1] = b;
+    theory->modes.has_start = false;
     for (int k = 0; k < MOST_TURNS; k++) {
         const double before = limit->dt;
         const struct cs_mode mode =
-            cs_modes_largest(&theory->modes, x, theory->direction[0], theory->direction[1]);
+            cs_stiffest_modes_largest(&theory->modes, x, theory->stiffness_damping_direction[0],
+                                      theory->stiffness_damping_direction[1]);
         if (consider(theory, &mode, limit, error))
             return error->status;
-        if (!has_limit(limit) || !(limit->dt < 0.999 * before) || turn(theory, limit, error))
+        if (!has_limit(limit) || !(limit->dt < 0.999 * before) ||
+            update_search_direction(theory, limit, error))
             break;
     }
     return error->status;
@@ -96,7 +101,7 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
     if (swing.dt < limit->dt)
         *limit = swing;
     if (has_limit(limit))
-        turn(theory, limit, error);
+        update_search_direction(theory, limit, error);
     return error->status;
 }
 
@@ -104,22 +109,23 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
  * that is only damped: the fastest of those is searched by itself. */
 static enum cs_status consider_friction(struct cs_theory *theory, const double *x,
                                         struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!cs_bounds_have_rate(theory->modes.system))
+    if (!cs_spectral_bounds_depend_on_state(theory->modes.system))
         return CS_OK;
-    theory->modes.warm = false;
-    const struct cs_mode mode = cs_modes_largest(&theory->modes, x, 0, 1);
-    theory->modes.warm = false;
+    theory->modes.has_start = false;
+    const struct cs_mode mode = cs_stiffest_modes_largest(&theory->modes, x, 0, 1);
+    theory->modes.has_start = false;
     return consider(theory, &mode, limit, error);
 }
 
-enum cs_status cs_theory_lower(struct cs_theory *theory, const double *x,
-                               struct cs_theory_limit *limit, struct cs_error *error) {
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x,
+                                 struct cs_theory_limit *limit, struct cs_error *error) {
     if (!has_limit(limit))
         return CS_OK;
     const struct cs_mode mode =
-        cs_modes_largest(&theory->modes, x, theory->direction[0], theory->direction[1]);
+        cs_stiffest_modes_largest(&theory->modes, x, theory->stiffness_damping_direction[0],
+                                  theory->stiffness_damping_direction[1]);
     const double before = limit->dt;
     if (!consider(theory, &mode, limit, error) && limit->dt < 0.98 * before)
-        turn(theory, limit, error);
+        update_search_direction(theory, limit, error);
     return error->status ? error->status : consider_friction(theory, x, limit, error);
 }

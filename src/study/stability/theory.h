@@ -1,19 +1,20 @@
 /* theory.h - the largest stable step of a method on a system, as linear theory has it.
  *
- * Each motion of the linearised system is a damped oscillator (modes.h); the method's own 2x2
- * matrix says which steps are stable for one (amplify.h). The mode that limits the step is not
- * always the fastest: it is searched along the normal of the method's stable set.
+ * Each motion of the linearised system is a damped oscillator (stiffest_modes.h); the method's
+ * own 2x2 matrix says which steps are stable for one (amplification.h). The mode that limits
+ * the step is not always the fastest: it is searched along the normal of the method's stable
+ * set.
  */
 #ifndef CS_THEORY_H
 #define CS_THEORY_H
 
-#include "study/stability/amplify.h"
-#include "study/stability/modes.h"
+#include "study/stability/amplification.h"
+#include "study/stability/stiffest_modes.h"
 
 struct cs_theory {
-    struct cs_amplify amplify;
-    struct cs_modes modes;
-    double direction[2]; /* of the search: a square + b rate */
+    struct cs_amplification amplification;
+    struct cs_stiffest_modes modes;
+    double stiffness_damping_direction[2]; /* of the search: a square + b rate */
 };
 
 /* A step limit and the motion that sets it. */
@@ -40,7 +41,7 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
                             struct cs_theory_limit *limit, struct cs_error *error);
 
 /* Lowers *limit where a motion at x has a smaller one: one search, for states on a way. */
-enum cs_status cs_theory_lower(struct cs_theory *theory, const double *x,
-                               struct cs_theory_limit *limit, struct cs_error *error);
+enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x,
+                                 struct cs_theory_limit *limit, struct cs_error *error);
 
 #endif

@@ -1,0 +1,86 @@
+/* A few sums whose bits tell how they were computed; run when the build is configured and at
+ * each start of the program. */
+#ifdef CS_ARITHMETIC_ALONE
+const char *cs_ieee_check(void);
+#else
+#include "base/ieee_check.h"
+#endif
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/* volatile: nothing is computed by the compiler */
+static volatile double one = 1, small = 0x1p-30, tiny = 0x1p-1022, large = 1e308, odd = 49,
+                       whole = 1e16;
+
+/* (1 + e)(1 - e) - 1 is 0 in doubles, and -e^2 where product and sum are one operation */
+static bool is_fused(void) {
+    const double a = one + small, b = one - small, c = -one;
+    return a * b + c != 0;
+}
+
+/* 49 (1/49) is not 1, but 49/49 is */
+static bool multiplies_by_reciprocals(void) {
+    const double divisor = odd;
+    double values[8];
+    bool wrong = odd / 49.0 != 1;
+    for (size_t k = 0; k < 8; k++)
+        values[k] = odd * (double)(k + 1);
+    for (size_t k = 0; k < 8; k++)
+        wrong |= values[k] / divisor != (double)(k + 1);
+    return wrong;
+}
+
+/* from left to right: 1e16 + 1 is 1e16 */
+static bool changes_order(void) {
+    const double a = whole, b = one;
+    double values[16], sum = 0;
+    for (size_t k = 0; k < 16; k++)
+        values[k] = k % 4 == 0 ? whole : k % 4 == 2 ? -whole : one;
+    for (size_t k = 0; k < 16; k++)
+        sum += values[k];
+    return a + b - a != 0 || sum != 1;
+}
+
+static bool flushes_to_zero(void) {
+    const double half = tiny / 2;
+    return half == 0 || half + half != tiny;
+}
+
+/* beyond the range of doubles there is nothing to come back from */
+static bool is_wider(void) {
+    const double product = large * 10, narrowed = product / 10;
+    return narrowed == large;
+}
+
+static bool takes_nan_for_a_number(void) {
+    const double nan = large * 10 - large * 10;
+    return nan == nan || !isnan(nan);
+}
+
+const char *cs_ieee_check(void) {
+    if (is_fused())
+        return "products and sums are fused (-ffp-contract=off is missing)";
+    if (multiplies_by_reciprocals())
+        return "divisions are products with reciprocals (-freciprocal-math)";
+    if (changes_order())
+        return "sums are in another order than written (-fassociative-math)";
+    if (flushes_to_zero())
+        return "numbers below 2^-1022 become 0 (linked with -ffast-math)";
+    if (is_wider())
+        return "doubles are computed with a wider range (x87: use -msse2 -mfpmath=sse)";
+    if (takes_nan_for_a_number())
+        return "what is not a number is taken for one (-ffinite-math-only)";
+    return NULL;
+}
+
+#ifdef CS_ARITHMETIC_ALONE
+#include <stdio.h>
+int main(void) {
+    const char *fault = cs_ieee_check();
+    if (fault)
+        puts(fault);
+    return fault != NULL;
+}
+#endif

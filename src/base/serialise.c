@@ -1,0 +1,72 @@
+/* Writes values into memory, or reads them back. */
+#include "base/serialise.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool has_room(struct cs_serialiser *record, size_t n) {
+    if (n <= record->capacity - record->length)
+        return true;
+    if (n > (size_t)-1 / 4 - record->length)
+        return false;
+    const size_t capacity = 2 * (record->length + n);
+    char *larger = realloc(record->bytes, capacity);
+    if (!larger)
+        return false;
+    record->bytes = larger;
+    record->capacity = capacity;
+    return true;
+}
+
+static bool write_bytes(struct cs_serialiser *record, const void *value, size_t n) {
+    if (!has_room(record, n))
+        return false;
+    memcpy(record->bytes + record->length, value, n);
+    record->length += n;
+    return true;
+}
+
+static bool read_bytes(struct cs_serialiser *record, void *value, size_t n) {
+    if (n > record->length - record->position)
+        return false;
+    memcpy(value, record->bytes + record->position, n);
+    record->position += n;
+    return true;
+}
+
+void cs_serialiser_bytes(struct cs_serialiser *record, void *value, size_t n) {
+    if (record->failed || n == 0)
+        return;
+    record->failed =
+        record->is_reading ? !read_bytes(record, value, n) : !write_bytes(record, value, n);
+}
+
+void cs_serialiser_text(struct cs_serialiser *record, struct cs_text *text) {
+    size_t length = text->length;
+    CS_SERIALISER(record, length);
+    if (!record->is_reading)
+        cs_serialiser_bytes(record, text->bytes, length);
+    if (!record->is_reading || record->failed)
+        return;
+    record->failed = length > record->length - record->position || length > INT_MAX;
+    if (record->failed)
+        return;
+    cs_text_add(text, "%.*s", (int)length, record->bytes + record->position);
+    record->position += length;
+    record->failed = text->failed;
+}
+
+void cs_serialiser_begin(struct cs_serialiser *record) {
+    record->length = record->position = 0;
+    record->is_reading = record->failed = false;
+}
+
+bool cs_serialiser_is_done(const struct cs_serialiser *record) {
+    return record->is_reading && !record->failed && record->position == record->length;
+}
+
+void cs_serialiser_finish(struct cs_serialiser *record) {
+    free(record->bytes);
+    *record = (struct cs_serialiser){0};
+}

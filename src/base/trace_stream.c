@@ -1,0 +1,95 @@
+/* Writes and reads streams of arrays. */
+#include "base/trace_stream.h"
+
+#include "base/text.h"
+
+#include <endian.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 512, VALUES_MAX = 1 << 28 };
+
+void cs_trace_stream_begin(FILE *file) {
+    fprintf(file, "clothsim trail 1\n");
+}
+
+void cs_trace_stream_write(FILE *file, const struct cs_trace_record *point) {
+    struct cs_text t = {0};
+    uint64_t words[BLOCK];
+    cs_text_add_real(&t, point->t);
+    fprintf(file, "%" PRIu32 " %" PRIu64 " %s %zu %s:%s\n", point->frame, point->step,
+            cs_text_get(&t), point->n, point->phase, point->name);
+    cs_text_finish(&t);
+    for (size_t done = 0; done < point->n;) {
+        const size_t count = point->n - done < BLOCK ? point->n - done : BLOCK;
+        memcpy(words, point->values + done, count * sizeof *words);
+        for (size_t k = 0; k < count; k++)
+            words[k] = htole64(words[k]);
+        fwrite(words, sizeof *words, count, file);
+        done += count;
+    }
+}
+
+static bool refuse(struct cs_error *error) {
+    cs_fail(error, CS_ERR_FILE, "expected a trail of clothsim, found something else");
+    return false;
+}
+
+/* "FRAME STEP T N PHASE:NAME", where a phase may have blanks */
+static bool read_line(struct cs_trace_stream *trace, struct cs_error *error) {
+    struct cs_trace_record *point = &trace->point;
+    char line[240], t[40], *colon;
+    if (!fgets(line, sizeof line, trace->file))
+        return false;
+    line[strcspn(line, "\n")] = 0;
+    if (sscanf(line, "%" SCNu32 " %" SCNu64 " %39s %zu %79[^\n]", &point->frame, &point->step,
+               t, &point->n, trace->buffer) != 5 ||
+        !cs_parse_real(t, &point->t) || point->n > VALUES_MAX ||
+        !(colon = strrchr(trace->buffer, ':')))
+        return refuse(error);
+    *colon = 0;
+    point->phase = trace->buffer;
+    point->name = colon + 1;
+    return true;
+}
+
+static bool read_values(struct cs_trace_stream *trace, struct cs_error *error) {
+    const size_t n = trace->point.n;
+    if (n > trace->capacity) {
+        free(trace->values);
+        trace->values = malloc(n * sizeof *trace->values);
+        trace->capacity = trace->values ? n : 0;
+    }
+    if (n > trace->capacity) {
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for %zu values", n);
+        return false;
+    }
+    if (fread(trace->values, sizeof *trace->values, n, trace->file) != n)
+        return false;
+    for (size_t k = 0; k < n; k++) {
+        uint64_t word;
+        memcpy(&word, trace->values + k, sizeof word);
+        word = le64toh(word);
+        memcpy(trace->values + k, &word, sizeof word);
+    }
+    trace->point.values = trace->values;
+    return true;
+}
+
+bool cs_trace_stream_next(struct cs_trace_stream *trace, struct cs_error *error) {
+    char line[40];
+    if (!trace->header_done) {
+        trace->header_done = true;
+        if (!fgets(line, sizeof line, trace->file))
+            return false;
+        if (strcmp(line, "clothsim trail 1\n") != 0)
+            return refuse(error);
+    }
+    return read_line(trace, error) && read_values(trace, error);
+}
+
+void cs_trace_stream_finish(struct cs_trace_stream *trace) {
+    free(trace->values);
+    *trace = (struct cs_trace_stream){0};
+}

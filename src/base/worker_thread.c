@@ -1,0 +1,90 @@
+/* A worker thread that does one piece of work at a time. */
+#include "base/worker_thread.h"
+
+#include "base/thread.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+struct cs_worker_thread {
+    pthread_t thread;
+    pthread_mutex_t lock; /* for what follows */
+    pthread_cond_t changed;
+    void (*work)(void *argument); /* NULL: nothing to do */
+    void *argument;
+    bool closing;
+};
+
+static void *thread_main(void *object) {
+    struct cs_worker_thread *worker = object;
+    pthread_mutex_lock(&worker->lock);
+    for (;;) {
+        while (!worker->work && !worker->closing)
+            pthread_cond_wait(&worker->changed, &worker->lock);
+        if (!worker->work)
+            break;
+        pthread_mutex_unlock(&worker->lock);
+        worker->work(worker->argument);
+        pthread_mutex_lock(&worker->lock);
+        worker->work = NULL;
+        pthread_cond_broadcast(&worker->changed);
+    }
+    pthread_mutex_unlock(&worker->lock);
+    return NULL;
+}
+
+struct cs_worker_thread *cs_worker_thread_create(void) {
+    struct cs_worker_thread *worker = calloc(1, sizeof *worker);
+    if (!worker)
+        return NULL;
+    pthread_mutex_init(&worker->lock, NULL);
+    pthread_cond_init(&worker->changed, NULL);
+    if (!cs_thread_start(&worker->thread, thread_main, worker))
+        return worker;
+    free(worker);
+    return NULL;
+}
+
+/* called and left with the lock held */
+static void wait_for_work(struct cs_worker_thread *worker) {
+    while (worker->work)
+        pthread_cond_wait(&worker->changed, &worker->lock);
+}
+
+void cs_worker_thread_submit(struct cs_worker_thread *worker, void (*work)(void *argument),
+                             void *argument) {
+    CS_ASSERT(work);
+    if (!worker) {
+        work(argument);
+        return;
+    }
+    pthread_mutex_lock(&worker->lock);
+    wait_for_work(worker);
+    worker->work = work;
+    worker->argument = argument;
+    pthread_cond_broadcast(&worker->changed);
+    pthread_mutex_unlock(&worker->lock);
+}
+
+void cs_worker_thread_wait(struct cs_worker_thread *worker) {
+    if (!worker)
+        return;
+    pthread_mutex_lock(&worker->lock);
+    wait_for_work(worker);
+    pthread_mutex_unlock(&worker->lock);
+}
+
+void cs_worker_thread_destroy(struct cs_worker_thread *worker) {
+    if (!worker)
+        return;
+    pthread_mutex_lock(&worker->lock);
+    wait_for_work(worker);
+    worker->closing = true;
+    pthread_cond_broadcast(&worker->changed);
+    pthread_mutex_unlock(&worker->lock);
+    pthread_join(worker->thread, NULL);
+    pthread_cond_destroy(&worker->changed);
+    pthread_mutex_destroy(&worker->lock);
+    free(worker);
+}

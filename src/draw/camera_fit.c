@@ -1,0 +1,120 @@
+/* Finds the nearest camera that shows some places. */
+#include "draw/camera_fit.h"
+
+#include "draw/matrix.h"
+
+void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *camera,
+                         const int64_t size[2]) {
+    double look[16];
+    cs_matrix_look(camera->eye, camera->target, camera->up, look);
+    for (int row = 0; row < 3; row++)
+        for (int i = 0; i < 3; i++)
+            fit->axes[row][i] = look[4 * i + row];
+    fit->camera = *camera;
+    fit->slope = cs_tangent(camera->fov * (3.14159265358979323846 / 360));
+    fit->aspect = (double)size[0] / (double)size[1];
+}
+
+static double along(const struct cs_camera_fit *fit, int axis, size_t n, const double *x,
+                    size_t i) {
+    const double place[3] = {x[i], x[n + i], x[2 * n + i]};
+    return cs_dot(fit->axes[axis], place);
+}
+
+// the way along which places are bounded: some of an axis and some of the way back
+static void bounding_direction(const struct cs_camera_fit *fit, int axis, double side,
+                               double back, double way[3]) {
+    for (int i = 0; i < 3; i++)
+        way[i] = side * fit->axes[axis][i] + back * fit->axes[2][i];
+}
+
+/* how far places reach along a way, and which of them does; n: none is finite */
+static double reach(const double way[3], size_t n, const double *x, size_t *found) {
+    double most = -HUGE_VAL;
+    *found = n;
+    for (size_t i = 0; i < n; i++) {
+        const double sum = way[0] * x[i] + way[1] * x[n + i] + way[2] * x[2 * n + i];
+        if (sum > most && sum < HUGE_VAL) {
+            most = sum;
+            *found = i;
+        }
+    }
+    return most;
+}
+
+struct stand {
+    double middle, back;
+};
+
+// where a camera has all within -slope and slope along an axis
+static struct stand camera_position(const struct cs_camera_fit *fit, int axis, double slope,
+                                    size_t n, const double *x) {
+    const bool leans = fit->camera.projection == CS_PROJECTION_PERSPECTIVE;
+    double way[3];
+    size_t which;
+    bounding_direction(fit, axis, 1, leans ? slope : 0, way);
+    const double high = reach(way, n, x, &which);
+    bounding_direction(fit, axis, -1, leans ? slope : 0, way);
+    const double low = reach(way, n, x, &which);
+    return (struct stand){(high - low) / 2, (high + low) / 2 / slope};
+}
+
+void cs_camera_fit_solve(const struct cs_camera_fit *fit, size_t n, const double *x,
+                         double share, struct cs_camera *camera) {
+    const struct stand wide = camera_position(fit, 0, 0.96 * fit->slope * fit->aspect, n, x);
+    const struct stand tall = camera_position(fit, 1, share * fit->slope, n, x);
+    double front[3], behind[3];
+    size_t which;
+    bounding_direction(fit, 0, 0, 1, front);
+    bounding_direction(fit, 0, 0, -1, behind);
+    const double nearest = reach(front, n, x, &which), far = -reach(behind, n, x, &which);
+    const double depth = (nearest + far) / 2;
+    *camera = fit->camera;
+    double eye = fmax(tall.back, wide.back);
+    if (camera->projection == CS_PROJECTION_ORTHOGRAPHIC)
+        eye += depth;
+    // what is flat, or a point, is not touched
+    eye = fmax(eye, nearest + 1e-3);
+    for (int i = 0; i < 3 && eye < HUGE_VAL; i++) {
+        const double across = wide.middle * fit->axes[0][i] + tall.middle * fit->axes[1][i];
+        camera->eye[i] = across + eye * fit->axes[2][i];
+        camera->target[i] = across + depth * fit->axes[2][i];
+    }
+}
+
+void cs_camera_fit_rows(const struct cs_camera_fit *fit, const struct cs_camera *camera,
+                        size_t n, const double *x, double rows[2]) {
+    double eye[3], view[3];
+    cs_subtract(camera->eye, camera->target, view);
+    for (int axis = 0; axis < 3; axis++)
+        eye[axis] = cs_dot(fit->axes[axis], camera->eye);
+    rows[0] = HUGE_VAL;
+    rows[1] = -HUGE_VAL;
+    for (size_t i = 0; i < n; i++) {
+        const double far = camera->projection == CS_PROJECTION_ORTHOGRAPHIC
+                               ? cs_length(view)
+                               : eye[2] - along(fit, 2, n, x, i);
+        const double row = (along(fit, 1, n, x, i) - eye[1]) / (fit->slope * far);
+        rows[0] = row < rows[0] ? row : rows[0];
+        rows[1] = row > rows[1] ? row : rows[1];
+    }
+}
+
+void cs_camera_fit_extremes(const struct cs_camera_fit *fit, size_t n, const double *x,
+                            double *out) {
+    for (size_t k = 0; k < CS_CAMERA_FIT_EXTREMES; k++) {
+        const size_t step = k / 4;
+        const int axis = (int)(k >> 1 & 1);
+        const double side = k & 1 ? -1 : 1, slope = fit->slope * (axis ? 1 : fit->aspect);
+        double way[3];
+        size_t i;
+        if (step > CS_CAMERA_FIT_STEPS)
+            bounding_direction(fit, axis, 0, side, way);
+        else
+            bounding_direction(fit, axis, side, (double)step / CS_CAMERA_FIT_STEPS * slope,
+                               way);
+        reach(way, n, x, &i);
+        for (size_t c = 0; c < 3; c++)
+            out[c * CS_CAMERA_FIT_EXTREMES + k] = i < n ? x[c * n + i] : 0;
+    }
+}

@@ -1,0 +1,213 @@
+/* band_pass.c - a band of the picture: what each sample shows, its colour, what lies over it.
+ */
+#include "draw/cpu/band_pass.h"
+
+void cs_band_pass_bin(struct cs_band_pass *drawing) {
+    const struct cs_triangles *all = &drawing->triangles;
+    cs_bins_clear(&drawing->bins);
+    for (size_t i = 0; i < all->n; i++)
+        cs_bins_count(&drawing->bins, all->items[i].top, all->items[i].bottom);
+    cs_bins_begin_put(&drawing->bins);
+    for (size_t i = 0; i < all->n; i++)
+        cs_bins_put(&drawing->bins, (uint32_t)i, all->items[i].top, all->items[i].bottom);
+}
+
+static float value_at(const struct cs_plane_equation *slope, float x, float y) {
+    return slope->value + slope->d_dx * x + slope->d_dy * y;
+}
+
+/* Texels from one pixel to the next, squared: the longer way of that along a row and that along
+ * a column, in blocks of 2 x 2 pixels from the bottom left. */
+static float texels_of(const struct cs_band_pass *drawing, const struct cs_triangle *t,
+                       const struct cs_mipmap *mips, int x, int y) {
+    const int last = drawing->shading.height - 1;
+    const float left = (float)((x & ~1) - t->left);
+    const float low = (float)(last - ((last - y) & ~1) - t->top);
+    const float places[3][2] = {{left, low}, {left + 1, low}, {left, low - 1}};
+    float uv[3][2], squares[2];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++)
+            uv[i][k] = value_at(t->attributes + 4 + k, places[i][0], places[i][1]) /
+                       value_at(&t->inverse, places[i][0], places[i][1]);
+    for (int i = 0; i < 2; i++) {
+        const float du = (uv[i + 1][0] - uv[0][0]) * (float)mips->levels[0].width;
+        const float dv = (uv[i + 1][1] - uv[0][1]) * (float)mips->levels[0].height;
+        squares[i] = du * du + dv * dv;
+    }
+    return squares[0] > squares[1] ? squares[0] : squares[1];
+}
+
+// the open fragments of one side of a surface
+static struct cs_fragments *slot_of(const struct cs_band_pass *drawing,
+                                    const struct cs_triangle *t, struct cs_tile_buffer *tiles) {
+    const uint32_t key = 2u * t->surface + t->is_back_facing;
+    struct cs_fragments *slot = tiles->slots + key % CS_FRAGMENT_SLOTS;
+    if (slot->n == CS_FRAGMENTS || (slot->n && slot->key != key))
+        cs_shade(&drawing->shading, slot, tiles->colours);
+    slot->key = key;
+    slot->side = t->is_back_facing;
+    slot->material = drawing->materials + t->surface;
+    return slot;
+}
+
+// m along the view, as the depth of a pixel's middle has it, but not sunk
+static float along_of(const struct cs_band_pass *drawing, const struct cs_triangle *t,
+                      const struct cs_shading_material *coat, int x, int y) {
+    const float *depth = drawing->shading.rays.depth;
+    const float up = (float)(drawing->shading.height - 1 - y) + 0.5f;
+    const float z = t->depth.value + t->depth.d_dx * ((float)x + 0.5f) + t->depth.d_dy * up;
+    return depth[0] + z * (depth[1] - depth[0]) - coat->depth_bias;
+}
+
+// what a triangle shows at a pixel: its colour comes later
+static void add_fragment(const struct cs_band_pass *drawing, const struct cs_triangle *t, int x,
+                         int y, uint32_t out, struct cs_tile_buffer *tiles) {
+    struct cs_fragments *f = slot_of(drawing, t, tiles);
+    const float across = (float)(x - t->left), down = (float)(y - t->top);
+    const float inverse = value_at(&t->inverse, across, down);
+    const int i = f->n++;
+    f->x[i] = (float)x;
+    f->y[i] = (float)y;
+    // the middle of a pixel may lie beyond the edge, and there beyond the horizon
+    f->inverse[i] = inverse > 1e-6f ? inverse : 1e-6f;
+    for (int k = 0; k < f->material->attributes; k++)
+        f->attributes[k][i] = value_at(t->attributes + k, across, down);
+    if (drawing->shading.rays.parallel)
+        f->view_depth[i] = along_of(drawing, t, f->material, x, y);
+    if (f->material->mode == CS_SURFACE_TEXTURED)
+        f->texels[i] = texels_of(drawing, t, f->material->mips, x, y);
+    f->colour_index[i] = out;
+}
+
+/* The square behind square `id` at a sample: the last one drawn before it that was nearest
+ * then. CS_NOTHING: the sky. */
+static int32_t find_behind(const struct cs_band_pass *drawing, int32_t id, int x, int y,
+                           int sample) {
+    const uint16_t surface = drawing->triangles.items[id].surface;
+    float depth = 0;
+    int32_t behind = CS_NOTHING;
+    for (size_t i = 0; i < drawing->n_ground_squares; i++) {
+        const struct cs_triangle *t = drawing->triangles.items + i;
+        cs_f4 z;
+        if (t->surface == surface)
+            break;
+        if (!(cs_raster_covers(t, drawing->sample_pattern, x, y, &z) >> sample & 1) ||
+            !(z[sample] >= depth))
+            continue;
+        depth = z[sample];
+        behind = (int32_t)i;
+    }
+    return behind;
+}
+
+// a pixel of the picture
+struct spot {
+    int x, y;
+    size_t pixel; // its number on the board
+    uint32_t sky; // which of the board's colours the sky has in its row
+};
+
+static void add_shown(const struct cs_band_pass *drawing, int32_t id, const struct spot *spot,
+                      int sample, uint32_t out, struct cs_tile_buffer *tiles) {
+    const struct cs_triangle *t = drawing->triangles.items + id;
+    if (drawing->materials[t->surface].fade_radius > 0) {
+        const size_t most = 4 * (size_t)tiles->samples.width * CS_ROWS;
+        const int32_t behind = find_behind(drawing, id, spot->x, spot->y, sample);
+        uint32_t under = spot->sky;
+        if (behind != CS_NOTHING && tiles->n_hidden < most) {
+            tiles->n_hidden++;
+            under = tiles->n_colours++;
+            add_shown(drawing, behind, spot, sample, under, tiles);
+        }
+        tiles->blend_pairs[tiles->n_blend_pairs++] = (struct cs_blend_pair){out, under};
+    }
+    add_fragment(drawing, t, spot->x, spot->y, out, tiles);
+}
+
+// a pixel whose samples show several things: one fragment of each, their colours in a row
+static void add_mixed(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
+                      struct cs_tile_buffer *tiles) {
+    int samples[4]; // the first that shows each thing
+    uint32_t n = 0, code = 0;
+    for (int s = 0; s < 4; s++) {
+        uint32_t k = 0;
+        while (k < n && shown[samples[k]] != shown[s])
+            k++;
+        if (k == n)
+            samples[n++] = s;
+        code |= k << 2 * s;
+    }
+    const uint32_t first = tiles->n_colours;
+    tiles->first_colour[spot->pixel] = first;
+    tiles->sample_codes[spot->pixel] = (uint8_t)code;
+    tiles->n_colours += n;
+    for (uint32_t k = 0; k < n; k++)
+        if (shown[samples[k]] == CS_NOTHING)
+            tiles->colours[first + k] = tiles->colours[spot->sky];
+        else
+            add_shown(drawing, shown[samples[k]], spot, samples[k], first + k, tiles);
+}
+
+static void add_pixel(const struct cs_band_pass *drawing, cs_i4 shown, const struct spot *spot,
+                      struct cs_tile_buffer *tiles) {
+    const int32_t id = shown[0];
+    if (((shown[1] ^ id) | (shown[2] ^ id) | (shown[3] ^ id)) != 0) {
+        add_mixed(drawing, shown, spot, tiles);
+        return;
+    }
+    tiles->sample_codes[spot->pixel] = 0;
+    tiles->first_colour[spot->pixel] = id == CS_NOTHING ? spot->sky : tiles->n_colours++;
+    if (id != CS_NOTHING)
+        add_shown(drawing, id, spot, 0, tiles->first_colour[spot->pixel], tiles);
+}
+
+// of a row
+static uint32_t sky_colour(const struct cs_band_pass *drawing, int y) {
+    const struct cs_view_block *view = drawing->shading.view;
+    const float down = ((float)y + 0.5f) / (float)drawing->shading.height;
+    float c[3];
+    if (view->top_colour[3] < 1)
+        return 0xff000000;
+    for (int i = 0; i < 3; i++)
+        c[i] = cs_clamp(
+            view->top_colour[i] + down * (view->bottom_colour[i] - view->top_colour[i]), 0, 1);
+    return cs_srgb_pack(drawing->shading.srgb, c[0], c[1], c[2]);
+}
+
+static void show(const struct cs_band_pass *drawing, uint32_t band,
+                 struct cs_tile_buffer *tiles) {
+    const struct cs_samples *on = &tiles->samples;
+    size_t n;
+    const uint32_t *list = cs_bins_of(&drawing->bins, band, &n);
+    for (size_t i = 0; i < n; i++)
+        cs_raster_fill(drawing->triangles.items + list[i], (int32_t)list[i],
+                       drawing->sample_pattern, on);
+    for (int row = 0; row < on->rows; row++) {
+        const uint32_t sky = tiles->n_colours++;
+        tiles->colours[sky] = sky_colour(drawing, on->top + row);
+        for (int x = 0; x < on->width; x++) {
+            const size_t pixel = (size_t)row * (size_t)on->width + (size_t)x;
+            const struct spot spot = {x, on->top + row, pixel, sky};
+            add_pixel(drawing, on->triangle_ids[pixel], &spot, tiles);
+        }
+    }
+    for (int i = 0; i < CS_FRAGMENT_SLOTS; i++)
+        cs_shade(&drawing->shading, tiles->slots + i, tiles->colours);
+    // what is behind came first
+    for (uint32_t i = 0; i < tiles->n_blend_pairs; i++) {
+        uint32_t *over = tiles->colours + tiles->blend_pairs[i].front;
+        *over = cs_srgb_blend(tiles->colours[tiles->blend_pairs[i].behind], *over,
+                              255 - (*over >> 24));
+    }
+}
+
+void cs_band_pass_draw(const struct cs_band_pass *drawing, uint32_t band,
+                       struct cs_tile_buffer *tiles) {
+    const int top = (int)band * CS_ROWS;
+    cs_tile_buffer_clear(tiles, top, cs_min(CS_ROWS, drawing->shading.height - top));
+    show(drawing, band, tiles);
+    if (drawing->grid.square.n)
+        cs_grid_draw(&drawing->grid, (int32_t)drawing->n_fixed, drawing->sample_pattern, tiles);
+    cs_thick_lines_draw(&drawing->thick_lines, band, drawing->sample_pattern, tiles);
+    cs_tile_buffer_resolve(tiles, drawing->shading.srgb, drawing->image);
+}

@@ -1,0 +1,145 @@
+/* collider_geometry.c - colliders and the ground's rectangle become triangles. */
+#include "draw/cpu/collider_geometry.h"
+
+#include "draw/collider_mesh.h"
+#include "draw/scene_extent.h"
+
+#include <math.h>
+#include <string.h>
+
+enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
+                                         const struct cs_system *system,
+                                         const struct cs_posed_collider *obstacles,
+                                         struct cs_arena *arena, struct cs_error *error) {
+    uint32_t most = 0;
+    solids->n = system->scene->colliders.n;
+    solids->cell = cs_scene_extent_cell(system);
+    for (uint32_t i = 0; i < solids->n; i++) {
+        const uint32_t count = cs_collider_mesh_count(obstacles + i);
+        most = count > most ? count : most;
+    }
+    solids->colliders =
+        cs_arena_alloc_array(arena, solids->n, sizeof *solids->colliders, error);
+    solids->vertices = cs_arena_alloc_array(arena, most, sizeof *solids->vertices, error);
+    if (!error->status && solids->n > 0)
+        memcpy(solids->colliders, obstacles, solids->n * sizeof *obstacles);
+    return error->status;
+}
+
+bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
+                               const struct cs_posed_collider *obstacles) {
+    bool moved = false;
+    for (uint32_t i = 0; i < solids->n; i++) {
+        struct cs_posed_collider *now = solids->colliders + i;
+        moved = moved || memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
+                memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
+        *now = obstacles[i];
+    }
+    return moved;
+}
+
+/* `sink` moves only the depth away from the eye: between its particles a cloth is a chord that
+ * cuts into the ball it lies on, and would show specks of it */
+static void add_depth_bias(const struct cs_clip_transform *clip, const float place[3],
+                           const float eye[4], float by, struct cs_clip_vertex *corner) {
+    float d[3], square = 0, moved[3];
+    for (int i = 0; i < 3; i++) {
+        d[i] = eye[3] * place[i] - eye[i];
+        square += d[i] * d[i];
+    }
+    const float share = square > 0 ? by / sqrtf(square) : 0;
+    for (int i = 0; i < 3; i++)
+        moved[i] = place[i] + share * d[i];
+    cs_clip_transform_move_depth(clip, moved, corner);
+}
+
+// who sees the triangles, and where they go
+struct projection {
+    const struct cs_clip_transform *lens;
+    const float *eye; // a place and 1, or a direction and 0
+    bool sinks;       // not for a light
+    struct cs_triangles *triangles;
+};
+
+// triangles of three vertices each
+static void add_vertices(const struct cs_vertex *vertices, uint32_t n,
+                         const struct cs_surface_style *style,
+                         const struct cs_triangle_kind *kind,
+                         const struct projection *projection) {
+    for (uint32_t v = 0; v < n; v += 3) {
+        struct cs_clip_vertex corners[3];
+        const struct cs_clip_vertex *three[3] = {corners, corners + 1, corners + 2};
+        for (uint32_t i = 0; i < 3; i++) {
+            const struct cs_vertex *vertex = vertices + v + i;
+            cs_clip_transform_corner(projection->lens, vertex->position, corners + i);
+            memcpy(corners[i].attributes, vertex->normal, sizeof vertex->normal);
+            if (projection->sinks && style->depth_bias > 0)
+                add_depth_bias(projection->lens, vertex->position, projection->eye,
+                               (float)style->depth_bias, corners + i);
+        }
+        cs_triangles_add(projection->triangles, projection->lens, three, kind);
+    }
+}
+
+static void add_obstacle(const struct cs_collider_geometry *solids, uint32_t i,
+                         const struct cs_surface_style *style,
+                         const struct cs_triangle_kind *kind,
+                         const struct projection *projection) {
+    const struct cs_posed_collider *obstacle = solids->colliders + i;
+    cs_collider_mesh_fill(obstacle, solids->cell, projection->eye, solids->vertices);
+    add_vertices(solids->vertices, cs_collider_mesh_count(obstacle), style, kind, projection);
+}
+
+void cs_collider_geometry_add(const struct cs_collider_geometry *solids,
+                              const struct cs_clip_transform *clip, const float eye[4],
+                              struct cs_shading_material *coats, struct cs_triangles *triangles,
+                              size_t *n_squares) {
+    const struct projection projection = {clip, eye, true, triangles};
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0; i < solids->n; i++) {
+            const struct cs_posed_collider *obstacle = solids->colliders + i;
+            const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
+            const bool square = obstacle->kind == CS_COLLIDER_PLANE;
+            struct cs_surface_style style;
+            cs_style_solid(&style, obstacle, solids->cell);
+            cs_shading_material_make(coats + i, &style);
+            if (obstacle->collider->visible && square == (pass == 0))
+                add_obstacle(solids, i, &style, &kind, &projection);
+        }
+        if (pass == 0)
+            *n_squares = triangles->n;
+    }
+}
+
+void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
+                                     const struct cs_clip_transform *clip, const float light[4],
+                                     struct cs_triangles *triangles) {
+    const struct cs_triangle_kind kind = {.attributes = 0};
+    const struct projection projection = {clip, light, false, triangles};
+    for (uint32_t i = 0; i < solids->n; i++) {
+        const struct cs_posed_collider *obstacle = solids->colliders + i;
+        struct cs_surface_style style;
+        if (!obstacle->collider->visible || obstacle->kind == CS_COLLIDER_PLANE)
+            continue;
+        cs_style_solid(&style, obstacle, solids->cell);
+        add_obstacle(solids, i, &style, &kind, &projection);
+    }
+}
+
+void cs_ground_add(const struct cs_ground *ground, const struct cs_clip_transform *clip,
+                   struct cs_triangles *triangles) {
+    static const unsigned char sides[6][2] = {{0, 0}, {2, 0}, {0, 2}, {2, 0}, {2, 2}, {0, 2}};
+    const struct cs_triangle_kind kind = {.attributes = 0};
+    const struct projection projection = {clip, NULL, false, triangles};
+    const float *box = ground->box;
+    const struct cs_surface_style style = {.depth_bias = 0};
+    struct cs_vertex square[6] = {{.value = 0}};
+    if (!(box[0] < box[2] && box[1] < box[3]))
+        return;
+    for (int i = 0; i < 6; i++) {
+        square[i].position[0] = box[sides[i][0]];
+        square[i].position[1] = ground->fade_disc[1];
+        square[i].position[2] = box[sides[i][1] + 1];
+    }
+    add_vertices(square, 6, &style, &kind, &projection);
+}

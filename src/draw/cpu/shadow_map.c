@@ -1,0 +1,193 @@
+/* shadow_map.c - shadow map (Williams 1978) with 3 x 3 taps 1.4 texels apart, each blended from
+ * four comparisons (percentage closer filtering, Reeves 1987).
+ *
+ * The taps touch 5 x 5 texels, and their weights are products of one along a row and one along
+ * a column. Bounds of blocks tell most places to be lit or dark without a look at the texels.
+ */
+#include "draw/cpu/shadow_map.h"
+
+#include "draw/cpu/lanes.h"
+#include "draw/cpu/raster.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { HALF = CS_SHADOW_MAP_STRIDE / 2, BLOCK = 64 };
+
+static const float reach = 1.4f; // texels between taps
+
+enum cs_status cs_shadow_map_init(struct cs_shadow_map *map, struct cs_arena *arena,
+                                  struct cs_error *error) {
+    const size_t all = (size_t)CS_SHADOW_MAP_STRIDE * CS_SHADOW_MAP_STRIDE,
+                 half = (size_t)HALF * HALF;
+    // four floats at once may be written past the last row
+    float *memory = cs_arena_alloc_array(arena, all + 4 * half + 8, sizeof *memory, error);
+    if (!memory)
+        return error->status;
+    map->depth = memory;
+    map->min_max_2x2[0] = memory + all;
+    map->min_max_2x2[1] = map->min_max_2x2[0] + half;
+    map->min_6x6 = map->min_max_2x2[1] + half;
+    map->max_6x6 = map->min_6x6 + half;
+    return CS_OK;
+}
+
+bool cs_shadow_map_set_frustum(struct cs_shadow_map *map, const struct cs_view_block *block) {
+    const struct cs_shadow_map old = *map;
+    map->enabled = block->shadow_params[2] > 0;
+    if (!map->enabled)
+        return false;
+    // a lamp's picture begins at a distance: half of it still keeps w above 0
+    const bool is_lamp = block->light[3] > 0;
+    cs_clip_transform_make(&map->transform, block->world_to_light, is_lamp ? 1e-6f : 0,
+                           CS_SHADOW_SIDE, CS_SHADOW_SIDE);
+    map->texel_size = block->shadow_params[1];
+    return !old.enabled || memcmp(&old.transform, &map->transform, sizeof map->transform) != 0;
+}
+
+void cs_shadow_map_draw(struct cs_shadow_map *map, uint32_t stripe,
+                        const struct cs_triangles *fixed, const struct cs_triangles *moving) {
+    enum { ROWS = CS_SHADOW_SIDE / CS_SHADOW_MAP_STRIPES };
+    const struct cs_triangles *lists[2] = {fixed, moving};
+    const int top = (int)stripe * ROWS;
+    float *first =
+        map->depth + CS_SHADOW_MAP_BORDER * CS_SHADOW_MAP_STRIDE + CS_SHADOW_MAP_BORDER;
+    memset(first - CS_SHADOW_MAP_BORDER + (size_t)top * CS_SHADOW_MAP_STRIDE, 0,
+           sizeof(float) * ROWS * CS_SHADOW_MAP_STRIDE);
+    for (int l = 0; l < 2; l++)
+        for (size_t i = 0; i < lists[l]->n; i++) {
+            const struct cs_triangle *t = lists[l]->items + i;
+            if (t->bottom >= top && t->top < top + ROWS)
+                cs_raster_raise(t, first, CS_SHADOW_MAP_STRIDE, top, ROWS);
+        }
+}
+
+CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
+    for (size_t y = 0; y < HALF; y++) {
+        const float *row = map->depth + 2 * y * CS_SHADOW_MAP_STRIDE;
+        for (size_t x = 0; x < HALF; x++) {
+            float least = row[2 * x], largest = least;
+            for (size_t k = 1; k < 4; k++) {
+                const float z = row[2 * x + (k & 1) + (k >> 1) * CS_SHADOW_MAP_STRIDE];
+                least = z < least ? z : least;
+                largest = z > largest ? z : largest;
+            }
+            map->min_max_2x2[0][y * HALF + x] = least;
+            map->min_max_2x2[1][y * HALF + x] = largest;
+        }
+    }
+}
+
+CS_CLONES void cs_shadow_map_bound(struct cs_shadow_map *map) {
+    bound_pairs(map);
+    for (size_t y = 0; y + 2 < HALF; y++)
+        for (size_t x = 0; x + 2 < HALF; x++) {
+            const size_t at = y * HALF + x;
+            float least = map->min_max_2x2[0][at], largest = map->min_max_2x2[1][at];
+            for (size_t k = 1; k < 9; k++) {
+                const size_t beside = at + k / 3 * HALF + k % 3;
+                const float low = map->min_max_2x2[0][beside],
+                            high = map->min_max_2x2[1][beside];
+                least = low < least ? low : least;
+                largest = high > largest ? high : largest;
+            }
+            map->min_6x6[at] = least;
+            map->max_6x6[at] = largest;
+        }
+}
+
+// weight of texels k, k + 1.. of a row, if the middle tap lies at `at`
+CS_INLINE cs_f4 weights(cs_f4 k, float at) {
+    const cs_i4 no_sign = {0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};
+    cs_f4 sum = {0};
+    for (int tap = -1; tap <= 1; tap++) {
+        const cs_f4 far = (cs_f4)((cs_i4)(k - (at + reach * (float)tap)) & no_sign);
+        const cs_f4 near = 1 - far;
+        sum += (cs_f4)((near > 0) & (cs_i4)near);
+    }
+    return sum;
+}
+
+// x, y: texels of the map from the middle of the first; from (bx, by) on 5 x 5 are touched
+CS_INLINE float window(const struct cs_shadow_map *map, float x, float y, float nearness,
+                       int bx, int by) {
+    const cs_f4 first = {0, 1, 2, 3}, then = {4, 5, 6, 7};
+    const cs_f4 across = weights(first, x - (float)bx), down = weights(first, y - (float)by);
+    const cs_f4 across_last = weights(then, x - (float)bx);
+    const cs_f4 down_last = weights(then, y - (float)by);
+    const float *row = map->depth + (size_t)(by + CS_SHADOW_MAP_BORDER) * CS_SHADOW_MAP_STRIDE +
+                       (size_t)(bx + CS_SHADOW_MAP_BORDER);
+    cs_f4 sum = {0};
+    float last = 0;
+    for (int r = 0; r < 5; r++, row += CS_SHADOW_MAP_STRIDE) {
+        const float weight = r < 4 ? down[r] : down_last[0];
+        const cs_f4 z = *(const cs_f4_unaligned *)row;
+        sum += (cs_f4)((z <= nearness) & (cs_i4)across) * weight;
+        last += row[4] <= nearness ? across_last[0] * weight : 0;
+    }
+    return (((sum[0] + sum[1]) + (sum[2] + sum[3])) + last) / 9;
+}
+
+CS_INLINE float sample_block(const struct cs_shadow_map *map, float x, float y,
+                             float nearness) {
+    const float side = CS_SHADOW_SIDE;
+    if (!(x >= -0.5f && y >= -0.5f && x <= side - 0.5f && y <= side - 0.5f))
+        return 1;
+    // rounded down: 4 texels are added so that the number is positive
+    const int bx = (int)(x - reach + 4) - 4, by = (int)(y - reach + 4) - 4;
+    const size_t block = (size_t)((by + CS_SHADOW_MAP_BORDER) >> 1) * HALF +
+                         (size_t)((bx + CS_SHADOW_MAP_BORDER) >> 1);
+    if (map->max_6x6[block] <= nearness)
+        return 1;
+    if (map->min_6x6[block] > nearness)
+        return 0;
+    return window(map, x, y, nearness, bx, by);
+}
+
+// to texels and nearness: out[0], out[1], out[2]
+CS_INLINE void project(const struct cs_shadow_map *map, const struct cs_shadow_query *lit,
+                       int from, int n, float out[3][BLOCK]) {
+    const struct cs_clip_transform clip = map->transform;
+    const float texel = map->texel_size, side = CS_SHADOW_SIDE;
+    float slant[BLOCK];
+    for (int i = 0; i < n; i++) {
+        const float f = lit->n_dot_l[from + i], s = 1 - f * f;
+        slant[i] = s > 0 ? s : 0;
+    }
+    for (int i = 0; i < n; i++) {
+        // off the surface by as much as a slope rises under the texels that are read
+        const float off = (0.4f + 2.6f * sqrtf(slant[i])) * texel;
+        const float a = lit->positions[0][from + i] + off * lit->normals[0][from + i];
+        const float b = lit->positions[1][from + i] + off * lit->normals[1][from + i];
+        const float c = lit->positions[2][from + i] + off * lit->normals[2][from + i];
+        const float w = clip.w[0] * a + clip.w[1] * b + clip.w[2] * c + clip.w[3];
+        const float z = clip.z[0] * a + clip.z[1] * b + clip.z[2] * c + clip.z[3];
+        const float x = clip.x[0] * a + clip.x[1] * b + clip.x[2] * c + clip.x[3];
+        const float y = clip.y[0] * a + clip.y[1] * b + clip.y[2] * c + clip.y[3];
+        const float inverse = 1 / w;
+        // behind the lamp there is no shadow: beyond the map
+        out[0][i] = w > 0 ? (x * inverse * 0.5f + 0.5f) * side - 0.5f : -2;
+        out[1][i] = (0.5f - y * inverse * 0.5f) * side - 0.5f;
+        // what lies farther away than all that casts shadow still catches it
+        const float nearness = cs_reversed_depth(z * inverse * 0.5f + 0.5f);
+        out[2][i] = nearness > 0 ? nearness : 0;
+    }
+}
+
+CS_CLONES static void sample_block_bounds(const struct cs_shadow_map *map,
+                                          const struct cs_shadow_query *lit, int from, int n) {
+    float at[3][BLOCK];
+    project(map, lit, from, n, at);
+    for (int i = 0; i < n; i++) {
+        const bool lit_side = lit->n_dot_l[from + i] > 0;
+        lit->visibility[from + i] =
+            lit_side ? sample_block(map, at[0][i], at[1][i], at[2][i]) : 0;
+    }
+}
+
+void cs_shadow_map_sample(const struct cs_shadow_map *map, const struct cs_shadow_query *lit) {
+    for (int i = 0; !map->enabled && i < lit->n; i++)
+        lit->visibility[i] = lit->n_dot_l[i] > 0 ? 1 : 0;
+    for (int i = 0; map->enabled && i < lit->n; i += BLOCK)
+        sample_block_bounds(map, lit, i, lit->n - i < BLOCK ? lit->n - i : BLOCK);
+}

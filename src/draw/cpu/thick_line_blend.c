@@ -1,0 +1,140 @@
+/* thick_line_blend.c - lines by the distance of a pixel's middle: what is a pixel away from the
+ * edge is not touched. Each sample decides whether it lies in the line's rectangle and is near
+ * enough. */
+#include "draw/cpu/thick_lines.h"
+
+#include <math.h>
+
+// pixels of a row that the strip about a line touches
+static void row_of(const struct cs_thick_line *s, int y, int *left, int *right) {
+    const float down = (float)y + 0.5f - s->y, ux = s->direction[0], uy = s->direction[1];
+    const float slant = uy < 0 ? -uy : uy, capacity = (s->extent + 1) / (slant > 0 ? slant : 1);
+    *left = s->left;
+    *right = s->right;
+    if (slant < 0.05f)
+        return;
+    const float middle = s->x + down * ux / uy;
+    *left = cs_max(*left, (int)cs_clamp(middle - capacity, 0, (float)s->right + 1));
+    *right = cs_min(*right, (int)cs_clamp(middle + capacity, -1, (float)s->right));
+}
+
+CS_INLINE unsigned bits(cs_i4 mask) {
+    return (unsigned)(mask[0] & 1) | (unsigned)(mask[1] & 2) | (unsigned)(mask[2] & 4) |
+           (unsigned)(mask[3] & 8);
+}
+
+// corners so that edges have the inside to one side
+static const int around[4] = {0, 2, 3, 1};
+
+// samples of a pixel inside the rectangle, edges and all as those of triangles
+CS_INLINE cs_i4 inside_small(const struct cs_thick_line *s,
+                             const struct cs_sample_pattern *pattern, int x, int y) {
+    cs_i4 mask = {-1, -1, -1, -1};
+    for (int k = 0; k < 4; k++) {
+        const int at = around[k], next = around[(k + 1) & 3];
+        const int dx = s->quad[0][next] - s->quad[0][at];
+        const int dy = s->quad[1][next] - s->quad[1][at];
+        const int bias = dy < 0 || (dy == 0 && dx > 0) ? 0 : -1;
+        mask &= dx * (pattern->y + (y * 256 - s->quad[1][at])) -
+                    dy * (pattern->x + (x * 256 - s->quad[0][at])) + bias >=
+                0;
+    }
+    return mask;
+}
+
+static cs_i4 inside_large(const struct cs_thick_line *s,
+                          const struct cs_sample_pattern *pattern, int x, int y) {
+    cs_i4 mask = {-1, -1, -1, -1};
+    for (int k = 0; k < 16; k++) {
+        const int sample = k & 3, at = around[k >> 2], next = around[((k >> 2) + 1) & 3];
+        const int64_t dx = (int64_t)s->quad[0][next] - s->quad[0][at];
+        const int64_t dy = (int64_t)s->quad[1][next] - s->quad[1][at];
+        const int64_t bias = dy < 0 || (dy == 0 && dx > 0) ? 0 : -1;
+        const int64_t down = y * 256 + pattern->y[sample] - s->quad[1][at];
+        const int64_t across = x * 256 + pattern->x[sample] - s->quad[0][at];
+        if (dx * down - dy * across + bias < 0)
+            mask[sample] = 0;
+    }
+    return mask;
+}
+
+// 0..1: how much of a pixel at (x, y) from the first end lies on a line
+CS_INLINE float pixel_coverage(const struct cs_thick_line *s, float x, float y) {
+    const float along = cs_clamp(x * s->direction[0] + y * s->direction[1], 0, s->length);
+    const float dx = x - along * s->direction[0], dy = y - along * s->direction[1];
+    const float square = dx * dx + dy * dy, out = s->half_width + 0.5f;
+    if (square >= out * out)
+        return 0;
+    const float cover = out - sqrtf(square);
+    return cover < 1 ? cover : 1;
+}
+
+static void blend_line(const struct cs_thick_line *s, int y, int height,
+                       const struct cs_sample_pattern *pattern, struct cs_tile_buffer *tiles) {
+    const cs_f4 across = __builtin_convertvector(pattern->x, cs_f4) * (1.0f / 256);
+    const cs_f4 up = __builtin_convertvector(256 - pattern->y, cs_f4) * (1.0f / 256) +
+                     (float)(height - 1 - y);
+    const cs_f4 rise = s->depth.d_dy * up;
+    const size_t row = (size_t)(y - tiles->samples.top) * (size_t)tiles->samples.width;
+    int left, right;
+    row_of(s, y, &left, &right);
+    for (int x = left; x <= right; x++) {
+        const float cover = pixel_coverage(s, (float)x + 0.5f - s->x, (float)y + 0.5f - s->y);
+        const uint32_t share = (uint32_t)(s->coverage * cover * 255 + 0.5f);
+        if (share == 0)
+            continue;
+        const size_t at = row + (size_t)x;
+        const cs_f4 z = (s->depth.value + s->depth.d_dx * (across + (float)x)) + rise;
+        cs_i4 mask =
+            s->fits_32_bits ? inside_small(s, pattern, x, y) : inside_large(s, pattern, x, y);
+        if (!s->on_top)
+            mask &= CS_DEPTH_STEPS - z * CS_DEPTH_STEPS >= tiles->samples.depth[at];
+        if (bits(mask))
+            cs_tile_buffer_blend(tiles, at, bits(mask), s->colour, share);
+    }
+}
+
+static uint32_t ramp_colour(const struct cs_shading_context *easel, float value) {
+    const float at = cs_clamp(value, 0, 1) * 5;
+    const int low = cs_min((int)at, 4);
+    const float *a = easel->view->colour_stops[low], *b = easel->view->colour_stops[low + 1];
+    float c[3];
+    for (int k = 0; k < 3; k++)
+        c[k] = cs_clamp(a[k] + (b[k] - a[k]) * (at - (float)low), 0, 1);
+    return cs_srgb_pack(easel->srgb, c[0], c[1], c[2]);
+}
+
+static void blend_ramp(const struct cs_thick_lines *strokes, const struct cs_thick_line *s,
+                       int y, const struct cs_sample_pattern *pattern,
+                       struct cs_tile_buffer *tiles) {
+    const size_t row = (size_t)(y - tiles->samples.top) * (size_t)tiles->samples.width;
+    const uint32_t colour =
+        ramp_colour(strokes->shading, 1 - ((float)y + 0.5f - s->y) / s->direction[1]);
+    for (int x = s->left; x <= s->right; x++) {
+        unsigned mask = 0;
+        for (int k = 0; k < 4; k++) {
+            const float dx = (float)x + (float)pattern->x[k] / 256 - s->x;
+            const float dy = (float)y + (float)pattern->y[k] / 256 - s->y;
+            const bool in = dx >= 0 && dy >= 0 && dx < s->direction[0] && dy < s->direction[1];
+            mask |= (unsigned)in << k;
+        }
+        if (mask)
+            cs_tile_buffer_blend(tiles, row + (size_t)x, mask, colour, 255);
+    }
+}
+
+CS_CLONES void cs_thick_lines_draw(const struct cs_thick_lines *strokes, uint32_t band,
+                                   const struct cs_sample_pattern *pattern,
+                                   struct cs_tile_buffer *tiles) {
+    size_t n;
+    const uint32_t *list = cs_bins_of(&strokes->bins, band, &n);
+    const int last = tiles->samples.top + tiles->samples.rows - 1;
+    for (size_t i = 0; i < n; i++) {
+        const struct cs_thick_line *s = strokes->items + list[i];
+        for (int y = cs_max(s->top, tiles->samples.top); y <= cs_min(s->bottom, last); y++)
+            if (s->uses_colour_map)
+                blend_ramp(strokes, s, y, pattern, tiles);
+            else
+                blend_line(s, y, strokes->shading->height, pattern, tiles);
+    }
+}

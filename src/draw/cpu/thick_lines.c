@@ -1,0 +1,224 @@
+/* thick_lines.c - lines of the scene become rectangles on the picture. */
+#include "draw/cpu/thick_lines.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct cs_thick_line *next(struct cs_thick_lines *strokes) {
+    if (strokes->n == strokes->capacity) {
+        const size_t capacity = strokes->capacity ? 2 * strokes->capacity : 1024;
+        void *grown = realloc(strokes->items, capacity * sizeof *strokes->items);
+        if (!grown) {
+            strokes->failed = true;
+            return NULL;
+        }
+        strokes->items = grown;
+        strokes->capacity = capacity;
+    }
+    return strokes->items + strokes->n;
+}
+
+// pixels from least - by to most + by inside the picture; false where there are none
+static bool bound(float least, float most, float by, int size, int *from, int *to) {
+    *from = (int)cs_clamp(least - by, 0, (float)size);
+    *to = (int)cs_clamp(most + by, -1, (float)(size - 1));
+    return *from <= *to && most + by >= 0;
+}
+
+static bool set_box(const struct cs_shading_context *easel, const float ends[4], float reach,
+                    struct cs_thick_line *s) {
+    const float left = ends[0] < ends[2] ? ends[0] : ends[2];
+    const float right = ends[0] < ends[2] ? ends[2] : ends[0];
+    const float top = ends[1] < ends[3] ? ends[1] : ends[3];
+    const float bottom = ends[1] < ends[3] ? ends[3] : ends[1];
+    return bound(left, right, reach, easel->width, &s->left, &s->right) &&
+           bound(top, bottom, reach, easel->height, &s->top, &s->bottom);
+}
+
+// a corner takes the depth of its place moved towards the eye
+static void add_depth_offset(const struct cs_thick_lines *strokes, const float place[3],
+                             float lift, struct cs_clip_vertex *corner) {
+    const float *eye = strokes->shading->view->eye;
+    float d[3], moved[3];
+    for (int i = 0; i < 3; i++)
+        d[i] = eye[i] - eye[3] * place[i];
+    const float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    const float share = square > 0 ? 1 / sqrtf(square) : 0;
+    for (int i = 0; i < 3; i++)
+        moved[i] = place[i] + lift * (d[i] * share);
+    cs_clip_transform_move_depth(strokes->transform, moved, corner);
+}
+
+/* Cuts a line at the near plane and puts it on the picture: ends in pixels from the bottom
+ * left. false where nothing is left. */
+static bool project(const struct cs_thick_lines *strokes, float p[2][3], float lift,
+                    float ends[4], struct cs_clip_vertex corners[2]) {
+    const struct cs_clip_transform *lens = strokes->transform;
+    cs_clip_transform_corner(lens, p[0], corners);
+    cs_clip_transform_corner(lens, p[1], corners + 1);
+    const float w[2] = {corners[0].clip[3], corners[1].clip[3]}, near = lens->near;
+    for (int e = 0; e < 2; e++) {
+        const float share = (near - w[e]) / (w[1 - e] - w[e]);
+        if (w[e] >= near)
+            continue;
+        if (!(w[1 - e] >= near))
+            return false;
+        for (int i = 0; i < 3; i++)
+            p[e][i] += share * (p[1 - e][i] - p[e][i]);
+    }
+    for (int e = 0; e < 2; e++) {
+        struct cs_clip_vertex *c = corners + e;
+        cs_clip_transform_corner(lens, p[e], c);
+        // places far beside the picture are lines' too
+        const float inverse = 1 / c->clip[3];
+        ends[2 * e] = (c->clip[0] * inverse * 0.5f + 0.5f) * (float)lens->width;
+        ends[2 * e + 1] = (c->clip[1] * inverse * 0.5f + 0.5f) * (float)lens->height;
+        add_depth_offset(strokes, p[e], lift, c);
+    }
+    return true;
+}
+
+// ends so far out that pixels there are no whole numbers come nearer along the line
+static bool clip_far_ends(float ends[4]) {
+    const float most = 1e6f;
+    for (int e = 0; e < 2; e++)
+        for (int axis = 0; axis < 2; axis++) {
+            float *end = ends + 2 * e, *other = ends + 2 * (1 - e);
+            const float limit = end[axis] < 0 ? -most : most;
+            if (end[axis] >= -most && end[axis] <= most)
+                continue;
+            if (!(other[axis] > -most && other[axis] < most))
+                return false;
+            const float share = (limit - other[axis]) / (end[axis] - other[axis]);
+            end[1 - axis] = other[1 - axis] + share * (end[1 - axis] - other[1 - axis]);
+            end[axis] = limit;
+        }
+    return true;
+}
+
+static void set_line(const float ends[4], const struct cs_line_style *style,
+                     struct cs_thick_line *s) {
+    const float dx = ends[2] - ends[0], dy = ends[3] - ends[1];
+    const float length = sqrtf(dx * dx + dy * dy), half = (float)style->half_width;
+    const float share = 1 / (length > 1e-6f ? length : 1);
+    s->x = ends[0];
+    s->y = ends[1];
+    s->length = length > 1e-6f ? length : 0;
+    s->direction[0] = length > 1e-6f ? dx * share : 1;
+    s->direction[1] = length > 1e-6f ? dy * share : 0;
+    // below half a pixel a line gets paler instead of thinner
+    s->half_width = half > 0.5f ? half : 0.5f;
+    s->extent = half + 1;
+    s->coverage = (float)style->alpha * half / s->half_width;
+    s->fits_32_bits = s->length + 2 * s->extent < 40;
+}
+
+/* The rectangle about a line, which reaches one pixel farther: corners behind the first end to
+ * the left and right, then those of the other end; w and z are the ends'. */
+static void set_rectangle(const struct cs_thick_lines *strokes, const float ends[4],
+                          const struct cs_clip_vertex of[2], struct cs_thick_line *s,
+                          struct cs_clip_vertex corners[4]) {
+    const struct cs_clip_transform *lens = strokes->transform;
+    const float size[2] = {(float)lens->width, (float)lens->height};
+    for (int k = 0; k < 4; k++) {
+        const struct cs_clip_vertex *end = of + k / 2;
+        const float on = k < 2 ? -s->extent : s->extent, side = k & 1 ? -1 : 1;
+        const float across[2] = {-s->direction[1], s->direction[0]};
+        for (int axis = 0; axis < 2; axis++) {
+            float pixel = ends[k / 2 * 2 + axis] + on * s->direction[axis];
+            pixel += side * s->extent * across[axis];
+            corners[k].clip[axis] = (pixel * (1 / size[axis]) * 2 - 1) * end->clip[3];
+        }
+        corners[k].clip[2] = end->clip[2];
+        corners[k].clip[3] = end->clip[3];
+        cs_clip_transform_project(lens, corners + k);
+        s->quad[0][k] = (int32_t)floor((double)corners[k].x * 256 + 0.5);
+        s->quad[1][k] = (int32_t)floor(((double)size[1] - (double)corners[k].y) * 256 + 0.5);
+    }
+}
+
+// a line whose ends are pixels has no depth
+static void make_flat(const float *from, int height, float ends[4],
+                      struct cs_clip_vertex corners[2]) {
+    for (int e = 0; e < 2; e++) {
+        ends[2 * e] = from[3 * e];
+        ends[2 * e + 1] = (float)height - from[3 * e + 1];
+        corners[e] = (struct cs_clip_vertex){.clip = {0, 0, 0, 1}};
+    }
+}
+
+static void add_line(struct cs_thick_lines *strokes, const float *from,
+                     const struct cs_line_style *style, uint32_t colour) {
+    const int height = strokes->shading->height;
+    float p[2][3], ends[4];
+    struct cs_clip_vertex corners[2], rectangle[4];
+    struct cs_thick_line *s = next(strokes);
+    memcpy(p, from, sizeof p);
+    if (style->flat)
+        make_flat(from, height, ends, corners);
+    if (!s ||
+        (!style->flat && !project(strokes, p, (float)style->depth_offset, ends, corners)) ||
+        !clip_far_ends(ends))
+        return;
+    *s = (struct cs_thick_line){.colour = colour, .on_top = style->on_top || style->flat};
+    set_line(ends, style, s);
+    set_rectangle(strokes, ends, corners, s, rectangle);
+    s->depth = cs_depth_of(rectangle + 1, rectangle, rectangle + 2);
+    // from here on y is down, as in the picture
+    s->y = (float)height - s->y;
+    s->direction[1] = -s->direction[1];
+    for (int e = 1; e < 4; e += 2)
+        ends[e] = (float)height - ends[e];
+    strokes->n += set_box(strokes->shading, ends, s->extent, s);
+}
+
+static void draw_lines(struct cs_lines *lines, const struct cs_line_style *style) {
+    struct cs_thick_lines *strokes = (struct cs_thick_lines *)lines;
+    const float *c = style->colour;
+    const uint32_t colour = cs_srgb_pack(strokes->shading->srgb, cs_clamp(c[0], 0, 1),
+                                         cs_clamp(c[1], 0, 1), cs_clamp(c[2], 0, 1));
+    for (uint32_t i = 0; i < lines->n; i++)
+        add_line(strokes, lines->ends[i], style, colour);
+}
+
+static void add_ramp(struct cs_lines *lines, const double box[4]) {
+    struct cs_thick_lines *strokes = (struct cs_thick_lines *)lines;
+    const float ends[4] = {(float)box[0], (float)box[1], (float)(box[0] + box[2]),
+                           (float)(box[1] + box[3])};
+    struct cs_thick_line *s = next(strokes);
+    if (!s)
+        return;
+    *s = (struct cs_thick_line){.x = ends[0],
+                                .y = ends[1],
+                                .direction = {(float)box[2], (float)box[3]},
+                                .uses_colour_map = true};
+    strokes->n += set_box(strokes->shading, ends, 1, s);
+}
+
+enum cs_status cs_thick_lines_init(struct cs_thick_lines *strokes,
+                                   const struct cs_shading_context *easel,
+                                   const struct cs_clip_transform *lens,
+                                   struct cs_error *error) {
+    strokes->lines.draw = draw_lines;
+    strokes->lines.ramp = add_ramp;
+    strokes->shading = easel;
+    strokes->transform = lens;
+    return cs_bins_init(&strokes->bins, easel->height, error);
+}
+
+void cs_thick_lines_bin(struct cs_thick_lines *strokes) {
+    cs_bins_clear(&strokes->bins);
+    for (size_t i = 0; i < strokes->n; i++)
+        cs_bins_count(&strokes->bins, strokes->items[i].top, strokes->items[i].bottom);
+    cs_bins_begin_put(&strokes->bins);
+    for (size_t i = 0; i < strokes->n; i++)
+        cs_bins_put(&strokes->bins, (uint32_t)i, strokes->items[i].top,
+                    strokes->items[i].bottom);
+}
+
+void cs_thick_lines_finish(struct cs_thick_lines *strokes) {
+    free(strokes->items);
+    cs_bins_finish(&strokes->bins);
+    strokes->items = NULL;
+}

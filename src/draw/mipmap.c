@@ -1,0 +1,131 @@
+/* mipmap.c - trilinear filtering (Williams 1983): two copies, four texels of each. */
+#include "draw/mipmap.h"
+
+#include <math.h>
+#include <string.h>
+
+static int halved(int n) {
+    return n > 1 ? n / 2 : 1;
+}
+
+/* What texel i of a row covers of one that is up to three times as long: the shares of the
+ * texels from the returned one on. */
+static int cover(int i, int small, int large, double shares[4]) {
+    const double from = (double)i * large / small, to = (double)(i + 1) * large / small;
+    const int first = (int)from;
+    for (int k = 0; k < 4; k++) {
+        const double low = fmax(from, first + k), high = fmin(to, first + k + 1);
+        shares[k] = first + k < large && high > low ? (high - low) / (to - from) : 0;
+    }
+    return first;
+}
+
+// the mean of the light that a texel covers
+static uint16_t mean_of(const uint16_t *from, size_t stride, const double across[4],
+                        const double down[4]) {
+    double sum = 0;
+    for (size_t r = 0; r < 4; r++)
+        for (size_t c = 0; c < 4; c++)
+            if (down[r] > 0 && across[c] > 0)
+                sum += down[r] * across[c] * from[r * stride + 3 * c];
+    return (uint16_t)(sum + 0.5);
+}
+
+static void shrink(const uint16_t *from, int width, int height, uint16_t *to) {
+    const int w = halved(width), h = halved(height);
+    const size_t stride = 3 * (size_t)width;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            double across[4], down[4];
+            const int column = cover(x, w, width, across), row = cover(y, h, height, down);
+            for (size_t k = 0; k < 3; k++)
+                *to++ = mean_of(from + (size_t)row * stride + 3 * (size_t)column + k, stride,
+                                across, down);
+        }
+}
+
+enum cs_status cs_mipmap_make(struct cs_mipmap *mips, const struct cs_image *image,
+                              const struct cs_srgb *tone, struct cs_arena *arena,
+                              struct cs_error *error) {
+    int width = (int)image->width, height = (int)image->height;
+    for (mips->n = 0; mips->n < CS_MIPMAP_LEVELS_MAX; mips->n++) {
+        const size_t n = 3 * (size_t)width * (size_t)height;
+        const int last = mips->n - 1;
+        uint16_t *light = cs_arena_alloc_array(arena, n, sizeof *light, error);
+        if (!light)
+            return error->status;
+        for (size_t i = 0; mips->n == 0 && i < n; i++)
+            light[i] = (uint16_t)(tone->linear[image->rgb[i]] * 65535 + 0.5f);
+        if (mips->n > 0)
+            shrink(mips->levels[last].light, mips->levels[last].width,
+                   mips->levels[last].height, light);
+        mips->levels[mips->n].width = width;
+        mips->levels[mips->n].height = height;
+        mips->levels[mips->n].light = light;
+        if (width == 1 && height == 1) {
+            mips->n++;
+            break;
+        }
+        width = halved(width);
+        height = halved(height);
+    }
+    return CS_OK;
+}
+
+// neighbours of a place in a row of n texels that repeats, and the share of the second
+static void wrap_texel(float at, int n, int texels[2], float *share) {
+    const float where = (at - floorf(at)) * (float)n - 0.5f;
+    const float down = floorf(where);
+    const int first = (int)down;
+    *share = where - down;
+    texels[0] = first < 0 ? n - 1 : first < n ? first : n - 1;
+    texels[1] = first + 1 < n ? first + 1 : 0;
+}
+
+static void bilinear(const struct cs_mipmap *mips, int copy, float u, float v, float rgb[3]) {
+    const int width = mips->levels[copy].width;
+    int column[2], row[2];
+    float across, down;
+    wrap_texel(u, width, column, &across);
+    wrap_texel(v, mips->levels[copy].height, row, &down);
+    for (int k = 0; k < 3; k++) {
+        float line[2];
+        for (int r = 0; r < 2; r++) {
+            const uint16_t *in =
+                mips->levels[copy].light + 3 * (size_t)row[r] * (size_t)width + k;
+            const float a = (float)in[3 * column[0]], b = (float)in[3 * column[1]];
+            line[r] = a + across * (b - a);
+        }
+        rgb[k] = (line[0] + down * (line[1] - line[0])) / 65535;
+    }
+}
+
+/* Logarithm to base 2 of a positive number, straight between whole ones: at most 0.09 too low,
+ * as renderers of OpenGL take it, too little to be seen. */
+static float log_2(float value) {
+    uint32_t bits;
+    float mantissa;
+    memcpy(&bits, &value, sizeof bits);
+    const int exponent = (int)(bits >> 23 & 255) - 127;
+    bits = (bits & 0x7fffff) | 0x3f800000;
+    memcpy(&mantissa, &bits, sizeof mantissa);
+    return (float)exponent + (mantissa - 1);
+}
+
+void cs_mipmap_sample(const struct cs_mipmap *mips, float u, float v, float square,
+                      float rgb[3]) {
+    // below 1 texel a pixel the first copy is blown up; NAN and huge numbers come to an end too
+    const float level = square > 1 ? 0.5f * log_2(square < 1e30f ? square : 1e30f) : 0;
+    const int whole = (int)level;
+    float then[3];
+    if (whole >= mips->n - 1) {
+        bilinear(mips, mips->n - 1, u, v, rgb);
+        return;
+    }
+    bilinear(mips, whole, u, v, rgb);
+    if (!(level > (float)whole))
+        return;
+    bilinear(mips, whole + 1, u, v, then);
+    for (int k = 0; k < 3; k++)
+        rgb[k] += (level - (float)whole) * (then[k] - rgb[k]);
+}

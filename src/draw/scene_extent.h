@@ -1,0 +1,17 @@
+/* scene_extent.h - how large things are: the scene at its start, and a cell of its cloths. */
+#ifndef CS_DRAW_SCENE_EXTENT_H
+#define CS_DRAW_SCENE_EXTENT_H
+
+#include "draw/view.h"
+#include "model/contact/posed_collider.h"
+#include "model/system/system.h"
+
+/* A ball around the particles at x (3,n) and the visible colliders but planes, which are
+ * at obstacles (scene->colliders.n). */
+struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
+                                                const struct cs_posed_collider *colliders);
+
+/* The largest distance of neighbours in the bodies at rest, in m; 0 for lone particles. */
+double cs_scene_extent_cell(const struct cs_system *system);
+
+#endif

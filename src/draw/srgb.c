@@ -1,0 +1,71 @@
+/* srgb.c - the curve of sRGB by roots that Newton's method finds, and its thresholds. */
+#include "draw/srgb.h"
+
+// y^2.4 for y in 0..1: y^2 times the fifth root of y^2, by Newton's method
+static double power_2_4(double y) {
+    const double square = y * y;
+    double root = 1;
+    if (y <= 0)
+        return 0;
+    // from above it falls by a fifth until it is near, then doubles its digits
+    for (int k = 0; k < 80; k++)
+        root = (4 * root + square / (root * root * root * root)) / 5;
+    return square * root;
+}
+
+static double decode(double c) {
+    return c <= 0.04045 ? c / 12.92 : power_2_4((c + 0.055) / 1.055);
+}
+
+void cs_srgb_make(struct cs_srgb *tone) {
+    tone->threshold[0] = -1;
+    tone->threshold[256] = tone->threshold[257] = 2;
+    for (int byte = 0; byte < 256; byte++) {
+        tone->linear[byte] = (float)decode(byte / 255.0);
+        if (byte > 0)
+            tone->threshold[byte] = (float)decode((byte - 0.5) / 255);
+    }
+    int byte = 0;
+    for (int i = 0; i <= 4097; i++) {
+        while (byte < 255 && tone->threshold[byte + 1] <= (float)i / 4096)
+            byte++;
+        tone->segment_start[i] = (uint8_t)byte;
+    }
+}
+
+uint32_t cs_srgb_blend_rows(uint32_t under, uint32_t over, uint32_t share) {
+    // in 255 * 255: what of each is seen
+    const uint32_t above = 255 * share, below = (255 - (under >> 24)) * (255 - share);
+    const uint32_t whole = above + below;
+    uint32_t out = (255 - (whole + 127) / 255) << 24;
+    for (int k = 0; k < 24 && whole; k += 8)
+        out |= (((under >> k & 255) * below + (over >> k & 255) * above + whole / 2) / whole)
+               << k;
+    return out;
+}
+
+uint32_t cs_srgb_mean_clear(const struct cs_srgb *tone, const uint32_t samples[4]) {
+    float light[3] = {0, 0, 0};
+    uint32_t whole = 0;
+    for (int s = 0; s < 4; s++) {
+        const uint32_t cover = 255 - (samples[s] >> 24);
+        whole += cover;
+        for (int k = 0; k < 3; k++)
+            light[k] += (float)cover * tone->linear[samples[s] >> 8 * k & 255];
+    }
+    if (!whole)
+        return 0xff000000;
+    for (int k = 0; k < 3; k++) {
+        const float mean = light[k] / (float)whole;
+        light[k] = mean < 1 ? mean : 1;
+    }
+    return cs_srgb_pack(tone, light[0], light[1], light[2]) | (255 - (whole + 2) / 4) << 24;
+}
+
+uint32_t cs_srgb_blend_on_white(const struct cs_srgb *tone, uint32_t colour) {
+    const float clear = (float)(colour >> 24);
+    float light[3];
+    for (int k = 0; k < 3; k++)
+        light[k] = (clear + (255 - clear) * tone->linear[colour >> 8 * k & 255]) / 255;
+    return cs_srgb_pack(tone, light[0], light[1], light[2]);
+}

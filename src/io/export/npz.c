@@ -1,0 +1,240 @@
+/* Writes NumPy archives: samples into a file of their own first, then all arrays at once. */
+#include "io/export/npz.h"
+
+#include "base/little_endian.h"
+#include "io/export/zip.h"
+#include "io/npy.h"
+
+#include <string.h>
+#include <unistd.h>
+
+static size_t word_size(const struct cs_export_mesh *skin, uint32_t f) {
+    return (size_t)skin->n * skin->fields[f].components;
+}
+
+/* colliders at rest are in the archive alone */
+static bool is_sampled(const struct cs_export_mesh *skin) {
+    return skin->is_moving && skin->n > 0;
+}
+
+/* Calls use for each field of a sample, in their order: what is written and what is read cannot
+ * differ. */
+static enum cs_status each_field(const struct cs_export_mesh *const skins[2],
+                                 enum cs_status (*use)(void *ctx,
+                                                       const struct cs_export_mesh *skin,
+                                                       uint32_t f, struct cs_error *error),
+                                 void *ctx, struct cs_error *error) {
+    for (int k = 0; k < 2; k++)
+        for (uint32_t f = 0; is_sampled(skins[k]) && f < skins[k]->n_fields; f++)
+            if (use(ctx, skins[k], f, error))
+                return error->status;
+    return CS_OK;
+}
+
+static enum cs_status count_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
+                                  struct cs_error *error) {
+    uint64_t *bytes = ctx;
+    (void)error;
+    *bytes += word_size(skin, f) * sizeof(uint64_t);
+    return CS_OK;
+}
+
+enum cs_status cs_npz_open(struct cs_npz *npz, const struct cs_export_mesh *const skins[2],
+                           const struct cs_export_settings *settings, struct cs_error *error) {
+    char path[CS_EXPORT_PATH];
+    *npz = (struct cs_npz){.folder = settings->folder,
+                           .frame_interval = settings->frame_interval,
+                           .n_samples = settings->n_samples_before,
+                           .sample_bytes = sizeof(uint64_t)};
+    each_field(skins, count_field, &npz->sample_bytes, error);
+    return cs_export_name(path, npz->folder, "run.npz.part", error)
+               ? error->status
+               : cs_append_file_open(&npz->part_file, path,
+                                     npz->sample_bytes * settings->n_samples_before, error);
+}
+
+/* where the next field of a sample goes, or comes from */
+struct place {
+    struct cs_npz *npz;
+    uint64_t at;
+};
+
+static enum cs_status add_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
+                                struct cs_error *error) {
+    struct place *place = ctx;
+    const size_t bytes = word_size(skin, f) * sizeof(uint64_t);
+    const uint64_t at = place->at;
+    place->at += bytes;
+    return cs_append_file_write(&place->npz->part_file, at, skin->fields[f].words, bytes,
+                                error);
+}
+
+enum cs_status cs_npz_add(struct cs_npz *npz, const struct cs_export_mesh *const skins[2],
+                          double t, struct cs_error *error) {
+    const uint64_t time = cs_double_to_le64(t);
+    struct place place = {npz, npz->sample_bytes * npz->n_samples};
+    if (cs_append_file_write(&npz->part_file, place.at, &time, sizeof time, error))
+        return error->status;
+    place.at += sizeof time;
+    if (!each_field(skins, add_field, &place, error))
+        npz->n_samples++;
+    return error->status;
+}
+
+/* An array under way. */
+struct array {
+    const char *name, *type;
+    uint64_t shape[3];
+    unsigned n_axes, item_bytes;
+};
+
+static void begin_array(struct cs_zip *zip, const struct array *array) {
+    char head[CS_NPY_HEAD], name[40];
+    uint64_t bytes = array->item_bytes;
+    for (unsigned k = 0; k < array->n_axes; k++)
+        bytes *= array->shape[k];
+    cs_npy_head(head, array->type, array->shape, array->n_axes);
+    snprintf(name, sizeof name, "%s.npy", array->name);
+    cs_zip_begin(zip, name, sizeof head + bytes);
+    cs_zip_put(zip, head, sizeof head);
+}
+
+/* An array of numbers of 32 bits, whole or not. */
+static void put_array(struct cs_zip *zip, const struct array *array, const void *numbers) {
+    enum { BLOCK = 1024 };
+    uint32_t block[BLOCK];
+    uint64_t n = 1;
+    for (unsigned k = 0; k < array->n_axes; k++)
+        n *= array->shape[k];
+    begin_array(zip, array);
+    for (uint64_t done = 0; done < n; done += BLOCK) {
+        const size_t count = n - done < BLOCK ? (size_t)(n - done) : BLOCK;
+        memcpy(block, (const char *)numbers + done * sizeof *block, count * sizeof *block);
+        for (size_t k = 0; k < count; k++)
+            block[k] = htole32(block[k]);
+        cs_zip_put(zip, block, count * sizeof *block);
+    }
+    cs_zip_end(zip);
+}
+
+/* (n, columns) whole numbers; columns 0: (n) */
+static void put_integer(struct cs_zip *zip, const char *name, const uint32_t *values,
+                        uint64_t n, uint64_t columns) {
+    put_array(zip, &(struct array){name, "<i4", {n, columns}, columns ? 2 : 1, 4}, values);
+}
+
+/* what does not change, of bodies and of colliders */
+static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const skins[2]) {
+    const struct cs_export_mesh *bodies = skins[0], *colliders = skins[1];
+    put_integer(zip, "faces", bodies->triangles, bodies->n_triangles, 3);
+    put_integer(zip, "lines", bodies->lines, bodies->n_lines, 2);
+    put_integer(zip, "body_offsets", bodies->first_point, bodies->n_items + 1, 0);
+    put_integer(zip, "face_offsets", bodies->first_triangle, bodies->n_items + 1, 0);
+    if (bodies->uv)
+        put_array(zip, &(struct array){"uv", "<f4", {bodies->n_triangles, 3, 2}, 3, 4},
+                  bodies->uv);
+    if (colliders->n == 0)
+        return;
+    put_integer(zip, "colliders", colliders->items, colliders->n_items, 0);
+    put_integer(zip, "collider_faces", colliders->triangles, colliders->n_triangles, 3);
+    put_integer(zip, "collider_offsets", colliders->first_point, colliders->n_items + 1, 0);
+    put_integer(zip, "collider_face_offsets", colliders->first_triangle, colliders->n_items + 1,
+                0);
+}
+
+static void put_frames(const struct cs_npz *npz, struct cs_zip *zip) {
+    begin_array(zip, &(struct array){"frames", "<i4", {npz->n_samples}, 1, 4});
+    for (uint32_t k = 0; k < npz->n_samples; k++) {
+        const uint32_t frame = htole32(k * npz->frame_interval);
+        cs_zip_put(zip, &frame, sizeof frame);
+    }
+    cs_zip_end(zip);
+}
+
+static enum cs_status put_times(const struct cs_npz *npz, struct cs_zip *zip,
+                                struct cs_error *error) {
+    begin_array(zip, &(struct array){"times", "<f8", {npz->n_samples}, 1, 8});
+    for (uint32_t k = 0; k < npz->n_samples; k++) {
+        uint64_t time;
+        if (cs_append_file_read(&npz->part_file, npz->sample_bytes * k, &time, sizeof time,
+                                error))
+            return error->status;
+        cs_zip_put(zip, &time, sizeof time);
+    }
+    cs_zip_end(zip);
+    return CS_OK;
+}
+
+static void begin_field(struct cs_zip *zip, const struct cs_export_mesh *skin, uint32_t f,
+                        uint32_t n_samples) {
+    char name[40];
+    const struct cs_export_field *field = skin->fields + f;
+    snprintf(name, sizeof name, "%s%s", skin->local_positions ? "collider_" : "",
+             field->plural);
+    begin_array(zip, &(struct array){name,
+                                     "<f8",
+                                     {n_samples, skin->n, field->components},
+                                     field->components > 1 ? 3 : 2,
+                                     8});
+}
+
+/* the archive, and where in the first sample the next field is */
+struct series {
+    struct place place;
+    struct cs_zip *zip;
+};
+
+static enum cs_status put_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
+                                struct cs_error *error) {
+    struct series *series = ctx;
+    const struct cs_npz *npz = series->place.npz;
+    uint64_t *words = skin->fields[f].words;
+    const size_t bytes = word_size(skin, f) * sizeof *words;
+    begin_field(series->zip, skin, f, npz->n_samples);
+    for (uint32_t k = 0; k < npz->n_samples; k++) {
+        if (cs_append_file_read(&npz->part_file, series->place.at + npz->sample_bytes * k,
+                                words, bytes, error))
+            return error->status;
+        cs_zip_put(series->zip, words, bytes);
+    }
+    cs_zip_end(series->zip);
+    series->place.at += bytes;
+    return CS_OK;
+}
+
+static enum cs_status put_samples(struct cs_npz *npz,
+                                  const struct cs_export_mesh *const skins[2],
+                                  struct cs_zip *zip, struct cs_error *error) {
+    const struct cs_export_mesh *colliders = skins[1];
+    struct series series = {{npz, sizeof(uint64_t)}, zip};
+    put_frames(npz, zip);
+    if (put_times(npz, zip, error) || each_field(skins, put_field, &series, error))
+        return error->status;
+    if (colliders->n > 0 && !colliders->is_moving) {
+        begin_field(zip, colliders, 0, 1);
+        cs_zip_put(zip, colliders->fields[0].words, word_size(colliders, 0) * sizeof(uint64_t));
+        cs_zip_end(zip);
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_npz_finish(struct cs_npz *npz, const struct cs_export_mesh *const skins[2],
+                             bool goes_on, struct cs_error *error) {
+    char path[CS_EXPORT_PATH];
+    struct cs_file_out out;
+    if (cs_export_name(path, npz->folder, "run.npz", error) ||
+        cs_file_create(&out, path, error))
+        return error->status;
+    struct cs_zip zip = {.file = out.file};
+    put_meshes(&zip, skins);
+    if (put_samples(npz, skins, &zip, error)) {
+        cs_file_abandon(&out);
+        return error->status;
+    }
+    cs_zip_finish(&zip);
+    if (cs_file_finish(&out, error))
+        return error->status;
+    if (!goes_on)
+        unlink(npz->part_file.path);
+    return CS_OK;
+}

@@ -1,0 +1,108 @@
+/* Writes Wavefront OBJ files. */
+#include "io/export/obj.h"
+
+#include "base/file.h"
+#include "base/little_endian.h"
+#include "io/export/export_name.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Texture coordinates under way: each point's last one, since most points have one alone. */
+struct uv_list {
+    uint32_t n;
+    uint32_t *last;     /* (skin->n) number from 1; 0: none */
+    float (*values)[2]; /* (skin->n) of it */
+};
+
+static void add_uv(struct uv_list *list, uint32_t point, const float uv[2],
+                   struct cs_text *out) {
+    cs_text_add(out, "vt %.9g %.9g\n", (double)uv[0], (double)uv[1]);
+    memmove(list->values[point], uv, sizeof *list->values);
+    list->last[point] = ++list->n;
+}
+
+/* One for each point, in their order, even if a body has none: where no point has two, the
+ * numbers of a corner's place and of its coordinates are then the same, which some readers ask
+ * for and others need if they are not to part the corners. */
+static void list_points(const struct cs_export_mesh *skin, struct uv_list *list,
+                        struct cs_text *out) {
+    cs_export_mesh_point_uv(skin, list->values);
+    for (uint32_t i = 0; i < skin->n; i++)
+        add_uv(list, i, list->values[i], out);
+}
+
+/* Number of a corner's coordinates, which are added where the point has others. */
+static uint32_t number_uv(struct uv_list *list, uint32_t point, const float uv[2],
+                          struct cs_text *out) {
+    if (memcmp(list->values[point], uv, sizeof *list->values) != 0)
+        add_uv(list, point, uv, out);
+    return list->last[point];
+}
+
+static void add_face(const struct cs_export_mesh *skin, uint32_t t, struct uv_list *list,
+                     struct cs_text *uvs, struct cs_text *faces) {
+    const float *uv = skin->uv ? skin->uv + 6 * (size_t)t : NULL;
+    cs_text_add(faces, "f");
+    for (size_t k = 0; k < 3; k++) {
+        const uint32_t point = skin->triangles[3 * (size_t)t + k];
+        if (uv && !isnan(uv[2 * k]))
+            cs_text_add(faces, " %u/%u", point + 1, number_uv(list, point, uv + 2 * k, uvs));
+        else
+            cs_text_add(faces, " %u", point + 1);
+    }
+    cs_text_add(faces, "\n");
+}
+
+/* Groups and no objects: readers make one object of the file, whose points stay in their order,
+ * as a point cache needs it. */
+static void add_items(const struct cs_export_mesh *skin, struct uv_list *list,
+                      struct cs_text *uvs, struct cs_text *faces) {
+    for (uint32_t b = 0; b < skin->n_items; b++) {
+        cs_text_add(faces, "g %s_%u\n", skin->item, skin->items[b]);
+        for (uint32_t t = skin->first_triangle[b]; t < skin->first_triangle[b + 1]; t++)
+            add_face(skin, t, list, uvs, faces);
+        for (uint32_t i = skin->first_line[b]; i < skin->first_line[b + 1]; i++)
+            cs_text_add(faces, "l %u %u\n", skin->lines[2 * (size_t)i] + 1,
+                        skin->lines[2 * (size_t)i + 1] + 1);
+    }
+}
+
+enum cs_status cs_obj_print_tail(const struct cs_export_mesh *skin, struct cs_text *tail,
+                                 struct cs_error *error) {
+    struct cs_text faces = {0};
+    struct uv_list list = {.last = calloc(skin->n + 1, sizeof *list.last),
+                           .values = calloc(skin->n + 1, sizeof *list.values)};
+    const bool capacity = list.last && list.values;
+    if (capacity && skin->uv)
+        list_points(skin, &list, tail);
+    if (capacity) {
+        add_items(skin, &list, tail, &faces);
+        cs_text_add(tail, "%s", cs_text_get(&faces));
+    }
+    if (!capacity || tail->failed || faces.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the faces of OBJ files");
+    cs_text_finish(&faces);
+    free(list.last);
+    free(list.values);
+    return error->status;
+}
+
+enum cs_status cs_obj_write(const struct cs_export_mesh *skin, const struct cs_text *tail,
+                            const char *folder, const struct cs_export_sample *sample,
+                            struct cs_error *error) {
+    char path[CS_EXPORT_PATH];
+    struct cs_file_out out;
+    const uint64_t *at = skin->fields[0].words;
+    if (cs_export_number(path, folder, skin->name, sample->number, "obj", error) ||
+        cs_file_create(&out, path, error))
+        return error->status;
+    /* failures to write are seen by finish */
+    fprintf(out.file, "# clothsim: frame %u, t = %.9g s\n", sample->frame, sample->t);
+    for (uint32_t i = 0; i < skin->n; i++, at += 3)
+        fprintf(out.file, "v %.9g %.9g %.9g\n", cs_double_from_le64(at[0]),
+                cs_double_from_le64(at[1]), cs_double_from_le64(at[2]));
+    fwrite(tail->bytes, 1, tail->length, out.file);
+    return cs_file_finish(&out, error);
+}

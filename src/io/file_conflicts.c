@@ -1,0 +1,86 @@
+/* Tells files apart by device and number, and by folder and name. */
+#include "io/file_conflicts.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* the folder of a path; false where it is not there, or the path is too long */
+static bool stat_folder(const char *path, struct stat *info) {
+    char folder[4096];
+    const char *end = strrchr(path, '/');
+    const int length = end ? (int)(end - path) : 1;
+    if (snprintf(folder, sizeof folder, "%.*s", length, end ? path : ".") >= (int)sizeof folder)
+        return false;
+    return !stat(*folder ? folder : "/", info);
+}
+
+/* false where there is neither such a file nor its folder */
+static bool stat_file(const char *path, const char *what, bool output,
+                      struct cs_file_use *claim) {
+    struct stat file, folder;
+    const char *end = strrchr(path, '/');
+    *claim = (struct cs_file_use){.role = what, .is_output = output};
+    snprintf(claim->name, sizeof claim->name, "%s", end ? end + 1 : path);
+    if (!stat_folder(path, &folder))
+        return false;
+    claim->folder_device_id = folder.st_dev;
+    claim->folder_inode = folder.st_ino;
+    claim->exists = !stat(path, &file);
+    if (claim->exists) {
+        claim->device_id = file.st_dev;
+        claim->inode = file.st_ino;
+    }
+    return true;
+}
+
+static bool is_same(const struct cs_file_use *a, const struct cs_file_use *b) {
+    if (a->exists && b->exists && a->device_id == b->device_id && a->inode == b->inode)
+        return true;
+    return a->folder_device_id == b->folder_device_id && a->folder_inode == b->folder_inode &&
+           !strcmp(a->name, b->name);
+}
+
+void cs_file_conflicts_input(struct cs_file_conflicts *conflicts, const char *path,
+                             const char *what) {
+    if (conflicts->n < CS_FILE_CONFLICTS_MAX &&
+        stat_file(path, what, false, conflicts->items + conflicts->n))
+        conflicts->n++;
+}
+
+static enum cs_status refuse(const struct cs_file_use *claim, const char *path,
+                             const char *what, struct cs_error *error) {
+    return cs_fail(error, CS_ERR_FILE, "%s: \"%s\" is %s %s", what, path,
+                   claim->is_output ? "also written by" : "read as", claim->role);
+}
+
+enum cs_status cs_file_conflicts_output(struct cs_file_conflicts *conflicts, const char *path,
+                                        const char *what, struct cs_error *error) {
+    struct cs_file_use claim;
+    if (!stat_file(path, what, true, &claim))
+        return CS_OK; // writing it will say why it cannot be
+    for (unsigned k = 0; k < conflicts->n; k++)
+        if (is_same(&claim, conflicts->items + k))
+            return refuse(conflicts->items + k, path, what, error);
+    if (conflicts->n < CS_FILE_CONFLICTS_MAX)
+        conflicts->items[conflicts->n++] = claim;
+    return CS_OK;
+}
+
+enum cs_status cs_file_conflicts_folder(const struct cs_file_conflicts *conflicts,
+                                        const char *folder, bool (*is_ours)(const char *name),
+                                        const char *what, struct cs_error *error) {
+    struct stat info;
+    if (stat(folder, &info))
+        return CS_OK;
+    for (unsigned k = 0; k < conflicts->n; k++) {
+        const struct cs_file_use *claim = conflicts->items + k;
+        char path[4096];
+        if (claim->folder_device_id != info.st_dev || claim->folder_inode != info.st_ino ||
+            !is_ours(claim->name))
+            continue;
+        snprintf(path, sizeof path, "%.3800s/%s", folder, claim->name);
+        return refuse(claim, path, what, error);
+    }
+    return CS_OK;
+}

@@ -1,0 +1,92 @@
+/* Range, stiffness and friction between bodies and with obstacles, from the scene's keys and
+ * the edges. */
+#include "model/contact/body_pair_params.h"
+
+#include "model/contact/collider_params.h"
+#include "scene/body_pairs.h"
+
+#include <math.h>
+
+/* m, of a body at the start; HUGE_VAL: it has no edge */
+static double shortest_edge(const struct cs_system *system, uint32_t body) {
+    const struct cs_surfaces *surfaces = system->surfaces;
+    const double *x = system->start;
+    const size_t n = system->view.n;
+    double least = HUGE_VAL;
+    for (uint32_t e = surfaces->first_edge[body]; e < surfaces->first_edge[body + 1]; e++) {
+        const uint32_t a = surfaces->edges[2 * (size_t)e],
+                       b = surfaces->edges[2 * (size_t)e + 1];
+        double squared = 0;
+        for (size_t c = 0; c < 3; c++)
+            squared += (x[c * n + b] - x[c * n + a]) * (x[c * n + b] - x[c * n + a]);
+        least = fmin(least, squared);
+    }
+    return sqrt(least);
+}
+
+static double thickness_of(const struct cs_system *system, uint32_t body,
+                           struct cs_error *error) {
+    const double given = cs_scene_bodies(system->scene)[body].thickness;
+    const double thickness =
+        given > 0 ? given : CS_THICKNESS_SHARE * shortest_edge(system, body);
+    if (!(thickness > 0 && isfinite(thickness)))
+        cs_fail(error, CS_ERR_SCENE,
+                "bodies[%u].thickness: 0, and no edge to take it from; expected a length in m",
+                body);
+    return thickness;
+}
+
+/* m, between two of which the first is a body; an obstacle's is all of it, as other colliders'
+ * is */
+static double range_between(const struct cs_system *system, uint32_t a, uint32_t b,
+                            struct cs_error *error) {
+    const struct cs_collider *collider = cs_scene_obstacle(system->scene, b);
+    if (collider && collider->thickness > 0)
+        return collider->thickness;
+    const double first = thickness_of(system, a, error);
+    return collider || a == b ? first : 0.5 * (first + thickness_of(system, b, error));
+}
+
+static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
+                 const struct cs_body_pair_params *meeting) {
+    body_pairs->params[(size_t)a * body_pairs->n_bodies + b] = *meeting;
+    body_pairs->params[(size_t)b * body_pairs->n_bodies + a] = *meeting;
+    body_pairs->has_partner[a] = body_pairs->has_partner[b] = true;
+    body_pairs->range_max = fmax(body_pairs->range_max, meeting->range);
+    body_pairs->range_min = fmin(body_pairs->range_min, meeting->range);
+}
+
+enum cs_status cs_body_pair_table_build(struct cs_system *system,
+                                        struct cs_body_pair_table *body_pairs,
+                                        struct cs_error *error) {
+    const uint32_t n = system->surfaces->n_bodies;
+    struct cs_body_pair_params meeting;
+    *body_pairs = (struct cs_body_pair_table){.n_bodies = n, .range_min = HUGE_VAL};
+    body_pairs->params =
+        cs_arena_alloc_array(&system->arena, (size_t)n * n, sizeof *body_pairs->params, error);
+    body_pairs->has_partner =
+        cs_arena_alloc_array(&system->arena, n, sizeof *body_pairs->has_partner, error);
+    if (error->status || cs_collider_params_stiffness(system, &meeting.k, error))
+        return error->status;
+    for (uint32_t a = 0; a < n; a++)
+        for (uint32_t b = a; b < n && !error->status; b++) {
+            if (!cs_scene_bodies_collide(system->scene, a, b, &meeting.friction))
+                continue;
+            meeting.range = range_between(system, a, b, error);
+            meet(body_pairs, a, b, &meeting);
+        }
+    return error->status;
+}
+
+void cs_body_pair_table_update_friction(const struct cs_system *system,
+                                        struct cs_body_pair_table *body_pairs) {
+    const uint32_t n_bodies = system->scene->bodies.n;
+    for (uint32_t b = n_bodies; b < body_pairs->n_bodies; b++)
+        for (uint32_t a = 0; a < n_bodies; a++) {
+            const double mu = cs_scene_obstacle(system->scene, b)->friction;
+            body_pairs->friction_version +=
+                body_pairs->params[(size_t)a * body_pairs->n_bodies + b].friction != mu;
+            body_pairs->params[(size_t)a * body_pairs->n_bodies + b].friction = mu;
+            body_pairs->params[(size_t)b * body_pairs->n_bodies + a].friction = mu;
+        }
+}

@@ -1,0 +1,190 @@
+/* Clusters near a box from the cells, then their items in lanes. */
+#include "model/contact/broad_phase/aabb_clusters.h"
+
+#include "base/arena.h"
+
+#include <clothsim/clones.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* times the side of usual boxes, above which one is large */
+#define LARGE 8
+
+void cs_aabb_cluster_set(struct cs_aabb_cluster *cluster, uint32_t lane,
+                         const struct cs_aabb *box) {
+    for (int c = 0; c < 3; c++) {
+        // of an empty one no number is true of anything, even of a box without end
+        const bool some = box->high[c] >= box->low[c];
+        cluster->low[c][lane] = some ? (float)box->low[c] : NAN;
+        cluster->high[c][lane] = some ? (float)box->high[c] : NAN;
+    }
+}
+
+/* Two boxes meet in several cells. The one that counts is that of the lower corner of what they
+ * share: the higher of both first cells along each axis. The other box is in the cell `at`, so
+ * that its first cell is not above it. */
+static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_aabb *other,
+                          const uint32_t first[3], const uint32_t at[3]) {
+    bool counts = true;
+    for (int c = 0; c < 3; c++)
+        counts = counts &&
+                 (at[c] == first[c] || cs_uniform_grid_index(cells, other->low[c], c) == at[c]);
+    return counts;
+}
+
+static bool add(struct cs_nearby_clusters *near, uint32_t cluster, const struct cs_aabb *box) {
+    uint32_t *clusters = cs_arena_realloc(near->clusters, &near->clusters_capacity, near->n + 1,
+                                          sizeof *clusters);
+    near->clusters = clusters ? clusters : near->clusters;
+    struct cs_aabb_cluster *boxes = cs_arena_realloc(
+        near->boxes, &near->boxes_capacity, near->n / CS_AABB_CLUSTER + 1, sizeof *boxes);
+    near->boxes = boxes ? boxes : near->boxes;
+    if (!clusters || !boxes)
+        return false;
+    static const struct cs_aabb none = {{1, 1, 1}, {0, 0, 0}};
+    for (uint32_t l = 0; l < CS_AABB_CLUSTER && near->n % CS_AABB_CLUSTER == 0; l++)
+        cs_aabb_cluster_set(boxes + near->n / CS_AABB_CLUSTER, l, &none);
+    cs_aabb_cluster_set(boxes + near->n / CS_AABB_CLUSTER, near->n % CS_AABB_CLUSTER, box);
+    clusters[near->n++] = cluster;
+    return true;
+}
+
+/* mean longest side of boxes up to a length; 0: there is none */
+static double mean_side(const struct cs_aabb_clusters *clusters, double most) {
+    double sum = 0;
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < clusters->n; k++) {
+        const double side = cs_aabb_longest_side(clusters->cluster_boxes + k);
+        const bool counts = side >= 0 && side <= most;
+        sum += counts ? side : 0;
+        count += counts;
+    }
+    return count ? sum / count : 0;
+}
+
+/* A few large triangles, as of a floor, would make cells so large that all else is in the same
+ * ones: the mean of those below the mean is not theirs. */
+bool cs_aabb_clusters_sort(struct cs_aabb_clusters *clusters) {
+    const double most = LARGE * mean_side(clusters, mean_side(clusters, HUGE_VAL));
+    const struct cs_aabb_set small = {clusters->cluster_boxes, clusters->n, -1, most};
+    const struct cs_aabb_set large = {clusters->cluster_boxes, clusters->n, most, HUGE_VAL};
+    return cs_uniform_grid_fill(clusters->cells, &small) &&
+           cs_uniform_grid_fill(clusters->cells + 1, &large);
+}
+
+void cs_aabb_clusters_finish(struct cs_aabb_clusters *clusters) {
+    cs_uniform_grid_finish(clusters->cells);
+    cs_uniform_grid_finish(clusters->cells + 1);
+}
+
+/* a box that looks for clusters, and its first cell */
+struct looking {
+    const struct cs_aabb_clusters *clusters;
+    const struct cs_uniform_grid *cells;
+    const struct cs_aabb *box;
+    const struct cs_grid_rectangle *but;
+    uint32_t first[3];
+};
+
+static bool is_in(const struct cs_grid_rectangle *span, const struct cs_grid_rectangle *in) {
+    bool is = true;
+    for (int c = 0; c < 2; c++)
+        is &= span->first[c] >= in->first[c] && span->last[c] <= in->last[c];
+    return is;
+}
+
+static bool add_cell(struct cs_nearby_clusters *near, const struct looking *looking,
+                     const uint32_t at[3]) {
+    const struct cs_aabb_clusters *clusters = looking->clusters;
+    const struct cs_uniform_grid *cells = looking->cells;
+    const size_t cell = cs_uniform_grid_cell(cells, at[0], at[1], at[2]);
+    bool there = true;
+    for (uint32_t s = cells->cell_starts[cell]; s < cells->cell_starts[cell + 1]; s++) {
+        const uint32_t cluster = cells->items[s];
+        const struct cs_aabb *other = clusters->cluster_boxes + cluster;
+        if (clusters->max_item[cluster] >= near->first_item &&
+            (clusters->body[cluster] == near->body) == near->same_body_only &&
+            cs_aabbs_overlap(looking->box, other) &&
+            is_first_cell(cells, other, looking->first, at) &&
+            !(looking->but && is_in(clusters->grid_rectangles + cluster, looking->but)))
+            there = there && add(near, cluster, other);
+    }
+    return there;
+}
+
+static bool add_cells(struct cs_nearby_clusters *near, struct looking *looking) {
+    uint32_t last[3], at[3];
+    bool there = true;
+    if (!looking->cells->dim[0])
+        return true;
+    cs_uniform_grid_range(looking->cells, looking->box, looking->first, last);
+    for (at[2] = looking->first[2]; at[2] <= last[2]; at[2]++)
+        for (at[1] = looking->first[1]; at[1] <= last[1]; at[1]++)
+            for (at[0] = looking->first[0]; at[0] <= last[0]; at[0]++)
+                there = there && add_cell(near, looking, at);
+    return there;
+}
+
+bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
+                             const struct cs_aabb_clusters *clusters, const struct cs_aabb *box,
+                             const struct cs_grid_rectangle *but) {
+    bool there = true;
+    near->n = 0;
+    for (int k = 0; k < 2 && box->high[0] >= box->low[0]; k++) {
+        struct looking looking = {clusters, clusters->cells + k, box, but, {0}};
+        there = there && add_cells(near, &looking);
+    }
+    uint32_t *items = cs_arena_realloc(near->items, &near->items_capacity,
+                                       CS_AABB_CLUSTER * near->n, sizeof *items);
+    near->items = items ? items : near->items;
+    return there && (items || !near->n);
+}
+
+/* the lanes whose boxes meet a box, as bits */
+CS_INLINE uint32_t overlap_mask(const struct cs_aabb_cluster *restrict cluster,
+                                const float low[3], const float high[3]) {
+    uint32_t bits = 0;
+    for (int l = 0; l < CS_AABB_CLUSTER; l++) {
+        uint32_t hit = cluster->low[0][l] <= high[0];
+        hit &= cluster->low[1][l] <= high[1];
+        hit &= cluster->low[2][l] <= high[2];
+        hit &= cluster->high[0][l] >= low[0];
+        hit &= cluster->high[1][l] >= low[1];
+        hit &= cluster->high[2][l] >= low[2];
+        bits |= hit << l;
+    }
+    return bits;
+}
+
+CS_CLONES static uint32_t find_items(const struct cs_nearby_clusters *near,
+                                     const struct cs_aabb_clusters *of, const float low[3],
+                                     const float high[3], uint32_t *items) {
+    uint32_t n = 0;
+    for (size_t k = 0; k < near->n; k += CS_AABB_CLUSTER)
+        for (uint32_t some = overlap_mask(near->boxes + k / CS_AABB_CLUSTER, low, high); some;
+             some &= some - 1) {
+            const uint32_t cluster = near->clusters[k + (uint32_t)__builtin_ctz(some)];
+            for (uint32_t bits = overlap_mask(of->clusters + cluster, low, high); bits;
+                 bits &= bits - 1)
+                items[n++] =
+                    of->items[CS_AABB_CLUSTER * cluster + (uint32_t)__builtin_ctz(bits)];
+        }
+    return n;
+}
+
+uint32_t cs_nearby_clusters_items(struct cs_nearby_clusters *near,
+                                  const struct cs_aabb_clusters *clusters,
+                                  const struct cs_aabb *box) {
+    float low[3], high[3];
+    for (int c = 0; c < 3; c++) {
+        low[c] = (float)box->low[c];
+        high[c] = (float)box->high[c];
+    }
+    return find_items(near, clusters, low, high, near->items);
+}
+
+void cs_nearby_clusters_finish(struct cs_nearby_clusters *near) {
+    free(near->clusters);
+    free(near->boxes);
+    free(near->items);
+}

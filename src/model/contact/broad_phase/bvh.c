@@ -1,0 +1,211 @@
+/* A tree of boxes over items in the order of a space-filling curve, halved again and again. */
+#include "model/contact/broad_phase/bvh.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* jobs from which on pairs of nodes are not cut further */
+enum { JOBS_ENOUGH = CS_BVH_PAIRS_MAX / 4 };
+
+/* places a side of the curve's cube */
+enum { CURVE_BITS = 20 };
+
+struct placed {
+    uint64_t code;
+    uint32_t item;
+};
+
+static int by_code(const void *left, const void *right) {
+    const struct placed *a = left, *b = right;
+    if (a->code != b->code)
+        return a->code < b->code ? -1 : 1;
+    return (a->item > b->item) - (a->item < b->item);
+}
+
+/* Morton's order: the bits of the three coordinates by turns. */
+static uint64_t code_of(const double p[3], const double low[3], double side) {
+    uint64_t code = 0, place[3];
+    for (int c = 0; c < 3; c++) {
+        const double share = side > 0 ? (p[c] - low[c]) / side : 0;
+        // not a number is put first
+        place[c] = share > 0 ? (uint64_t)(fmin(share, 1) * ((1 << CURVE_BITS) - 1)) : 0;
+    }
+    for (int bit = CURVE_BITS - 1; bit >= 0; bit--)
+        for (int c = 0; c < 3; c++)
+            code = code << 1 | (place[c] >> bit & 1);
+    return code;
+}
+
+/* items first..end - 1 of one group */
+static void sort_group(const double *centres, uint32_t first, uint32_t end,
+                       struct placed *placed, uint32_t *items) {
+    double low[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, high[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
+    double side = 0;
+    for (size_t k = first; k < end; k++)
+        for (size_t c = 0; c < 3; c++)
+            cs_swept_aabb_widen(low + c, high + c, centres[3 * k + c], centres[3 * k + c]);
+    for (int c = 0; c < 3; c++)
+        side = fmax(side, high[c] - low[c]);
+    for (uint32_t k = first; k < end; k++)
+        placed[k] = (struct placed){code_of(centres + 3 * (size_t)k, low, side), k};
+    qsort(placed + first, end - first, sizeof *placed, by_code);
+    for (uint32_t k = first; k < end; k++)
+        items[k] = placed[k].item;
+}
+
+/* the group within first..end - 1 where a next one begins nearest to the middle; or the middle
+ */
+static uint32_t place_to_cut(const uint32_t *groups, uint32_t n_groups, uint32_t first,
+                             uint32_t end) {
+    const uint32_t middle = first + (end - first) / 2;
+    uint32_t best = middle, nearest = UINT32_MAX;
+    for (uint32_t g = 1; g < n_groups; g++) {
+        const uint32_t at = groups[g], far = at > middle ? at - middle : middle - at;
+        if (at > first && at < end && far < nearest) {
+            nearest = far;
+            best = at;
+        }
+    }
+    return best;
+}
+
+static void add_nodes(struct cs_bvh *tree, const uint32_t *groups, uint32_t n_groups,
+                      uint32_t first, uint32_t end) {
+    const uint32_t here = tree->n_nodes++;
+    struct cs_bvh_node *node = tree->nodes + here;
+    node->first = first;
+    node->end = end;
+    const uint32_t cut = place_to_cut(groups, n_groups, first, end);
+    if (end - first <= CS_BOX_LEAF)
+        return;
+    add_nodes(tree, groups, n_groups, first, cut);
+    node->right = tree->n_nodes;
+    add_nodes(tree, groups, n_groups, cut, end);
+}
+
+/* a cut leaves leaves of two items and more, but where groups end */
+static size_t nodes_max(size_t n, size_t n_groups) {
+    return n + 2 * n_groups + 1;
+}
+
+size_t cs_bvh_bytes(size_t n, size_t n_groups) {
+    return nodes_max(n, n_groups) * sizeof(struct cs_bvh_node) +
+           n * (sizeof(uint32_t) + sizeof(struct cs_swept_aabb)) +
+           CS_BVH_PAIRS_MAX * sizeof(struct cs_bvh_pair);
+}
+
+enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uint32_t *first,
+                           uint32_t n_groups, struct cs_arena *arena, struct cs_error *error) {
+    const uint32_t n = first[n_groups];
+    *tree = (struct cs_bvh){.n = n};
+    struct placed *placed = calloc(n ? n : 1, sizeof *placed);
+    tree->items = cs_arena_alloc_array(arena, n, sizeof *tree->items, error);
+    tree->nodes =
+        cs_arena_alloc_array(arena, nodes_max(n, n_groups), sizeof *tree->nodes, error);
+    tree->boxes = cs_arena_alloc_array(arena, n, sizeof *tree->boxes, error);
+    tree->jobs = cs_arena_alloc_array(arena, CS_BVH_PAIRS_MAX, sizeof *tree->jobs, error);
+    if (!placed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for %u parts of surfaces", n);
+    for (uint32_t g = 0; g < n_groups && !error->status; g++)
+        sort_group(centres, first[g], first[g + 1], placed, tree->items);
+    if (n && !error->status)
+        add_nodes(tree, first, n_groups, 0, n);
+    free(placed);
+    return error->status;
+}
+
+static void set_boxes(struct cs_bvh *tree) {
+    // children stand behind their parents
+    for (uint32_t k = tree->n_nodes; k-- > 0;) {
+        struct cs_bvh_node *node = tree->nodes + k;
+        node->box = cs_swept_aabb_empty();
+        if (node->right) {
+            cs_swept_aabb_merge(&node->box, &tree->nodes[k + 1].box);
+            cs_swept_aabb_merge(&node->box, &tree->nodes[node->right].box);
+        } else
+            for (uint32_t i = node->first; i < node->end; i++)
+                cs_swept_aabb_merge(&node->box, tree->boxes + tree->items[i]);
+    }
+}
+
+/* The pairs of children of a pair of nodes that may meet, at most three; 0 of a pair that does
+ * not, and the pair itself of two leaves. */
+static uint32_t cut(const struct cs_bvh *tree, struct cs_bvh_pair pair,
+                    struct cs_bvh_pair parts[3]) {
+    const struct cs_bvh_node *a = tree->nodes + pair.a, *b = tree->nodes + pair.b;
+    if (pair.a == pair.b && a->right) {
+        parts[0] = (struct cs_bvh_pair){pair.a + 1, pair.a + 1};
+        parts[1] = (struct cs_bvh_pair){a->right, a->right};
+        parts[2] = (struct cs_bvh_pair){pair.a + 1, a->right};
+        return 3;
+    }
+    parts[0] = parts[1] = pair;
+    if (pair.a != pair.b && !cs_swept_aabbs_overlap(&a->box, &b->box, tree->max_distance))
+        return 0;
+    if (!a->right && !b->right)
+        return 1;
+    // the one with more in it
+    const bool first = !b->right || (a->right && a->end - a->first >= b->end - b->first);
+    if (first) {
+        parts[0].a = pair.a + 1;
+        parts[1].a = a->right;
+    } else {
+        parts[0].b = pair.b + 1;
+        parts[1].b = b->right;
+    }
+    return 2;
+}
+
+static bool is_leaf_pair(const struct cs_bvh *tree, struct cs_bvh_pair pair) {
+    return !tree->nodes[pair.a].right && !tree->nodes[pair.b].right;
+}
+
+/* pass after pass every pair is cut, in place from the end */
+static void distribute(struct cs_bvh *tree) {
+    struct cs_bvh_pair next[CS_BVH_PAIRS_MAX];
+    tree->jobs[0] = (struct cs_bvh_pair){0, 0};
+    tree->n_jobs = tree->n > 0;
+    bool more = tree->n > 0;
+    while (more && tree->n_jobs < JOBS_ENOUGH) {
+        uint32_t n = 0;
+        more = false;
+        for (uint32_t k = 0; k < tree->n_jobs; k++) {
+            n += cut(tree, tree->jobs[k], next + n);
+            more |= !is_leaf_pair(tree, tree->jobs[k]);
+        }
+        for (uint32_t k = 0; k < n; k++)
+            tree->jobs[k] = next[k];
+        tree->n_jobs = n;
+    }
+}
+
+void cs_bvh_update(struct cs_bvh *tree, double reach) {
+    tree->max_distance = reach;
+    set_boxes(tree);
+    distribute(tree);
+}
+
+static void visit_items(const struct cs_bvh *tree, struct cs_bvh_pair pair,
+                        cs_bvh_visitor *visit, void *arg) {
+    const struct cs_bvh_node *a = tree->nodes + pair.a, *b = tree->nodes + pair.b;
+    for (uint32_t k = a->first; k < a->end; k++)
+        for (uint32_t l = pair.a == pair.b ? k + 1 : b->first; l < b->end; l++) {
+            const uint32_t i = tree->items[k], j = tree->items[l];
+            if (cs_swept_aabbs_overlap(tree->boxes + i, tree->boxes + j, tree->max_distance))
+                visit(arg, i < j ? i : j, i < j ? j : i);
+        }
+}
+
+static void visit_pair(const struct cs_bvh *tree, struct cs_bvh_pair pair,
+                       cs_bvh_visitor *visit, void *arg) {
+    struct cs_bvh_pair parts[3];
+    const uint32_t n = cut(tree, pair, parts);
+    if (n == 1)
+        visit_items(tree, pair, visit, arg);
+    for (uint32_t k = 0; n > 1 && k < n; k++)
+        visit_pair(tree, parts[k], visit, arg);
+}
+
+void cs_bvh_visit(const struct cs_bvh *tree, uint32_t job, cs_bvh_visitor *visit, void *arg) {
+    visit_pair(tree, tree->jobs[job], visit, arg);
+}

@@ -1,0 +1,279 @@
+/* When a list is made, and for how long it is good. */
+#include "model/contact/broad_phase/candidates.h"
+
+#include "model/contact/broad_phase/candidates_find.h"
+
+#include <clothsim/clones.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void finish(void *object) {
+    struct cs_candidates *candidates = object;
+    for (uint32_t l = 0; l < candidates->n_chunks; l++) {
+        free(candidates->chunks[l].pairs);
+        free(candidates->chunks[l].in_range);
+    }
+    cs_candidates_find_finish(candidates);
+}
+
+static void cut(struct cs_candidate_chunk *chunks, enum cs_pair_kind kind, uint32_t n) {
+    for (uint32_t begin = 0; begin < n; begin += CS_CANDIDATE_CHUNK)
+        chunks[begin / CS_CANDIDATE_CHUNK] = (struct cs_candidate_chunk){
+            .kind = kind,
+            .begin = begin,
+            .end = n - begin > CS_CANDIDATE_CHUNK ? begin + CS_CANDIDATE_CHUNK : n};
+}
+
+enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_system *system,
+                                  const struct cs_body_pair_table *meetings,
+                                  struct cs_error *error) {
+    struct cs_arena *arena = &system->arena;
+    const struct cs_surfaces *surfaces = system->surfaces;
+    const uint32_t n = surfaces->n_points;
+    const uint32_t point_chunks = (n + CS_CANDIDATE_CHUNK - 1) / CS_CANDIDATE_CHUNK;
+    const uint32_t edge_chunks =
+        (surfaces->n_edges + CS_CANDIDATE_CHUNK - 1) / CS_CANDIDATE_CHUNK;
+    *candidates = (struct cs_candidates){.system = system,
+                                         .body_pairs = meetings,
+                                         .margin = CS_CANDIDATES_MARGIN * meetings->range_min,
+                                         .inverse_unit = 1 / meetings->range_max,
+                                         .n_chunks = point_chunks + edge_chunks};
+    candidates->body = cs_arena_alloc_array(arena, n, sizeof *candidates->body, error);
+    candidates->x_at_build =
+        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
+    candidates->x_at_close =
+        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *candidates->x_at_build, error);
+    candidates->scaled_points =
+        cs_arena_alloc_array(arena, n, sizeof *candidates->scaled_points, error);
+    candidates->chunks =
+        cs_arena_alloc_array(arena, candidates->n_chunks, sizeof *candidates->chunks, error);
+    candidates->body_motion = cs_arena_alloc_array(arena, 4 * (size_t)meetings->n_bodies,
+                                                   sizeof *candidates->body_motion, error);
+    if (error->status ||
+        cs_candidates_flat_init(&candidates->flat_regions, system, meetings, arena, error) ||
+        cs_candidates_find_init(candidates, arena, error))
+        return error->status;
+    for (uint32_t b = 0; b < meetings->n_bodies; b++)
+        for (uint32_t i = surfaces->first_point[b]; i < surfaces->first_point[b + 1]; i++)
+            candidates->body[i] = b;
+    cut(candidates->chunks, CS_PAIR_POINT_TRIANGLE, n);
+    cut(candidates->chunks + point_chunks, CS_PAIR_EDGE_EDGE, surfaces->n_edges);
+    cs_arena_adopt(arena, finish, candidates, error);
+    return error->status;
+}
+
+/* --- how long the list is good --- */
+
+/* several vectors: of fewer the compiler makes single numbers */
+enum { LANES = 32 };
+
+/* least and greatest move of each lane */
+struct span {
+    double low[LANES], high[LANES];
+};
+
+CS_INLINE void widen(struct span *span, const double *now, const double *then) {
+    for (int l = 0; l < LANES; l++) {
+        const double move = now[l] - then[l];
+        span->low[l] = move < span->low[l] ? move : span->low[l];
+        span->high[l] = move > span->high[l] ? move : span->high[l];
+    }
+}
+
+/* Into lane 0: least and greatest of now - then, the first one where that is not a number. By
+ * lanes, as each comparison waits for the one before it. */
+CS_CLONES static void find_span(const double *now, const double *then, size_t count,
+                                struct span *out) {
+    struct span span;
+    for (int l = 0; l < LANES; l++)
+        span.low[l] = span.high[l] = now[0] - then[0];
+    for (size_t i = 0; i + LANES <= count; i += LANES)
+        widen(&span, now + i, then + i);
+    for (size_t i = count - count % LANES; i < count; i++) {
+        const double move = now[i] - then[i];
+        span.low[0] = move < span.low[0] ? move : span.low[0];
+        span.high[0] = move > span.high[0] ? move : span.high[0];
+    }
+    for (int l = 1; l < LANES; l++) {
+        span.low[0] = span.low[l] < span.low[0] ? span.low[l] : span.low[0];
+        span.high[0] = span.high[l] > span.high[0] ? span.high[l] : span.high[0];
+    }
+    *out = span;
+}
+
+/* middle of the box about a body's moves since `then`, and half its diagonal */
+static void measure_drift(const struct cs_candidates *candidates, uint32_t body,
+                          const double *from, const double *x) {
+    const struct cs_surfaces *surfaces = candidates->system->surfaces;
+    const uint32_t first = surfaces->first_point[body];
+    const size_t n = surfaces->n_points, count = surfaces->first_point[body + 1] - first;
+    double *drift = candidates->body_motion + 4 * (size_t)body, squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        struct span span;
+        find_span(x + c * n + first, from + c * n + first, count, &span);
+        const double low = span.low[0], high = span.high[0];
+        drift[c] = 0.5 * (low + high);
+        squared += 0.25 * (high - low) * (high - low);
+    }
+    drift[3] = sqrt(squared);
+}
+
+/* what two bodies have moved by against each other at most; NAN counts as too far */
+static double apart(const double *a, const double *b) {
+    double squared = 0;
+    for (int c = 0; c < 3; c++)
+        squared += (a[c] - b[c]) * (a[c] - b[c]);
+    return a[3] + b[3] + sqrt(squared);
+}
+
+static void measure_drifts(const struct cs_candidates *candidates, const double *from,
+                           const double *x) {
+    for (uint32_t b = 0; b < candidates->body_pairs->n_bodies; b++)
+        if (candidates->body_pairs->has_partner[b])
+            measure_drift(candidates, b, from, x);
+}
+
+static bool is_good(const struct cs_candidates *candidates, const double *x) {
+    const struct cs_body_pair_table *meetings = candidates->body_pairs;
+    bool good = candidates->is_built;
+    if (good)
+        measure_drifts(candidates, candidates->x_at_build, x);
+    for (uint32_t a = 0; a < meetings->n_bodies && good; a++)
+        for (uint32_t b = a; b < meetings->n_bodies; b++)
+            good = good && (!(cs_body_pair_params_of(meetings, a, b)->range > 0) ||
+                            apart(candidates->body_motion + 4 * (size_t)a,
+                                  candidates->body_motion + 4 * (size_t)b) <=
+                                2 * candidates->margin_now);
+    return good;
+}
+
+/* m, that flat parts are to be good for in a list that is good for so much */
+static double flat_margin(const struct cs_candidates *candidates, double margin) {
+    const double usual = CS_CANDIDATES_FLAT_MARGIN * candidates->body_pairs->range_min;
+    return margin < usual ? margin : usual;
+}
+
+/* whether what was flat has not moved too far to be it still */
+static bool is_flat(const struct cs_candidates *candidates, const double *x) {
+    const struct cs_candidates_flat *flat = &candidates->flat_regions;
+    bool good = true;
+    if (flat->n_flat_blocks)
+        measure_drifts(candidates, flat->x_at_build, x);
+    for (uint32_t b = 0; flat->n_flat_blocks && b < candidates->body_pairs->n_bodies; b++)
+        good = good && (!flat->grids[b] ||
+                        candidates->body_motion[4 * (size_t)b + 3] <= flat->margin_now);
+    return good;
+}
+
+/* The list of the state `from`. false: no memory */
+static bool build(struct cs_candidates *candidates, double margin, double flat) {
+    cs_candidates_flat_find(&candidates->flat_regions, candidates->x_at_build, flat);
+    candidates->n_builds++;
+    candidates->margin_now = margin;
+    cs_candidates_scale_points(candidates, candidates->x_at_build);
+    candidates->is_built =
+        cs_candidates_find(candidates) && cs_candidates_merge_batches(candidates);
+    return candidates->is_built;
+}
+
+bool cs_candidates_update(struct cs_candidates *candidates, const double *x) {
+    const double flat = flat_margin(candidates, candidates->margin);
+    if (is_good(candidates, x) &&
+        (is_flat(candidates, x) ||
+         cs_candidates_flat_renew(&candidates->flat_regions, x, flat)))
+        return true;
+    memcpy(candidates->x_at_build, x, 3 * sizeof *x * candidates->system->surfaces->n_points);
+    return build(candidates, candidates->margin, flat);
+}
+
+/* --- for a whole move --- */
+
+/* box about a body at both ends of a move, grown */
+static struct cs_aabb body_box(const struct cs_candidates *candidates, uint32_t body,
+                               const double *x0, const double *x1, double grow) {
+    const struct cs_surfaces *surfaces = candidates->system->surfaces;
+    const size_t n = surfaces->n_points;
+    struct cs_aabb box;
+    for (size_t c = 0; c < 3; c++) {
+        box.low[c] = HUGE_VAL;
+        box.high[c] = -HUGE_VAL;
+        for (size_t i = surfaces->first_point[body]; i < surfaces->first_point[body + 1]; i++) {
+            box.low[c] = fmin(box.low[c], fmin(x0[c * n + i], x1[c * n + i]) - grow);
+            box.high[c] = fmax(box.high[c], fmax(x0[c * n + i], x1[c * n + i]) + grow);
+        }
+    }
+    return box;
+}
+
+/* whether two bodies come within their range of each other, as boxes, from x0 to x1 */
+static bool may_come_near(const struct cs_candidates *candidates, uint32_t a, uint32_t b,
+                          const double *x0, const double *x1) {
+    const double range = cs_body_pair_params_of(candidates->body_pairs, a, b)->range;
+    const struct cs_aabb first = body_box(candidates, a, x0, x1, range);
+    const struct cs_aabb second = body_box(candidates, b, x0, x1, 0);
+    return cs_aabbs_overlap(&first, &second);
+}
+
+/* The most by which particles that may meet move against each other, from x0 to x1; bodies that
+ * stay away from each other do not count. */
+static double largest_move(const struct cs_candidates *candidates, const double *x0,
+                           const double *x1) {
+    const struct cs_body_pair_table *meetings = candidates->body_pairs;
+    double most = 0;
+    measure_drifts(candidates, x0, x1);
+    for (uint32_t a = 0; a < meetings->n_bodies; a++)
+        for (uint32_t b = a; b < meetings->n_bodies; b++) {
+            const double range = cs_body_pair_params_of(meetings, a, b)->range;
+            const double move = apart(candidates->body_motion + 4 * (size_t)a,
+                                      candidates->body_motion + 4 * (size_t)b);
+            if (range > 0 && move > most && (a == b || may_come_near(candidates, a, b, x0, x1)))
+                most = move;
+        }
+    return most;
+}
+
+static bool is_covered(const struct cs_candidates *candidates, const double *x0,
+                       const double *x1) {
+    return is_good(candidates, x0) && is_good(candidates, x1) && is_flat(candidates, x0) &&
+           is_flat(candidates, x1);
+}
+
+/* ways of a step, at most, that the middle of a list lies ahead of it */
+#define AHEAD 2
+
+bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0,
+                              const double *x1) {
+    const size_t n = candidates->system->surfaces->n_points;
+    if (is_covered(candidates, x0, x1))
+        return true;
+    const double move = largest_move(candidates, x0, x1) * (1 + 1e-9);
+    // half of the way lies to both sides of its middle, and each particle goes half of that
+    const double margin = fmax(candidates->margin, 0.25 * move);
+    if (!(margin <=
+          CS_CANDIDATES_FAR_MARGINS * CS_CANDIDATES_MARGIN * candidates->body_pairs->range_min))
+        return false;
+    // the next step goes on much as this one: the list is made as far along as it covers this
+    const double along = fmin(2 * margin / move, AHEAD);
+    for (size_t i = 0; i < 3 * n; i++)
+        candidates->x_at_build[i] = x0[i] + along * (x1[i] - x0[i]);
+    return build(candidates, margin,
+                 fmax(flat_margin(candidates, candidates->margin), 0.5 * along * move));
+}
+
+double cs_candidates_max_motion(const struct cs_candidates *candidates, const double *x0,
+                                const double *x1) {
+    const struct cs_body_pair_table *meetings = candidates->body_pairs;
+    double most = 0;
+    measure_drifts(candidates, x0, x1);
+    for (uint32_t a = 0; a < meetings->n_bodies; a++)
+        for (uint32_t b = a; b < meetings->n_bodies; b++) {
+            const double range = cs_body_pair_params_of(meetings, a, b)->range;
+            const double moves = apart(candidates->body_motion + 4 * (size_t)a,
+                                       candidates->body_motion + 4 * (size_t)b) /
+                                 range;
+            // not a number stays
+            most = range > 0 && !(moves <= most) ? moves : most;
+        }
+    return most;
+}

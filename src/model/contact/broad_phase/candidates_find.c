@@ -1,0 +1,298 @@
+/* Boxes of triangles and edges in clusters, then for a cluster of points or edges at a time the
+ * clusters near it, for each its items whose boxes meet, and of these what may be near. */
+#include "model/contact/broad_phase/candidates_find.h"
+
+#include "base/pool.h"
+#include "model/contact/broad_phase/item_boxes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* --- made once --- */
+
+static enum cs_status alloc_clusters(const struct cs_cluster_input *order,
+                                     struct cs_aabb_clusters *clusters, struct cs_arena *arena,
+                                     struct cs_error *error) {
+    if (cs_cluster_input_build(order, clusters, arena, error))
+        return error->status;
+    clusters->clusters =
+        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->clusters, error);
+    clusters->cluster_boxes =
+        cs_arena_alloc_array(arena, clusters->n, sizeof *clusters->cluster_boxes, error);
+    return error->status;
+}
+
+/* points have no boxes of their own */
+static enum cs_status order_all(struct cs_candidates *candidates, struct cs_arena *arena,
+                                struct cs_error *error) {
+    const struct cs_surfaces *s = candidates->system->surfaces;
+    const uint32_t n = s->n_bodies;
+    struct cs_flat_region *const *grids = candidates->flat_regions.grids;
+    if (alloc_clusters(&(struct cs_cluster_input){s->triangles, 3, s->first_triangle, n, grids},
+                       &candidates->triangles, arena, error) ||
+        alloc_clusters(&(struct cs_cluster_input){s->edges, 2, s->first_edge, n, grids},
+                       &candidates->edges, arena, error))
+        return error->status;
+    return cs_cluster_input_build(&(struct cs_cluster_input){NULL, 1, s->first_point, n, grids},
+                                  &candidates->points, arena, error);
+}
+
+/* which clusters a thread does, and where what is found of an item will be */
+static enum cs_status alloc_batches(struct cs_candidates *candidates, struct cs_arena *arena,
+                                    struct cs_error *error) {
+    const struct cs_surfaces *surfaces = candidates->system->surfaces;
+    const uint32_t n[2] = {candidates->points.n, candidates->edges.n};
+    const uint32_t count[2] = {(n[0] + CS_CANDIDATE_BATCH - 1) / CS_CANDIDATE_BATCH,
+                               (n[1] + CS_CANDIDATE_BATCH - 1) / CS_CANDIDATE_BATCH};
+    candidates->n_batches = count[0] + count[1];
+    candidates->batches =
+        cs_arena_alloc_array(arena, candidates->n_batches, sizeof *candidates->batches, error);
+    candidates->rows[0] =
+        cs_arena_alloc_array(arena, surfaces->n_points, sizeof **candidates->rows, error);
+    candidates->rows[1] =
+        cs_arena_alloc_array(arena, surfaces->n_edges, sizeof **candidates->rows, error);
+    for (uint32_t b = 0; b < candidates->n_batches && !error->status; b++) {
+        const int kind = b >= count[0];
+        const uint32_t begin = CS_CANDIDATE_BATCH * (kind ? b - count[0] : b);
+        candidates->batches[b] = (struct cs_candidate_batch){
+            .kind = kind,
+            .begin = begin,
+            .end = n[kind] - begin > CS_CANDIDATE_BATCH ? begin + CS_CANDIDATE_BATCH : n[kind]};
+    }
+    return error->status;
+}
+
+enum cs_status cs_candidates_find_init(struct cs_candidates *candidates, struct cs_arena *arena,
+                                       struct cs_error *error) {
+    return order_all(candidates, arena, error) ? error->status
+                                               : alloc_batches(candidates, arena, error);
+}
+
+void cs_candidates_find_finish(struct cs_candidates *candidates) {
+    for (uint32_t b = 0; b < candidates->n_batches; b++) {
+        free(candidates->batches[b].pairs);
+        cs_nearby_clusters_finish(candidates->batches[b].query);
+        cs_nearby_clusters_finish(candidates->batches[b].query + 1);
+    }
+    cs_aabb_clusters_finish(&candidates->triangles);
+    cs_aabb_clusters_finish(&candidates->edges);
+}
+
+/* --- at a state --- */
+
+static struct cs_item_boxes boxes_of(const struct cs_candidates *candidates,
+                                     const uint32_t *corners, uint32_t each) {
+    return (struct cs_item_boxes){
+        candidates->x_at_build, candidates->system->surfaces->n_points, corners, each,
+        candidates->body,       candidates->body_pairs->has_partner};
+}
+
+/* A batch at work: pairs whose boxes meet wait until they are asked about together. */
+struct work {
+    const struct cs_candidates *search;
+    struct cs_candidate_batch *batch;
+    struct cs_distance_filter sieve;
+};
+
+static void store_pairs(struct cs_candidate_batch *batch, const uint32_t pair[2]) {
+    uint32_t *pairs =
+        cs_arena_realloc(batch->pairs, &batch->capacity, batch->n + 1, 2 * sizeof *pairs);
+    batch->failed = batch->failed || !pairs;
+    if (!pairs)
+        return;
+    batch->pairs = pairs;
+    pairs[2 * batch->n] = pair[0];
+    pairs[2 * batch->n + 1] = pair[1];
+    batch->n++;
+}
+
+static void measure(struct work *work) {
+    const uint32_t n =
+        cs_distance_filter_run(&work->sieve, work->batch->kind == CS_PAIR_EDGE_EDGE);
+    for (uint32_t l = 0; l < n; l++)
+        store_pairs(work->batch, work->sieve.pairs[l]);
+}
+
+static bool share_corner(const uint32_t at[4], enum cs_pair_kind kind) {
+    if (kind == CS_PAIR_POINT_TRIANGLE)
+        return at[0] == at[1] || at[0] == at[2] || at[0] == at[3];
+    return at[0] == at[2] || at[0] == at[3] || at[1] == at[2] || at[1] == at[3];
+}
+
+/* the last bits of a reach are for rounding */
+static double reach_of(const struct cs_candidates *candidates, double range) {
+    return (range + 2 * candidates->margin_now) * (1 + 1e-9);
+}
+
+static void take(struct work *work, uint32_t item, uint32_t other) {
+    const struct cs_candidates *candidates = work->search;
+    const enum cs_pair_kind kind = work->batch->kind;
+    const uint32_t pair[2] = {item, other};
+    uint32_t at[4];
+    if (kind == CS_PAIR_EDGE_EDGE && other <= item)
+        return;
+    cs_candidate_vertices(candidates->system->surfaces, kind, pair, at);
+    const double range = cs_body_pair_params_range(
+        cs_body_pair_params_of(candidates->body_pairs, candidates->body[at[0]],
+                               candidates->body[at[2]]),
+        kind == CS_PAIR_EDGE_EDGE);
+    if (share_corner(at, kind) || !(range > 0))
+        return;
+    const double reach = reach_of(candidates, range) * candidates->inverse_unit;
+    if (cs_distance_filter_add(&work->sieve, candidates->scaled_points, at, reach, pair))
+        measure(work);
+}
+
+/* m, how far what is of a body reaches for its own, or for others at most; 0: for none */
+static double widest_reach(const struct cs_candidates *candidates, uint32_t body, bool own,
+                           bool edges) {
+    double widest = 0;
+    for (uint32_t b = own ? body : 0; b < (own ? body + 1 : candidates->body_pairs->n_bodies);
+         b++)
+        if (own || b != body)
+            widest = fmax(widest,
+                          cs_body_pair_params_range(
+                              cs_body_pair_params_of(candidates->body_pairs, body, b), edges));
+    return widest > 0 ? reach_of(candidates, widest) : 0;
+}
+
+/* of all items of a cluster, that of edges as it was filled */
+static struct cs_aabb group_box(const struct cs_candidates *candidates, bool edges,
+                                uint32_t cluster, double reach) {
+    const struct cs_item_boxes points = boxes_of(candidates, NULL, 1);
+    struct cs_aabb all = edges ? candidates->edges.cluster_boxes[cluster] : cs_box_none;
+    for (uint32_t k = 0; k < CS_AABB_CLUSTER && !edges; k++) {
+        const struct cs_aabb one = cs_item_box(
+            &points, candidates->points.items[CS_AABB_CLUSTER * (size_t)cluster + k], 0);
+        cs_aabb_merge(&all, &one);
+    }
+    for (int c = 0; c < 3; c++) {
+        all.low[c] -= reach;
+        all.high[c] += reach;
+    }
+    return all;
+}
+
+/* A cluster of points or edges, and how far it reaches for its own body and for others. */
+struct group {
+    const struct cs_aabb_clusters *of, *others;
+    uint32_t cluster;
+    bool edges;
+    double reach[2]; /* m; 0: not at all */
+};
+
+static struct group group_of(const struct cs_candidates *candidates, bool edges,
+                             uint32_t cluster) {
+    struct group group = {.of = edges ? &candidates->edges : &candidates->points,
+                          .others = edges ? &candidates->edges : &candidates->triangles,
+                          .cluster = cluster,
+                          .edges = edges};
+    for (int k = 0; k < 2; k++)
+        group.reach[k] = widest_reach(candidates, group.of->body[cluster], k == 0, edges);
+    return group;
+}
+
+/* Sets near to the clusters of its own body, or of others, that a group may meet. */
+static bool find_clusters(const struct cs_candidates *candidates, const struct group *group,
+                          bool own, struct cs_nearby_clusters *near) {
+    const double reach = group->reach[!own];
+    const uint32_t block = group->of->grid_block[group->cluster];
+    const bool flat = own && candidates->flat_regions.n_flat_blocks && block != CS_NO_BLOCK;
+    near->n = 0;
+    if (!(reach > 0))
+        return true;
+    near->same_body_only = own;
+    near->body = group->of->body[group->cluster];
+    // an edge is listed with later ones alone
+    near->first_item =
+        group->edges ? group->of->items[CS_AABB_CLUSTER * (size_t)group->cluster] : 0;
+    const struct cs_aabb box = group_box(candidates, group->edges, group->cluster, reach);
+    return cs_nearby_clusters_find(
+        near, group->others, &box,
+        flat ? candidates->flat_regions
+                       .work_neighbourhood[group->edges ? CS_PAIR_EDGE_EDGE
+                                                        : CS_PAIR_POINT_TRIANGLE] +
+                   block
+             : NULL);
+}
+
+static void find_item(struct work *work, const struct group *group, uint32_t item) {
+    const struct cs_candidates *candidates = work->search;
+    const struct cs_item_boxes boxes =
+        group->edges ? boxes_of(candidates, candidates->system->surfaces->edges, 2)
+                     : boxes_of(candidates, NULL, 1);
+    for (int k = 0; k < 2; k++) {
+        struct cs_nearby_clusters *near = work->batch->query + k;
+        if (!near->n)
+            continue;
+        const struct cs_aabb box = cs_item_box(&boxes, item, group->reach[k]);
+        const uint32_t n = cs_nearby_clusters_items(near, group->others, &box);
+        for (uint32_t l = 0; l < n; l++)
+            take(work, item, near->items[l]);
+    }
+}
+
+/* what the items of a cluster have near them */
+static void query_cluster(struct work *work, uint32_t cluster) {
+    const struct cs_candidates *candidates = work->search;
+    struct cs_candidate_batch *batch = work->batch;
+    const struct group group = group_of(candidates, batch->kind == CS_PAIR_EDGE_EDGE, cluster);
+    const uint32_t *items = group.of->items + CS_AABB_CLUSTER * (size_t)cluster;
+    bool there = true;
+    for (int k = 0; k < 2; k++)
+        there = there && find_clusters(candidates, &group, k == 0, batch->query + k);
+    batch->failed = batch->failed || !there;
+    for (uint32_t k = 0; k < CS_AABB_CLUSTER && there && batch->query[0].n + batch->query[1].n;
+         k++)
+        if (items[k] != CS_NO_ITEM)
+            find_item(work, &group, items[k]);
+}
+
+/* notes where the pairs of each item are */
+static void set_rows(const struct cs_candidates *candidates, const struct cs_aabb_clusters *of,
+                     uint32_t number) {
+    const struct cs_candidate_batch *batch = candidates->batches + number;
+    struct cs_candidate_range *rows = candidates->rows[batch->kind];
+    for (size_t k = CS_AABB_CLUSTER * (size_t)batch->begin;
+         k < CS_AABB_CLUSTER * (size_t)batch->end; k++)
+        if (of->items[k] != CS_NO_ITEM)
+            rows[of->items[k]] = (struct cs_candidate_range){number, 0, 0};
+    for (size_t p = 0; p < batch->n; p++) {
+        struct cs_candidate_range *row = rows + batch->pairs[2 * p];
+        row->begin = row->n ? row->begin : (uint32_t)p;
+        row->n++;
+    }
+}
+
+static void find_batch(void *arg, uint32_t number) {
+    const struct cs_candidates *candidates = arg;
+    struct cs_candidate_batch *batch = candidates->batches + number;
+    const struct cs_aabb_clusters *of =
+        batch->kind == CS_PAIR_EDGE_EDGE ? &candidates->edges : &candidates->points;
+    struct work work;
+    work.search = candidates;
+    work.batch = batch;
+    work.sieve.n = 0;
+    batch->n = 0;
+    batch->failed = false;
+    for (uint32_t k = batch->begin; k < batch->end; k++)
+        query_cluster(&work, k);
+    measure(&work);
+    set_rows(candidates, of, number);
+}
+
+static bool fill(const struct cs_candidates *candidates, struct cs_aabb_clusters *clusters,
+                 const uint32_t *corners, uint32_t each) {
+    const struct cs_item_boxes boxes = boxes_of(candidates, corners, each);
+    return cs_item_boxes_fill(&boxes, clusters);
+}
+
+bool cs_candidates_find(struct cs_candidates *candidates) {
+    const struct cs_surfaces *surfaces = candidates->system->surfaces;
+    bool failed = !fill(candidates, &candidates->triangles, surfaces->triangles, 3) ||
+                  !fill(candidates, &candidates->edges, surfaces->edges, 2);
+    cs_pool_run(candidates->n_batches, find_batch, candidates);
+    for (uint32_t b = 0; b < candidates->n_batches; b++)
+        failed = failed || candidates->batches[b].failed;
+    return !failed;
+}

@@ -1,0 +1,72 @@
+/* An edge against a triangle: five signs of determinants. */
+#include "model/contact/ccd/edge_triangle.h"
+
+#include "base/vec3.h"
+#include "model/contact/ccd/orient3d.h"
+
+#include <float.h>
+
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+static double min_of(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* Whether their boxes lie apart, which is exact. */
+static bool has_gap(const double edge[2][3], const double triangle[3][3]) {
+    for (int c = 0; c < 3; c++) {
+        const double a = triangle[0][c], b = triangle[1][c], d = triangle[2][c];
+        if (larger(edge[0][c], edge[1][c]) < min_of(min_of(a, b), d) ||
+            min_of(edge[0][c], edge[1][c]) > larger(larger(a, b), d))
+            return true;
+    }
+    return false;
+}
+
+/* Whether an edge and a triangle surely lie apart along an axis, whatever axis it is: rounding
+ * of the projections is below the margin. */
+static bool are_separated(const double edge[2][3], const double triangle[3][3],
+                          const double axis[3]) {
+    double at[5], size = 0;
+    for (int k = 0; k < 5; k++) {
+        const double *p = k < 2 ? edge[k] : triangle[k - 2], *from = triangle[0];
+        const double x = axis[0] * (p[0] - from[0]), y = axis[1] * (p[1] - from[1]);
+        const double z = axis[2] * (p[2] - from[2]);
+        at[k] = x + y + z;
+        size = larger(size, fabs(x) + fabs(y) + fabs(z));
+    }
+    const double margin = 8 * DBL_EPSILON * size;
+    return min_of(at[0], at[1]) > larger(larger(at[2], at[3]), at[4]) + margin ||
+           larger(at[0], at[1]) < min_of(min_of(at[2], at[3]), at[4]) - margin;
+}
+
+/* A flat body has no other certain answer than this for edges beside a triangle: every
+ * determinant of points in a plane is 0 but for rounding. */
+static bool are_on_same_side(const double edge[2][3], const double triangle[3][3]) {
+    double sides[3][3], along[3], normal[3], axis[3];
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            sides[k][c] = triangle[(k + 1) % 3][c] - triangle[k][c];
+    cs_vec3_cross(sides[0], sides[1], normal);
+    for (int k = 0; k < 3; k++) {
+        cs_vec3_cross(normal, sides[k], axis);
+        if (are_separated(edge, triangle, axis))
+            return true;
+    }
+    for (int c = 0; c < 3; c++)
+        along[c] = edge[1][c] - edge[0][c];
+    cs_vec3_cross(normal, along, axis);
+    return are_separated(edge, triangle, axis);
+}
+
+bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][3]) {
+    if (has_gap(edge, triangle) || are_on_same_side(edge, triangle))
+        return false;
+    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
+    const double *p = edge[0], *q = edge[1];
+    if (cs_orient3d(a, b, c, p) * cs_orient3d(a, b, c, q) >= 0)
+        return false;
+    const int side = cs_orient3d_moved(a, b, p, q);
+    return side == cs_orient3d_moved(b, c, p, q) && side == cs_orient3d_moved(c, a, p, q);
+}

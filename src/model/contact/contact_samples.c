@@ -1,0 +1,217 @@
+/* Which edges and triangles need points against which collider, and the points one by one. */
+#include "model/contact/contact_samples.h"
+
+#include "mesh/trimesh.h"
+
+#include <math.h>
+
+/* items of a lot */
+enum { LOT = 128 };
+
+double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, double range) {
+    return obstacle->kind == CS_COLLIDER_PLANE || obstacle->kind == CS_COLLIDER_MESH
+               ? HUGE_VAL
+               : sqrt(range * (2 * obstacle->radius + 0.75 * range));
+}
+
+/* --- lengths --- */
+
+/* m, between two particles where they start */
+static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
+    const double *x = system->start;
+    const size_t n = system->view.n;
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++)
+        squared += (x[c * n + b] - x[c * n + a]) * (x[c * n + b] - x[c * n + a]);
+    return sqrt(squared);
+}
+
+static double longest_of_grid(const struct cs_system *system,
+                              const struct cs_body_range *body) {
+    const uint32_t columns = body->columns;
+    double longest = 0;
+    for (uint32_t k = 0; k < body->count; k++) {
+        const uint32_t i = body->first + k;
+        const bool right = k % columns + 1 < columns, below = k / columns + 1 < body->rows;
+        if (right)
+            longest = fmax(longest, length_of(system, i, i + 1));
+        if (below)
+            longest = fmax(longest, length_of(system, i, i + columns));
+        // a cell's diagonal as in surfaces.h
+        if (right && below)
+            longest = fmax(longest, length_of(system, i + 1, i + columns));
+    }
+    return longest;
+}
+
+double cs_contact_sample_longest(const struct cs_system *system) {
+    double longest = 0;
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *body = system->bodies + b;
+        if (!body->mesh)
+            longest = fmax(longest, longest_of_grid(system, body));
+        for (size_t e = 0; body->mesh && e < body->mesh->n_edges; e++)
+            longest = fmax(longest, length_of(system, body->first + body->mesh->edges[2 * e],
+                                              body->first + body->mesh->edges[2 * e + 1]));
+    }
+    return longest;
+}
+
+/* --- making --- */
+
+/* parts of an edge or a triangle; 0: it has no points */
+static uint8_t parts_of(const struct cs_system *system,
+                        const struct cs_contact_sample_chunk *chunk, uint32_t item,
+                        double spacing) {
+    const uint32_t *at = chunk->vertices + (size_t)chunk->vertices_per_item * item;
+    double longest = 0;
+    for (uint32_t k = 0; k < chunk->vertices_per_item; k++)
+        longest =
+            fmax(longest, length_of(system, at[k], at[(k + 1) % chunk->vertices_per_item]));
+    const double parts = fmin(ceil(longest / spacing), CS_CONTACT_SAMPLE_PARTS_MAX);
+    // two parts of each edge leave no point inside a triangle
+    return parts >= chunk->vertices_per_item ? (uint8_t)parts : 0;
+}
+
+static size_t points_of(uint32_t each, size_t parts) {
+    return parts == 0 ? 0 : each == 2 ? parts - 1 : (parts - 1) * (parts - 2) / 2;
+}
+
+/* Sets the rest of a lot whose items are there; returns its points. */
+static size_t fill_chunk(const struct cs_system *system, double spacing,
+                         struct cs_contact_sample_chunk *chunk) {
+    size_t points = 0;
+    chunk->first = UINT32_MAX, chunk->last = 0;
+    for (uint32_t i = chunk->begin; i < chunk->end; i++) {
+        const uint8_t parts = parts_of(system, chunk, i, spacing);
+        points += points_of(chunk->vertices_per_item, parts);
+        if (chunk->subdivisions)
+            chunk->subdivisions[i - chunk->begin] = parts;
+        for (uint32_t k = 0; k < chunk->vertices_per_item; k++) {
+            const uint32_t at = chunk->vertices[(size_t)chunk->vertices_per_item * i + k];
+            chunk->first = at < chunk->first ? at : chunk->first;
+            chunk->last = at > chunk->last ? at : chunk->last;
+        }
+    }
+    return points;
+}
+
+/* The chunks of one collider that have points: counted, and put where chunks are there. */
+static void list_chunks(struct cs_system *system, struct cs_contact_samples *samples,
+                        uint32_t collider, struct cs_error *error) {
+    const struct cs_surfaces *surfaces = system->surfaces;
+    struct cs_posed_collider pose;
+    cs_posed_collider_at(system, collider, 0, &pose);
+    const double spacing =
+        cs_contact_sample_spacing(&pose, system->collider_params[collider].range);
+    for (uint32_t each = 2; each <= 3; each++) {
+        // those of bodies come first
+        const uint32_t n = (each == 2 ? surfaces->first_edge
+                                      : surfaces->first_triangle)[system->scene->bodies.n];
+        for (uint32_t begin = 0; begin < n && !error->status; begin += LOT) {
+            struct cs_contact_sample_chunk chunk = {.vertices = each == 2 ? surfaces->edges
+                                                                          : surfaces->triangles,
+                                                    .vertices_per_item = each,
+                                                    .begin = begin,
+                                                    .end = n - begin > LOT ? begin + LOT : n,
+                                                    .collider = collider};
+            const size_t points = fill_chunk(system, spacing, &chunk);
+            if (points && samples->chunks) {
+                chunk.subdivisions =
+                    cs_arena_alloc_array(&system->arena, chunk.end - begin, 1, error);
+                if (chunk.subdivisions)
+                    fill_chunk(system, spacing, &chunk);
+                samples->chunks[samples->n_chunks] = chunk;
+                samples->n_points += points;
+            }
+            samples->n_chunks += points > 0;
+        }
+    }
+}
+
+static void list_all(struct cs_system *system, struct cs_contact_samples *samples,
+                     struct cs_error *error) {
+    samples->n_chunks = 0;
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++)
+        list_chunks(system, samples, c, error);
+}
+
+/* whether an edge is longer than what a collider leaves uncovered */
+static bool is_needed(const struct cs_system *system) {
+    const double longest = cs_contact_sample_longest(system);
+    bool needed = false;
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+        struct cs_posed_collider pose;
+        cs_posed_collider_at(system, c, 0, &pose);
+        needed = needed ||
+                 longest > cs_contact_sample_spacing(&pose, system->collider_params[c].range);
+    }
+    return needed;
+}
+
+enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_error *error) {
+    struct cs_arena *arena = &system->arena;
+    if (!is_needed(system) || cs_surfaces_build(system, error))
+        return error->status;
+    struct cs_contact_samples *samples = cs_arena_alloc(arena, sizeof *samples, error);
+    if (!samples)
+        return error->status;
+    samples->system = system;
+    samples->blocks = &samples->current_set;
+    list_all(system, samples, error);
+    samples->colliders = cs_arena_alloc_array(arena, system->scene->colliders.n,
+                                              sizeof *samples->colliders, error);
+    samples->chunks =
+        cs_arena_alloc_array(arena, samples->n_chunks, sizeof *samples->chunks, error);
+    if (!error->status)
+        list_all(system, samples, error);
+    cs_contact_set_init(&samples->current_set, system->view.n, samples->n_chunks, arena, error);
+    cs_contact_set_init(&samples->matrix, system->view.n, samples->n_chunks, arena, error);
+    samples->current_set.no_gradients = samples->matrix.no_gradients = true;
+    if (!error->status)
+        system->contact_samples = samples;
+    return error->status;
+}
+
+/* --- points --- */
+
+void cs_contact_sample_first(const struct cs_contact_sample_chunk *chunk, uint32_t item,
+                             struct cs_contact_sample_point *point) {
+    *point = (struct cs_contact_sample_point){.n = chunk->vertices_per_item,
+                                              .subdivisions =
+                                                  chunk->subdivisions[item - chunk->begin],
+                                              .a = chunk->vertices_per_item == 3};
+    for (uint32_t k = 0; k < chunk->vertices_per_item; k++)
+        point->particles[k] = chunk->vertices[(size_t)chunk->vertices_per_item * item + k];
+}
+
+bool cs_contact_sample_next(struct cs_contact_sample_point *point) {
+    if (point->n == 2)
+        point->a++;
+    else if (point->a + ++point->b >= point->subdivisions)
+        point->a++, point->b = 1;
+    if (point->a + point->b >= point->subdivisions)
+        return false;
+    const double part = 1.0 / point->subdivisions;
+    point->w[0] = (point->subdivisions - point->a - point->b) * part;
+    point->w[1] = point->a * part;
+    point->w[2] = point->b * part;
+    return true;
+}
+
+void cs_contact_sample_interpolate(const struct cs_contact_sample_point *point, size_t n,
+                                   const double *x, double out[3]) {
+    for (size_t c = 0; c < 3; c++) {
+        out[c] = 0;
+        for (uint32_t k = 0; x && k < point->n; k++)
+            out[c] += point->w[k] * x[c * n + point->particles[k]];
+    }
+}
+
+double cs_contact_sample_mass(const struct cs_system *system,
+                              const struct cs_contact_sample_point *point) {
+    double inverse = 0;
+    for (uint32_t k = 0; k < point->n; k++)
+        inverse += point->w[k] * point->w[k] * system->inv_mass[point->particles[k]];
+    return inverse > 0 ? 1 / inverse : HUGE_VAL;
+}

@@ -1,0 +1,215 @@
+/* From close pairs to what is in range of them. */
+#include "model/contact/narrow_phase/active_contacts.h"
+
+#include "base/pool.h"
+#include "model/contact/surface_points.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void finish(void *object) {
+    struct cs_active_contacts *active = object;
+    for (uint32_t l = 0; l < active->candidates->n_chunks; l++)
+        free(active->chunks[l].blocks), free(active->chunks[l].features),
+            free(active->chunks[l].points), free(active->chunks[l].rows);
+}
+
+enum cs_status cs_active_contacts_init(struct cs_active_contacts *active,
+                                       const struct cs_candidates *search,
+                                       const struct cs_feature_weights *facets,
+                                       struct cs_arena *arena, struct cs_error *error) {
+    *active = (struct cs_active_contacts){.candidates = search, .feature_weights = facets};
+    active->chunks =
+        cs_arena_alloc_array(arena, search->n_chunks, sizeof *active->chunks, error);
+    if (!error->status)
+        cs_arena_adopt(arena, finish, active, error);
+    return error->status ? error->status
+                         : cs_gather_init(&active->force_gather, search->n_chunks,
+                                          search->system->view.n, arena, error);
+}
+
+/* One chunk at work. */
+struct work {
+    const struct cs_active_contacts *active;
+    const double *x;
+    struct cs_active_chunk *chunk;
+    struct cs_feature_query pairs[CS_FEATURE_QUERY_PAIRS]; /* that wait for each other */
+    uint32_t waiting, n_felt;
+};
+
+static struct cs_body_pair_params meeting_of(const struct cs_candidates *search,
+                                             const uint32_t at[4]) {
+    return *cs_body_pair_params_of(search->body_pairs, search->body[at[0]],
+                                   search->body[at[2]]);
+}
+
+/* a place for one pair more; NULL: no memory */
+static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
+    const size_t n_blocks = chunk->n / CS_PAIR_LANES + 1;
+    struct cs_active_lanes *blocks =
+        cs_arena_realloc(chunk->blocks, &chunk->capacity, n_blocks, sizeof *blocks);
+    chunk->blocks = blocks ? blocks : chunk->blocks;
+    uint32_t(*at)[4] =
+        cs_arena_realloc(chunk->points, &chunk->points_capacity, chunk->n + 1, sizeof *at);
+    chunk->points = at ? at : chunk->points;
+    chunk->failed = chunk->failed || !blocks || !at;
+    return blocks && at ? blocks + chunk->n / CS_PAIR_LANES : NULL;
+}
+
+static void put(const struct work *work, const struct cs_weighted_feature *use, double share) {
+    struct cs_active_chunk *chunk = work->chunk;
+    const struct cs_body_pair_params params = meeting_of(work->active->candidates, use->points);
+    struct cs_active_lanes *to = next(chunk);
+    const size_t l = chunk->n % CS_PAIR_LANES;
+    if (!to)
+        return;
+    memcpy(chunk->points + chunk->n++, use->points, sizeof *chunk->points);
+    to->range[l] = share * params.range;
+    to->k[l] = params.k;
+    to->friction[l] = params.friction;
+    to->weight[l] = use->weight;
+    to->psd_weight[l] = use->psd_weight;
+    to->is_edge[l] = use->form.is_edge;
+    to->is_off_plane[l] = use->form.is_off_plane;
+    to->blend_radius[l] = use->form.e;
+    to->d[l] = use->d;
+}
+
+/* --- points and triangles --- */
+
+/* the point that was at work has no more triangles */
+static void finish_point(struct work *work) {
+    for (uint32_t k = 0; k < work->n_felt; k++)
+        if (cs_feature_weights_counts(work->chunk->features + k))
+            put(work, work->chunk->features + k, CS_FEATURE_RANGE_RATIO);
+    work->n_felt = 0;
+}
+
+/* n uses of one point */
+static void add_features(struct work *work, const struct cs_weighted_feature *uses,
+                         uint32_t n) {
+    struct cs_active_chunk *chunk = work->chunk;
+    if (work->n_felt && chunk->features->points[0] != uses->points[0])
+        finish_point(work);
+    struct cs_weighted_feature *felt = cs_arena_realloc(
+        chunk->features, &chunk->features_capacity, (size_t)work->n_felt + n, sizeof *felt);
+    chunk->failed = chunk->failed || !felt;
+    if (!felt)
+        return;
+    chunk->features = felt;
+    memcpy(felt + work->n_felt, uses, n * sizeof *uses);
+    work->n_felt = cs_feature_weights_join(felt, work->n_felt, n);
+}
+
+static void find_facets(struct work *work) {
+    struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE * CS_FEATURE_QUERY_PAIRS];
+    const uint32_t n = cs_feature_weights_find(work->active->feature_weights, work->pairs,
+                                               work->waiting, work->x, uses);
+    for (uint32_t k = 0, end; k < n; k = end) {
+        end = k + 1;
+        while (end < n && uses[end].points[0] == uses[k].points[0])
+            end++;
+        add_features(work, uses + k, end - k);
+    }
+    work->waiting = 0;
+}
+
+static void queue_pair(struct work *work, const uint32_t at[4], uint32_t triangle) {
+    const struct cs_candidates *search = work->active->candidates;
+    struct cs_feature_query *pair = work->pairs + work->waiting++;
+    memcpy(pair->points, at, sizeof pair->points);
+    pair->triangle = triangle;
+    pair->same_body = search->body[at[0]] == search->body[at[1]];
+    pair->range = meeting_of(search, at).range;
+    if (work->waiting == CS_FEATURE_QUERY_PAIRS)
+        find_facets(work);
+}
+
+/* --- both kinds --- */
+
+/* what cannot move feels nothing, and holds nothing */
+static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
+    bool fixed = true;
+    for (int k = 0; k < 4; k++)
+        fixed = fixed && cs_surface_points_inverse_mass(system, at[k]) == 0;
+    return fixed;
+}
+
+static void take(struct work *work, const uint32_t pair[2]) {
+    const struct cs_candidates *search = work->active->candidates;
+    struct cs_weighted_feature edges = {.weight = 1, .psd_weight = 1};
+    cs_candidate_vertices(search->system->surfaces, work->chunk->kind, pair, edges.points);
+    if (is_fixed(search->system, edges.points))
+        return;
+    if (work->chunk->kind == CS_PAIR_EDGE_EDGE)
+        put(work, &edges, CS_EDGE_RANGE_RATIO);
+    else
+        queue_pair(work, edges.points, pair[1]);
+}
+
+struct job {
+    struct cs_active_contacts *active;
+    const double *x;
+};
+
+static void find_chunk(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const struct cs_candidate_chunk *from = job->active->candidates->chunks + number;
+    struct work work;
+    work.active = job->active;
+    work.x = job->x;
+    work.chunk = job->active->chunks + number;
+    work.waiting = work.n_felt = 0;
+    work.chunk->kind = from->kind;
+    work.chunk->n = 0;
+    work.chunk->failed = false;
+    for (size_t k = 0; k < from->n_in_range; k++)
+        take(&work, from->in_range + 2 * k);
+    find_facets(&work);
+    finish_point(&work);
+}
+
+bool cs_active_contacts_is_there(const struct cs_active_contacts *active) {
+    return active->candidates_version == active->candidates->close_count &&
+           active->friction_version == active->candidates->body_pairs->friction_version;
+}
+
+bool cs_active_contacts_find(struct cs_active_contacts *active, const double *x) {
+    struct job job = {active, x};
+    bool failed = false;
+    cs_pool_run(active->candidates->n_chunks, find_chunk, &job);
+    active->n = 0;
+    active->is_gathered = false;
+    for (uint32_t l = 0; l < active->candidates->n_chunks; l++) {
+        active->n += active->chunks[l].n;
+        failed = failed || active->chunks[l].failed;
+    }
+    active->candidates_version = failed ? 0 : active->candidates->close_count;
+    active->friction_version = active->candidates->body_pairs->friction_version;
+    return !failed;
+}
+
+static void number_chunk(void *arg, uint32_t number) {
+    struct cs_active_contacts *active = arg;
+    struct cs_active_chunk *chunk = active->chunks + number;
+    struct cs_gather_chunk *rows = active->force_gather.chunks + number;
+    uint32_t(*to)[4] =
+        cs_arena_realloc(chunk->rows, &chunk->rows_capacity, chunk->n, sizeof *to);
+    cs_gather_clear(rows);
+    rows->failed = chunk->n && !to;
+    chunk->rows = to ? to : chunk->rows;
+    // neighbours in the list have points in common
+    for (size_t p = 0; p < chunk->n && !rows->failed; p++)
+        for (int k = 0; k < 4; k++)
+            to[p][k] = p && chunk->points[p][k] == chunk->points[p - 1][k]
+                           ? to[p - 1][k]
+                           : cs_gather_row(rows, chunk->points[p][k]);
+}
+
+bool cs_active_contacts_gather(struct cs_active_contacts *active) {
+    if (!active->is_gathered) {
+        cs_pool_run(active->candidates->n_chunks, number_chunk, active);
+        active->is_gathered = cs_gather_set(&active->force_gather);
+    }
+    return active->is_gathered;
+}

@@ -1,0 +1,73 @@
+/* How the triangles of surfaces hang together. */
+#include "model/contact/narrow_phase/feature_weights.h"
+
+#include "scene/body_pairs.h"
+
+static uint32_t corner_opposite(const uint32_t *corners, const uint32_t *edge) {
+    uint32_t k = 0;
+    while (k < 2 && (corners[k] == edge[0] || corners[k] == edge[1]))
+        k++;
+    return k;
+}
+
+/* Of a corner whose fan of triangles is cut by its inner rims: 1 - triangles + rims of it are
+ * left to be counted, so that all count 1. */
+static void share_corners(struct cs_feature_weights *features, const uint32_t *inner) {
+    const struct cs_surfaces *s = features->surfaces;
+    for (size_t c = 0; c < 3 * (size_t)s->n_triangles; c++)
+        features->vertex_share[s->triangles[c]] += 1;
+    for (uint32_t i = 0; i < s->n_points; i++)
+        if (features->vertex_share[i] > 0)
+            features->vertex_share[i] =
+                (1 - features->vertex_share[i] + inner[i]) / features->vertex_share[i];
+}
+
+static void cross_edges(struct cs_feature_weights *features, uint32_t *inner) {
+    const struct cs_surfaces *s = features->surfaces;
+    for (size_t c = 0; c < 3 * (size_t)s->n_triangles; c++)
+        features->opposite_vertex[c] = CS_NO_POINT;
+    for (size_t e = 0; e < s->n_edges; e++) {
+        const uint32_t *edge = s->edges + 2 * e, *owner = s->edge_triangles + 2 * e;
+        features->vertex_edges[edge[0] + 1]++;
+        if (owner[1] == CS_NO_TRIANGLE)
+            continue;
+        const uint32_t *first = s->triangles + 3 * (size_t)owner[0];
+        const uint32_t *second = s->triangles + 3 * (size_t)owner[1];
+        const uint32_t k = corner_opposite(first, edge), l = corner_opposite(second, edge);
+        features->opposite_vertex[3 * (size_t)owner[0] + k] = second[l];
+        features->opposite_vertex[3 * (size_t)owner[1] + l] = first[k];
+        inner[edge[0]]++;
+        inner[edge[1]]++;
+    }
+}
+
+enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
+                                       const struct cs_surfaces *surfaces,
+                                       struct cs_arena *arena, struct cs_error *error) {
+    const size_t corners = 3 * (size_t)surfaces->n_triangles, n = surfaces->n_points;
+    *features = (struct cs_feature_weights){.surfaces = surfaces};
+    features->opposite_vertex =
+        cs_arena_alloc_array(arena, corners, sizeof *features->opposite_vertex, error);
+    features->vertex_share =
+        cs_arena_alloc_array(arena, n, sizeof *features->vertex_share, error);
+    features->vertex_edges =
+        cs_arena_alloc_array(arena, n + 1, sizeof *features->vertex_edges, error);
+    uint32_t *inner = cs_arena_alloc_array(arena, n, sizeof *inner, error);
+    if (error->status)
+        return error->status;
+    cross_edges(features, inner);
+    for (size_t i = 0; i < n; i++)
+        features->vertex_edges[i + 1] += features->vertex_edges[i];
+    share_corners(features, inner);
+    return CS_OK;
+}
+
+size_t cs_feature_weights_bytes(const struct cs_scene *scene) {
+    size_t bytes = sizeof(uint32_t);
+    for (uint32_t b = 0; b < cs_scene_surfaces(scene); b++) {
+        const struct cs_surface_counts size = cs_surface_counts_of(scene, b);
+        bytes += 3 * size.triangles * sizeof(uint32_t) +
+                 size.points * (sizeof(double) + 2 * sizeof(uint32_t));
+    }
+    return bytes;
+}

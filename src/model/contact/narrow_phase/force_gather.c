@@ -1,0 +1,168 @@
+/* Points of chunks in tables with open addresses, and their rows by particles. */
+#include "model/contact/narrow_phase/force_gather.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BITS_MIN = 9 };
+
+static void finish(void *object) {
+    struct cs_gather *gather = object;
+    for (uint32_t l = 0; l < gather->n_chunks; l++)
+        free(gather->chunks[l].points), free(gather->chunks[l].slots);
+    free(gather->rows);
+    free(gather->row_sums);
+    free(gather->gathered);
+}
+
+enum cs_status cs_gather_init(struct cs_gather *gather, uint32_t n_chunks, uint32_t n_particles,
+                              struct cs_arena *arena, struct cs_error *error) {
+    *gather = (struct cs_gather){.n_chunks = n_chunks, .n_particles = n_particles};
+    gather->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *gather->chunks, error);
+    gather->starts =
+        cs_arena_alloc_array(arena, n_particles + (size_t)2, sizeof *gather->starts, error);
+    if (!error->status)
+        cs_arena_adopt(arena, finish, gather, error);
+    return error->status;
+}
+
+/* --- rows of a lot --- */
+
+/* where a point is, or would be */
+static uint32_t *slot_of(const struct cs_gather_chunk *chunk, uint32_t point) {
+    const uint32_t mask = (1u << chunk->bits) - 1;
+    uint32_t at = (point * 2654435769u) >> (32 - chunk->bits);
+    while (chunk->slots[at] && chunk->points[chunk->slots[at] - 1] != point)
+        at = (at + 1) & mask;
+    return chunk->slots + at;
+}
+
+/* a table of that size, with the points that there are; false: no memory */
+static bool grow_table(struct cs_gather_chunk *chunk, uint32_t bits) {
+    uint32_t *slots = cs_arena_realloc(chunk->slots, &chunk->slots_capacity, (size_t)1 << bits,
+                                       sizeof *slots);
+    if (!slots)
+        return false;
+    chunk->slots = slots;
+    chunk->bits = bits;
+    memset(slots, 0, sizeof *slots << bits);
+    for (uint32_t row = 0; row < chunk->n; row++)
+        *slot_of(chunk, chunk->points[row]) = row + 1;
+    return true;
+}
+
+void cs_gather_clear(struct cs_gather_chunk *chunk) {
+    chunk->n = 0;
+    chunk->bits = 0;
+    chunk->failed = false;
+}
+
+/* for one more, the table at most half full; false: no memory */
+static bool make_room(struct cs_gather_chunk *chunk) {
+    uint32_t *points = cs_arena_realloc(chunk->points, &chunk->points_capacity,
+                                        (size_t)chunk->n + 1, sizeof *points);
+    if (!points)
+        return false;
+    chunk->points = points;
+    if (!chunk->bits)
+        return grow_table(chunk, BITS_MIN);
+    return 2 * chunk->n < 1u << chunk->bits || grow_table(chunk, chunk->bits + 1);
+}
+
+static uint32_t add_row(struct cs_gather_chunk *chunk, uint32_t point) {
+    if (!make_room(chunk)) {
+        chunk->failed = true;
+        return 0;
+    }
+    *slot_of(chunk, point) = chunk->n + 1;
+    chunk->points[chunk->n] = point;
+    return chunk->n++;
+}
+
+uint32_t cs_gather_row(struct cs_gather_chunk *chunk, uint32_t point) {
+    const uint32_t slot = chunk->n ? *slot_of(chunk, point) : 0;
+    return slot ? slot - 1 : add_row(chunk, point);
+}
+
+/* --- by particles --- */
+
+static bool count_rows(struct cs_gather *gather) {
+    bool failed = false;
+    gather->n_rows = 0;
+    for (uint32_t l = 0; l < gather->n_chunks; l++) {
+        gather->chunks[l].row_offset = gather->n_rows;
+        gather->n_rows += gather->chunks[l].n;
+        failed = failed || gather->chunks[l].failed;
+    }
+    return !failed;
+}
+
+/* false: no memory */
+static bool take_rows(struct cs_gather *gather) {
+    uint32_t *rows =
+        cs_arena_realloc(gather->rows, &gather->rows_capacity, gather->n_rows, sizeof *rows);
+    gather->rows = rows ? rows : gather->rows;
+    double *sums = cs_arena_realloc(gather->row_sums, &gather->sums_capacity,
+                                    3 * (size_t)gather->n_rows, sizeof *sums);
+    gather->row_sums = sums ? sums : gather->row_sums;
+    return rows && sums;
+}
+
+static void count_points(const struct cs_gather *gather, uint32_t *starts) {
+    for (uint32_t l = 0; l < gather->n_chunks; l++)
+        for (uint32_t row = 0; row < gather->chunks[l].n; row++)
+            if (gather->chunks[l].points[row] < gather->n_particles)
+                starts[gather->chunks[l].points[row] + 1]++;
+}
+
+static void put_points(const struct cs_gather *gather, uint32_t *starts) {
+    for (uint32_t l = 0; l < gather->n_chunks; l++)
+        for (uint32_t row = 0; row < gather->chunks[l].n; row++)
+            if (gather->chunks[l].points[row] < gather->n_particles)
+                gather->rows[starts[gather->chunks[l].points[row]]++] =
+                    gather->chunks[l].row_offset + row;
+}
+
+/* Counted two places on, so that filling moves the starts to where they belong. */
+bool cs_gather_set(struct cs_gather *gather) {
+    uint32_t *starts = gather->starts + 1;
+    if (!count_rows(gather) || (gather->n_rows && !take_rows(gather)))
+        return false;
+    if (!gather->n_rows)
+        return true;
+    memset(gather->starts, 0, (gather->n_particles + (size_t)2) * sizeof *starts);
+    count_points(gather, starts);
+    for (uint32_t i = 0; i < gather->n_particles; i++)
+        starts[i + 1] += starts[i];
+    put_points(gather, starts);
+    return true;
+}
+
+/* --- what rows read, and have --- */
+
+bool cs_gather_reserve(struct cs_gather *gather, size_t width) {
+    double *read = cs_arena_realloc(gather->gathered, &gather->gathered_capacity,
+                                    width * gather->n_rows, sizeof *read);
+    gather->gathered = read ? read : gather->gathered;
+    gather->width = width;
+    return read || !gather->n_rows;
+}
+
+double *cs_gather_read(const struct cs_gather *gather, uint32_t number, size_t column,
+                       const double *x, size_t n) {
+    const struct cs_gather_chunk *chunk = gather->chunks + number;
+    double *rows = cs_gather_of(chunk, gather->gathered, gather->width);
+    for (size_t row = 0; row < chunk->n; row++)
+        for (size_t c = 0; c < 3; c++)
+            rows[row * gather->width + column + c] =
+                x && chunk->points[row] < n ? x[c * n + chunk->points[row]] : 0;
+    return rows;
+}
+
+void cs_gather_add(const struct cs_gather *gather, const double *rows, size_t width,
+                   size_t begin, size_t end, double *out) {
+    for (size_t i = begin; i < end && gather->n_rows; i++)
+        for (uint32_t e = gather->starts[i]; e < gather->starts[i + 1]; e++)
+            for (size_t c = 0; c < width; c++)
+                out[c * gather->n_particles + i] += rows[width * gather->rows[e] + c];
+}

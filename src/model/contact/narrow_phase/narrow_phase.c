@@ -1,0 +1,298 @@
+/* Pairs in range of a lot: forces, their changes, energies and shares of a clamped matrix are
+ * worked out in lanes, what is asked more seldom one by one. */
+#include "model/contact/narrow_phase/narrow_phase.h"
+
+#include "base/pool.h"
+#include "model/contact/collider_query.h"
+
+#include <string.h>
+
+/* eights that wait for each other: what was just written number by number is not at once read
+ * as vectors */
+enum { TOGETHER = 4 };
+
+/* One chunk at work. */
+struct work {
+    const struct cs_narrow_phase *narrow;
+    struct cs_active_chunk *chunk;
+    uint32_t number;
+    const double *rows; /* what was read of its points; NULL: they are read one by one */
+};
+
+/* what an obstacle has no place in is 0 for it */
+static void read(const double *from, size_t n, const uint32_t at[4], double to[4][3]) {
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            to[k][c] = from && at[k] < n ? from[c * n + at[k]] : 0;
+}
+
+/* three columns of rows */
+static void read_lane(const double *rows, size_t width, const uint32_t to[4], uint32_t lane,
+                      double out[4][3][CS_PAIR_LANES]) {
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            out[k][c][lane] = rows[to[k] * width + c];
+}
+
+/* --- one by one --- */
+
+/* beside the share of the pair that was put last */
+static void add_turn(const struct work *work, const struct cs_pair_contact *reaction) {
+    struct cs_contact_chunk *chunk = work->narrow->exact_set->chunks + work->number;
+    struct cs_contact_hessian *full =
+        cs_arena_realloc(chunk->hessians, &chunk->hessians_capacity, chunk->n, sizeof *full);
+    chunk->failed = chunk->failed || !full;
+    if (!full)
+        return;
+    chunk->hessians = full;
+    cs_pair_contact_hessian(reaction, work->narrow->matrix, full + chunk->n - 1);
+}
+
+static void add_alone(const struct work *work, const struct cs_pair_lanes *from, uint32_t lane,
+                      const uint32_t at[4]) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    const struct cs_system *system = narrow->contacts->candidates->system;
+    const struct cs_body_pair_params params = {from->range[lane], from->k[lane],
+                                               from->friction[lane]};
+    struct cs_pair_contact reaction;
+    struct cs_pair_matrix_terms share;
+    const struct cs_feature_kind form = {from->is_edge[lane], from->is_off_plane[lane],
+                                         from->blend_radius[lane]};
+    double p[4][3], v[4][3];
+    struct cs_contact_chunk *chunk = narrow->exact_set->chunks + work->number;
+    struct cs_contact_entry *pair = cs_contact_chunk_next(chunk);
+    struct cs_contact_matrix_part *part = pair ? cs_contact_chunk_part(chunk) : NULL;
+    if (!part)
+        return;
+    pair->n = 4;
+    memcpy(pair->particles, at, sizeof pair->particles);
+    read(narrow->x, system->surfaces->n_points, pair->particles, p);
+    read(narrow->v, system->surfaces->n_points, pair->particles, v);
+    cs_pair_contact_measure(&reaction, work->chunk->kind, form, p);
+    cs_pair_contact_set(&reaction, &params, &system->scene->contact, v);
+    cs_pair_contact_matrix(&reaction, narrow->matrix, pair->vectors, &share);
+    part->gradient_weight = share.gradient_weight;
+    memcpy(part->weights, share.weight, sizeof share.weight);
+    memcpy(part->block, share.block, sizeof share.block);
+    add_turn(work, &reaction);
+}
+
+/* --- in lanes --- */
+
+static void read_positions(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    const size_t n = narrow->contacts->candidates->system->surfaces->n_points;
+    for (uint32_t l = 0; l < lanes->n; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < 3; c++)
+                lanes->p[k][c][l] = narrow->x[c * n + work->chunk->points[first + l][k]];
+}
+
+/* distances of features are known */
+static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
+    if (work->chunk->kind == CS_PAIR_EDGE_EDGE) {
+        read_positions(work, lanes, first);
+        cs_pair_lanes_measure(work->chunk->kind, lanes);
+    }
+    for (uint32_t l = 0; l < lanes->n; l++)
+        work->chunk->energy += cs_barrier_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
+}
+
+static void push(const struct work *work, struct cs_pair_lanes *lanes) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    const struct cs_pair_lane_constants law = {
+        narrow->contacts->candidates->system->scene->contact,
+        cs_force_parts_of(narrow->eval.parts)};
+    if (narrow->query == CS_CONTACT_QUERY_JVP)
+        cs_pair_lanes_jvp(work->chunk->kind, lanes, &law);
+    else
+        cs_pair_lanes_force(work->chunk->kind, lanes, &law);
+}
+
+static void add_pushes(const struct work *work, const struct cs_pair_lanes *lanes,
+                       size_t first) {
+    const struct cs_gather *gather = &work->narrow->contacts->force_gather;
+    uint32_t(*to)[4] = work->chunk->rows + first;
+    double *sums = cs_gather_of(gather->chunks + work->number, gather->row_sums, 3);
+    for (uint32_t l = 0; l < lanes->n; l++)
+        for (int k = 0; k < 4; k++)
+            for (int c = 0; c < 3; c++)
+                sums[3 * (size_t)to[l][k] + (size_t)c] += lanes->out[k][c][l];
+}
+
+static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    cs_pair_lanes_matrix(work->chunk->kind, lanes,
+                         &narrow->contacts->candidates->system->scene->contact, narrow->matrix,
+                         narrow->psd->chunks[work->number].factors + first / CS_PAIR_LANES);
+}
+
+/* stiffness in the first number of each row, damping in as many behind them all */
+static void add_bounds(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
+    const struct cs_active_contacts *active = work->narrow->contacts;
+    const struct cs_gather *gather = &active->force_gather;
+    uint32_t(*to)[4] = work->chunk->rows + first;
+    double *sums = cs_gather_of(gather->chunks + work->number, gather->row_sums, 1);
+    struct cs_pair_bounds bounds;
+    cs_pair_lanes_bound(work->chunk->kind, lanes, &active->candidates->system->scene->contact,
+                        &bounds);
+    for (uint32_t l = 0; l < lanes->n; l++)
+        for (int k = 0; k < 4; k++) {
+            sums[to[l][k]] += bounds.stiffness[k][l];
+            sums[gather->n_rows + to[l][k]] += bounds.damping[k][l];
+        }
+}
+
+static bool is_force(const struct cs_narrow_phase *narrow) {
+    return narrow->query == CS_CONTACT_QUERY_FORCE || narrow->query == CS_CONTACT_QUERY_JVP;
+}
+
+static bool is_in_set(const struct cs_narrow_phase *narrow) {
+    return narrow->query == CS_CONTACT_QUERY_MATRIX && !narrow->matrix->psd;
+}
+
+static bool has_rows(const struct cs_narrow_phase *narrow) {
+    return narrow->query != CS_CONTACT_QUERY_ENERGY && !is_in_set(narrow);
+}
+
+/* pairs from `first` on */
+static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
+    if (work->narrow->query == CS_CONTACT_QUERY_ENERGY)
+        add_energy(work, lanes, first);
+    else if (is_force(work->narrow))
+        push(work, lanes);
+    else if (work->narrow->query == CS_CONTACT_QUERY_BOUND)
+        add_bounds(work, lanes, first);
+    else if (!is_in_set(work->narrow))
+        share(work, lanes, first);
+    else
+        for (uint32_t l = 0; l < lanes->n; l++)
+            add_alone(work, lanes, l, work->chunk->points[first + l]);
+}
+
+/* --- what is in range --- */
+
+/* The stiffness of a matrix that must not be negative is that of the nearest feature alone;
+ * friction and damping are those of all, since methods that are linear in a step take their
+ * exact slope from the matrix, unless bounds are asked for. */
+static void psd_stiffness(const struct cs_narrow_phase *narrow,
+                          const struct cs_active_lanes *from, uint32_t l,
+                          struct cs_pair_lanes *lanes) {
+    const double tau = narrow->contacts->candidates->system->scene->contact.damping;
+    const bool positive = narrow->query == CS_CONTACT_QUERY_MATRIX && narrow->matrix->psd;
+    const bool rubs = from->friction[l] + tau > 0 && !(positive && narrow->matrix->bound);
+    const double count = positive && !rubs ? from->psd_weight[l] : from->weight[l];
+    lanes->k[l] = count * from->k[l];
+    lanes->psd_stiffness[l] = (positive ? from->psd_weight[l] : count) * from->k[l];
+}
+
+static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_lanes *from,
+                 struct cs_pair_lanes *lanes) {
+    memcpy(lanes->range, from->range, sizeof lanes->range);
+    memcpy(lanes->friction, from->friction, sizeof lanes->friction);
+    memcpy(lanes->is_edge, from->is_edge, sizeof lanes->is_edge);
+    memcpy(lanes->is_off_plane, from->is_off_plane, sizeof lanes->is_off_plane);
+    memcpy(lanes->blend_radius, from->blend_radius, sizeof lanes->blend_radius);
+    memcpy(lanes->d, from->d, sizeof lanes->d);
+    for (uint32_t l = 0; l < lanes->n; l++)
+        psd_stiffness(narrow, from, l, lanes);
+}
+
+/* where the lanes' points are, and what they do: x, v, and changes */
+static void fill_points(const struct work *work, size_t first, struct cs_pair_lanes *lanes) {
+    const size_t width = work->narrow->contacts->force_gather.width;
+    uint32_t(*to)[4] = work->chunk->rows + first;
+    for (uint32_t l = 0; l < lanes->n; l++) {
+        read_lane(work->rows, width, to[l], l, lanes->p);
+        read_lane(work->rows + 3, width, to[l], l, lanes->v);
+        if (work->narrow->query == CS_CONTACT_QUERY_JVP) {
+            read_lane(work->rows + 6, width, to[l], l, lanes->dp);
+            read_lane(work->rows + 9, width, to[l], l, lanes->dv);
+        }
+    }
+}
+
+/* step by step, for the sake of stores and loads; pairs from `first` on */
+static void do_some(const struct work *work, size_t first) {
+    struct cs_pair_lanes lanes[TOGETHER];
+    const size_t left = work->chunk->n - first, most = TOGETHER * CS_PAIR_LANES;
+    const size_t end = left < most ? left : most;
+    for (size_t p = 0; p < end; p += CS_PAIR_LANES) {
+        struct cs_pair_lanes *at = lanes + p / CS_PAIR_LANES;
+        at->n = end - p < CS_PAIR_LANES ? (uint32_t)(end - p) : CS_PAIR_LANES;
+        fill(work->narrow, work->chunk->blocks + (first + p) / CS_PAIR_LANES, at);
+        if (work->rows)
+            fill_points(work, first + p, at);
+    }
+    for (size_t p = 0; p < end; p += CS_PAIR_LANES)
+        evaluate_block(work, lanes + p / CS_PAIR_LANES, first + p);
+    for (size_t p = 0; p < end && is_force(work->narrow); p += CS_PAIR_LANES)
+        add_pushes(work, lanes + p / CS_PAIR_LANES, first + p);
+}
+
+/* of one chunk's rows */
+static void clear_sums(const struct cs_narrow_phase *narrow,
+                       const struct cs_gather_chunk *rows) {
+    const struct cs_gather *gather = &narrow->contacts->force_gather;
+    if (is_force(narrow)) {
+        memset(cs_gather_of(rows, gather->row_sums, 3), 0, 3 * sizeof(double) * rows->n);
+    } else if (narrow->query == CS_CONTACT_QUERY_BOUND) {
+        double *stiffness = cs_gather_of(rows, gather->row_sums, 1);
+        memset(stiffness, 0, sizeof *stiffness * rows->n);
+        memset(stiffness + gather->n_rows, 0, sizeof *stiffness * rows->n);
+    }
+}
+
+/* false: there is nothing to do */
+static bool begin(const struct work *work) {
+    const struct cs_narrow_phase *narrow = work->narrow;
+    const struct cs_gather *gather = &narrow->contacts->force_gather;
+    const struct cs_gather_chunk *rows = gather->chunks + work->number;
+    work->chunk->energy = 0;
+    if (is_in_set(narrow))
+        cs_contact_chunk_clear(narrow->exact_set->chunks + work->number);
+    if (!work->chunk->n)
+        return false;
+    clear_sums(narrow, rows);
+    return narrow->query != CS_CONTACT_QUERY_MATRIX || is_in_set(narrow) ||
+           cs_psd_operator_chunk_begin(narrow->psd, work->number);
+}
+
+/* all that is needed of the chunk's points */
+static const double *read_rows(const struct cs_narrow_phase *narrow, uint32_t number) {
+    const struct cs_system *system = narrow->contacts->candidates->system;
+    const struct cs_gather *gather = &narrow->contacts->force_gather;
+    const size_t n = system->view.n, n_points = system->surfaces->n_points;
+    cs_gather_read(gather, number, 3, narrow->v, n_points);
+    if (narrow->query == CS_CONTACT_QUERY_JVP) {
+        cs_gather_read(gather, number, 6, narrow->eval.dx, n);
+        cs_gather_read(gather, number, 9, narrow->eval.dv, n);
+    }
+    return cs_gather_read(gather, number, 0, narrow->x, n_points);
+}
+
+static void do_chunk(void *arg, uint32_t number) {
+    const struct cs_narrow_phase *narrow = arg;
+    struct work work = {narrow, narrow->contacts->chunks + number, number, NULL};
+    if (!begin(&work))
+        return;
+    if (has_rows(narrow))
+        work.rows = read_rows(narrow, number);
+    for (size_t p = 0; p < work.chunk->n; p += TOGETHER * CS_PAIR_LANES)
+        do_some(&work, p);
+    if (narrow->query == CS_CONTACT_QUERY_MATRIX && !is_in_set(narrow))
+        cs_psd_operator_chunk_end(narrow->psd, number);
+}
+
+bool cs_narrow_phase_run(struct cs_narrow_phase *narrow) {
+    const size_t width = narrow->query == CS_CONTACT_QUERY_JVP ? 12 : 6;
+    if (has_rows(narrow) && !cs_gather_reserve(&narrow->contacts->force_gather, width))
+        return false;
+    cs_pool_run(narrow->contacts->candidates->n_chunks, do_chunk, narrow);
+    if (is_in_set(narrow)) {
+        cs_contact_set_count(narrow->exact_set);
+        cs_contact_set_gather(narrow->exact_set);
+        return !narrow->exact_set->failed;
+    }
+    return narrow->query != CS_CONTACT_QUERY_MATRIX || cs_psd_operator_end(narrow->psd);
+}

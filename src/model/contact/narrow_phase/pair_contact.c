@@ -1,0 +1,16 @@
+/* What is asked of pairs one by one. */
+#include "model/contact/narrow_phase/pair_contact.h"
+
+/* column by column; the half above the diagonal is taken for both, so that it is symmetric */
+void cs_pair_contact_hessian(const struct cs_pair_contact *reaction,
+                             const struct cs_matrix *matrix, struct cs_contact_hessian *turn) {
+    const struct cs_point_contact *touch = &reaction->contact;
+    const double push = matrix->ck * cs_barrier_at(touch->d, touch->range, touch->k).force;
+    for (int j = 0; j < 12; j++) {
+        double unit[4][3] = {{0}}, column[4][3], dw[4];
+        unit[j / 3][j % 3] = 1;
+        cs_pair_contact_tangent(reaction, unit, column, dw);
+        for (int i = 0; i <= j; i++)
+            turn->m[i][j] = turn->m[j][i] = push * column[i / 3][i % 3];
+    }
+}

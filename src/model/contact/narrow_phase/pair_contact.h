@@ -1,0 +1,176 @@
+/* pair_contact.h - what one pair in range does to its four particles. */
+#ifndef CS_NARROW_PHASE_PAIR_CONTACT_H
+#define CS_NARROW_PHASE_PAIR_CONTACT_H
+
+#include "model/contact/body_pair_params.h"
+#include "model/contact/contact_set.h"
+#include "model/contact/narrow_phase/mesh_feature_tangent.h"
+#include "model/contact/point_contact.h"
+
+/* What a pair has in a matrix beside its gradient, as in struct cs_contact_entry. */
+struct cs_pair_matrix_terms {
+    double weight[4]; /* w */
+    double gradient_weight;
+    double block[6]; /* xx, xy, xz, yy, yz, zz */
+};
+
+/* One pair at one state, found in range: of edges the stencil, of a point and a triangle one
+ * feature. */
+struct cs_pair_contact {
+    enum cs_pair_kind kind;
+    struct cs_pair_distance distance;
+    struct cs_mesh_feature feature;
+    struct cs_point_contact contact; /* of the contact points: g = n, v = V */
+    double g[4][3], weight[4];
+};
+
+/* The distance of edges, or of a feature. */
+CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs_pair_kind kind,
+                                       struct cs_feature_kind form, double p[4][3]) {
+    reaction->kind = kind;
+    if (kind == CS_PAIR_EDGE_EDGE) {
+        cs_pair_distance_set(&reaction->distance, kind, p);
+        cs_pair_distance_gradient(&reaction->distance, reaction->g);
+        cs_pair_distance_weights(&reaction->distance, reaction->weight);
+    } else {
+        cs_mesh_feature_set(&reaction->feature, form, p);
+        cs_mesh_feature_to_points(reaction->feature.g, reaction->g);
+        cs_mesh_feature_weights(&reaction->feature, reaction->weight);
+    }
+}
+
+/* Sets everything of a reaction that is measured. v (4) velocities of its particles. */
+CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
+                                   const struct cs_body_pair_params *params,
+                                   const struct cs_contact_keys *keys, double v[4][3]) {
+    const bool edges = reaction->kind == CS_PAIR_EDGE_EDGE;
+    const double *n = edges ? reaction->distance.n : reaction->feature.n;
+    const double length = edges ? reaction->distance.d : reaction->feature.length;
+    reaction->contact = (struct cs_point_contact){
+        .d = edges ? reaction->distance.d : reaction->feature.d,
+        .range = params->range,
+        .g = {n[0], n[1], n[2]},
+        .h = {(1 - n[0] * n[0]) / length, -n[0] * n[1] / length, -n[0] * n[2] / length,
+              (1 - n[1] * n[1]) / length, -n[1] * n[2] / length, (1 - n[2] * n[2]) / length},
+        .k = params->k,
+        .friction = params->friction,
+        .friction_speed = keys->friction_speed,
+        .damping = keys->damping};
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            reaction->contact.v[c] += reaction->weight[k] * v[k][c];
+}
+
+/* what the touch alone does: the elastic part has a gradient of its own */
+CS_INLINE struct cs_contact_force_parts
+cs_pair_contact_friction_parts(struct cs_contact_force_parts parts) {
+    return (struct cs_contact_force_parts){.elastic = 0, .friction = parts.friction};
+}
+
+CS_INLINE bool cs_pair_contact_has_friction(const struct cs_point_contact *touch,
+                                            struct cs_contact_force_parts parts) {
+    return parts.friction * (touch->friction + touch->damping) > 0;
+}
+
+/* f = the forces on the four particles; the parts as in touch.h. */
+CS_INLINE void cs_pair_contact_force(const struct cs_pair_contact *reaction,
+                                     struct cs_contact_force_parts parts, double f[4][3]) {
+    const struct cs_point_contact *touch = &reaction->contact;
+    const double push = parts.elastic * cs_barrier_at(touch->d, touch->range, touch->k).force;
+    double rub[3] = {0};
+    if (cs_pair_contact_has_friction(touch, parts))
+        cs_point_contact_force(touch, cs_pair_contact_friction_parts(parts), rub);
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            f[k][c] = push * reaction->g[k][c] + reaction->weight[k] * rub[c];
+}
+
+/* df = their change, exact, when the particles move from p by dp and their velocities v change
+ * by dv. */
+struct cs_pair_contact_motion {
+    double p[4][3], v[4][3], dp[4][3], dv[4][3];
+};
+CS_INLINE void cs_pair_contact_tangent(const struct cs_pair_contact *reaction, double dp[4][3],
+                                       double dg[4][3], double dw[4]) {
+    if (reaction->kind == CS_PAIR_EDGE_EDGE)
+        cs_pair_distance_tangent(&reaction->distance, dp, dg, dw);
+    else
+        cs_mesh_feature_tangent(&reaction->feature, dp, dg, dw);
+}
+
+CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
+                                   struct cs_contact_force_parts parts,
+                                   struct cs_pair_contact_motion *move, double df[4][3]) {
+    const struct cs_point_contact *touch = &reaction->contact;
+    const double *w = reaction->weight;
+    double dg[4][3], dw[4], along = 0, rub[3] = {0}, drub[3] = {0};
+    struct cs_point_contact_motion point = {0};
+    cs_pair_contact_tangent(reaction, move->dp, dg, dw);
+    for (int k = 0; k < 4; k++) {
+        along += cs_vec3_dot(reaction->g[k], move->dp[k]);
+        for (int c = 0; c < 3; c++) {
+            point.dp[c] += dw[k] * move->p[k][c] + w[k] * move->dp[k][c];
+            point.dv[c] += dw[k] * move->v[k][c] + w[k] * move->dv[k][c];
+        }
+    }
+    // a bent distance changes otherwise than that of the contact points
+    point.extra_dd = along - cs_vec3_dot(touch->g, point.dp);
+    if (cs_pair_contact_has_friction(touch, parts)) {
+        cs_point_contact_force(touch, cs_pair_contact_friction_parts(parts), rub);
+        cs_point_contact_jvp(touch, cs_pair_contact_friction_parts(parts), &point, drub);
+    }
+    const struct cs_barrier law = cs_barrier_at(touch->d, touch->range, touch->k);
+    const double push = parts.elastic * law.force;
+    const double dpush = -parts.elastic * law.stiffness * along;
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++)
+            df[k][c] =
+                dpush * reaction->g[k][c] + push * dg[k][c] + dw[k] * rub[c] + w[k] * drub[c];
+}
+
+/* The share of a matrix, and g in to[4][3]: the law along the gradient, and friction and
+ * damping with the weights as they are. How the gradient turns is not in it. */
+CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
+                                      const struct cs_matrix *matrix, double to[4][3],
+                                      struct cs_pair_matrix_terms *share) {
+    const struct cs_point_contact *touch = &reaction->contact;
+    const struct cs_barrier law = cs_barrier_at(touch->d, touch->range, touch->k);
+    // the law's own slope has another gradient than the touch
+    struct cs_matrix rubbing = *matrix;
+    rubbing.ck = 0;
+    share->gradient_weight = -matrix->ck * law.stiffness;
+    for (int k = 0; k < 4; k++) {
+        share->weight[k] = reaction->weight[k];
+        for (int c = 0; c < 3; c++)
+            to[k][c] = reaction->g[k][c];
+    }
+    for (int e = 0; e < 6; e++)
+        share->block[e] = 0;
+    cs_point_contact_add_block(touch, &rubbing, share->block);
+}
+/* That: ck F times the second derivative of the distance, which has both signs. */
+void cs_pair_contact_hessian(const struct cs_pair_contact *reaction,
+                             const struct cs_matrix *matrix, struct cs_contact_hessian *turn);
+
+/* Sums of the norms of the blocks in the row of each particle: N/m and N s/m. */
+CS_INLINE void cs_pair_contact_bound(const struct cs_pair_contact *reaction,
+                                     double stiffness[4], double damping[4]) {
+    double length[4], sum = 0, shares = 0, own, rub;
+    // what is taken away bounds as what is there
+    struct cs_point_contact touch = reaction->contact;
+    touch.k = fabs(touch.k);
+    cs_point_contact_bound(&touch, &own, &rub);
+    for (int k = 0; k < 4; k++) {
+        const double w = reaction->weight[k];
+        length[k] = sqrt(cs_vec3_dot(reaction->g[k], reaction->g[k]));
+        sum += length[k];
+        shares += w < 0 ? -w : w;
+    }
+    for (int k = 0; k < 4; k++) {
+        const double w = reaction->weight[k];
+        stiffness[k] = own * length[k] * sum;
+        damping[k] = rub * (w < 0 ? -w : w) * shares;
+    }
+}
+
+#endif

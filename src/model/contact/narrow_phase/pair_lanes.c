@@ -1,0 +1,360 @@
+/* Loops over lanes that hold a whole pair each, which compilers turn into vectors. */
+#include "base/vectorise.h"
+
+#include "model/contact/narrow_phase/pair_lanes.h"
+
+CS_INLINE void read_lane(double from[4][3][CS_PAIR_LANES], int lane, double to[4][3]) {
+    CS_UNROLLED
+    for (int k = 0; k < 12; k++)
+        to[k / 3][k % 3] = from[k / 3][k % 3][lane];
+}
+
+CS_INLINE void write_lane(double from[4][3], int lane, double to[4][3][CS_PAIR_LANES]) {
+    CS_UNROLLED
+    for (int k = 0; k < 12; k++)
+        to[k / 3][k % 3][lane] = from[k / 3][k % 3];
+}
+
+CS_INLINE void measure(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes) {
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        double p[4][3];
+        struct cs_pair_distance distance;
+        read_lane(lanes->p, l, p);
+        cs_pair_distance_set(&distance, kind, p);
+        lanes->d[l] = distance.d;
+    }
+}
+
+CS_CLONES static void measure_triangles(struct cs_pair_lanes *restrict lanes) {
+    measure(CS_PAIR_POINT_TRIANGLE, lanes);
+}
+
+CS_CLONES static void measure_edges(struct cs_pair_lanes *restrict lanes) {
+    measure(CS_PAIR_EDGE_EDGE, lanes);
+}
+
+void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
+    if (kind == CS_PAIR_EDGE_EDGE)
+        measure_edges(lanes);
+    else
+        measure_triangles(lanes);
+}
+
+CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, int lane,
+                          const struct cs_pair_lane_constants *law,
+                          struct cs_pair_contact *reaction) {
+    double p[4][3], v[4][3];
+    const struct cs_body_pair_params params = {lanes->range[lane], lanes->k[lane],
+                                               lanes->friction[lane]};
+    read_lane(lanes->p, lane, p);
+    read_lane(lanes->v, lane, v);
+    const struct cs_feature_kind form = {lanes->is_edge[lane], lanes->is_off_plane[lane],
+                                         lanes->blend_radius[lane]};
+    cs_pair_contact_measure(reaction, kind, form, p);
+    cs_pair_contact_set(reaction, &params, &law->keys, v);
+}
+
+CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
+                     struct cs_pair_lane_constants law) {
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        struct cs_pair_contact reaction;
+        double to[4][3];
+        lane_force(kind, lanes, l, &law, &reaction);
+        cs_pair_contact_force(&reaction, law.parts, to);
+        write_lane(to, l, lanes->out);
+    }
+}
+
+CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
+                   struct cs_pair_lane_constants law) {
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        struct cs_pair_contact reaction;
+        struct cs_pair_contact_motion move;
+        double to[4][3];
+        lane_force(kind, lanes, l, &law, &reaction);
+        read_lane(lanes->p, l, move.p);
+        read_lane(lanes->v, l, move.v);
+        read_lane(lanes->dp, l, move.dp);
+        read_lane(lanes->dv, l, move.dv);
+        cs_pair_contact_jvp(&reaction, law.parts, &move, to);
+        write_lane(to, l, lanes->out);
+    }
+}
+
+/* a kernel for both kinds, each with clones of its own */
+#define KERNEL(name)                                                                           \
+    CS_CLONES static void name##_triangles(struct cs_pair_lanes *restrict lanes,               \
+                                           struct cs_pair_lane_constants law) {                \
+        name(CS_PAIR_POINT_TRIANGLE, lanes, law);                                              \
+    }                                                                                          \
+    CS_CLONES static void name##_edges(struct cs_pair_lanes *restrict lanes,                   \
+                                       struct cs_pair_lane_constants law) {                    \
+        name(CS_PAIR_EDGE_EDGE, lanes, law);                                                   \
+    }                                                                                          \
+    void cs_pair_lanes_##name(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,             \
+                              const struct cs_pair_lane_constants *law) {                      \
+        if (kind == CS_PAIR_EDGE_EDGE)                                                         \
+            name##_edges(lanes, *law);                                                         \
+        else                                                                                   \
+            name##_triangles(lanes, *law);                                                     \
+    }
+
+KERNEL(force)
+KERNEL(jvp)
+
+CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
+                           struct cs_contact_keys keys, struct cs_pair_bounds *restrict to) {
+    const struct cs_pair_lane_constants law = {.keys = keys};
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        struct cs_pair_contact reaction;
+        double stiffness[4], damping[4];
+        lane_force(kind, lanes, l, &law, &reaction);
+        cs_pair_contact_bound(&reaction, stiffness, damping);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            to->stiffness[k][l] = stiffness[k];
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            to->damping[k][l] = damping[k];
+    }
+}
+
+CS_CLONES static void bound_triangles(struct cs_pair_lanes *restrict lanes,
+                                      struct cs_contact_keys keys,
+                                      struct cs_pair_bounds *restrict to) {
+    find_bounds(CS_PAIR_POINT_TRIANGLE, lanes, keys, to);
+}
+
+CS_CLONES static void bound_edges(struct cs_pair_lanes *restrict lanes,
+                                  struct cs_contact_keys keys,
+                                  struct cs_pair_bounds *restrict to) {
+    find_bounds(CS_PAIR_EDGE_EDGE, lanes, keys, to);
+}
+
+void cs_pair_lanes_bound(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
+                         const struct cs_contact_keys *keys, struct cs_pair_bounds *bounds) {
+    if (kind == CS_PAIR_EDGE_EDGE)
+        bound_edges(lanes, *keys, bounds);
+    else
+        bound_triangles(lanes, *keys, bounds);
+}
+
+CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
+                             const struct cs_pair_matrix_terms *share, int lane,
+                             struct cs_pair_factors *factors) {
+    double weight[3];
+    cs_pair_distance_from_points(kind, share->weight, weight);
+    factors->weight[0][lane] = weight[0];
+    factors->weight[1][lane] = weight[1];
+    factors->gradient_weight[lane] = share->gradient_weight;
+    CS_UNROLLED
+    for (int e = 0; e < 6; e++)
+        factors->block[e][lane] = share->block[e];
+    CS_UNROLLED
+    for (int c = 0; c < 3; c++) {
+        const double four[4] = {g[0][c], g[1][c], g[2][c], g[3][c]};
+        double by[3];
+        cs_pair_distance_from_points(kind, four, by);
+        CS_UNROLLED
+        for (int k = 0; k < 3; k++)
+            factors->g[k][c][lane] = by[k];
+    }
+}
+
+/* a definite matrix; `bound` known to the compiler, or the loop would have a branch */
+CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
+                           struct cs_contact_keys keys, struct cs_matrix matrix,
+                           struct cs_pair_factors *restrict factors) {
+    const struct cs_pair_lane_constants law = {.keys = keys};
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        struct cs_pair_contact reaction;
+        struct cs_pair_matrix_terms share;
+        double g[4][3];
+        lane_force(kind, lanes, l, &law, &reaction);
+        cs_pair_contact_matrix(&reaction, &matrix, g, &share);
+        share.gradient_weight = -matrix.ck * cs_barrier_at(reaction.contact.d, lanes->range[l],
+                                                           lanes->psd_stiffness[l])
+                                                 .stiffness;
+        write_factors(kind, g, &share, l, factors);
+    }
+}
+
+CS_INLINE void share_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
+                            struct cs_contact_keys keys, struct cs_matrix matrix,
+                            struct cs_pair_factors *restrict factors) {
+    const struct cs_matrix definite = {.cd = matrix.cd, .ck = matrix.ck, .psd = true};
+    struct cs_matrix bound = definite;
+    bound.bound = true;
+    if (matrix.bound)
+        share_bound(kind, lanes, keys, bound, factors);
+    else
+        share_bound(kind, lanes, keys, definite, factors);
+}
+
+CS_CLONES static void share_triangles(struct cs_pair_lanes *restrict lanes,
+                                      struct cs_contact_keys keys, struct cs_matrix matrix,
+                                      struct cs_pair_factors *restrict factors) {
+    share_matrix(CS_PAIR_POINT_TRIANGLE, lanes, keys, matrix, factors);
+}
+
+CS_CLONES static void share_edges(struct cs_pair_lanes *restrict lanes,
+                                  struct cs_contact_keys keys, struct cs_matrix matrix,
+                                  struct cs_pair_factors *restrict factors) {
+    share_matrix(CS_PAIR_EDGE_EDGE, lanes, keys, matrix, factors);
+}
+
+void cs_pair_lanes_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
+                          const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
+                          struct cs_pair_factors *factors) {
+    if (kind == CS_PAIR_EDGE_EDGE)
+        share_edges(lanes, *keys, *matrix, factors);
+    else
+        share_triangles(lanes, *keys, *matrix, factors);
+}
+
+CS_INLINE void lane_tangent(const struct cs_pair_factors *factors, int l, const double v[3],
+                            double out[3]) {
+    const double xx = factors->block[0][l], xy = factors->block[1][l],
+                 xz = factors->block[2][l], yy = factors->block[3][l],
+                 yz = factors->block[4][l], zz = factors->block[5][l];
+    out[0] = xx * v[0] + xy * v[1] + xz * v[2];
+    out[1] = xy * v[0] + yy * v[1] + yz * v[2];
+    out[2] = xz * v[0] + yz * v[1] + zz * v[2];
+}
+
+CS_INLINE void multiply(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
+                        double p[restrict 4][3][CS_PAIR_LANES]) {
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        double at[4][3], d[3][3], v[3], rub[3], along = 0;
+        read_lane(p, l, at);
+        cs_pair_distance_differences(kind, at, d[0], d[1], d[2]);
+        const double weight[3] = {factors->weight[0][l], factors->weight[1][l], 1};
+        CS_UNROLLED
+        for (int c = 0; c < 3; c++) {
+            v[c] = weight[0] * d[0][c] + weight[1] * d[1][c] + d[2][c];
+            along += factors->g[0][c][l] * d[0][c] + factors->g[1][c][l] * d[1][c] +
+                     factors->g[2][c][l] * d[2][c];
+        }
+        along *= factors->gradient_weight[l];
+        lane_tangent(factors, l, v, rub);
+        CS_UNROLLED
+        for (int c = 0; c < 3; c++) {
+            double four[4];
+            cs_pair_distance_to_points(kind, along * factors->g[0][c][l] + weight[0] * rub[c],
+                                       along * factors->g[1][c][l] + weight[1] * rub[c],
+                                       along * factors->g[2][c][l] + rub[c], four);
+            CS_UNROLLED
+            for (int k = 0; k < 4; k++)
+                p[k][c][l] = four[k];
+        }
+    }
+}
+
+/* by the points */
+CS_INLINE void read_factors(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
+                            int lane, double g[4][3], struct cs_pair_matrix_terms *share) {
+    const double(*by)[3][CS_PAIR_LANES] = factors->g;
+    share->gradient_weight = factors->gradient_weight[lane];
+    CS_UNROLLED
+    for (int e = 0; e < 6; e++)
+        share->block[e] = factors->block[e][lane];
+    cs_pair_distance_to_points(kind, factors->weight[0][lane], factors->weight[1][lane], 1,
+                               share->weight);
+    CS_UNROLLED
+    for (int c = 0; c < 3; c++) {
+        double four[4];
+        cs_pair_distance_to_points(kind, by[0][c][lane], by[1][c][lane], by[2][c][lane], four);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            g[k][c] = four[k];
+    }
+}
+
+void cs_pair_factors_read(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
+                          int lane, double g[4][3], struct cs_pair_matrix_terms *share) {
+    read_factors(kind, factors, lane, g, share);
+}
+
+/* by how much the blocks of the gradients, or of the weights, must grow for all together to be
+ * above what the pair couples */
+CS_INLINE void find_growth(const double size[4], double growth[4]) {
+    const double sum = size[0] + size[1] + size[2] + size[3];
+    CS_UNROLLED
+    for (int k = 0; k < 4; k++)
+        growth[k] = size[k] > 0 ? sum / size[k] : 1;
+}
+
+/* line by line: a loop in the loop over lanes would keep that from being vectors */
+CS_INLINE void write_own(const double g[3], double along, double rub,
+                         const struct cs_pair_matrix_terms *share, int l,
+                         double own[6][CS_PAIR_LANES]) {
+    own[0][l] = along * (g[0] * g[0]) + rub * share->block[0];
+    own[1][l] = along * (g[0] * g[1]) + rub * share->block[1];
+    own[2][l] = along * (g[0] * g[2]) + rub * share->block[2];
+    own[3][l] = along * (g[1] * g[1]) + rub * share->block[3];
+    own[4][l] = along * (g[1] * g[2]) + rub * share->block[4];
+    own[5][l] = along * (g[2] * g[2]) + rub * share->block[5];
+}
+
+CS_INLINE void diagonal_blocks(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
+                               bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
+    for (int l = 0; l < CS_PAIR_LANES; l++) {
+        double g[4][3], size[4], weight[4], along[4], rub[4];
+        struct cs_pair_matrix_terms share;
+        read_factors(kind, factors, l, g, &share);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++) {
+            size[k] = sqrt(cs_vec3_dot(g[k], g[k]));
+            weight[k] = fabs(share.weight[k]);
+        }
+        find_growth(size, along);
+        find_growth(weight, rub);
+        CS_UNROLLED
+        for (int k = 0; k < 4; k++)
+            write_own(g[k], share.gradient_weight * (alone ? along[k] : 1),
+                      weight[k] * weight[k] * (alone ? rub[k] : 1), &share, l, own[k]);
+    }
+}
+
+CS_CLONES static void multiply_triangles(struct cs_pair_factors *restrict factors,
+                                         double p[restrict 4][3][CS_PAIR_LANES]) {
+    multiply(CS_PAIR_POINT_TRIANGLE, factors, p);
+}
+
+CS_CLONES static void multiply_edges(struct cs_pair_factors *restrict factors,
+                                     double p[restrict 4][3][CS_PAIR_LANES]) {
+    multiply(CS_PAIR_EDGE_EDGE, factors, p);
+}
+
+void cs_pair_lanes_multiply(enum cs_pair_kind kind, struct cs_pair_factors *factors,
+                            double p[4][3][CS_PAIR_LANES]) {
+    if (kind == CS_PAIR_EDGE_EDGE)
+        multiply_edges(factors, p);
+    else
+        multiply_triangles(factors, p);
+}
+
+CS_CLONES static void diagonal_of_triangles(struct cs_pair_factors *restrict factors,
+                                            bool alone,
+                                            double own[restrict 4][6][CS_PAIR_LANES]) {
+    if (alone)
+        diagonal_blocks(CS_PAIR_POINT_TRIANGLE, factors, true, own);
+    else
+        diagonal_blocks(CS_PAIR_POINT_TRIANGLE, factors, false, own);
+}
+
+CS_CLONES static void diagonal_of_edges(struct cs_pair_factors *restrict factors, bool alone,
+                                        double own[restrict 4][6][CS_PAIR_LANES]) {
+    if (alone)
+        diagonal_blocks(CS_PAIR_EDGE_EDGE, factors, true, own);
+    else
+        diagonal_blocks(CS_PAIR_EDGE_EDGE, factors, false, own);
+}
+
+void cs_pair_lanes_diagonal(enum cs_pair_kind kind, struct cs_pair_factors *factors, bool alone,
+                            double own[4][6][CS_PAIR_LANES]) {
+    if (kind == CS_PAIR_EDGE_EDGE)
+        diagonal_of_edges(factors, alone, own);
+    else
+        diagonal_of_triangles(factors, alone, own);
+}

@@ -1,0 +1,179 @@
+/* Factors of pairs in lanes, multiplied chunk by chunk. */
+#include "model/contact/narrow_phase/psd_operator.h"
+
+#include "base/pool.h"
+#include "base/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void finish(void *object) {
+    struct cs_psd_operator *product = object;
+    for (uint32_t l = 0; l < product->n_chunks; l++)
+        free(product->chunks[l].factors);
+    free(product->diagonal);
+}
+
+enum cs_status cs_psd_operator_init(struct cs_psd_operator *product, uint32_t n_chunks,
+                                    struct cs_arena *arena, struct cs_error *error) {
+    *product = (struct cs_psd_operator){.n_chunks = n_chunks};
+    product->chunks = cs_arena_alloc_array(arena, n_chunks, sizeof *product->chunks, error);
+    if (!error->status)
+        cs_arena_adopt(arena, finish, product, error);
+    return error->status;
+}
+
+/* pairs of a lot from that of a block on, as many as there are lanes at most */
+static uint32_t count_at(const struct cs_active_chunk *chunk, size_t block) {
+    const size_t left = chunk->n - block * CS_PAIR_LANES;
+    return left < CS_PAIR_LANES ? (uint32_t)left : CS_PAIR_LANES;
+}
+
+static size_t blocks_of(const struct cs_active_chunk *chunk) {
+    return (chunk->n + CS_PAIR_LANES - 1) / CS_PAIR_LANES;
+}
+
+/* --- the matrix --- */
+
+bool cs_psd_operator_begin(struct cs_psd_operator *product, struct cs_active_contacts *active,
+                           bool alone) {
+    product->contacts = active;
+    product->diagonal_bound = alone;
+    double *own = cs_arena_realloc(product->diagonal, &product->diagonal_capacity,
+                                   6 * (size_t)active->force_gather.n_rows, sizeof *own);
+    product->diagonal = own ? own : product->diagonal;
+    return own || !active->force_gather.n_rows;
+}
+
+struct cs_pair_factors *cs_psd_operator_chunk_begin(struct cs_psd_operator *product,
+                                                    uint32_t number) {
+    struct cs_psd_chunk *chunk = product->chunks + number;
+    struct cs_pair_factors *factors =
+        cs_arena_realloc(chunk->factors, &chunk->capacity,
+                         blocks_of(product->contacts->chunks + number), sizeof *factors);
+    chunk->failed = !factors;
+    if (!factors)
+        return NULL;
+    chunk->factors = factors;
+    return factors;
+}
+
+static void add_own(struct cs_psd_operator *product, uint32_t number, size_t block,
+                    double *rows) {
+    const struct cs_active_chunk *chunk = product->contacts->chunks + number;
+    uint32_t(*to)[4] = chunk->rows + block * CS_PAIR_LANES;
+    const uint32_t n = count_at(chunk, block);
+    double own[4][6][CS_PAIR_LANES];
+    cs_pair_lanes_diagonal(chunk->kind, product->chunks[number].factors + block,
+                           product->diagonal_bound, own);
+    for (uint32_t l = 0; l < n; l++)
+        for (int k = 0; k < 4; k++)
+            for (int e = 0; e < 6; e++)
+                rows[6 * (size_t)to[l][k] + (size_t)e] += own[k][e][l];
+}
+
+void cs_psd_operator_chunk_end(struct cs_psd_operator *product, uint32_t number) {
+    const struct cs_gather_chunk *rows = product->contacts->force_gather.chunks + number;
+    const size_t blocks = blocks_of(product->contacts->chunks + number);
+    double *own = cs_gather_of(rows, product->diagonal, 6);
+    memset(own, 0, 6 * sizeof *own * rows->n);
+    for (size_t b = 0; b < blocks; b++)
+        add_own(product, number, b, own);
+}
+
+bool cs_psd_operator_end(struct cs_psd_operator *product) {
+    bool failed = false;
+    for (uint32_t l = 0; l < product->n_chunks; l++)
+        failed = failed || product->chunks[l].failed;
+    return !failed;
+}
+
+void cs_psd_operator_add_blocks(const struct cs_psd_operator *product, size_t begin, size_t end,
+                                double *blocks) {
+    cs_gather_add(&product->contacts->force_gather, product->diagonal, 6, begin, end, blocks);
+}
+
+/* --- times a vector --- */
+
+struct job {
+    const struct cs_psd_operator *product;
+    const double *p;
+    double *y;
+};
+
+/* blocks of eight that are multiplied together */
+enum { TOGETHER = 8 };
+
+typedef double vectors[4][3][CS_PAIR_LANES];
+
+static void read_lanes(const double *rows, uint32_t (*to)[4], uint32_t count, vectors p) {
+    for (size_t l = 0; l < count; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < 3; c++)
+                p[k][c][l] = rows[3 * (size_t)to[l][k] + c];
+}
+
+static void add_lanes(vectors by, uint32_t (*to)[4], uint32_t count, double *sums) {
+    for (size_t l = 0; l < count; l++)
+        for (size_t k = 0; k < 4; k++)
+            for (size_t c = 0; c < 3; c++)
+                sums[3 * (size_t)to[l][k] + c] += by[k][c][l];
+}
+
+/* step by step for several blocks: what was just written number by number is not at once read
+ * as vectors */
+static void multiply_some(const struct job *job, uint32_t number, size_t first, const double *p,
+                          double *sums) {
+    const struct cs_active_chunk *chunk = job->product->contacts->chunks + number;
+    struct cs_pair_factors *factors = job->product->chunks[number].factors + first;
+    uint32_t(*to)[4] = chunk->rows + first * CS_PAIR_LANES;
+    const size_t left = blocks_of(chunk) - first, n = left < TOGETHER ? left : TOGETHER;
+    vectors by[TOGETHER];
+    for (size_t b = 0; b < n; b++)
+        read_lanes(p, to + b * CS_PAIR_LANES, count_at(chunk, first + b), by[b]);
+    for (size_t b = 0; b < n; b++)
+        cs_pair_lanes_multiply(chunk->kind, factors + b, by[b]);
+    for (size_t b = 0; b < n; b++)
+        add_lanes(by[b], to + b * CS_PAIR_LANES, count_at(chunk, first + b), sums);
+}
+
+/* sums = less what the solver has by the diagonal blocks already, in each row once for all of
+ * its pairs */
+static void take_own(const double *own, const double *p, size_t n, double *sums) {
+    for (size_t row = 0; row < n; row++) {
+        const double *s = own + 6 * row, x = p[3 * row], y = p[3 * row + 1], z = p[3 * row + 2];
+        sums[3 * row] = -(s[0] * x + s[1] * y + s[2] * z);
+        sums[3 * row + 1] = -(s[1] * x + s[3] * y + s[4] * z);
+        sums[3 * row + 2] = -(s[2] * x + s[4] * y + s[5] * z);
+    }
+}
+
+/* obstacles do not move */
+static void multiply_chunk(void *arg, uint32_t number) {
+    const struct job *job = arg;
+    const struct cs_gather *gather = &job->product->contacts->force_gather;
+    const struct cs_gather_chunk *rows = gather->chunks + number;
+    const size_t blocks = blocks_of(job->product->contacts->chunks + number);
+    if (!blocks)
+        return;
+    const double *p = cs_gather_read(gather, number, 0, job->p, gather->n_particles);
+    double *sums = cs_gather_of(rows, gather->row_sums, 3);
+    take_own(cs_gather_of(rows, job->product->diagonal, 6), p, rows->n, sums);
+    for (size_t b = 0; b < blocks; b += TOGETHER)
+        multiply_some(job, number, b, p, sums);
+}
+
+static void add_part(void *arg, size_t begin, size_t end) {
+    const struct job *job = arg;
+    const struct cs_gather *gather = &job->product->contacts->force_gather;
+    cs_gather_add(gather, gather->row_sums, 3, begin, end, job->y);
+}
+
+void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y) {
+    struct job job = {product, p, y};
+    // the room is there: rows were wider where the matrix was made
+    if (!product->contacts->n || !cs_gather_reserve(&product->contacts->force_gather, 3))
+        return;
+    cs_pool_run(product->n_chunks, multiply_chunk, &job);
+    cs_vector_parallel_for(product->contacts->force_gather.n_particles, add_part, &job);
+}

@@ -1,0 +1,74 @@
+/* Contact of bodies with themselves, each other and meshes: the pairs of model/pair as a term.
+ */
+#include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/contact/surface_points.h"
+#include "model/force/term.h"
+#include "scene/body_pairs.h"
+
+static size_t bytes_of(const struct cs_scene *scene) {
+    const size_t bodies = cs_scene_surfaces(scene);
+    return cs_surface_points_bytes(scene) + cs_feature_weights_bytes(scene) +
+           sizeof(struct cs_pairs) +
+           cs_surfaces_points(scene) * sizeof(struct cs_point_motion) +
+           bodies * bodies * sizeof(struct cs_body_pair_params);
+}
+
+/* what depends on how much is in range comes on top */
+static struct cs_plan_row plan(const struct cs_scene *scene) {
+    const bool built = cs_scene_has_body_contact(scene);
+    return (struct cs_plan_row){
+        .built = built,
+        .bytes = built ? bytes_of(scene) : 0,
+        .reason = built ? "self_contact, pairs of bodies, or a mesh collider" : NULL};
+}
+
+static const char *const ramps[] = {"colliders.friction", NULL};
+
+static void prepare(const struct cs_system *system, const struct cs_eval *at) {
+    cs_pairs_set(system->pairs, at);
+}
+
+static void add(const struct cs_system *system, const struct cs_eval *at, double *f) {
+    cs_pairs_add(system->pairs, at->block->begin, at->block->end, f);
+}
+
+static double energy(const struct cs_system *system, const struct cs_eval *at) {
+    return cs_pairs_energy(system->pairs, at);
+}
+
+static void prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
+                           bool kept) {
+    cs_pairs_set_matrix(system->pairs, matrix, kept);
+}
+
+static void add_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
+                       size_t begin, size_t end, double *blocks) {
+    (void)matrix;
+    cs_pairs_add_blocks(system->pairs, begin, end, blocks);
+}
+
+static void add_product(const struct cs_system *system, const double *p, double *y) {
+    cs_pairs_multiply(system->pairs, p, y);
+}
+
+static void add_bound_at(const struct cs_system *system, const struct cs_eval *at,
+                         const struct cs_gershgorin *sums) {
+    cs_pairs_add_bound(system->pairs, at, sums->stiffness, sums->damping);
+}
+
+const struct cs_term cs_term_pairs = {
+    .name = "contact pairs",
+    .part_bits = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE,
+    .plan = plan,
+    .rampable_keys = ramps,
+    .build = cs_pairs_build,
+    .prepare = prepare,
+    .add_force = add,
+    .add_jvp = add,
+    .energy = energy,
+    .energy_kind = CS_ENERGY_OTHER,
+    .prepare_matrix = prepare_matrix,
+    .add_blocks = add_blocks,
+    .add_matrix_product = add_product,
+    .add_state_bound = add_bound_at,
+};

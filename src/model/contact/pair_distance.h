@@ -1,0 +1,197 @@
+/* pair_distance.h - how far a point is from a triangle and an edge from an edge: smooth
+ * functions of four points, with gradient and exact second derivative along a direction.
+ *
+ * Both are |r| with r = w - L1 u - L2 v for three differences u, v, w of the points:
+ *
+ *   point p, triangle t0 t1 t2    u = t1 - t0   v = t2 - t0   w = p - t0
+ *   edges x0 x1 and x2 x3         u = x0 - x1   v = x3 - x2   w = x0 - x2
+ *
+ * (l1, l2) is the least of |w - l1 u - l2 v|^2 + q (u.u (l1 - 1/2)^2 + v.v (l2 - 1/2)^2): a
+ * system of two equations, regular for parallel edges by q = CS_PAIR_DISTANCE_PARALLEL, and for
+ * triangles without area by a q below what a distance can show. Then l is brought into the
+ * primitives by the soft part S of soft.h, over CS_PAIR_DISTANCE_BLEND to both sides of a
+ * border:
+ *
+ *   triangle   L_i = S(l_i) / (S(l0) + S(l1) + S(l2)),   l0 = 1 - l1 - l2
+ *   edges      L_i = S(l_i) - S(l_i - 1)
+ *
+ * The two points are on the primitives, so the distance is never below the true one; over the
+ * inside of a triangle it is the true one, and at a rim it exceeds it by at most 0.016 of an
+ * edge. It has three continuous derivatives wherever it is above 0: there is no kink where the
+ * closest feature changes. 1e-12 m is added to r at right angles, so that it has derivatives at
+ * 0 too.
+ */
+#ifndef CS_CONTACT_PAIR_DISTANCE_H
+#define CS_CONTACT_PAIR_DISTANCE_H
+
+#include "base/vec3.h"
+#include "model/contact/smooth_positive.h"
+
+#include <float.h>
+#include <stdbool.h>
+
+#define CS_PAIR_DISTANCE_BLEND    0.1
+#define CS_PAIR_DISTANCE_PARALLEL 1e-3
+#define CS_PAIR_DISTANCE_FLAT     1e-12 /* q of a triangle */
+#define CS_PAIR_DISTANCE_MIN      1e-12 /* m */
+
+/* The first point against the other three, or the first two against the last two. */
+enum cs_pair_kind { CS_PAIR_POINT_TRIANGLE, CS_PAIR_EDGE_EDGE };
+
+/* One pair at one state. */
+struct cs_pair_distance {
+    enum cs_pair_kind kind;
+    double d, n[3];          /* m; direction from the second to the first */
+    double u[3], v[3], w[3]; /* m */
+    double a, b, c, q,
+        inverse_determinant;         /* u.u, u.v, v.v; the system's determinant is 1/inverse */
+    double unclamped[2], clamped[2]; /* l and L */
+    double blend[3][3]; /* S, S', S'': of l0, l1, l2, or of the edges in the first two */
+};
+
+/* one of two equations' solution by Cramer's rule: (a b; b c) z = k, a and c with their q */
+CS_INLINE void cs_pair_distance_solve(const struct cs_pair_distance *s, const double k[2],
+                                      double z[2]) {
+    const double a = (1 + s->q) * s->a, c = (1 + s->q) * s->c;
+    z[0] = (c * k[0] - s->b * k[1]) * s->inverse_determinant;
+    z[1] = (a * k[1] - s->b * k[0]) * s->inverse_determinant;
+}
+
+CS_INLINE void cs_pair_distance_clamp_triangle(struct cs_pair_distance *s) {
+    cs_smooth_positive(1 - s->unclamped[0] - s->unclamped[1], CS_PAIR_DISTANCE_BLEND,
+                       s->blend[0]);
+    cs_smooth_positive(s->unclamped[0], CS_PAIR_DISTANCE_BLEND, s->blend[1]);
+    cs_smooth_positive(s->unclamped[1], CS_PAIR_DISTANCE_BLEND, s->blend[2]);
+    const double sum = s->blend[0][0] + s->blend[1][0] + s->blend[2][0]; // above 1/3
+    s->clamped[0] = s->blend[1][0] / sum;
+    s->clamped[1] = s->blend[2][0] / sum;
+}
+
+CS_INLINE void cs_pair_distance_clamp_edges(struct cs_pair_distance *s) {
+    for (int i = 0; i < 2; i++) {
+        double low[3], high[3];
+        cs_smooth_positive(s->unclamped[i], CS_PAIR_DISTANCE_BLEND, low);
+        cs_smooth_positive(s->unclamped[i] - 1, CS_PAIR_DISTANCE_BLEND, high);
+        for (int k = 0; k < 3; k++)
+            s->blend[i][k] = low[k] - high[k];
+        s->clamped[i] = s->blend[i][0];
+    }
+    for (int k = 0; k < 3; k++)
+        s->blend[2][k] = 0;
+}
+
+/* the three differences of four points, or of their moves */
+CS_INLINE void cs_pair_distance_differences(enum cs_pair_kind kind, double p[4][3], double u[3],
+                                            double v[3], double w[3]) {
+    for (int c = 0; c < 3; c++) {
+        const bool edges = kind == CS_PAIR_EDGE_EDGE;
+        u[c] = edges ? p[0][c] - p[1][c] : p[2][c] - p[1][c];
+        v[c] = edges ? p[3][c] - p[2][c] : p[3][c] - p[1][c];
+        w[c] = edges ? p[0][c] - p[2][c] : p[0][c] - p[1][c];
+    }
+}
+
+/* its transpose, of one component: slopes by u, v, w to slopes by the four points */
+CS_INLINE void cs_pair_distance_to_points(enum cs_pair_kind kind, double u, double v, double w,
+                                          double out[4]) {
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
+    out[0] = edges ? u + w : w;
+    out[1] = edges ? -u : -(u + v + w);
+    out[2] = edges ? -(v + w) : u;
+    out[3] = v;
+}
+
+/* back: of out that sums to 0 */
+CS_INLINE void cs_pair_distance_from_points(enum cs_pair_kind kind, const double four[4],
+                                            double by[3]) {
+    const bool edges = kind == CS_PAIR_EDGE_EDGE;
+    by[0] = edges ? -four[1] : four[2];
+    by[1] = four[3];
+    by[2] = edges ? four[0] + four[1] : four[0];
+}
+
+/* The differences and l. */
+CS_INLINE void cs_pair_distance_frame(struct cs_pair_distance *s, enum cs_pair_kind kind,
+                                      double p[4][3]) {
+    s->kind = kind;
+    s->q = kind == CS_PAIR_EDGE_EDGE ? CS_PAIR_DISTANCE_PARALLEL : CS_PAIR_DISTANCE_FLAT;
+    cs_pair_distance_differences(kind, p, s->u, s->v, s->w);
+    s->a = cs_vec3_dot(s->u, s->u);
+    s->b = cs_vec3_dot(s->u, s->v);
+    s->c = cs_vec3_dot(s->v, s->v);
+    const double grown = (1 + s->q) * (1 + s->q);
+    s->inverse_determinant = 1 / (grown * s->a * s->c - s->b * s->b + DBL_MIN);
+    const double right[2] = {cs_vec3_dot(s->u, s->w) + 0.5 * s->q * s->a,
+                             cs_vec3_dot(s->v, s->w) + 0.5 * s->q * s->c};
+    cs_pair_distance_solve(s, right, s->unclamped);
+}
+
+/* Distance and what the derivatives need. */
+CS_INLINE void cs_pair_distance_set(struct cs_pair_distance *s, enum cs_pair_kind kind,
+                                    double p[4][3]) {
+    cs_pair_distance_frame(s, kind, p);
+    if (kind == CS_PAIR_EDGE_EDGE)
+        cs_pair_distance_clamp_edges(s);
+    else
+        cs_pair_distance_clamp_triangle(s);
+    double r[3];
+    for (int c = 0; c < 3; c++)
+        r[c] = s->w[c] - s->clamped[0] * s->u[c] - s->clamped[1] * s->v[c];
+    s->d = sqrt(cs_vec3_dot(r, r) + CS_PAIR_DISTANCE_MIN * CS_PAIR_DISTANCE_MIN);
+    for (int c = 0; c < 3; c++)
+        s->n[c] = r[c] / s->d;
+}
+
+/* Shares of the four points in the difference of the two contact points; their sum is 0. */
+CS_INLINE void cs_pair_distance_weights(const struct cs_pair_distance *s, double out[4]) {
+    cs_pair_distance_to_points(s->kind, -s->clamped[0], -s->clamped[1], 1, out);
+}
+
+/* What the gradient is made of; the slopes of d by l1, l2 before the clamp, and the adjoint. */
+struct cs_pair_distance_gradients {
+    double dd_dweight[2]; /* of d by L1, L2 */
+    double mean;          /* of a triangle */
+    double h[3];          /* of a triangle: by l0, l1, l2, each on its own */
+    double k[2], z[2], y[3];
+};
+
+CS_INLINE void cs_pair_distance_set_slopes(const struct cs_pair_distance *s,
+                                           struct cs_pair_distance_gradients *slopes) {
+    const double *g = slopes->dd_dweight;
+    slopes->dd_dweight[0] = -cs_vec3_dot(s->n, s->u);
+    slopes->dd_dweight[1] = -cs_vec3_dot(s->n, s->v);
+    slopes->mean = s->clamped[0] * g[0] + s->clamped[1] * g[1];
+    if (s->kind == CS_PAIR_EDGE_EDGE) {
+        slopes->k[0] = g[0] * s->blend[0][1];
+        slopes->k[1] = g[1] * s->blend[1][1];
+    } else {
+        const double sum = s->blend[0][0] + s->blend[1][0] + s->blend[2][0];
+        slopes->h[0] = -slopes->mean * s->blend[0][1] / sum;
+        slopes->h[1] = (g[0] - slopes->mean) * s->blend[1][1] / sum;
+        slopes->h[2] = (g[1] - slopes->mean) * s->blend[2][1] / sum;
+        slopes->k[0] = slopes->h[1] - slopes->h[0];
+        slopes->k[1] = slopes->h[2] - slopes->h[0];
+    }
+    cs_pair_distance_solve(s, slopes->k, slopes->z);
+    for (int c = 0; c < 3; c++)
+        slopes->y[c] = slopes->z[0] * s->u[c] + slopes->z[1] * s->v[c];
+}
+
+/* g = the gradient of d by the four points; its sum is 0, and so is that of p x g. */
+CS_INLINE void cs_pair_distance_gradient(const struct cs_pair_distance *s, double g[4][3]) {
+    struct cs_pair_distance_gradients at;
+    cs_pair_distance_set_slopes(s, &at);
+    const double pull[2] = {s->q * (1 - 2 * s->unclamped[0]), s->q * (1 - 2 * s->unclamped[1])};
+    for (int c = 0; c < 3; c++) {
+        const double r = s->w[c] - s->unclamped[0] * s->u[c] - s->unclamped[1] * s->v[c];
+        const double u = at.z[0] * (r + pull[0] * s->u[c]) - s->unclamped[0] * at.y[c];
+        const double v = at.z[1] * (r + pull[1] * s->v[c]) - s->unclamped[1] * at.y[c];
+        double out[4];
+        cs_pair_distance_to_points(s->kind, u - s->clamped[0] * s->n[c],
+                                   v - s->clamped[1] * s->n[c], at.y[c] + s->n[c], out);
+        for (int k = 0; k < 4; k++)
+            g[k][c] = out[k];
+    }
+}
+
+#endif

@@ -1,0 +1,154 @@
+/* The energy of contact that a step does not see, particle by particle. */
+#include "model/contact/step_check.h"
+
+#include "base/vector.h"
+#include "model/contact/barrier_law.h"
+#include "model/contact/collider_params.h"
+#include "model/contact/posed_collider.h"
+
+#include <clothsim/clones.h>
+#include <math.h>
+
+/* points of one move, at most; particles of a row */
+enum { POINTS_MAX = 64, ROW = 64 };
+
+/* distance at a share of the way; the obstacle's own turn within a step is left out */
+static double distance_at(const struct cs_collider_step *passing, const double from[3],
+                          const double to[3], double share) {
+    double p[3], g[3], h[6];
+    for (int c = 0; c < 3; c++)
+        p[c] = from[c] + share * (to[c] - from[c]);
+    return cs_posed_collider_smooth_distance(&passing->at_t1, p, g, h);
+}
+
+bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, double mass,
+                                     const double start[3], const double to[3]) {
+    const double range = passing->params.range, k = passing->params.k;
+    // seen from the obstacle, which stands where it is after the step
+    double from[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        from[c] = start[c] + passing->at_t1.centre[c] - passing->at_t0.centre[c];
+        squared += (to[c] - from[c]) * (to[c] - from[c]);
+    }
+    const double move = sqrt(squared);
+    if (!cs_posed_collider_is_near(&passing->at_t1, range + move, to))
+        return false;
+    const double d = distance_at(passing, from, to, 0);
+    if (!(d - move < range))
+        return false;
+    const struct cs_barrier law = cs_barrier_at(d, range, k);
+    const double held = cs_barrier_energy(d, range, k);
+    const double has = 0.5 * mass * squared / (passing->h * passing->h) + held;
+    const int points =
+        move < 0.5 * range * POINTS_MAX ? 1 + (int)(move / (0.5 * range)) : POINTS_MAX;
+    double unseen = 0;
+    for (int j = 1; j <= points; j++) {
+        const double s = d - distance_at(passing, from, to, j / (double)points);
+        unseen = fmax(unseen, fabs(cs_barrier_energy(d - s, range, k) - held - law.force * s -
+                                   0.5 * law.stiffness * s * s));
+    }
+    return unseen > CS_UNRESOLVED_ENERGY_MAX * has;
+}
+
+/* Particles of a row that may have gone further into a plane or a sphere than their step knows.
+ * Along a way of length s no y is below (d1 - s)/D, d1 the distance at its end; what is not
+ * seen is at most s^3/6 of the largest third derivative there, k/(2 D y^4), and is held against
+ * the kinetic energy of the way alone. So nothing that is_unseen would refuse is left out. */
+CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, size_t begin,
+                                        size_t count) {
+    const struct cs_posed_collider *after = &passing->at_t1, *before = &passing->at_t0;
+    const size_t n = passing->system->view.n;
+    const double *a = passing->x0 + begin, *b = passing->x1 + begin;
+    const double *mass = passing->system->mass + begin, *c = after->centre;
+    const double *g = after->axes[1], range = passing->params.range;
+    const bool sphere = after->kind == CS_COLLIDER_SPHERE;
+    const double ux = c[0] - before->centre[0], uy = c[1] - before->centre[1];
+    const double uz = c[2] - before->centre[2];
+    const double stiff = passing->params.k * passing->h * passing->h;
+    const double give = 6 * CS_UNRESOLVED_ENERGY_MAX * range;
+    uint32_t risky = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double mx = b[i] - a[i] - ux, my = b[n + i] - a[n + i] - uy;
+        const double mz = b[2 * n + i] - a[2 * n + i] - uz;
+        const double rx = b[i] - c[0], ry = b[n + i] - c[1], rz = b[2 * n + i] - c[2];
+        const double way = sqrt(mx * mx + my * my + mz * mz);
+        const double d = sphere ? sqrt(rx * rx + ry * ry + rz * rz) - after->radius
+                                : g[0] * rx + g[1] * ry + g[2] * rz;
+        const double y = (d - way) / range, square = y * y;
+        // what is not a number is risky
+        risky += !(y >= 1 ||
+                   (y > CS_BARRIER_CORE && way * stiff <= give * mass[i] * square * square));
+    }
+    return risky;
+}
+
+bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begin,
+                             size_t count) {
+    const size_t n = passing->system->view.n;
+    double middle[3], reach = passing->params.range, squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double shift = passing->at_t1.centre[c] - passing->at_t0.centre[c];
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (size_t i = c * n + begin; i < c * n + begin + count; i++) {
+            const double from = passing->x0[i] + shift, to = passing->x1[i];
+            low = from < low ? from : low, high = from > high ? from : high;
+            low = to < low ? to : low, high = to > high ? to : high;
+        }
+        middle[c] = 0.5 * (low + high);
+        squared += 0.25 * (high - low) * (high - low);
+    }
+    reach += sqrt(squared);
+    return !cs_posed_collider_is_near(&passing->at_t1, reach, middle);
+}
+
+/* a row is looked at particle by particle only where something may happen in it */
+static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
+                            size_t count) {
+    const enum cs_collider_kind kind = passing->at_t1.kind;
+    return kind == CS_COLLIDER_PLANE || kind == CS_COLLIDER_SPHERE
+               ? count_suspect(passing, begin, count) == 0
+               : cs_collider_step_is_far(passing, begin, count);
+}
+
+static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
+    const size_t n = passing->system->view.n;
+    double from[3], to[3];
+    for (size_t c = 0; c < 3; c++) {
+        from[c] = passing->x0[c * n + i];
+        to[c] = passing->x1[c * n + i];
+    }
+    return cs_collider_step_misses_contact(passing, passing->system->mass[i], from, to);
+}
+
+static double count_unresolved(const void *arg, size_t begin, size_t end) {
+    const struct cs_collider_step *passing = arg;
+    double unseen = 0;
+    for (size_t start = begin; start < end; start += ROW) {
+        const size_t left = end - start, count = left < ROW ? left : ROW;
+        if (row_is_resolved(passing, start, count))
+            continue;
+        for (size_t i = start; i < start + count; i++)
+            unseen += passing->system->inv_mass[i] > 0 && is_unresolved(passing, i);
+    }
+    return unseen;
+}
+
+void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_system *system,
+                          uint32_t collider, double t0, double t1) {
+    passing->system = system;
+    passing->h = t1 - t0;
+    passing->params = system->collider_params[collider];
+    cs_posed_collider_at(system, collider, t0, &passing->at_t0);
+    cs_posed_collider_at(system, collider, t1, &passing->at_t1);
+}
+
+bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
+                                       const double *x0, double t1, const double *x1) {
+    for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
+        struct cs_collider_step passing = {.x0 = x0, .x1 = x1};
+        cs_collider_step_set(&passing, system, c, t0, t1);
+        if (cs_vector_sum(system->view.n, count_unresolved, &passing) > 0)
+            return false;
+    }
+    return true;
+}

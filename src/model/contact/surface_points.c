@@ -1,0 +1,135 @@
+/* Particles copied beside the vertices of mesh colliders, which are posed as any collider is.
+ */
+#include "model/contact/surface_points.h"
+
+#include "mesh/trimesh.h"
+#include "model/contact/posed_collider.h"
+#include "scene/body_pairs.h"
+
+#include <string.h>
+
+/* the arrays: places at both ends of a step, and velocities */
+enum { VELOCITIES = 2, ARRAYS };
+
+/* Where the vertices of an obstacle are, and how they move, in one array. */
+struct pose {
+    double centre[3], axes[3][3], velocity[3], spin[3], pivot[3];
+};
+
+struct cs_points {
+    double *of[ARRAYS]; /* (3, n_points) */
+    struct pose *posed; /* (ARRAYS, obstacles) as the arrays have them: what is at rest stays */
+};
+
+static size_t obstacles_of(const struct cs_scene *scene) {
+    return cs_scene_surfaces(scene) - scene->bodies.n;
+}
+
+static double *take(struct cs_system *system, struct cs_error *error) {
+    return cs_arena_alloc_array(&system->arena, 3 * (size_t)system->surfaces->n_points,
+                                sizeof(double), error);
+}
+
+enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error *error) {
+    if (cs_surfaces_build(system, error) || system->points ||
+        system->surfaces->n_points == system->view.n)
+        return error->status;
+    struct cs_points *points = cs_arena_alloc(&system->arena, sizeof *points, error);
+    if (!points)
+        return error->status;
+    for (int k = 0; k < ARRAYS; k++)
+        points->of[k] = take(system, error);
+    points->posed = cs_arena_alloc_array(&system->arena, ARRAYS * obstacles_of(system->scene),
+                                         sizeof *points->posed, error);
+    system->points = points;
+    return error->status;
+}
+
+size_t cs_surface_points_bytes(const struct cs_scene *scene) {
+    const size_t points = cs_surfaces_points(scene);
+    const size_t colliders = obstacles_of(scene);
+    const size_t bytes = sizeof(struct cs_points) + ARRAYS * 3 * points * sizeof(double) +
+                         ARRAYS * colliders * sizeof(struct pose);
+    return cs_surfaces_bytes(scene) + (colliders ? bytes : 0);
+}
+
+static void copy_particles(const struct cs_system *system, const double *from, double *to) {
+    const size_t n = system->view.n, n_points = system->surfaces->n_points;
+    for (size_t c = 0; c < 3; c++) {
+        if (from)
+            memcpy(to + c * n_points, from + c * n, n * sizeof *to);
+        else
+            memset(to + c * n_points, 0, n * sizeof *to);
+    }
+}
+
+/* vertex i of an obstacle: its axes times the place in the mesh */
+static void pose_vertex(const struct cs_posed_collider *obstacle, size_t i, double p[3]) {
+    const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
+    const double *own = mesh->positions + i;
+    const size_t n = mesh->n;
+    for (int c = 0; c < 3; c++)
+        p[c] = obstacle->axes[0][c] * own[0] + obstacle->axes[1][c] * own[n] +
+               obstacle->axes[2][c] * own[2 * n] + obstacle->centre[c];
+}
+
+/* whether an array has an obstacle as it is; from now on it has */
+static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *posed) {
+    struct pose pose;
+    memcpy(pose.centre, obstacle->centre, sizeof pose.centre);
+    memcpy(pose.axes, obstacle->axes, sizeof pose.axes);
+    memcpy(pose.velocity, obstacle->velocity, sizeof pose.velocity);
+    memcpy(pose.spin, obstacle->spin, sizeof pose.spin);
+    memcpy(pose.pivot, obstacle->rotation_centre, sizeof pose.pivot);
+    const bool same = !memcmp(posed, &pose, sizeof pose);
+    *posed = pose;
+    return same;
+}
+
+/* Sets places or velocities of the vertices [first, end) of an obstacle. */
+static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
+                         const struct cs_posed_collider *obstacle, bool velocities,
+                         double *to) {
+    const uint32_t first = surfaces->first_point[surface];
+    const size_t n_points = surfaces->n_points;
+    for (uint32_t i = first; i < surfaces->first_point[surface + 1]; i++) {
+        double p[3], v[3];
+        pose_vertex(obstacle, i - first, p);
+        if (velocities)
+            cs_posed_collider_velocity(obstacle, p, v);
+        for (size_t c = 0; c < 3; c++)
+            to[c * n_points + i] = velocities ? v[c] : p[c];
+    }
+}
+
+/* of all obstacles, in one of the arrays */
+static void set_obstacles(const struct cs_system *system, double t, int array) {
+    struct cs_points *points = system->points;
+    const uint32_t n_bodies = system->scene->bodies.n;
+    const uint32_t n = system->surfaces->n_bodies - n_bodies;
+    for (uint32_t k = 0; k < n; k++) {
+        struct cs_posed_collider obstacle;
+        cs_posed_collider_at(system, k, t, &obstacle);
+        if (!is_posed(&obstacle, points->posed + (size_t)array * n + k))
+            set_vertices(system->surfaces, n_bodies + k, &obstacle, array == VELOCITIES,
+                         points->of[array]);
+    }
+}
+
+const double *cs_surface_points_positions(const struct cs_system *system,
+                                          enum cs_points_end end, double t, const double *x) {
+    if (!system->points)
+        return x;
+    copy_particles(system, x, system->points->of[end]);
+    set_obstacles(system, t, (int)end);
+    return system->points->of[end];
+}
+
+const double *cs_surface_points_velocities(const struct cs_system *system, double t,
+                                           const double *v) {
+    if (!system->points)
+        return v;
+    copy_particles(system, v, system->points->of[VELOCITIES]);
+    set_obstacles(system, t, VELOCITIES);
+    return system->points->of[VELOCITIES];
+}

@@ -1,0 +1,217 @@
+/* What single events do: to the state, the pins, a value, a collider. */
+#include "model/event/event_apply.h"
+
+#include "model/event/event_move.h"
+#include "model/event/event_path.h"
+#include "model/event/event_times.h"
+#include "model/event/viewpoint_forces.h"
+#include "scene/shape.h"
+
+#include <math.h>
+#include <string.h>
+
+/* marks the particles that an event acts on */
+static void mark(const struct cs_system *system, const struct cs_event_target *aim) {
+    bool *marks = system->events->work;
+    memset(marks, 0, system->view.n * sizeof *marks);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
+        const struct cs_body_range *range = system->bodies + b;
+        if (aim->body >= 0 && aim->body != b)
+            continue;
+        if (aim->particles.n == 0) {
+            memset(marks + range->first, true, range->count * sizeof *marks);
+            continue;
+        }
+        struct cs_body body = cs_scene_bodies(system->scene)[b];
+        body.pins = aim->particles;
+        cs_shape_pin(&body, system->view.n, range->first, system->start, marks + range->first);
+    }
+}
+
+/* mass in kg of the marked particles that are free */
+static double free_mass(const struct cs_system *system) {
+    double mass = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->events->work[i] && system->inv_mass[i] > 0)
+            mass += system->mass[i];
+    return mass;
+}
+
+/* out (3,n) += change of the velocity in m/s that a momentum in N s makes, where it is free */
+static void add_impulse(const struct cs_system *system, const struct cs_impact *impact,
+                        double momentum, double *out) {
+    const size_t n = system->view.n;
+    mark(system, &impact->target);
+    const double mass = free_mass(system);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            if (system->events->work[i] && system->inv_mass[i] > 0)
+                out[c * n + i] += impact->direction[c] * (momentum / mass);
+}
+
+void cs_event_sum_pushes(struct cs_system *system) {
+    struct cs_events *events = system->events;
+    if (!system->event_force)
+        return;
+    memset(system->event_force, 0, 3 * system->view.n * sizeof *system->event_force);
+    for (uint32_t e = 0; e < events->scene.events.n; e++) {
+        const struct cs_event_state *state = events->states + e;
+        const struct cs_impact *impact = &cs_scene_events(&events->scene)[e].impact;
+        if (state->active && impact->present)
+            add_impulse(system, impact, impact->impulse / (state->end - state->begin),
+                        system->event_force);
+    }
+    if (events->viewpoint_forces)
+        cs_viewpoint_forces_add_push(system, system->event_force);
+}
+
+/* the marked particles are held by an event, which says how they move */
+static void pin_marked(struct cs_system *system, uint32_t event) {
+    const size_t n = system->view.n;
+    for (size_t i = 0; i < n; i++) {
+        if (!system->events->work[i])
+            continue;
+        system->events->held_by[i] = event + 1;
+        system->inv_mass[i] = 0;
+        for (size_t c = 3; c < 6; c++)
+            system->state[c * n + i] = 0;
+    }
+}
+
+static void unpin(struct cs_system *system, uint32_t i) {
+    system->events->held_by[i] = 0;
+    system->inv_mass[i] = 1 / system->mass[i];
+}
+
+static void begin_grab(struct cs_system *system, uint32_t event) {
+    struct cs_events *events = system->events;
+    struct cs_event_state *state = events->states + event;
+    const struct cs_grab *grab = &cs_scene_events(&events->scene)[event].grab;
+    const size_t n = system->view.n;
+    mark(system, &grab->target);
+    pin_marked(system, event);
+    const bool *first = memchr(events->work, true, n);
+    for (size_t c = 0; c < 3; c++) {
+        const double *x = system->state + c * n;
+        state->chord_to[c] = first && !grab->relative ? x[first - events->work] : 0;
+        for (size_t i = 0; i < n; i++)
+            if (events->work[i])
+                events->offsets[c * n + i] = x[i] - state->chord_to[c];
+    }
+    cs_event_begin_path(state, events->begin);
+}
+
+/* strengths and directions before and after */
+static void begin_gust(const struct cs_events *events, const struct cs_wind_change *gust,
+                       struct cs_event_state *state) {
+    const struct cs_wind *wind = &events->scene.forces.wind;
+    const bool turns = !isnan(gust->direction[0]);
+    state->first = wind->strength;
+    state->last = isnan(gust->strength) ? wind->strength : gust->strength;
+    memcpy(state->wind_ends[0], wind->direction, sizeof state->wind_ends[0]);
+    memcpy(state->wind_ends[1], turns ? gust->direction : wind->direction,
+           sizeof state->wind_ends[1]);
+}
+
+static void set_wind(struct cs_wind *wind, const struct cs_event_state *state, double share) {
+    double w[3], squared = 0;
+    for (int c = 0; c < 3; c++) {
+        const double before = state->first * state->wind_ends[0][c];
+        w[c] = before + (state->last * state->wind_ends[1][c] - before) * share;
+        squared += w[c] * w[c];
+    }
+    /* where it dies down on its way it keeps its direction */
+    wind->strength = sqrt(squared);
+    for (int c = 0; c < 3 && wind->strength > 0; c++)
+        wind->direction[c] = w[c] / wind->strength;
+}
+
+static void end_value(struct cs_system *system, uint32_t event) {
+    struct cs_event_state *state = system->events->states + event;
+    struct cs_wind *wind = &system->events->scene.forces.wind;
+    if (state->value) {
+        *state->value = state->last;
+        return;
+    }
+    wind->strength = state->last;
+    memcpy(wind->direction, state->wind_ends[1], sizeof wind->direction);
+}
+
+void cs_event_set_value(struct cs_system *system, uint32_t event, double t) {
+    struct cs_events *events = system->events;
+    const struct cs_event_state *state = events->states + event;
+    const struct cs_event *of = cs_scene_events(&events->scene) + event;
+    const double share = (t - state->begin) / (state->end - state->begin);
+    if (of->ramp.present)
+        *state->value = state->first + (state->last - state->first) * share;
+    else if (of->wind.present)
+        set_wind(&events->scene.forces.wind, state, share);
+}
+
+void cs_event_start(struct cs_system *system, uint32_t event) {
+    struct cs_events *events = system->events;
+    struct cs_event_state *state = events->states + event;
+    const struct cs_event *of = cs_scene_events(&events->scene) + event;
+    state->active = state->end > state->begin;
+    if (of->wind.present)
+        begin_gust(events, &of->wind, state);
+    if (of->ramp.present) {
+        state->first = *state->value;
+        state->last = of->ramp.value;
+    }
+    /* at once: the last value now; else cs_event_set_value moves it there */
+    if ((of->wind.present || of->ramp.present) && !state->active)
+        end_value(system, event);
+    /* at once: a change of velocity; else a force, see cs_event_sum_pushes */
+    if (of->impact.present && !state->active)
+        add_impulse(system, &of->impact, of->impact.impulse,
+                    system->state + 3 * (size_t)system->view.n);
+    if (of->viewpoint_force.present)
+        cs_viewpoint_force_start(system, event);
+    if (of->grab.present)
+        begin_grab(system, event);
+    if (of->move.present)
+        cs_event_begin_move(system, event, events->begin);
+    if (of->pin.present) {
+        mark(system, &of->pin.target);
+        pin_marked(system, event);
+    }
+    if (of->release.present) {
+        mark(system, &of->release.target);
+        for (uint32_t i = 0; i < system->view.n; i++)
+            if (events->work[i])
+                unpin(system, i);
+    }
+}
+
+void cs_event_finish(struct cs_system *system, uint32_t event) {
+    struct cs_events *events = system->events;
+    const struct cs_event *of = cs_scene_events(&events->scene) + event;
+    events->states[event].active = false;
+    if (of->ramp.present || of->wind.present)
+        end_value(system, event);
+    if (of->viewpoint_force.present)
+        cs_viewpoint_force_finish(system, event);
+    if (of->move.present)
+        cs_event_end_move(system, event, events->begin);
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (events->held_by[i] == event + 1)
+            unpin(system, i);
+}
+
+void cs_event_refresh_springs(struct cs_system *system) {
+    const struct cs_body *bodies = cs_scene_bodies(system->scene);
+    /* both belong to the system; views of them are read-only */
+    struct cs_spring_run *runs = (struct cs_spring_run *)system->springs.runs;
+    double *stiffness = (double *)system->view.stiffness;
+    double *damping = (double *)system->view.damping;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_law *law = &bodies[runs[r].body].springs;
+        cs_springs_stiffen(runs + r, bodies + runs[r].body);
+        runs[r].damping = law->damping;
+        for (uint32_t i = 0; stiffness && i < runs[r].count; i++) {
+            stiffness[runs[r].first + i] = cs_spring_stiffness(runs + r, i);
+            damping[runs[r].first + i] = law->damping;
+        }
+    }
+}

@@ -1,0 +1,279 @@
+/* Visibility from a viewpoint: of the particles in the rectangle, those that no triangle and no
+ * collider hides. */
+#include "model/event/visibility.h"
+
+#include "base/portable_sine.h"
+#include "base/vec3.h"
+#include "model/contact/posed_collider.h"
+#include "model/system/faces.h"
+
+#include <math.h>
+#include <string.h>
+
+/* share of the line to a particle that is tested */
+#define REACH (1 - 1e-9)
+/* cells by which a triangle's bounds are widened, far above rounding */
+#define MARGIN 1e-6
+
+/* of numbers; fmin and fmax are calls, because of what is not a number */
+static inline double least(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double most(double a, double b) {
+    return a > b ? a : b;
+}
+
+void cs_visibility_query_make(struct cs_visibility_query *visibility,
+                              const struct cs_viewpoint_force *viewpoint_force) {
+    const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
+    const double slope =
+        cs_quarter_sine(from->fov / 180) / cs_quarter_sine(1 - from->fov / 180);
+    const double *rectangle = viewpoint_force->rectangle;
+    double(*axes)[3] = visibility->axes;
+    for (int c = 0; c < 3; c++) {
+        visibility->eye[c] = from->eye[c];
+        axes[2][c] = from->target[c] - from->eye[c];
+    }
+    cs_vec3_normalise(axes[2]);
+    cs_vec3_cross(axes[2], from->up, axes[0]);
+    cs_vec3_normalise(axes[0]);
+    cs_vec3_cross(axes[0], axes[2], axes[1]);
+    visibility->low[0] = (2 * rectangle[0] - 1) * (slope * from->aspect);
+    visibility->high[0] = (2 * rectangle[2] - 1) * (slope * from->aspect);
+    visibility->low[1] = (1 - 2 * rectangle[3]) * slope;
+    visibility->high[1] = (1 - 2 * rectangle[1]) * slope;
+}
+
+size_t cs_visibility_query_bytes(uint32_t n) {
+    return 3 * (size_t)n * sizeof(double) + (3 * (size_t)n + 1) * sizeof(uint32_t);
+}
+
+enum cs_status cs_visibility_scratch_init(struct cs_visibility_scratch *work, uint32_t n,
+                                          struct cs_arena *arena, struct cs_error *error) {
+    work->projected =
+        cs_arena_alloc_array(arena, 3 * (size_t)n, sizeof *work->projected, error);
+    work->cells = cs_arena_alloc_array(arena, n, sizeof *work->cells, error);
+    work->order = cs_arena_alloc_array(arena, n, sizeof *work->order, error);
+    work->cell_starts =
+        cs_arena_alloc_array(arena, (size_t)n + 1, sizeof *work->cell_starts, error);
+    return error->status;
+}
+
+/* The particles that may be seen, sorted into cells x cells over their own bounds in the image:
+ * about one a cell, so that a triangle is tested against a few. */
+struct grid {
+    const struct cs_visibility_scratch *work;
+    size_t n;
+    uint32_t cells;
+    double low[2], high[2], scale[2];
+    bool *seen;
+};
+
+static void position_of(const struct cs_visibility_scratch *work, size_t n, size_t i,
+                        double p[3]) {
+    for (size_t c = 0; c < 3; c++)
+        p[c] = work->projected[c * n + i];
+}
+
+static void turn_positions(const struct cs_visibility_query *visibility,
+                           const struct cs_visibility_scratch *work, size_t n,
+                           const double *x) {
+    for (size_t i = 0; i < n; i++) {
+        const double from[3] = {x[i] - visibility->eye[0], x[n + i] - visibility->eye[1],
+                                x[2 * n + i] - visibility->eye[2]};
+        for (size_t c = 0; c < 3; c++)
+            work->projected[c * n + i] = cs_vec3_dot(visibility->axes[c], from);
+    }
+}
+
+static bool is_in_rectangle(const struct cs_visibility_query *visibility, const double p[3]) {
+    return p[2] > 0 && isfinite(p[0] + p[1] + p[2]) && p[0] >= visibility->low[0] * p[2] &&
+           p[0] <= visibility->high[0] * p[2] && p[1] >= visibility->low[1] * p[2] &&
+           p[1] <= visibility->high[1] * p[2];
+}
+
+/* hides the particles of a body that lie in or behind a collider */
+static void hide_behind_collider(const struct cs_visibility_query *visibility,
+                                 const struct cs_posed_collider *obstacle, const double *x,
+                                 const struct cs_body_range *body, struct grid *grid) {
+    const size_t n = grid->n, end = (size_t)body->first + body->count;
+    for (size_t i = body->first; i < end; i++) {
+        const double way[3] = {x[i] - visibility->eye[0], x[n + i] - visibility->eye[1],
+                               x[2 * n + i] - visibility->eye[2]};
+        grid->seen[i] = grid->seen[i] &&
+                        !cs_posed_collider_hits_segment(obstacle, visibility->eye, way, REACH);
+    }
+}
+
+/* marks the particles of a body that may be seen as far as colliders go, and widens the bounds
+ */
+static uint32_t mark(const struct cs_visibility_query *visibility,
+                     const struct cs_system *system, double t, const double *x,
+                     const struct cs_body_range *body, struct grid *grid) {
+    const struct cs_list *colliders = &system->scene->colliders;
+    const uint32_t end = body->first + body->count;
+    uint32_t count = 0;
+    double p[3];
+    for (uint32_t i = body->first; i < end; i++) {
+        position_of(grid->work, grid->n, i, p);
+        grid->seen[i] = is_in_rectangle(visibility, p);
+    }
+    /* before the bounds, which hidden particles would widen */
+    for (uint32_t k = 0; k < colliders->n; k++) {
+        struct cs_posed_collider obstacle;
+        cs_posed_collider_at(system, k, t, &obstacle);
+        if (obstacle.collider->visible)
+            hide_behind_collider(visibility, &obstacle, x, body, grid);
+    }
+    for (uint32_t i = body->first; i < end; i++) {
+        position_of(grid->work, grid->n, i, p);
+        for (int c = 0; c < 2 && grid->seen[i]; c++) {
+            grid->low[c] = least(grid->low[c], p[c] / p[2]);
+            grid->high[c] = most(grid->high[c], p[c] / p[2]);
+        }
+        count += grid->seen[i];
+    }
+    return count;
+}
+
+/* column or row of a position in the image, moved by some cells; outside, that at the border */
+static uint32_t line_of(const struct grid *grid, int axis, double image, double move) {
+    const double at = (image - grid->low[axis]) * grid->scale[axis] + move;
+    return (uint32_t)least(most(at, 0), grid->cells - 1);
+}
+
+static void sort(struct grid *grid, uint32_t count) {
+    const struct cs_visibility_scratch *work = grid->work;
+    grid->cells = (uint32_t)sqrt(count);
+    for (int c = 0; c < 2; c++) {
+        const double span = grid->high[c] - grid->low[c];
+        grid->scale[c] = span > 0 ? grid->cells / span : 0;
+    }
+    const uint32_t n_cells = grid->cells * grid->cells;
+    memset(work->cell_starts, 0, (n_cells + 1) * sizeof *work->cell_starts);
+    for (size_t i = 0; i < grid->n; i++) {
+        double p[3];
+        if (!grid->seen[i])
+            continue;
+        position_of(work, grid->n, i, p);
+        work->cells[i] =
+            line_of(grid, 1, p[1] / p[2], 0) * grid->cells + line_of(grid, 0, p[0] / p[2], 0);
+        work->cell_starts[work->cells[i]]++;
+    }
+    /* from the end of each cell back to its beginning */
+    for (uint32_t c = 1; c <= n_cells; c++)
+        work->cell_starts[c] += work->cell_starts[c - 1];
+    for (size_t i = grid->n; i-- > 0;)
+        if (grid->seen[i])
+            work->order[--work->cell_starts[work->cells[i]]] = (uint32_t)i;
+}
+
+/* A triangle as seen from the eye: the cells that its image lies in, and what tells whether a
+ * line from the eye goes through it. */
+struct face {
+    uint32_t corners[3];
+    uint32_t from[2], to[2]; /* column, row */
+    double nearest;          /* m along the view */
+    double sides[3][3];      /* cross products of corners: normals of the planes of its sides */
+    double volume;           /* determinant of the corners */
+};
+
+/* false where it hides nothing: behind the eye, off the grid, or not finite */
+static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
+    double nearest = HUGE_VAL, farthest = -HUGE_VAL, low[2] = {HUGE_VAL, HUGE_VAL},
+           high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int k = 0; k < 3; k++) {
+        if (!isfinite(p[k][0] + p[k][1] + p[k][2]))
+            return false;
+        nearest = least(nearest, p[k][2]);
+        farthest = most(farthest, p[k][2]);
+        for (int c = 0; c < 2; c++) {
+            low[c] = least(low[c], p[k][c] / p[k][2]);
+            high[c] = most(high[c], p[k][c] / p[k][2]);
+        }
+    }
+    if (farthest <= 0)
+        return false;
+    face->nearest = nearest;
+    for (int c = 0; c < 2; c++) {
+        /* the image of one that reaches behind the eye has no bounds */
+        const double from = nearest > 0 ? low[c] : -HUGE_VAL;
+        const double to = nearest > 0 ? high[c] : HUGE_VAL;
+        if (from > grid->high[c] + MARGIN * (grid->high[c] - grid->low[c]) ||
+            to < grid->low[c] - MARGIN * (grid->high[c] - grid->low[c]))
+            return false;
+        face->from[c] = line_of(grid, c, most(from, grid->low[c]), -MARGIN);
+        face->to[c] = line_of(grid, c, least(to, grid->high[c]), MARGIN);
+    }
+    return true;
+}
+
+/* The line to p goes through the triangle: p is on one side of the planes through the eye and
+ * each edge, and behind the triangle's own. Neighbours compute the same numbers for the edge
+ * between them but for the sign, so nothing is seen through a seam. */
+static bool hides(const struct face *face, const double p[3]) {
+    if (p[2] <= face->nearest)
+        return false;
+    const double a = cs_vec3_dot(face->sides[0], p), b = cs_vec3_dot(face->sides[1], p),
+                 c = cs_vec3_dot(face->sides[2], p);
+    const double sum = a + b + c; /* the line meets the plane at volume / sum of its length */
+    if (a >= 0 && b >= 0 && c >= 0)
+        return face->volume > 0 && face->volume < REACH * sum;
+    if (a <= 0 && b <= 0 && c <= 0)
+        return face->volume < 0 && face->volume > REACH * sum;
+    return false;
+}
+
+static void hide_cell(struct grid *grid, const struct face *face, uint32_t cell) {
+    const struct cs_visibility_scratch *work = grid->work;
+    for (uint32_t k = work->cell_starts[cell]; k < work->cell_starts[cell + 1]; k++) {
+        const uint32_t i = work->order[k];
+        double p[3];
+        if (!grid->seen[i] || i == face->corners[0] || i == face->corners[1] ||
+            i == face->corners[2])
+            continue;
+        position_of(work, grid->n, i, p);
+        grid->seen[i] = !hides(face, p);
+    }
+}
+
+static void mark_occluded(struct grid *grid, const struct cs_body_range *body, uint32_t t) {
+    struct face face;
+    double p[3][3];
+    cs_face_corners(body, t, face.corners);
+    for (int k = 0; k < 3; k++) {
+        face.corners[k] += body->first;
+        position_of(grid->work, grid->n, face.corners[k], p[k]);
+    }
+    if (!bound(grid, p, &face))
+        return;
+    for (int k = 0; k < 3; k++)
+        cs_vec3_cross(p[k], p[(k + 1) % 3], face.sides[k]);
+    face.volume = cs_vec3_dot(p[0], face.sides[1]);
+    for (uint32_t row = face.from[1]; row <= face.to[1]; row++)
+        for (uint32_t column = face.from[0]; column <= face.to[0]; column++)
+            hide_cell(grid, &face, row * grid->cells + column);
+}
+
+void cs_visibility_query_run(const struct cs_visibility_query *visibility,
+                             const struct cs_system *system, double t, const double *x,
+                             int64_t body, const struct cs_visibility_scratch *work,
+                             bool *seen) {
+    struct grid grid = {.work = work,
+                        .n = system->view.n,
+                        .low = {HUGE_VAL, HUGE_VAL},
+                        .high = {-HUGE_VAL, -HUGE_VAL},
+                        .seen = seen};
+    uint32_t count = 0;
+    memset(seen, 0, grid.n * sizeof *seen);
+    turn_positions(visibility, work, grid.n, x);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
+        if (body < 0 || body == b)
+            count += mark(visibility, system, t, x, system->bodies + b, &grid);
+    if (count == 0)
+        return;
+    sort(&grid, count);
+    for (uint32_t b = 0; b < system->scene->bodies.n; b++)
+        for (uint32_t f = 0; f < cs_faces_count(system->bodies + b); f++)
+            mark_occluded(&grid, system->bodies + b, f);
+}

@@ -1,0 +1,108 @@
+/* Measures a state: energies, strains and forces. */
+#include "model/force/diagnostics.h"
+
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+
+#include <math.h>
+#include <string.h>
+
+struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
+                                       const double *x, const double *v) {
+    const size_t n = system->view.n;
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
+    struct cs_energy energy = {0};
+    double *const kinds[CS_ENERGIES] = {[CS_ENERGY_ELASTIC] = &energy.elastic,
+                                        [CS_ENERGY_GRAVITY] = &energy.gravity,
+                                        [CS_ENERGY_OTHER] = &energy.other};
+    for (size_t i = 0; i < n; i++)
+        energy.kinetic += 0.5 * system->mass[i] *
+                          (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        if (system->terms[k]->energy)
+            *kinds[system->terms[k]->energy_kind] += system->terms[k]->energy(system, &at);
+    return energy;
+}
+
+static double strain_of(const struct cs_spring_run *run, size_t n, const double *x,
+                        uint32_t i) {
+    double squared = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double d = x[c * n + cs_spring_b(run, i)] - x[c * n + cs_spring_a(run, i)];
+        squared += d * d;
+    }
+    return sqrt(squared) / cs_spring_length(run, i) - 1;
+}
+
+double cs_diagnostics_strain(const struct cs_system *system, const double *x) {
+    return cs_springs_largest_strain(&system->springs, system->view.n, x);
+}
+
+void cs_diagnostics_particle_strain(const struct cs_system *system, const double *x,
+                                    double *out) {
+    for (uint32_t i = 0; i < system->view.n; i++)
+        out[i] = 0;
+    for (uint32_t r = 0; r < system->springs.n_runs; r++) {
+        const struct cs_spring_run *run = system->springs.runs + r;
+        for (uint32_t i = 0; i < run->count; i++) {
+            const double strain = strain_of(run, system->view.n, x, i);
+            const uint32_t ends[2] = {cs_spring_a(run, i), cs_spring_b(run, i)};
+            for (int e = 0; e < 2; e++)
+                if (fabs(strain) > fabs(out[ends[e]]))
+                    out[ends[e]] = strain;
+        }
+    }
+}
+
+void cs_diagnostics_particle_force(const struct cs_system *system, double t, const double *x,
+                                   const double *v, double *out, double *work) {
+    const size_t n = system->view.n;
+    if (cs_terms_need_normals(system, CS_PART_ALL))
+        cs_normals_update(system, x);
+    cs_terms_force(system, &(struct cs_eval){.t = t, .x = x, .v = v, .parts = CS_PART_ALL},
+                   work);
+    for (size_t i = 0; i < n; i++)
+        out[i] = sqrt(work[i] * work[i] + work[n + i] * work[n + i] +
+                      work[2 * n + i] * work[2 * n + i]);
+}
+
+void cs_diagnostics_range(const double *values, uint32_t n, double range[2]) {
+    range[0] = range[1] = n > 0 ? values[0] : 0;
+    for (uint32_t i = 0; i < n; i++) {
+        range[0] = fmin(range[0], values[i]);
+        range[1] = fmax(range[1], values[i]);
+    }
+}
+
+/* Magnitudes as floats, whose bits are ordered as they are. */
+static uint32_t key_of(double value) {
+    const float magnitude = (float)fabs(value);
+    uint32_t key;
+    memcpy(&key, &magnitude, sizeof key);
+    return key;
+}
+
+/* The bits from the highest on, by counting (radix selection): the same for any order. */
+double cs_diagnostics_magnitude(const double *values, uint32_t n) {
+    static const uint32_t infinite = 0x7f800000;
+    uint32_t prefix = 0, known = 0, rank = 0;
+    float found;
+    for (uint32_t i = 0; i < n; i++)
+        rank += key_of(values[i]) < infinite;
+    if (rank == 0)
+        return 0;
+    rank -= 1 + (rank - 1) / 100;
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        uint32_t counts[256] = {0}, digit = 0;
+        for (uint32_t i = 0; i < n; i++) {
+            const uint32_t key = key_of(values[i]);
+            counts[key >> shift & 255] += key < infinite && (key & known) == prefix;
+        }
+        while (rank >= counts[digit])
+            rank -= counts[digit++];
+        prefix |= digit << shift;
+        known |= 255u << shift;
+    }
+    memcpy(&found, &prefix, sizeof found);
+    return (double)found;
+}

@@ -1,0 +1,194 @@
+/* contact_projection.c - all particles against all obstacles, and the energy of it; see
+ * contact_projection.h. */
+#include "model/post_step/contact_projection.h"
+
+#include "base/vector.h"
+#include "model/post_step/project_particle.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+/* one commit */
+struct step {
+    struct cs_contact_projection *contact;
+    double t, dt;
+    double *x, *v;               /* the state as the step has left it */
+    atomic_ullong tests, pushed; /* whole numbers: their sum has no order */
+};
+
+static size_t count_of(const struct cs_contact_projection *contact) {
+    return contact->system->view.n;
+}
+
+static void take(const double *from, size_t n, size_t i, double out[3]) {
+    for (size_t c = 0; c < 3; c++)
+        out[c] = from[c * n + i];
+}
+
+static void put(const double value[3], size_t n, size_t i, double *to) {
+    for (size_t c = 0; c < 3; c++)
+        to[c * n + i] = value[c];
+}
+
+/* most particles are in front of all: of those only the place is looked at */
+static bool is_behind_any(const struct step *step, size_t i) {
+    const struct cs_contact_projection *contact = step->contact;
+    double p[3], normal[3];
+    take(step->x, count_of(contact), i, p);
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
+        const struct cs_posed_collider *obstacle = contact->colliders + k;
+        if (cs_posed_collider_is_near(obstacle, obstacle->collider->thickness, p) &&
+            cs_posed_collider_signed_distance(obstacle, p, normal) < 0)
+            return true;
+    }
+    return false;
+}
+
+/* particle i against the obstacles, each after the one before; returns how many pushed it */
+static unsigned project_against_all(const struct step *step, size_t i) {
+    struct cs_contact_projection *contact = step->contact;
+    const size_t n = count_of(contact);
+    double p[3], v[3], last[3];
+    unsigned pushed = 0;
+    take(step->x, n, i, p);
+    take(step->v, n, i, v);
+    take(contact->state_before, n, i, last);
+    for (uint32_t k = 0; k < contact->system->scene->colliders.n; k++) {
+        const enum cs_project_result touch =
+            cs_project_particle(contact->colliders + k, step->dt, last, p, v);
+        if (touch == CS_PROJECT_NONE)
+            continue;
+        pushed++;
+        contact->static_friction.resting_on[i] = touch == CS_PROJECT_STUCK ? k + 1 : 0;
+    }
+    put(p, n, i, contact->state_after);
+    put(v, n, i, contact->state_after + 3 * n);
+    return pushed;
+}
+
+static void project_block(void *arg, size_t begin, size_t end) {
+    struct step *step = arg;
+    struct cs_contact_projection *contact = step->contact;
+    const struct cs_system *system = contact->system;
+    uint64_t tested = 0, pushed = 0;
+    for (size_t i = begin; i < end; i++) {
+        const bool free = system->inv_mass[i] > 0 && !contact->static_friction.is_sticking[i];
+        tested += free;
+        contact->is_pushed[i] = free && is_behind_any(step, i);
+        if (contact->is_pushed[i])
+            pushed += project_against_all(step, i);
+        else if (free)
+            contact->static_friction.resting_on[i] = 0;
+    }
+    step->tests += tested * system->scene->colliders.n;
+    step->pushed += pushed;
+}
+
+/* the particles that were not pushed; to those that are held the body gives way as to pushed
+ * ones */
+static void complete(const struct step *step) {
+    struct cs_contact_projection *contact = step->contact;
+    const size_t n = count_of(contact);
+    for (size_t i = 0; i < n; i++) {
+        if (contact->is_pushed[i])
+            continue;
+        for (size_t c = 0; c < 3; c++) {
+            contact->state_after[c * n + i] = step->x[c * n + i];
+            contact->state_after[(3 + c) * n + i] = step->v[c * n + i];
+        }
+        contact->is_pushed[i] = contact->static_friction.is_sticking[i];
+    }
+}
+
+/* what the pushes come to */
+static void push(const struct step *step) {
+    struct cs_contact_projection *contact = step->contact;
+    const size_t n3 = 3 * count_of(contact);
+    const struct cs_projection_step blow = {.t = step->t,
+                                            .dt = step->dt,
+                                            .colliders = contact->colliders,
+                                            .before_step = contact->state_before,
+                                            .x = step->x,
+                                            .v = step->v,
+                                            .corrected = contact->state_after,
+                                            .is_pushed = contact->is_pushed};
+    complete(step);
+    // who is left behind a surface is not at rest on it
+    if (!cs_projection_energy_limit(&contact->energy_limit, &blow))
+        cs_static_friction_reject(&contact->static_friction);
+    memcpy(step->x, contact->state_after, n3 * sizeof *step->x);
+    memcpy(step->v, contact->state_after + n3, n3 * sizeof *step->v);
+}
+
+bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
+                                   double *x, double *v) {
+    const size_t n = count_of(contact);
+    struct step step = {.contact = contact, .t = t, .dt = dt, .x = x, .v = v};
+    const bool restored =
+        cs_static_friction_restore(&contact->static_friction, dt, contact->state_before, x, v);
+    cs_posed_colliders_at(contact->system, t, contact->colliders);
+    cs_vector_parallel_for(n, project_block, &step);
+    contact->counts.tests += step.tests;
+    contact->counts.projected += step.pushed;
+    if (step.pushed > 0)
+        push(&step);
+    contact->energy_limit.has_last_energy = step.pushed > 0;
+    contact->energy_limit.in_contact &=
+        step.pushed > 0 || contact->static_friction.n_sticking > 0;
+    return step.pushed > 0 || restored;
+}
+
+bool cs_contact_projection_update_sticking(struct cs_contact_projection *contact, double t,
+                                           const double *x, const double *v) {
+    return cs_static_friction_update(&contact->static_friction, contact->colliders, t, x, v,
+                                     contact->state_after);
+}
+
+void cs_contact_projection_store(struct cs_contact_projection *contact, const double *x,
+                                 const double *v, bool resolved) {
+    const size_t n3 = 3 * count_of(contact);
+    memcpy(contact->state_before, x, n3 * sizeof *x);
+    memcpy(contact->state_before + n3, v, n3 * sizeof *v);
+    contact->energy_limit.has_last_energy &= resolved;
+}
+
+void cs_contact_projection_serialise(struct cs_contact_projection *contact,
+                                     struct cs_serialiser *record) {
+    cs_serialiser_bytes(record, contact->state_before,
+                        6 * count_of(contact) * sizeof *contact->state_before);
+    CS_SERIALISER(record, contact->counts);
+    cs_static_friction_serialise(&contact->static_friction, record);
+    cs_projection_energy_serialise(&contact->energy_limit, record);
+}
+
+void cs_contact_start(struct cs_contact_projection *contact, double t, const double *x,
+                      const double *v) {
+    cs_contact_projection_store(contact, x, v, false);
+    contact->energy_limit.in_contact = false;
+    cs_posed_colliders_at(contact->system, t, contact->colliders);
+    cs_static_friction_start(&contact->static_friction, contact->colliders, t, x, v,
+                             contact->state_after);
+}
+
+size_t cs_contact_projection_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
+                                   bool forced) {
+    return scene->colliders.n * sizeof(struct cs_posed_collider) + 12 * n * sizeof(double) +
+           n * sizeof(bool) + cs_static_friction_bytes(n) +
+           cs_projection_energy_bytes(scene, n, n_springs, forced);
+}
+
+enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
+                                          struct cs_system *system, struct cs_arena *arena,
+                                          struct cs_error *error) {
+    const size_t n = system->view.n;
+    *contact = (struct cs_contact_projection){.system = system};
+    contact->colliders = cs_arena_alloc_array(arena, system->scene->colliders.n,
+                                              sizeof *contact->colliders, error);
+    contact->state_before = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
+    contact->state_after = cs_arena_alloc_array(arena, 6 * n, sizeof(double), error);
+    contact->is_pushed = cs_arena_alloc_array(arena, n, sizeof(bool), error);
+    if (error->status ||
+        cs_static_friction_init(&contact->static_friction, system, arena, error))
+        return error->status;
+    return cs_projection_energy_init(&contact->energy_limit, system, arena, error);
+}

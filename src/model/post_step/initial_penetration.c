@@ -1,0 +1,139 @@
+/* initial_penetration.c - what starts inside an obstacle is refused, or moved out once; what
+ * starts through what it keeps off is refused. */
+#include "model/post_step/initial_penetration.h"
+
+#include "model/contact/ccd/crossings.h"
+#include "model/contact/contact_samples.h"
+#include "model/contact/posed_collider.h"
+
+#include <math.h>
+
+/* m: particles put on a surface by the scene's numbers are not inside */
+#define TOLERANCE 1e-9
+enum { PASSES = 16 };
+
+/* the obstacle that p is deepest in, its normal n and the depth; NULL: none */
+static bool find(const struct cs_system *system, const double p[3], uint32_t *collider,
+                 double n[3], double *depth) {
+    *depth = TOLERANCE;
+    bool found = false;
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++) {
+        struct cs_posed_collider obstacle;
+        double normal[3];
+        cs_posed_collider_at(system, k, 0, &obstacle);
+        const double gap = system->scene->contact.law == CS_CONTACT_PROJECT
+                               ? cs_posed_collider_signed_distance(&obstacle, p, normal)
+                               : cs_posed_collider_distance(&obstacle, p, normal);
+        if (!(-gap > *depth))
+            continue;
+        *depth = -gap;
+        *collider = k;
+        for (int c = 0; c < 3; c++)
+            n[c] = normal[c];
+        found = true;
+    }
+    return found;
+}
+
+static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_t collider,
+                             double depth, struct cs_error *error) {
+    struct cs_text text = {0};
+    const bool asked = system->scene->contact.start == CS_CONTACT_START_MOVE_OUT;
+    cs_system_print_particle(system, i, &text);
+    cs_fail(error, CS_ERR_SCENE, "%s: %s starts %.3g m inside colliders[%u]%s",
+            system->scene->path, cs_text_get(&text), depth, collider,
+            asked ? ", and another leaves it no way out"
+                  : ": place it in front, or set contact.start to \"move-out\"");
+    cs_text_finish(&text);
+    return error->status;
+}
+
+static enum cs_status clear(struct cs_system *system, uint32_t i,
+                            struct cs_initial_penetration *inside, struct cs_error *error) {
+    const size_t size = system->view.n;
+    double *x = system->state;
+    double p[3] = {x[i], x[size + i], x[2 * size + i]}, n[3], depth, moved = 0;
+    uint32_t collider = 0;
+    for (int pass = 0; find(system, p, &collider, n, &depth); pass++) {
+        if (pass == PASSES || system->scene->contact.start == CS_CONTACT_START_REFUSE)
+            return refuse(system, i, collider, depth, error);
+        for (int c = 0; c < 3; c++)
+            p[c] += depth * n[c];
+        moved += depth;
+    }
+    if (moved == 0)
+        return CS_OK;
+    for (size_t c = 0; c < 3; c++)
+        x[c * size + i] = p[c];
+    inside->n++;
+    inside->depth = fmax(inside->depth, moved);
+    return CS_OK;
+}
+
+/* a point of an edge or triangle that is inside the collider of its chunk */
+static enum cs_status check_between_particles(const struct cs_system *system,
+                                              const struct cs_contact_sample_chunk *chunk,
+                                              uint32_t item, struct cs_error *error) {
+    struct cs_posed_collider obstacle;
+    struct cs_contact_sample_point point;
+    cs_posed_collider_at(system, chunk->collider, 0, &obstacle);
+    for (cs_contact_sample_first(chunk, item, &point); cs_contact_sample_next(&point);) {
+        double p[3], n[3];
+        cs_contact_sample_interpolate(&point, system->view.n, system->state, p);
+        const double depth = -cs_posed_collider_distance(&obstacle, p, n);
+        if (!(depth > TOLERANCE) || cs_contact_sample_mass(system, &point) == HUGE_VAL)
+            continue;
+        struct cs_text first = {0}, second = {0};
+        cs_system_print_particle(system, point.particles[0], &first);
+        cs_system_print_particle(system, point.particles[1], &second);
+        cs_fail(error, CS_ERR_SCENE,
+                "%s: between %s and %s the surface starts %.3g m inside colliders[%u]: place "
+                "it in front",
+                system->scene->path, cs_text_get(&first), cs_text_get(&second), depth,
+                chunk->collider);
+        cs_text_finish(&first);
+        cs_text_finish(&second);
+        return error->status;
+    }
+    return CS_OK;
+}
+
+static enum cs_status check_between(const struct cs_system *system, struct cs_error *error) {
+    for (uint32_t l = 0; l < system->contact_samples->n_chunks; l++) {
+        const struct cs_contact_sample_chunk *chunk = system->contact_samples->chunks + l;
+        for (uint32_t i = chunk->begin; i < chunk->end; i++)
+            if (check_between_particles(system, chunk, i, error))
+                return error->status;
+    }
+    return CS_OK;
+}
+
+/* a force between surfaces holds apart what is apart, and cannot part what is through */
+static enum cs_status check_crossings(const struct cs_system *system, struct cs_error *error) {
+    if (!system->pairs || !system->crossings)
+        return CS_OK;
+    const struct cs_crossing_count found = cs_crossings_start(system);
+    struct cs_text text = {0};
+    if (found.n) {
+        cs_crossings_print(system, &found, &text);
+        cs_fail(error, CS_ERR_SCENE,
+                "%s: at the start %s: place apart what is to stay apart, or set crossings to "
+                "\"ignore\"",
+                system->scene->path, cs_text_get(&text));
+    }
+    cs_text_finish(&text);
+    return error->status;
+}
+
+enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
+                                              struct cs_initial_penetration *inside,
+                                              struct cs_error *error) {
+    *inside = (struct cs_initial_penetration){0};
+    for (uint32_t i = 0; i < system->view.n && system->scene->colliders.n && !error->status;
+         i++)
+        if (system->inv_mass[i] > 0)
+            clear(system, i, inside, error);
+    if (!error->status && system->contact_samples)
+        check_between(system, error);
+    return error->status ? error->status : check_crossings(system, error);
+}

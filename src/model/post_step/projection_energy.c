@@ -1,0 +1,252 @@
+/* projection_energy.c - energies before and after, and what is done where there is too much;
+ * see projection_energy.h. */
+#include "model/post_step/projection_energy.h"
+
+#include "base/vector.h"
+#include "model/force/diagnostics.h"
+
+#include <math.h>
+#include <string.h>
+
+/* share of what was lost since the first touch that one commit may give back, to lift what is
+ * still behind a surface */
+#define GIVEN_BACK 0.01
+/* of the energy: what rounding may make of equal ones */
+#define ROUNDING 1e-13
+enum { HALVINGS = 8 };
+
+static struct cs_energy_with_scale energy_of(const struct cs_projection_energy *balance,
+                                             double t, const double *x, const double *v) {
+    const struct cs_energy energy = cs_diagnostics_energy(balance->system, t, x, v);
+    return (struct cs_energy_with_scale){.total = cs_energy_total(&energy),
+                                         .scale = energy.kinetic + energy.elastic +
+                                                  fabs(energy.other) + balance->energy_scale};
+}
+
+/* of where the commit would take the state */
+static struct cs_energy_with_scale energy_after(struct cs_projection_energy *balance,
+                                                const struct cs_projection_step *blow) {
+    return energy_of(balance, blow->t, blow->corrected,
+                     blow->corrected + 3 * balance->system->view.n);
+}
+
+/* The energy with obstacles having done their work: particles taken along, and the velocities
+ * that they are given. */
+static double energy_with_collider_work(struct cs_projection_energy *balance,
+                                        const struct cs_projection_step *blow) {
+    const size_t n = balance->system->view.n;
+    memcpy(balance->work, blow->x, 3 * n * sizeof(double));
+    for (uint32_t k = 0; k < balance->system->scene->colliders.n; k++)
+        for (size_t i = 0; i < n; i++) {
+            double p[3], normal[3], provenance[3];
+            for (size_t c = 0; c < 3; c++)
+                p[c] = balance->work[c * n + i];
+            if (!blow->is_pushed[i])
+                continue;
+            const double gap =
+                cs_posed_collider_signed_distance(blow->colliders + k, p, normal);
+            cs_posed_collider_velocity(blow->colliders + k, p, provenance);
+            const double along =
+                blow->dt * (provenance[0] * normal[0] + provenance[1] * normal[1] +
+                            provenance[2] * normal[2]);
+            for (size_t c = 0; c < 3 && gap < 0 && along > 0; c++)
+                balance->work[c * n + i] += fmin(along, -gap) * normal[c];
+        }
+    return energy_of(balance, blow->t, balance->work, blow->corrected + 3 * n).total;
+}
+
+/* kinetic energy in J that the blows of this commit take away */
+static double energy_absorbed(struct cs_projection_energy *balance,
+                              const struct cs_projection_step *blow) {
+    const size_t n = balance->system->view.n;
+    const double *before = blow->v, *after = blow->corrected + 3 * n;
+    double sum = 0;
+    for (size_t c = 0, k = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++, k++)
+            if (blow->is_pushed[i])
+                sum += balance->system->mass[i] *
+                       (before[k] * before[k] - after[k] * after[k]) / 2;
+    return fmax(sum, 0);
+}
+
+/* J, of a fall through one step: a body that rests cannot be told from it by its energy */
+static double find_fall(struct cs_projection_energy *balance,
+                        const struct cs_projection_step *blow) {
+    const struct cs_system *system = balance->system;
+    const double *g = system->scene->forces.gravity;
+    double mass = 0;
+    for (uint32_t i = 0; i < system->view.n; i++)
+        mass += system->inv_mass[i] > 0 ? system->mass[i] : 0;
+    return mass * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) * blow->dt * blow->dt / 2;
+}
+
+/* what the energy may come to beside work from outside: what the commit before has left, and a
+ * little of what was lost, or is in this one, up to what there was at the first touch */
+static double energy_allowed(const struct cs_projection_energy *balance) {
+    const double kept = balance->energy.total;
+    const double lost = fmax(balance->energy_limit - kept, balance->absorbed);
+    return fmin(kept + GIVEN_BACK * lost, fmax(balance->energy_limit, kept));
+}
+
+/* with the work that the step has brought in, from outside and by obstacles */
+static double find_allowed(struct cs_projection_energy *balance,
+                           const struct cs_projection_step *blow) {
+    const struct cs_energy_with_scale before = energy_of(balance, blow->t, blow->x, blow->v);
+    balance->energy_limit = fmax(balance->energy_limit, before.total);
+    double allowed = fmax(before.total, energy_allowed(balance));
+    if (balance->system->motions)
+        allowed = fmax(allowed, energy_with_collider_work(balance, blow));
+    return allowed + ROUNDING * fmax(before.scale, balance->energy.scale);
+}
+
+/* 1/s, the change of velocity that goes with a push: g h with g h^2 in a step of implicit
+ * Euler, with g h^2 / 2 in one of second order; of a blow no more than that */
+static double find_rate(const struct cs_projection_step *blow, size_t n, const double *u) {
+    double along = 0, squared = 0;
+    for (size_t c = 0, k = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++, k++) {
+            if (!blow->is_pushed[i])
+                continue;
+            along += u[k] * (blow->corrected[3 * n + k] - blow->v[k]);
+            squared += u[k] * u[k];
+        }
+    return along > 0 ? fmin(along / squared, 2 / blow->dt) : 0;
+}
+
+/* the rest of the body follows the pushes, in its velocity too */
+static void apply_elastic_response(struct cs_projection_energy *balance,
+                                   const struct cs_projection_step *blow) {
+    const size_t n = balance->system->view.n;
+    double *u = balance->work;
+    const struct cs_matrix matrix = {.t = blow->t,
+                                     .x = blow->x,
+                                     .v = blow->v,
+                                     .cm = 1,
+                                     .cd = -blow->dt,
+                                     .ck = -blow->dt * blow->dt,
+                                     .psd = true};
+    cs_vector_kernels.linear_sum(3 * n, 1, blow->corrected, -1, blow->x, u);
+    balance->velocity_per_push = find_rate(blow, n, u);
+    cs_elastic_response_solve(&balance->elastic_response, &matrix, blow->is_pushed, u);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++) {
+            if (blow->is_pushed[i])
+                continue;
+            blow->corrected[c * n + i] += u[c * n + i];
+            blow->corrected[(3 + c) * n + i] += balance->velocity_per_push * u[c * n + i];
+        }
+}
+
+/* what of a correction is done */
+struct share {
+    double way, speed; /* of the pushes and what follows them, of the velocity that it gets */
+};
+
+/* The energy of the state that the step has left with a share of the correction; pushed
+ * particles have their new velocity in any case. */
+static struct cs_energy_with_scale try_share(struct cs_projection_energy *balance,
+                                             const struct cs_projection_step *blow,
+                                             struct share share) {
+    const size_t n = balance->system->view.n;
+    const double *way = balance->work, speed = share.speed * balance->velocity_per_push;
+    cs_vector_kernels.linear_sum(3 * n, 1, blow->x, share.way, way, blow->corrected);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            if (!blow->is_pushed[i])
+                blow->corrected[(3 + c) * n + i] = blow->v[c * n + i] + speed * way[c * n + i];
+    return energy_after(balance, blow);
+}
+
+/* Of *part of share, from 0 to 1, as much as keeps to the energy. */
+static void bisect_fraction(struct cs_projection_energy *balance,
+                            const struct cs_projection_step *blow, double allowed,
+                            struct share *share, double *part) {
+    double low = 0, high = 1;
+    for (int k = 0; k < HALVINGS; k++) {
+        *part = (low + high) / 2;
+        *(try_share(balance, blow, *share).total <= allowed ? &low : &high) = *part;
+    }
+    *part = low;
+}
+
+/* First the velocities, which take the momentum of the blow away, then the pushes; returns the
+ * energy that is left. */
+static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
+                                           const struct cs_projection_step *blow,
+                                           double allowed) {
+    const size_t n = balance->system->view.n;
+    struct share share = {0, 1};
+    cs_vector_kernels.linear_sum(3 * n, 1, blow->corrected, -1, blow->x, balance->work);
+    if (try_share(balance, blow, share).total > allowed)
+        bisect_fraction(balance, blow, allowed, &share, &share.speed);
+    bisect_fraction(balance, blow, allowed, &share, &share.way);
+    balance->n_scaled_commits++;
+    return try_share(balance, blow, share);
+}
+
+bool cs_projection_energy_limit(struct cs_projection_energy *balance,
+                                const struct cs_projection_step *blow) {
+    const size_t n = balance->system->view.n;
+    if (!balance->has_last_energy)
+        balance->energy =
+            energy_of(balance, blow->t, blow->before_step, blow->before_step + 3 * n);
+    balance->absorbed = energy_absorbed(balance, blow);
+    if (!balance->in_contact)
+        balance->energy_limit =
+            balance->energy.total + GIVEN_BACK * balance->absorbed + find_fall(balance, blow);
+    balance->has_last_energy = balance->in_contact = true;
+    balance->velocity_per_push = 0;
+    struct cs_energy_with_scale found = energy_after(balance, blow);
+    if (found.total > energy_allowed(balance)) {
+        const double allowed = find_allowed(balance, blow);
+        if (found.total > allowed &&
+            cs_elastic_response_is_needed(&balance->elastic_response, blow->dt)) {
+            apply_elastic_response(balance, blow);
+            found = energy_after(balance, blow);
+        }
+        if (found.total > allowed) {
+            balance->energy = shorten(balance, blow, allowed);
+            return false;
+        }
+    }
+    balance->energy = found;
+    return true;
+}
+
+/* size of the parts that gravity's energy is the sum of, which may cancel */
+static double gravity_scale(const struct cs_system *system) {
+    const size_t n = system->view.n;
+    const double *g = system->scene->forces.gravity, *x = system->state;
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += system->mass[i] * fabs(g[0] * x[i] + g[1] * x[n + i] + g[2] * x[2 * n + i]);
+    return sum;
+}
+
+size_t cs_projection_energy_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
+                                  bool forced) {
+    return 3 * n * sizeof(double) + cs_elastic_response_bytes(scene, n, n_springs, forced);
+}
+
+enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
+                                         struct cs_system *system, struct cs_arena *arena,
+                                         struct cs_error *error) {
+    *balance =
+        (struct cs_projection_energy){.system = system, .energy_scale = gravity_scale(system)};
+    balance->work =
+        cs_arena_alloc_array(arena, 3 * (size_t)system->view.n, sizeof(double), error);
+    return error->status
+               ? error->status
+               : cs_elastic_response_init(&balance->elastic_response, system, arena, error);
+}
+
+void cs_projection_energy_serialise(struct cs_projection_energy *balance,
+                                    struct cs_serialiser *record) {
+    CS_SERIALISER(record, balance->energy);
+    CS_SERIALISER(record, balance->energy_limit);
+    CS_SERIALISER(record, balance->has_last_energy);
+    CS_SERIALISER(record, balance->in_contact);
+    CS_SERIALISER(record, balance->n_scaled_commits);
+    CS_SERIALISER(record, balance->elastic_response.solves);
+    CS_SERIALISER(record, balance->elastic_response.iterations);
+}

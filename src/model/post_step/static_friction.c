@@ -1,0 +1,155 @@
+/* static_friction.c - the cone of friction, and pins that come and go with it; see
+ * static_friction.h. */
+#include "model/post_step/static_friction.h"
+
+#include "base/vec3.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+/* m: on a surface, as far as the scene's numbers tell */
+#define TOUCHING 1e-9
+
+size_t cs_static_friction_bytes(size_t n) {
+    return n * (2 * sizeof(uint32_t) + sizeof(bool) + 3 * sizeof(double));
+}
+
+enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
+                                       struct cs_system *system, struct cs_arena *arena,
+                                       struct cs_error *error) {
+    const size_t n = system->view.n;
+    *stick = (struct cs_static_friction){.system = system};
+    stick->resting_on = cs_arena_alloc_array(arena, n, sizeof *stick->resting_on, error);
+    stick->is_sticking = cs_arena_alloc_array(arena, n, sizeof *stick->is_sticking, error);
+    stick->load = cs_arena_alloc_array(arena, 3 * n, sizeof *stick->load, error);
+    return error->status ? error->status
+                         : cs_temporary_pins_init(&stick->pins, system, arena, error);
+}
+
+void cs_static_friction_pin(struct cs_static_friction *stick) {
+    if (stick->n_sticking > 0)
+        cs_temporary_pins_set(&stick->pins, stick->is_sticking);
+}
+
+void cs_static_friction_unpin(struct cs_static_friction *stick) {
+    cs_temporary_pins_clear(&stick->pins, stick->is_sticking);
+}
+
+bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, const double *last,
+                                double *x, double *v) {
+    const size_t n = stick->system->view.n;
+    bool moved = false;
+    for (size_t c = 0, k = 0; c < 3 && stick->n_sticking > 0; c++)
+        for (size_t i = 0; i < n; i++, k++) {
+            if (!stick->is_sticking[i])
+                continue;
+            moved |= x[k] != last[k] || v[k] != 0;
+            stick->load[k] = stick->system->mass[i] * (x[k] - last[k]) / (dt * dt);
+            x[k] = last[k];
+            v[k] = 0;
+        }
+    return moved;
+}
+
+void cs_static_friction_reject(struct cs_static_friction *stick) {
+    for (uint32_t i = 0; i < stick->system->view.n; i++)
+        if (!stick->is_sticking[i])
+            stick->resting_on[i] = 0;
+}
+
+/* whether friction can hold particle i at p under the load */
+static bool can_stick(const struct cs_posed_collider *obstacle, const double p[3],
+                      const double load[3]) {
+    const double mu = obstacle->collider->friction;
+    double n[3], across = 0;
+    cs_posed_collider_signed_distance(obstacle, p, n);
+    const double inward = -(load[0] * n[0] + load[1] * n[1] + load[2] * n[2]);
+    for (int c = 0; c < 3; c++) {
+        const double t = load[c] + inward * n[c];
+        across += t * t;
+    }
+    return inward > 0 && across <= mu * mu * inward * inward;
+}
+
+static bool any(const struct cs_static_friction *stick) {
+    for (uint32_t i = 0; i < stick->system->view.n && stick->n_sticking == 0; i++)
+        if (stick->resting_on[i])
+            return true;
+    return stick->n_sticking > 0;
+}
+
+bool cs_static_friction_update(struct cs_static_friction *stick,
+                               const struct cs_posed_collider *obstacles, double t,
+                               const double *x, const double *v, double *f) {
+    const struct cs_system *system = stick->system;
+    const size_t n = system->view.n;
+    bool changed = false;
+    if (stick->disabled || !any(stick))
+        return false;
+    if (cs_terms_need_normals(system, CS_PART_ALL))
+        cs_normals_update(system, x);
+    cs_terms_force(system, &(struct cs_eval){.t = t, .x = x, .v = v, .parts = CS_PART_ALL}, f);
+    stick->n_sticking = 0;
+    for (size_t i = 0; i < n; i++) {
+        const bool before = stick->is_sticking[i];
+        const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+        double load[3];
+        for (size_t c = 0; c < 3; c++)
+            load[c] = f[c * n + i] + (before ? stick->load[c * n + i] : 0);
+        stick->is_sticking[i] =
+            stick->resting_on[i] && can_stick(obstacles + stick->resting_on[i] - 1, p, load);
+        changed |= stick->is_sticking[i] != before;
+        stick->n_sticking += stick->is_sticking[i];
+        if (!stick->is_sticking[i])
+            stick->resting_on[i] = 0;
+    }
+    return changed;
+}
+
+void cs_static_friction_clear(struct cs_static_friction *stick) {
+    const size_t n = stick->system->view.n;
+    stick->n_sticking = 0;
+    memset(stick->resting_on, 0, n * sizeof *stick->resting_on);
+    memset(stick->is_sticking, 0, n * sizeof *stick->is_sticking);
+}
+
+/* the obstacle on which a particle at p with the velocity v is at rest + 1; 0: none */
+static uint32_t find_resting_on(const struct cs_static_friction *stick,
+                                const struct cs_posed_collider *obstacles, const double p[3],
+                                const double v[3]) {
+    double n[3], provenance[3];
+    if (!cs_vec3_is_zero(v))
+        return 0;
+    for (uint32_t k = 0; k < stick->system->scene->colliders.n; k++) {
+        cs_posed_collider_velocity(obstacles + k, p, provenance);
+        if (fabs(cs_posed_collider_signed_distance(obstacles + k, p, n)) <= TOUCHING &&
+            cs_vec3_is_zero(provenance) && obstacles[k].collider->absorption == 1)
+            return k + 1;
+    }
+    return 0;
+}
+
+void cs_static_friction_start(struct cs_static_friction *stick,
+                              const struct cs_posed_collider *obstacles, double t,
+                              const double *x, const double *v, double *f) {
+    const size_t n = stick->system->view.n;
+    cs_static_friction_clear(stick);
+    for (size_t i = 0; i < n; i++) {
+        const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+        const double w[3] = {v[i], v[n + i], v[2 * n + i]};
+        if (stick->system->inv_mass[i] > 0)
+            stick->resting_on[i] = find_resting_on(stick, obstacles, p, w);
+    }
+    cs_static_friction_update(stick, obstacles, t, x, v, f);
+}
+
+void cs_static_friction_serialise(struct cs_static_friction *stick,
+                                  struct cs_serialiser *record) {
+    const size_t n = stick->system->view.n;
+    cs_serialiser_bytes(record, stick->resting_on, n * sizeof *stick->resting_on);
+    cs_serialiser_bytes(record, stick->is_sticking, n * sizeof *stick->is_sticking);
+    CS_SERIALISER(record, stick->n_sticking);
+}

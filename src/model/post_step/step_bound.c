@@ -1,0 +1,44 @@
+/* step_bound.c - the time to a surface, and a little beyond, in free fall. */
+#include "model/post_step/step_bound.h"
+
+#include <math.h>
+
+double cs_step_bound_depth(const struct cs_system *system) {
+    return system->springs.n > 0 ? 0.1 * cs_springs_shortest(&system->springs) : HUGE_VAL;
+}
+
+/* The time to go `way` > 0 with the speed s and the acceleration a towards it. */
+static double time_to(double way, double s, double a) {
+    const double squared = s * s + 2 * a * way;
+    const double sum = s + sqrt(fmax(squared, 0));
+    // never, if it turns back before, or stands
+    return squared >= 0 && sum > 0 ? 2 * way / sum : HUGE_VAL;
+}
+
+static double time_of(const struct cs_system *system, const struct cs_posed_collider *collider,
+                      double depth, const double p[3], const double v[3]) {
+    const double *g = system->scene->forces.gravity;
+    double n[3], provenance[3], speed = 0, pull = 0;
+    const double gap = cs_posed_collider_signed_distance(collider, p, n);
+    cs_posed_collider_velocity(collider, p, provenance);
+    for (int c = 0; c < 3; c++) {
+        speed -= (v[c] - provenance[c]) * n[c];
+        pull -= g[c] * n[c];
+    }
+    return time_to(fmax(gap, 0) + depth, speed, pull);
+}
+
+double cs_step_bound_step(const struct cs_system *system,
+                          const struct cs_posed_collider *obstacles, double depth,
+                          const double *x, const double *v) {
+    const size_t n = system->view.n;
+    double least = HUGE_VAL;
+    for (uint32_t k = 0; k < system->scene->colliders.n; k++)
+        for (size_t i = 0; i < n; i++) {
+            const double p[3] = {x[i], x[n + i], x[2 * n + i]};
+            const double w[3] = {v[i], v[n + i], v[2 * n + i]};
+            if (system->inv_mass[i] > 0)
+                least = fmin(least, time_of(system, obstacles + k, depth, p, w));
+        }
+    return least;
+}

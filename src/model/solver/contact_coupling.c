@@ -1,0 +1,192 @@
+/* Springs between the cells of a body that meets itself, from pairs and from level to level. */
+#include "model/solver/contact_coupling.h"
+
+#include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/solver/extra_springs.h"
+#include "model/solver/float_lanes.h"
+#include "model/solver/graph_matching.h"
+
+#include <string.h>
+
+/* the next level's cell of each of a grid's */
+static void find_parents(struct cs_level *fine, const struct cs_level *coarse) {
+    memset(fine->parents, 0xff, fine->n * sizeof *fine->parents);
+    for (uint32_t row = 0; row < fine->rows; row++)
+        for (uint32_t column = 0; column < fine->columns; column++)
+            fine->parents[fine->begin + row * fine->pitch + column] =
+                coarse->begin + row / 2 * coarse->pitch + column / 2;
+}
+
+/* the cells of each parent one behind the other: counted two places on, so that filling moves
+ * the starts to where they belong */
+static void find_children(struct cs_level *fine, const struct cs_level *coarse) {
+    uint32_t *starts = fine->children_begin;
+    for (uint32_t i = 0; i < fine->n; i++)
+        if (fine->parents[i] != CS_GRAPH_NONE)
+            starts[fine->parents[i] + 2]++;
+    for (uint32_t i = 2; i < coarse->n + 2; i++)
+        starts[i] += starts[i - 1];
+    for (uint32_t i = 0; i < fine->n; i++)
+        if (fine->parents[i] != CS_GRAPH_NONE)
+            fine->children[starts[fine->parents[i] + 1]++] = i;
+}
+
+static void add_pair_springs(struct cs_level *fine, const struct cs_level *coarse,
+                             struct cs_arena *arena, struct cs_error *error) {
+    const bool grid = fine->form != CS_LEVEL_MESH;
+    if (grid)
+        fine->parents = cs_arena_alloc_array(arena, fine->n, sizeof *fine->parents, error);
+    fine->children = cs_arena_alloc_array(arena, fine->n, sizeof *fine->children, error);
+    fine->children_begin =
+        cs_arena_alloc_array(arena, coarse->n + (size_t)2, sizeof *fine->children_begin, error);
+    if (error->status)
+        return;
+    if (grid)
+        find_parents(fine, coarse);
+    find_children(fine, coarse);
+}
+
+enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
+                                struct cs_error *error) {
+    for (uint32_t k = 0; k < hierarchy->n_levels && !error->status; k++) {
+        struct cs_level *level = hierarchy->levels + k;
+        level->extra_springs =
+            cs_arena_alloc_array(arena, 1, sizeof *level->extra_springs, error);
+        if (!error->status &&
+            !cs_extra_springs_init(level->extra_springs, level->n, arena, error) &&
+            k + 1 < hierarchy->n_levels)
+            add_pair_springs(level, level + 1, arena, error);
+    }
+    return error->status;
+}
+
+/* a block, and some numbers a cell: all levels have 4/3 cells a particle, and padding */
+size_t cs_coupling_bytes(size_t n_particles) {
+    return (6 * sizeof(double) + 9 * sizeof(float) + 4 * sizeof(uint32_t)) * n_particles;
+}
+
+/* --- from pairs --- */
+
+static bool is_own(const struct cs_hierarchy *hierarchy, uint32_t point) {
+    return point >= hierarchy->first && point - hierarchy->first < hierarchy->count;
+}
+
+static bool is_inner(const struct cs_hierarchy *hierarchy, const uint32_t at[4]) {
+    bool inner = true;
+    for (uint32_t k = 0; k < 4; k++)
+        inner = inner && is_own(hierarchy, at[k]);
+    return inner;
+}
+
+static uint32_t cell_of(const struct cs_hierarchy *hierarchy, uint32_t particle) {
+    const uint32_t i = particle - hierarchy->first, row = i / hierarchy->columns;
+    return hierarchy->levels->begin + row * hierarchy->levels->pitch + i % hierarchy->columns;
+}
+
+/* UINT32_MAX: padding */
+static uint32_t particle_of(const struct cs_hierarchy *hierarchy, uint32_t cell) {
+    const struct cs_level *level = hierarchy->levels;
+    if (cell < level->begin || cell >= level->end)
+        return UINT32_MAX;
+    const uint32_t row = (cell - level->begin) / level->pitch;
+    const uint32_t column = (cell - level->begin) % level->pitch;
+    const uint32_t i = row * hierarchy->columns + column;
+    return column < hierarchy->columns && i < hierarchy->count ? hierarchy->first + i
+                                                               : UINT32_MAX;
+}
+
+/* inner += factor times a block */
+static void count_in(const struct cs_coupling *coupling, uint32_t particle,
+                     const double block[6], double factor) {
+    const size_t n = coupling->pairs->system->view.n;
+    for (size_t c = 0; c < 6; c++)
+        coupling->internal_blocks[c * n + particle] += factor * block[c];
+}
+
+/* The springs of one corner of a pair to the others. Pinned ones are ground, where springs
+ * below 0 are left out: what a cell has alone must stay above. */
+static void add_springs(const struct cs_coupling *coupling,
+                        struct cs_extra_springs_chunk *piece,
+                        const struct cs_pair_vertex_terms *share) {
+    const double *whole = share->unit_weight_block;
+    float block[6];
+    for (int c = 0; c < 6; c++)
+        block[c] = (float)(coupling->scale * whole[c]);
+    for (uint32_t k = 0; k < 4; k++) {
+        const double stiff = -share->weight[share->vertex] * share->weight[k];
+        const uint32_t other = share->points[k];
+        if (k != share->vertex && coupling->inv_mass[other] > 0)
+            cs_extra_springs_add(piece, cell_of(coupling->hierarchy, other), block,
+                                 (float)stiff);
+        else if (stiff * (whole[0] + whole[3] + whole[5]) > 0 && k != share->vertex)
+            count_in(coupling, share->points[share->vertex], whole, -stiff);
+    }
+}
+
+/* What takes away must not stay where what it takes away from does not. */
+static void add_corner(const struct cs_coupling *coupling, struct cs_extra_springs_chunk *piece,
+                       const struct cs_pair_vertex *corner) {
+    struct cs_pair_vertex_terms share;
+    cs_pair_vertices_read(coupling->pairs, corner, &share);
+    const double trace =
+        share.unit_weight_block[0] + share.unit_weight_block[3] + share.unit_weight_block[5];
+    if (!is_inner(coupling->hierarchy, share.points) ||
+        (trace >= 0 && trace < coupling->trace_min))
+        return;
+    count_in(coupling, share.points[share.vertex], share.diagonal_block, 1);
+    add_springs(coupling, piece, &share);
+}
+
+static void find_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
+    const struct cs_coupling *coupling = arg;
+    const struct cs_pair_vertices *corners = coupling->pair_vertices;
+    const size_t n = coupling->pairs->system->view.n;
+    const uint32_t i = particle_of(coupling->hierarchy, cell);
+    if (i == UINT32_MAX)
+        return;
+    for (size_t c = 0; c < 6; c++)
+        coupling->internal_blocks[c * n + i] = 0;
+    if (!(coupling->inv_mass[i] > 0))
+        return;
+    for (uint32_t e = corners->starts[i]; e < corners->starts[i + 1]; e++)
+        add_corner(coupling, piece, corners->items + e);
+}
+
+bool cs_coupling_load(struct cs_coupling *coupling) {
+    return cs_extra_springs_make(coupling->hierarchy->levels->extra_springs, find_links,
+                                 coupling);
+}
+
+/* --- from level to level --- */
+
+struct coarsening {
+    const struct cs_level *fine, *coarse;
+};
+
+/* what leads out of the parent's cells */
+static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
+    const struct coarsening *coarsening = arg;
+    const struct cs_level *fine = coarsening->fine;
+    const uint32_t begin = fine->children_begin[cell], end = fine->children_begin[cell + 1];
+    for (const uint32_t *child = fine->children + begin; child < fine->children + end;
+         child++) {
+        const struct cs_extra_springs_slots slots =
+            cs_extra_springs_of(fine->extra_springs, *child / CS_LANES);
+        const size_t lane = *child % CS_LANES;
+        for (size_t k = 0; k < slots.n; k++) {
+            const uint32_t to = slots.cells[k * CS_LANES + lane];
+            float block[6];
+            for (size_t c = 0; c < 6; c++)
+                block[c] = slots.springs[(6 * k + c) * CS_LANES + lane];
+            if (to != *child && fine->parents[to] != cell)
+                cs_extra_springs_add(piece, fine->parents[to], block, 1);
+        }
+    }
+}
+
+bool cs_coupling_coarsen(const struct cs_level *fine, struct cs_level *coarse) {
+    struct coarsening coarsening = {fine, coarse};
+    coarse->extra_springs->is_nonempty = false;
+    return !fine->extra_springs->is_nonempty ||
+           cs_extra_springs_make(coarse->extra_springs, sum_links, &coarsening);
+}

@@ -1,0 +1,160 @@
+/* Lists of springs that are made anew for every matrix. */
+#include "model/solver/extra_springs.h"
+
+#include "base/pool.h"
+
+#include <clothsim/small.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LANES = CS_EXTRA_SPRINGS_LANES };
+
+static void finish(void *object) {
+    struct cs_extra_springs *links = object;
+    for (uint32_t p = 0; p < links->n_pieces; p++) {
+        free(links->chunks[p].list);
+        free(links->chunks[p].cells);
+        free(links->chunks[p].springs);
+    }
+}
+
+enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t n_cells,
+                                     struct cs_arena *arena, struct cs_error *error) {
+    *links = (struct cs_extra_springs){.n_blocks = n_cells / LANES};
+    const uint32_t n_pieces =
+        (links->n_blocks + CS_EXTRA_SPRINGS_CHUNK - 1) / CS_EXTRA_SPRINGS_CHUNK;
+    links->chunks = cs_arena_alloc_array(arena, n_pieces, sizeof *links->chunks, error);
+    links->begins = cs_arena_alloc_array(arena, links->n_blocks, sizeof(uint32_t), error);
+    links->diagonal_share =
+        cs_arena_alloc_array(arena, 6 * (size_t)n_cells, sizeof(float), error);
+    links->ends = cs_arena_alloc_array(arena, links->n_blocks, sizeof(uint32_t), error);
+    links->n_pieces = error->status ? 0 : n_pieces;
+    if (!error->status)
+        cs_arena_adopt(arena, finish, links, error);
+    return error->status;
+}
+
+/* the place of a spring in the list, a new one at its end; NULL: no memory */
+static struct cs_extra_spring *link_to(struct cs_extra_springs_chunk *piece, uint32_t to) {
+    uint32_t k = 0;
+    while (k < piece->n_list && piece->list[k].cell != to)
+        k++;
+    if (k < piece->n_list)
+        return piece->list + k;
+    struct cs_extra_spring *list =
+        cs_arena_realloc(piece->list, &piece->list_capacity, (size_t)k + 1, sizeof *list);
+    piece->failed = piece->failed || !list;
+    if (!list)
+        return NULL;
+    piece->list = list;
+    list[piece->n_list++] = (struct cs_extra_spring){.cell = to};
+    return list + k;
+}
+
+void cs_extra_springs_add(struct cs_extra_springs_chunk *piece, uint32_t to,
+                          const float block[6], float factor) {
+    struct cs_extra_spring *link = link_to(piece, to);
+    const bool less = factor * (block[0] + block[3] + block[5]) < 0;
+    for (int c = 0; link && c < 6; c++)
+        *((less ? link->negative : link->positive) + c) += factor * block[c];
+}
+
+/* but for rounding: a spring may well hold one direction alone */
+static bool is_positive(const float block[6]) {
+    double sum[6], cofactors[6];
+    for (int c = 0; c < 6; c++)
+        sum[c] = (double)block[c];
+    const double extra = 1e-6 * (sum[0] + sum[3] + sum[5]);
+    for (int c = 0; c < 6; c += c ? 2 : 3)
+        sum[c] += extra;
+    const double determinant = cs_sym3_cofactors(sum, cofactors);
+    return cs_sym3_is_definite(sum, cofactors, determinant);
+}
+
+/* a slot without springs for the block of 16 cells; false: no memory, now or before */
+static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t block) {
+    const size_t n = (size_t)piece->slots_used + 1, slot = piece->slots_used;
+    uint32_t *cells =
+        cs_arena_realloc(piece->cells, &piece->cells_capacity, LANES * n, sizeof *cells);
+    piece->cells = cells ? cells : piece->cells;
+    float *springs = cs_arena_realloc(piece->springs, &piece->springs_capacity, 6 * LANES * n,
+                                      sizeof *springs);
+    piece->springs = springs ? springs : piece->springs;
+    piece->failed = piece->failed || !cells || !springs;
+    if (piece->failed)
+        return false;
+    for (uint32_t l = 0; l < LANES; l++)
+        cells[LANES * slot + l] = LANES * block + l;
+    memset(springs + 6 * LANES * slot, 0, 6 * LANES * sizeof *springs);
+    piece->slots_used++;
+    return true;
+}
+
+/* Into the slot of its block, and into the diagonal. A sum that is neither above nor below 0
+ * has all there that is above. */
+static void put_link(struct cs_extra_springs *links, struct cs_extra_springs_chunk *piece,
+                     uint32_t cell, const struct cs_extra_spring *link, size_t slot) {
+    const size_t n = (size_t)links->n_blocks * LANES;
+    float sum[6];
+    for (int c = 0; c < 6; c++)
+        sum[c] = link->positive[c] + link->negative[c];
+    const bool above = sum[0] + sum[3] + sum[5] > 0;
+    const float *held = is_positive(sum) ? sum : link->positive;
+    piece->cells[LANES * slot + cell % LANES] = link->cell;
+    for (size_t c = 0; c < 6; c++) {
+        piece->springs[LANES * (6 * slot + c) + cell % LANES] = sum[c];
+        links->diagonal_share[c * n + cell] += above ? held[c] : 0;
+    }
+}
+
+/* from `slot` on */
+static void put_list(struct cs_extra_springs *links, struct cs_extra_springs_chunk *piece,
+                     uint32_t cell, size_t slot) {
+    const size_t n = (size_t)links->n_blocks * LANES;
+    for (size_t c = 0; c < 6; c++)
+        links->diagonal_share[c * n + cell] = 0;
+    for (uint32_t k = 0; k < piece->n_list; k++, slot++)
+        if (slot < piece->slots_used || open_slot(piece, cell / LANES))
+            put_link(links, piece, cell, piece->list + k, slot);
+}
+
+struct making {
+    struct cs_extra_springs *links;
+    void (*find)(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell);
+    void *arg;
+};
+
+static void make_piece(void *arg, uint32_t number) {
+    const struct making *making = arg;
+    struct cs_extra_springs *links = making->links;
+    struct cs_extra_springs_chunk *piece = links->chunks + number;
+    piece->slots_used = 0;
+    piece->failed = false;
+    const uint32_t begin = number * CS_EXTRA_SPRINGS_CHUNK,
+                   end = begin + CS_EXTRA_SPRINGS_CHUNK;
+    for (uint32_t b = begin; b < end && b < links->n_blocks; b++) {
+        links->begins[b] = piece->slots_used;
+        for (uint32_t l = 0; l < LANES; l++) {
+            piece->n_list = 0;
+            making->find(making->arg, piece, LANES * b + l);
+            put_list(links, piece, LANES * b + l, links->begins[b]);
+        }
+        links->ends[b] = piece->slots_used;
+    }
+}
+
+bool cs_extra_springs_make(struct cs_extra_springs *links,
+                           void (*find)(void *arg, struct cs_extra_springs_chunk *piece,
+                                        uint32_t cell),
+                           void *arg) {
+    struct making making = {links, find, arg};
+    bool failed = false;
+    links->is_nonempty = false;
+    cs_pool_run(links->n_pieces, make_piece, &making);
+    for (uint32_t p = 0; p < links->n_pieces; p++) {
+        failed = failed || links->chunks[p].failed;
+        links->is_nonempty = links->is_nonempty || links->chunks[p].slots_used;
+    }
+    links->is_nonempty = links->is_nonempty && !failed;
+    return !failed;
+}

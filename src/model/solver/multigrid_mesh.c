@@ -1,0 +1,221 @@
+/* Multigrid levels of a mesh: cells are joined in pairs, twice, by the stiffness between them.
+ */
+#include "model/solver/multigrid_hierarchy.h"
+
+#include "base/pool.h"
+#include "model/solver/float_lanes.h"
+#include "model/solver/graph_matching.h"
+
+#include <string.h>
+
+/* joins the numbers of two coarsenings: where[i] = then[where[i]] */
+static void compose_maps(uint32_t n, uint32_t *where, const uint32_t *then) {
+    for (uint32_t i = 0; i < n; i++)
+        if (where[i] != CS_GRAPH_NONE)
+            where[i] = then[where[i]];
+}
+
+/* springs of the body by number, stiffness as weight */
+static enum cs_status body_graph(const struct cs_hierarchy *hierarchy, struct cs_graph *graph,
+                                 struct cs_arena *work, struct cs_error *error) {
+    graph->n = hierarchy->count;
+    for (uint32_t r = 0; r < hierarchy->n_runs; r++)
+        graph->n_edges += hierarchy->runs[r].count;
+    graph->ends =
+        cs_arena_alloc_array(work, 2 * (size_t)graph->n_edges, sizeof(uint32_t), error);
+    graph->weights = cs_arena_alloc_array(work, graph->n_edges, sizeof(double), error);
+    if (error->status)
+        return error->status;
+    uint32_t e = 0;
+    for (uint32_t r = 0; r < hierarchy->n_runs; r++)
+        for (uint32_t i = 0; i < hierarchy->runs[r].count; i++, e++) {
+            graph->ends[2 * e] = cs_spring_a(hierarchy->runs + r, i) - hierarchy->first;
+            graph->ends[2 * e + 1] = cs_spring_b(hierarchy->runs + r, i) - hierarchy->first;
+            graph->weights[e] = cs_spring_stiffness(hierarchy->runs + r, i);
+        }
+    return CS_OK;
+}
+
+/* the longest list of springs of each 16 cells, as starts */
+static void count_slots(const struct cs_graph *graph, struct cs_level *level,
+                        uint32_t *degrees) {
+    memset(degrees, 0, level->n * sizeof *degrees);
+    for (uint32_t e = 0; e < 2 * graph->n_edges; e++)
+        degrees[graph->ends[e]]++;
+    for (uint32_t b = 0; b < level->n / CS_LANES; b++) {
+        uint32_t most = 0;
+        for (uint32_t l = 0; l < CS_LANES; l++)
+            most = degrees[b * CS_LANES + l] > most ? degrees[b * CS_LANES + l] : most;
+        level->starts[b + 1] = level->starts[b] + most;
+    }
+}
+
+/* gives every end of every edge the next slot of its cell */
+static void fill_slots(const struct cs_graph *graph, struct cs_level *level, uint32_t *filled) {
+    for (uint32_t i = 0; i < level->n; i++) {
+        filled[i] = 0;
+        for (uint32_t k = level->starts[i / CS_LANES]; k < level->starts[i / CS_LANES + 1];
+             k++) {
+            level->neighbours[k * CS_LANES + i % CS_LANES] = i;
+            level->spring_ids[k * CS_LANES + i % CS_LANES] = CS_GRAPH_NONE;
+        }
+    }
+    for (uint32_t end = 0; end < 2 * graph->n_edges; end++) {
+        const uint32_t i = graph->ends[end];
+        const size_t slot = level->starts[i / CS_LANES] + filled[i]++;
+        level->neighbours[slot * CS_LANES + i % CS_LANES] = graph->ends[end ^ 1];
+        level->spring_ids[slot * CS_LANES + i % CS_LANES] = end / 2;
+    }
+}
+
+static enum cs_status level_of(const struct cs_graph *graph, uint32_t pitch,
+                               struct cs_level *level, struct cs_arena *arena,
+                               struct cs_arena *work, struct cs_error *error) {
+    *level =
+        (struct cs_level){.form = CS_LEVEL_MESH, .pitch = pitch, .n_springs = graph->n_edges};
+    level->n = level->end = (graph->n + CS_LANES - 1) / CS_LANES * CS_LANES;
+    uint32_t *count = cs_arena_alloc_array(work, level->n, sizeof *count, error);
+    level->starts =
+        cs_arena_alloc_array(arena, level->n / CS_LANES + 1, sizeof(uint32_t), error);
+    level->ends =
+        cs_arena_alloc_array(arena, 2 * (size_t)graph->n_edges, sizeof(uint32_t), error);
+    level->blocks =
+        cs_arena_alloc_array(arena, 6 * (size_t)graph->n_edges, sizeof(float), error);
+    if (error->status)
+        return error->status;
+    memcpy(level->ends, graph->ends, 2 * sizeof(uint32_t) * graph->n_edges);
+    /* the number of slots is known only now */
+    count_slots(graph, level, count);
+    const size_t n_slots = level->starts[level->n / CS_LANES];
+    level->neighbours =
+        cs_arena_alloc_array(arena, n_slots * CS_LANES, sizeof(uint32_t), error);
+    level->spring_ids =
+        cs_arena_alloc_array(arena, n_slots * CS_LANES, sizeof(uint32_t), error);
+    if (error->status)
+        return error->status;
+    fill_slots(graph, level, count);
+    return cs_level_alloc(level, n_slots * 6 * CS_LANES, arena, error);
+}
+
+enum { SLOTS = 256 }; /* of one block of a loop */
+
+static void scatter_slots(void *arg, uint32_t block) {
+    const struct cs_level *level = arg;
+    const size_t n_slots = level->starts[level->n / CS_LANES];
+    for (size_t k = (size_t)block * SLOTS; k < ((size_t)block + 1) * SLOTS && k < n_slots; k++)
+        for (size_t l = 0; l < CS_LANES; l++) {
+            const uint32_t spring = level->spring_ids[k * CS_LANES + l];
+            for (size_t c = 0; c < 6 && spring != CS_GRAPH_NONE; c++)
+                level->springs[(6 * k + c) * CS_LANES + l] =
+                    level->blocks[6 * (size_t)spring + c];
+        }
+}
+
+/* the blocks to both ends of every spring */
+static void scatter_blocks(struct cs_level *level) {
+    cs_pool_run((level->starts[level->n / CS_LANES] + SLOTS - 1) / SLOTS, scatter_slots, level);
+}
+
+static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
+    const double root = 1 / sqrt(scale);
+    float *block = hierarchy->levels->blocks;
+    for (uint32_t r = 0; r < hierarchy->n_runs; r++) {
+        const size_t count = hierarchy->runs[r].count;
+        const double *from = factors + 4 * (size_t)hierarchy->runs[r].first;
+        for (size_t i = 0; i < count; i++, block += 6) {
+            float numbers[4];
+            cs_hierarchy_spring(from + i, count, root, numbers);
+            cs_hierarchy_block(numbers, block);
+        }
+    }
+    scatter_blocks(hierarchy->levels);
+}
+
+static void sum_diagonal(const struct cs_level *fine, struct cs_level *coarse) {
+    memset(coarse->diagonal, 0, 6 * sizeof(float) * coarse->n);
+    for (size_t i = 0; i < fine->n; i++)
+        for (size_t c = 0; c < 6; c++)
+            coarse->diagonal[c * coarse->n + fine->parents[i]] +=
+                fine->diagonal[c * fine->n + i];
+}
+
+static void coarsen(const struct cs_level *fine, struct cs_level *coarse) {
+    sum_diagonal(fine, coarse);
+    memset(coarse->blocks, 0, 6 * sizeof(float) * coarse->n_springs);
+    for (uint32_t s = 0; s < fine->n_springs; s++) {
+        const uint32_t a = fine->ends[2 * s], b = fine->ends[2 * s + 1],
+                       t = fine->coarse_springs[s];
+        const bool alive_a = cs_level_is_alive(fine, a), alive_b = cs_level_is_alive(fine, b);
+        const bool both = alive_a && alive_b;
+        if (both ? t == CS_GRAPH_NONE : !alive_a && !alive_b)
+            continue;
+        float *sum = both ? coarse->blocks + 6 * (size_t)t
+                          : coarse->diagonal + fine->parents[alive_a ? a : b];
+        for (size_t c = 0; c < 6; c++)
+            sum[c * (both ? 1 : coarse->n)] +=
+                CS_HIERARCHY_SOFTNESS * fine->blocks[6 * (size_t)s + c];
+    }
+    scatter_blocks(coarse);
+}
+
+static void restrict_r(const struct cs_level *fine, struct cs_level *coarse) {
+    memset(coarse->residual, 0, 3 * sizeof(float) * coarse->n);
+    for (size_t i = 0; i < fine->n; i++)
+        for (size_t c = 0; c < 3 && cs_level_is_alive(fine, i); c++)
+            coarse->residual[c * coarse->n + fine->parents[i]] +=
+                fine->residual[c * fine->n + i];
+}
+
+static void prolong_x(const struct cs_level *coarse, struct cs_level *fine) {
+    for (size_t i = 0; i < fine->n; i++)
+        for (size_t c = 0; c < 3 && cs_level_is_alive(fine, i); c++) {
+            fine->correction[c * fine->n + i] =
+                coarse->solution[c * coarse->n + fine->parents[i]];
+            fine->solution[c * fine->n + i] += fine->correction[c * fine->n + i];
+        }
+}
+
+static const struct cs_hierarchy_kind mesh = {load, coarsen, restrict_r, prolong_x};
+
+/* parents and targets of a level, and the graph of the next one; n and n_edges of *graph are 0
+ * after failure */
+static void aggregate(struct cs_graph *graph, struct cs_level *level, struct cs_arena *arena,
+                      struct cs_arena *work, struct cs_error *error) {
+    struct cs_graph pairs, fours = {0};
+    level->parents = cs_arena_alloc_array(arena, level->n, sizeof(uint32_t), error);
+    level->coarse_springs =
+        cs_arena_alloc_array(arena, graph->n_edges, sizeof(uint32_t), error);
+    uint32_t *parents = cs_arena_alloc_array(work, graph->n, sizeof *parents, error);
+    uint32_t *targets = cs_arena_alloc_array(work, graph->n_edges, sizeof *targets, error);
+    if (!error->status &&
+        !cs_graph_match(graph, &pairs, level->parents, level->coarse_springs, work, error) &&
+        !cs_graph_match(&pairs, &fours, parents, targets, work, error)) {
+        compose_maps(graph->n, level->parents, parents);
+        compose_maps(graph->n_edges, level->coarse_springs, targets);
+    }
+    *graph = fours;
+}
+
+enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
+                                    struct cs_error *error) {
+    struct cs_arena work = {0};
+    struct cs_graph graph = {0};
+    struct cs_level *level = hierarchy->levels;
+    hierarchy->kind = &mesh;
+    body_graph(hierarchy, &graph, &work, error);
+    while (!error->status &&
+           !level_of(&graph, hierarchy->columns, level, arena, &work, error) && graph.n_edges)
+        aggregate(&graph, level++, arena, &work, error);
+    hierarchy->n_levels = (uint32_t)(level - hierarchy->levels) + 1;
+    cs_arena_finish(&work);
+    return error->status;
+}
+
+/* lists a quarter longer than the springs they hold, and half for all coarse levels */
+size_t cs_hierarchy_mesh_bytes(uint32_t n, uint32_t n_springs) {
+    const struct cs_level level = {.form = CS_LEVEL_MESH, .n = n};
+    const size_t slots = 5 * (size_t)n_springs / 2;
+    const size_t first = cs_level_bytes(&level, 6 * slots) +
+                         sizeof(uint32_t) * (n + 2 * slots + 9 * (size_t)n_springs);
+    return first + first / 2;
+}

@@ -1,0 +1,52 @@
+/* Which surfaces keep off each other, by the table of pairs, by each body's own key, and by the
+ * colliders that are meshes. */
+#include "scene/body_pairs.h"
+
+uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (cs_scene_colliders(scene)[c].mesh.present)
+            return scene->bodies.n + scene->colliders.n;
+    return scene->bodies.n;
+}
+
+const struct cs_collider *cs_scene_obstacle(const struct cs_scene *scene, uint32_t surface) {
+    return surface < scene->bodies.n ? NULL
+                                     : cs_scene_colliders(scene) + (surface - scene->bodies.n);
+}
+
+/* a mesh that is a collider, and a body on the other side */
+static bool hits_obstacle(const struct cs_scene *scene, uint32_t a, uint32_t b,
+                          double *friction) {
+    const struct cs_collider *collider = cs_scene_obstacle(scene, a < b ? b : a);
+    *friction = collider->friction;
+    return collider->mesh.present && (a < scene->bodies.n || b < scene->bodies.n);
+}
+
+bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t b,
+                             double *friction) {
+    const struct cs_body_pair_keys *pairs = scene->pairs.list.items;
+    if (a >= scene->bodies.n || b >= scene->bodies.n)
+        return hits_obstacle(scene, a, b, friction);
+    if (a == b) {
+        *friction = cs_scene_bodies(scene)[a].friction;
+        return cs_scene_bodies(scene)[a].self_contact;
+    }
+    for (uint32_t p = 0; p < scene->pairs.list.n; p++) {
+        const int64_t *bodies = pairs[p].bodies;
+        if ((bodies[0] == a && bodies[1] == b) || (bodies[0] == b && bodies[1] == a)) {
+            *friction = pairs[p].friction;
+            return true;
+        }
+    }
+    *friction = scene->pairs.friction;
+    return scene->pairs.among == CS_PAIRS_ALL;
+}
+
+bool cs_scene_has_body_contact(const struct cs_scene *scene) {
+    bool any = scene->pairs.list.n > 0 ||
+               (scene->pairs.among == CS_PAIRS_ALL && scene->bodies.n > 1) ||
+               cs_scene_surfaces(scene) > scene->bodies.n;
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        any = any || cs_scene_bodies(scene)[b].self_contact;
+    return any;
+}

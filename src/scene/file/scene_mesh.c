@@ -1,0 +1,178 @@
+/* Gives each body and collider of a scene its mesh, and bodies their networks of springs and
+ * their shape-matching clusters. */
+#include "scene/file/scene_mesh.h"
+
+#include "mesh/spring_network.h"
+#include "model/system/shape_clusters.h"
+#include "scene/file/json_path.h"
+#include "scene/file/mesh_read.h"
+#include "scene/shape.h"
+
+#include <stdio.h>
+
+enum {
+    LIMBS_DETAIL_MIN = 8,  /* fewer parts lose a limb */
+    NETWORK_MAX = 1 << 26, /* springs of a body: about 5 GB with the solver */
+};
+
+/* One element of `bodies` or `colliders`. */
+struct item {
+    struct cs_json_context *reader;
+    const struct cs_json *root;
+    const char *list;
+    uint32_t number;
+};
+
+/* what went wrong, behind the place of a key of the item */
+static enum cs_status refuse(const struct item *item, const char *key, enum cs_status status,
+                             const char *message) {
+    struct cs_json_context *context = item->reader;
+    const bool first = !context->error->status;
+    context->path_length = (size_t)snprintf(context->path, sizeof context->path, "%s[%u].%s",
+                                            item->list, item->number, key);
+    cs_json_context_fail(context, cs_json_nearest(item->root, context->path), false, "%s",
+                         message);
+    if (first)
+        context->error->status = status;
+    return status;
+}
+
+static enum cs_status read_file(const struct cs_scene *scene,
+                                const struct cs_mesh_source *source, struct cs_trimesh *mesh,
+                                struct cs_arena *arena, struct cs_error *error) {
+    struct cs_text path = {0};
+    if (!cs_scene_is_below(source->file))
+        return cs_fail(error, CS_ERR_SCENE,
+                       "found \"%.60s\", expected a file in the scene's folder or below",
+                       source->file);
+    cs_text_add(&path, "%s/%s", scene->folder, source->file);
+    if (path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the mesh \"%s\"", source->file);
+    else
+        cs_mesh_read(cs_text_get(&path), source->file, source->scale, mesh, arena, error);
+    cs_text_finish(&path);
+    return error->status;
+}
+
+static enum cs_status make_shape(const struct cs_mesh_source *source, struct cs_trimesh *mesh,
+                                 struct cs_arena *arena, struct cs_error *error) {
+    if (cs_trimesh_make(mesh, (enum cs_mesh_shape)source->shape, (uint32_t)source->detail,
+                        arena, error))
+        return error->status;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < mesh->n; i++)
+            mesh->positions[c * mesh->n + i] *= source->scale[c];
+    /* there is no file: what makes a triangle of a shape vanish is its scale */
+    if (cs_trimesh_finish(mesh, cs_mesh_shape_names[source->shape], NULL, arena, error) ==
+        CS_ERR_FILE)
+        error->status = CS_ERR_SCENE;
+    return error->status;
+}
+
+static enum cs_status make_mesh(const struct item *item, const struct cs_scene *scene,
+                                const struct cs_mesh_source *source, struct cs_trimesh *mesh) {
+    struct cs_arena *arena = item->reader->arena;
+    struct cs_error said = {0};
+    if (source->shape == CS_MESH_LIMBS && source->detail < LIMBS_DETAIL_MIN)
+        return refuse(item, "mesh.detail", CS_ERR_SCENE,
+                      "limbs need at least 8, or some are lost");
+    /* a bad file is blamed on its name; a degenerate shape can only come from its scale */
+    if (*source->file ? read_file(scene, source, mesh, arena, &said)
+                      : make_shape(source, mesh, arena, &said))
+        return refuse(item,
+                      *source->file                 ? "mesh.file"
+                      : said.status == CS_ERR_SCENE ? "mesh.scale"
+                                                    : "mesh.shape",
+                      said.status, said.message);
+    return CS_OK;
+}
+
+/* springs through the inside, which an open mesh does not have */
+static enum cs_status make_network(const struct item *item,
+                                   const struct cs_spring_network *network,
+                                   struct cs_trimesh *mesh) {
+    if (mesh->n_open) {
+        char message[160];
+        snprintf(
+            message, sizeof message,
+            "the mesh is open: %u of its %u edges have one triangle, expected a closed one",
+            mesh->n_open, mesh->n_edges);
+        return refuse(item, "network", CS_ERR_SCENE, message);
+    }
+    if (mesh->n * network->springs > NETWORK_MAX)
+        return refuse(item, "network.springs", CS_ERR_SCENE,
+                      "more than 67108864 springs in all");
+    return cs_spring_network_make(network, mesh, item->reader->arena, item->reader->error);
+}
+
+/* the parts of a body that shape matching keeps */
+static enum cs_status split_body(const struct item *item, struct cs_body *body) {
+    struct cs_json_context *context = item->reader;
+    struct cs_shape_matching *matching = &body->shape_matching;
+    const int64_t most = cs_shape_count(body) / CS_SHAPE_CLUSTER_SIZE_MIN;
+    /* a cloth beyond the memory is refused by the check */
+    if (!matching->present || (double)cs_shape_count(body) > CS_PARTICLES_MAX)
+        return CS_OK;
+    if (matching->clusters > 1 && matching->clusters > most) {
+        char message[160];
+        snprintf(message, sizeof message,
+                 "found %lld, expected at most %lld: a part has %d particles or more",
+                 (long long)matching->clusters, (long long)(most > 1 ? most : 1),
+                 CS_SHAPE_CLUSTER_SIZE_MIN);
+        return refuse(item, "shape_matching.clusters", CS_ERR_SCENE, message);
+    }
+    struct cs_shape_clusters *parts =
+        cs_arena_alloc(context->arena, sizeof *parts, context->error);
+    if (!parts)
+        return context->error->status;
+    matching->parts = parts;
+    return cs_shape_clusters_make(body, parts, context->arena, context->error);
+}
+
+/* network: NULL, or what the mesh gets inside */
+static enum cs_status read_mesh(const struct item *item, const struct cs_scene *scene,
+                                struct cs_mesh_source *source,
+                                const struct cs_spring_network *network) {
+    struct cs_arena *arena = item->reader->arena;
+    const size_t before = arena->used;
+    struct cs_trimesh *mesh = cs_arena_alloc(arena, sizeof *mesh, item->reader->error);
+    if (!mesh)
+        return item->reader->error->status;
+    source->geometry = mesh;
+    enum cs_status status = make_mesh(item, scene, source, mesh);
+    if (!status && network && network->present)
+        status = make_network(item, network, mesh);
+    mesh->bytes = arena->used - before;
+    return status;
+}
+
+static enum cs_status read_body(const struct item *item, const struct cs_scene *scene,
+                                struct cs_body *body, double *particles) {
+    /* a body of two shapes or none is refused by the check */
+    if (body->mesh.present == body->cloth.present)
+        return CS_OK;
+    if (body->mesh.present && read_mesh(item, scene, &body->mesh, &body->network))
+        return item->reader->error->status;
+    *particles += body->mesh.present ? body->mesh.geometry->n : 0;
+    if (*particles > CS_PARTICLES_MAX)
+        return refuse(item, "mesh", CS_ERR_SCENE,
+                      "more particles in the meshes so far than a scene may have");
+    return split_body(item, body);
+}
+
+enum cs_status cs_scene_read_meshes(struct cs_json_context *context, const struct cs_json *root,
+                                    struct cs_scene *scene) {
+    double particles = 0;
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct item item = {context, root, "bodies", b};
+        if (read_body(&item, scene, cs_scene_bodies(scene) + b, &particles))
+            return context->error->status;
+    }
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const struct item item = {context, root, "colliders", c};
+        struct cs_mesh_source *source = &cs_scene_colliders(scene)[c].mesh;
+        if (source->present && read_mesh(&item, scene, source, NULL))
+            return context->error->status;
+    }
+    return CS_OK;
+}

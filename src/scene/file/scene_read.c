@@ -1,0 +1,212 @@
+/* Reads a scene file: JSON text, overrides, tables, integrator, meshes, then the checks. */
+#include "scene/file/scene_read.h"
+
+#include "base/file.h"
+#include "base/options.h"
+#include "scene/file/json_path.h"
+#include "scene/file/scene_mesh.h"
+#include "scene/file/stdin_input.h"
+#include "scene/file/table_read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define INTEGRATOR "integrator"
+
+/* Copies the text with a zero behind it, and the names. */
+static enum cs_status store_source(struct cs_scene *scene, const char *path, const char *text,
+                                   size_t bytes, struct cs_error *error) {
+    char *copy = cs_arena_alloc(&scene->arena, bytes + 1, error);
+    char *folder = copy ? cs_arena_copy_text(&scene->arena, path, error) : NULL;
+    scene->path = folder ? cs_arena_copy_text(&scene->arena, path, error) : NULL;
+    if (!scene->path)
+        return error->status;
+    memcpy(copy, text, bytes);
+    scene->text = copy;
+    scene->text_bytes = bytes;
+
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        slash[slash == folder] = 0; /* the root keeps its only slash */
+    scene->folder = slash ? folder : ".";
+    return CS_OK;
+}
+
+static enum cs_status parse(const struct cs_scene *scene, struct cs_json **root,
+                            struct cs_error *error) {
+    struct cs_json_fault fault = {0};
+    const enum cs_status status = cs_json_parse(scene->text, scene->text_bytes, root, &fault);
+    if (status == CS_ERR_MEMORY)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", scene->path);
+    if (status) {
+        uint32_t line, column;
+        cs_json_locate(scene->text, fault.offset, &line, &column);
+        return cs_fail(error, CS_ERR_SCENE, "%s:%u:%u: %s", scene->path, line, column,
+                       fault.message);
+    }
+    return CS_OK;
+}
+
+/* Puts the overrides into the tree. */
+static enum cs_status apply_overrides(struct cs_json *root, const struct cs_override *overrides,
+                                      uint32_t n, struct cs_error *error) {
+    for (uint32_t i = 0; i < n; i++) {
+        /* a plain name becomes an object, so that integrator.dt can be set beside it */
+        const struct cs_json *integrator = cs_json_find(root, INTEGRATOR);
+        if (integrator && cs_json_kind_of(integrator) == CS_JSON_TEXT &&
+            !cs_json_wrap(root, INTEGRATOR, "name"))
+            return cs_fail(error, CS_ERR_MEMORY, "out of memory for --set");
+        if (cs_json_override(root, overrides[i].path, overrides[i].value, error))
+            return error->status;
+    }
+    return CS_OK;
+}
+
+/* path must stand at the name */
+static enum cs_status read_name(struct cs_json_context *context, const struct cs_json *value,
+                                struct cs_scene *scene) {
+    if (cs_json_kind_of(value) != CS_JSON_TEXT)
+        return cs_json_context_fail_type(context, value, "a text");
+    const size_t length = strlen(cs_json_text(value));
+    if (length < 1 || length >= sizeof scene->integrator)
+        return cs_json_context_fail(context, value, false,
+                                    "found %zu characters, expected 1..%zu", length,
+                                    sizeof scene->integrator - 1);
+    memcpy(scene->integrator, cs_json_text(value), length + 1);
+    return CS_OK;
+}
+
+/* keeps an option as text: only the integrator knows what it takes */
+static enum cs_status read_setting(struct cs_json_context *context, const struct cs_json *value,
+                                   struct cs_setting *setting) {
+    struct cs_text text = {0};
+    switch (cs_json_kind_of(value)) {
+    case CS_JSON_NUMBER:
+        /* the shortest decimal reads back as the same double */
+        cs_text_add_real(&text, cs_json_number(value));
+        break;
+    case CS_JSON_BOOL:
+        cs_text_add(&text, cs_json_is_true(value) ? "true" : "false");
+        break;
+    case CS_JSON_TEXT:
+        cs_text_add(&text, "%s", cs_json_text(value));
+        break;
+    default:
+        return cs_json_context_fail_type(context, value, "a number, true, false or a text");
+    }
+    setting->name = cs_arena_copy_text(context->arena, cs_json_key(value), context->error);
+    setting->value = cs_arena_copy_text(context->arena, cs_text_get(&text), context->error);
+    if (text.failed)
+        cs_fail(context->error, CS_ERR_MEMORY, "out of memory for an integrator option");
+    cs_text_finish(&text);
+    return context->error->status;
+}
+
+static enum cs_status read_settings(struct cs_json_context *context,
+                                    const struct cs_json *object, struct cs_scene *scene) {
+    struct cs_list *list = &scene->integrator_settings;
+    struct cs_setting *settings = cs_arena_alloc_array(context->arena, cs_json_count(object),
+                                                       sizeof *settings, context->error);
+    if (!settings)
+        return context->error->status;
+    for (const struct cs_json *m = cs_json_first(object); m; m = cs_json_next(m)) {
+        const char *key = cs_json_key(m);
+        if (cs_key_is_free(key))
+            continue;
+        const size_t outside = cs_json_context_enter(context, key);
+        if (strcmp(key, "name") ? read_setting(context, m, settings + list->n++)
+                                : read_name(context, m, scene))
+            return context->error->status;
+        cs_json_context_leave(context, outside);
+    }
+    list->items = list->n ? settings : NULL;
+    return CS_OK;
+}
+
+static enum cs_status read_integrator(struct cs_json_context *context,
+                                      const struct cs_json *root, struct cs_scene *scene) {
+    snprintf(scene->integrator, sizeof scene->integrator, "%s", CS_INTEGRATOR_DEFAULT);
+    const struct cs_json *value = cs_json_find(root, INTEGRATOR);
+    if (!value)
+        return CS_OK;
+    const size_t outside = cs_json_context_enter(context, INTEGRATOR);
+    if (cs_json_kind_of(value) == CS_JSON_TEXT)
+        read_name(context, value, scene);
+    else if (cs_json_kind_of(value) == CS_JSON_OBJECT)
+        read_settings(context, value, scene);
+    else
+        cs_json_context_fail_type(context, value, "an object or a text");
+    cs_json_context_leave(context, outside);
+    return context->error->status;
+}
+
+/* cs_scene_check, with the place of the value at fault before its message */
+static enum cs_status check(struct cs_json_context *context, const struct cs_json *root,
+                            struct cs_scene *scene) {
+    char path[CS_TEXT_MAX] = "";
+    struct cs_error said = {0};
+    const enum cs_status status = cs_scene_check(scene, path, &said);
+    if (!status)
+        return CS_OK;
+    if (status != CS_ERR_SCENE)
+        return cs_fail(context->error, status, "%s", said.message);
+    context->path_length = (size_t)snprintf(context->path, sizeof context->path, "%s", path);
+    return cs_json_context_fail(context, cs_json_nearest(root, path), false, "%s",
+                                said.message);
+}
+
+enum cs_status cs_scene_read_text(struct cs_scene *scene, const char *path, const char *text,
+                                  size_t bytes, const struct cs_override *overrides,
+                                  uint32_t n_overrides, struct cs_error *error) {
+    struct cs_json *root = NULL;
+    struct cs_json_context context = {
+        .name = path, .arena = &scene->arena, .error = error, .skipped_key = INTEGRATOR};
+    enum cs_status status;
+    *scene = (struct cs_scene){0};
+    cs_options_default(&cs_scene_table, scene);
+
+    if ((status = store_source(scene, path, text, bytes, error)) ||
+        (status = parse(scene, &root, error)))
+        goto done;
+    context.text = scene->text;
+    /* a root that is no object is refused as such before a --set could trip over it */
+    if (cs_json_kind_of(root) == CS_JSON_OBJECT &&
+        (status = apply_overrides(root, overrides, n_overrides, error)))
+        goto done;
+    if ((status = cs_table_read(&context, root, &cs_scene_table, scene)) ||
+        (status = read_integrator(&context, root, scene)) ||
+        (status = cs_scene_read_meshes(&context, root, scene)))
+        goto done;
+    status = check(&context, root, scene);
+done:
+    cs_json_destroy(root);
+    if (status)
+        cs_scene_finish(scene);
+    return status;
+}
+
+static enum cs_status read_input(struct cs_scene *scene, const struct cs_override *overrides,
+                                 uint32_t n_overrides, struct cs_error *error) {
+    const char *text;
+    size_t bytes;
+    if (cs_stdin_input_read(CS_JSON_BYTES_MAX, &text, &bytes, error))
+        return error->status;
+    return cs_scene_read_text(scene, CS_STDIN_INPUT_TITLE, text, bytes, overrides, n_overrides,
+                              error);
+}
+
+enum cs_status cs_scene_read(struct cs_scene *scene, const char *path,
+                             const struct cs_override *overrides, uint32_t n_overrides,
+                             struct cs_error *error) {
+    char *text;
+    size_t bytes;
+    *scene = (struct cs_scene){0};
+    if (!strcmp(path, CS_STDIN_INPUT_NAME))
+        return read_input(scene, overrides, n_overrides, error);
+    enum cs_status status = cs_file_read(path, CS_JSON_BYTES_MAX, &text, &bytes, error);
+    if (!status)
+        status = cs_scene_read_text(scene, path, text, bytes, overrides, n_overrides, error);
+    free(text);
+    return status;
+}

@@ -1,0 +1,285 @@
+/* Keeps the account of a run's energy, step by step. */
+#include "sim/energy_ledger.h"
+
+#include "model/event/events.h"
+#include "model/force/diagnostics.h"
+#include "model/force/normals.h"
+#include "model/force/terms.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { POINTS = 3 };
+/* Gauss's rule on 0..1: 1/2 -+ sqrt(3/5)/2, weights 5/18, 8/18, 5/18 */
+static const double points[POINTS] = {0.11270166537925831, 0.5, 0.88729833462074169};
+static const double weights[POINTS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+
+/* the forces without an energy, by the part that they are */
+static const struct {
+    uint32_t part;
+    enum cs_ledger_work work;
+} forces[] = {{CS_PART_DAMPING, CS_WORK_DAMPERS},
+              {CS_PART_DRAG, CS_WORK_DRAG},
+              {CS_PART_WIND, CS_WORK_WIND},
+              {CS_PART_DISSIPATIVE, CS_WORK_FRICTION},
+              {CS_PART_EXTERNAL, CS_WORK_PUSH}};
+enum { FORCES = sizeof forces / sizeof *forces };
+
+static size_t length_of(const struct cs_energy_ledger *ledger) {
+    return 3 * (size_t)ledger->system->view.n;
+}
+
+static double dot(size_t n, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void move_values(const struct cs_energy_ledger *ledger, double t) {
+    if (ledger->system->events)
+        cs_events_move_values(ledger->system, t);
+}
+
+static void measure(const struct cs_energy_ledger *ledger, double t, const double *x,
+                    const double *v, double holds[CS_HOLDINGS]) {
+    const struct cs_system *system = ledger->system;
+    const struct cs_energy energy = cs_diagnostics_energy(system, t, x, v);
+    const uint32_t n = system->view.n;
+    holds[CS_HOLDING_KINETIC] = energy.kinetic;
+    holds[CS_HOLDING_STRETCH] = cs_springs_energy(&system->springs, n, x, CS_PART_STRETCH);
+    holds[CS_HOLDING_SHEAR] = cs_springs_energy(&system->springs, n, x, CS_PART_SHEAR);
+    holds[CS_HOLDING_BEND] = cs_springs_energy(&system->springs, n, x, CS_PART_BEND);
+    holds[CS_HOLDING_GRAVITY] = energy.gravity;
+    holds[CS_HOLDING_OTHER] = energy.other;
+}
+
+static double sum_of(const double holds[CS_HOLDINGS]) {
+    double sum = 0;
+    for (int k = 0; k < CS_HOLDINGS; k++)
+        sum += holds[k];
+    return sum;
+}
+
+double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger) {
+    return sum_of(ledger->energies);
+}
+
+/* f = the parts at (t, x, v), on pinned particles too: what they bear is work where they move
+ */
+static void find_force(const struct cs_energy_ledger *ledger, double t, const double *x,
+                       const double *v, uint32_t parts, double *f) {
+    struct cs_system free = *ledger->system;
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
+    free.n_pinned = 0;
+    if (cs_terms_need_normals(&free, parts))
+        cs_normals_update(ledger->system, x);
+    cs_terms_force(&free, &at, f);
+}
+
+static void find_acceleration(const struct cs_energy_ledger *ledger, double t, const double *x,
+                              const double *v, double *a) {
+    const size_t n = ledger->system->view.n;
+    find_force(ledger, t, x, v, CS_PART_ALL, a);
+    for (size_t k = 0; k < 3 * n; k++)
+        a[k] *= ledger->system->inv_mass[k % n];
+}
+
+enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_system *system,
+                                     double t, struct cs_error *error) {
+    const size_t n3 = 3 * (size_t)system->view.n;
+    *ledger = (struct cs_energy_ledger){.system = system};
+    double **const arrays[] = {&ledger->state, &ledger->trial_state, &ledger->acceleration,
+                               &ledger->force, &ledger->b};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        *arrays[k] =
+            cs_arena_alloc_array(&ledger->arena, k < 2 ? 2 * n3 : n3, sizeof(double), error);
+    if (error->status)
+        return error->status;
+    cs_energy_ledger_resume(ledger, t);
+    return CS_OK;
+}
+
+void cs_energy_ledger_resume(struct cs_energy_ledger *ledger, double t) {
+    const double *x = ledger->system->state;
+    double work[CS_WORKS];
+    memcpy(work, ledger->work, sizeof work);
+    cs_energy_ledger_store_state(ledger, t, x, x + length_of(ledger));
+    memcpy(ledger->work, work, sizeof work);
+}
+
+void cs_energy_ledger_close(struct cs_energy_ledger *ledger) {
+    cs_arena_finish(&ledger->arena);
+    *ledger = (struct cs_energy_ledger){0};
+}
+
+/* the quintic's factors of x0, h v0, h^2 a0, h^2 a1, h v1, x1 at a share s of the step, and
+ * their slopes */
+static void find_factors(double s, double place[6], double slope[6]) {
+    const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
+    const double places[6] = {1 - 10 * s3 + 15 * s4 - 6 * s5,  s - 6 * s3 + 8 * s4 - 3 * s5,
+                              (s2 - 3 * s3 + 3 * s4 - s5) / 2, (s3 - 2 * s4 + s5) / 2,
+                              -4 * s3 + 7 * s4 - 3 * s5,       10 * s3 - 15 * s4 + 6 * s5};
+    const double slopes[6] = {-30 * s2 + 60 * s3 - 30 * s4,
+                              1 - 18 * s2 + 32 * s3 - 15 * s4,
+                              (2 * s - 9 * s2 + 12 * s3 - 5 * s4) / 2,
+                              (3 * s2 - 8 * s3 + 5 * s4) / 2,
+                              -12 * s2 + 28 * s3 - 15 * s4,
+                              30 * s2 - 60 * s3 + 30 * s4};
+    memcpy(place, places, sizeof places);
+    memcpy(slope, slopes, sizeof slopes);
+}
+
+/* a step from the state that is kept to (x, v) with acceleration b */
+struct step {
+    double h;
+    const double *x, *v;
+};
+
+/* y = place and velocity at a share s of the step */
+static void quintic_at(const struct cs_energy_ledger *ledger, const struct step *step,
+                       double s) {
+    const size_t n3 = length_of(ledger);
+    const double h = step->h;
+    double p[6], d[6];
+    find_factors(s, p, d);
+    for (size_t k = 0; k < n3; k++) {
+        const double from = ledger->state[k], way = step->x[k] - from;
+        const double v0 = ledger->state[n3 + k], v1 = step->v[k];
+        const double a0 = h * ledger->acceleration[k], a1 = h * ledger->b[k];
+        // p[0] + p[5] is 1, so that a far place costs no figures
+        ledger->trial_state[k] =
+            from + p[5] * way + h * (p[1] * v0 + p[4] * v1 + p[2] * a0 + p[3] * a1);
+        ledger->trial_state[n3 + k] =
+            d[5] * way / h + d[1] * v0 + d[4] * v1 + d[2] * a0 + d[3] * a1;
+    }
+}
+
+/* dU/dt at a fixed place: of values that ramps change and obstacles on paths */
+static double find_drift(const struct cs_energy_ledger *ledger, double t, double h) {
+    const size_t n3 = length_of(ledger);
+    const double away = h / 100, *x = ledger->trial_state, *v = x + n3;
+    double ends[2];
+    for (int k = 0; k < 2; k++) {
+        double holds[CS_HOLDINGS];
+        const double at = k ? t + away : t - away;
+        move_values(ledger, at);
+        measure(ledger, at, x, v, holds);
+        holds[CS_HOLDING_KINETIC] = 0;
+        ends[k] = sum_of(holds);
+    }
+    move_values(ledger, t);
+    return (ends[1] - ends[0]) / (2 * away);
+}
+
+/* J/s that the pinned particles bring in */
+static double find_pins(const struct cs_energy_ledger *ledger, double t) {
+    const struct cs_system *system = ledger->system;
+    const size_t n = system->view.n, n3 = 3 * n;
+    double power = 0;
+    find_force(ledger, t, ledger->trial_state, ledger->trial_state + n3, CS_PART_ALL,
+               ledger->force);
+    for (uint32_t p = 0; p < system->n_pinned; p++)
+        for (size_t k = system->pinned[p]; k < n3; k += n)
+            power -= ledger->force[k] * ledger->trial_state[n3 + k];
+    return power;
+}
+
+static uint32_t parts_of(const struct cs_system *system) {
+    uint32_t parts = 0;
+    for (uint32_t k = 0; k < system->n_terms; k++)
+        parts |= system->terms[k]->part_bits;
+    return parts;
+}
+
+/* adds the works at one point of the step, over `time` */
+static void add_works(struct cs_energy_ledger *ledger, double t, double time, double h) {
+    const struct cs_system *system = ledger->system;
+    const size_t n3 = length_of(ledger);
+    const double *v = ledger->trial_state + n3;
+    move_values(ledger, t);
+    for (int k = 0; k < FORCES; k++) {
+        if (!(forces[k].part & parts_of(system)))
+            continue;
+        find_force(ledger, t, ledger->trial_state, v, forces[k].part, ledger->force);
+        ledger->work[forces[k].work] += time * dot(n3, ledger->force, v);
+    }
+    if (!system->events)
+        return;
+    ledger->work[CS_WORK_PINS] += time * find_pins(ledger, t);
+    ledger->work[CS_WORK_VALUES] += time * find_drift(ledger, t, h);
+}
+
+static double sum_forces(const struct cs_energy_ledger *ledger) {
+    double sum = 0;
+    for (int k = 0; k < CS_WORK_INTEGRATOR; k++)
+        sum += ledger->work[k];
+    return sum;
+}
+
+void cs_energy_ledger_book_step(struct cs_energy_ledger *ledger, double t, const double *x,
+                                const double *v) {
+    const struct step step = {.h = t - ledger->t, .x = x, .v = v};
+    const double before = cs_energy_ledger_sum(ledger), worked = sum_forces(ledger);
+    find_acceleration(ledger, t, x, v, ledger->b);
+    for (int k = 0; k < POINTS; k++) {
+        quintic_at(ledger, &step, points[k]);
+        add_works(ledger, ledger->t + points[k] * step.h, weights[k] * step.h, step.h);
+    }
+    move_values(ledger, t);
+    measure(ledger, t, x, v, ledger->energies);
+    ledger->work[CS_WORK_INTEGRATOR] +=
+        cs_energy_ledger_sum(ledger) - before - (sum_forces(ledger) - worked);
+}
+
+void cs_energy_ledger_book_correction(struct cs_energy_ledger *ledger, enum cs_ledger_work work,
+                                      double t, const double *x, const double *v) {
+    const double before = cs_energy_ledger_sum(ledger);
+    const double moving = ledger->energies[CS_HOLDING_KINETIC];
+    measure(ledger, t, x, v, ledger->energies);
+    double made = cs_energy_ledger_sum(ledger) - before;
+    if (work == CS_WORK_PROJECTION) {
+        const double kinetic = ledger->energies[CS_HOLDING_KINETIC] - moving;
+        ledger->work[CS_WORK_ABSORPTION] += kinetic;
+        made -= kinetic;
+    }
+    ledger->work[work] += made;
+}
+
+void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, const double *x,
+                                  const double *v) {
+    const size_t n3 = length_of(ledger);
+    cs_energy_ledger_book_correction(ledger, CS_WORK_EVENTS, t, x, v);
+    memcpy(ledger->state, x, n3 * sizeof *x);
+    memcpy(ledger->state + n3, v, n3 * sizeof *v);
+    ledger->t = t;
+    find_acceleration(ledger, t, x, v, ledger->acceleration);
+}
+
+void cs_energy_ledger_print_head(struct cs_text *out) {
+    cs_text_add(out, "frame,t");
+#define X(name, column) cs_text_add(out, "," column);
+    CS_LEDGER_ENERGY_LIST(X)
+    cs_text_add(out, ",sum");
+    CS_LEDGER_WORK_LIST(X)
+#undef X
+    cs_text_add(out, "\n");
+}
+
+static void add_real(struct cs_text *out, double value) {
+    cs_text_add(out, ",");
+    if (isfinite(value))
+        cs_text_add_real(out, value);
+}
+
+void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
+                                struct cs_text *out) {
+    cs_text_add(out, "%u", frame);
+    add_real(out, ledger->t);
+    for (int k = 0; k < CS_HOLDINGS; k++)
+        add_real(out, ledger->energies[k]);
+    add_real(out, cs_energy_ledger_sum(ledger));
+    for (int k = 0; k < CS_WORKS; k++)
+        add_real(out, ledger->work[k]);
+    cs_text_add(out, "\n");
+}

@@ -1,0 +1,31 @@
+/* cell_list_expand.h - one method of a list on its way to cells. */
+#ifndef CS_CELL_LIST_EXPAND_H
+#define CS_CELL_LIST_EXPAND_H
+
+#include "base/hash.h"
+#include "study/compare/cell_list.h"
+
+struct cs_cell_list_settings {
+    const char *list;           /* NULL: every method there is */
+    const char *const *plugins; /* (n_plugins) module files */
+    uint32_t n_plugins;
+    double fps, omega; /* of the scene: the default steps come from them */
+    double size;       /* m: atol is rtol times it, so that another unit changes nothing */
+};
+
+struct cs_cell_list_entry {
+    struct cs_method method;
+    char series[CS_SERIES_BYTES];
+    char fixed[sizeof((struct cs_cell *)0)->fixed]; /* options without the swept one */
+    const char *control;                            /* "dt", "rtol" or "" */
+    double low, high;                               /* of the control; NAN: the default sweep */
+    char module[CS_HASH_DIGITS]; /* hash of the file: a module built anew is another one */
+};
+
+/* Adds the cells of the entry: its range, or the default sweep. */
+enum cs_status cs_cell_list_expand(struct cs_cell_list *sweep,
+                                   const struct cs_cell_list_entry *entry,
+                                   const struct cs_cell_list_settings *settings,
+                                   struct cs_error *error);
+
+#endif

@@ -1,0 +1,244 @@
+/* Draws the pictures of a run: copies its state, colours it and paints it beside the run. */
+#include "study/frame_picture.h"
+
+#include "base/clock.h"
+#include "base/pool.h"
+#include "io/png.h"
+#include "model/contact/ccd/crossings.h"
+#include "sim/crash.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cs_picture_is_coloured(const struct cs_scene *scene) {
+    return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN;
+}
+
+const char *cs_picture_unit(const struct cs_scene *scene) {
+    return scene->render.look == CS_LOOK_FORCE ? "N" : "";
+}
+
+static enum cs_status read_texture(const struct cs_scene *scene, const char *name,
+                                   struct cs_image *image, struct cs_error *error) {
+    struct cs_text path = {0};
+    cs_text_add(&path, "%s/%s", scene->folder, name);
+    if (path.failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for the texture \"%s\"", name);
+    else
+        cs_png_read(cs_text_get(&path), image, error);
+    cs_text_finish(&path);
+    return error->status;
+}
+
+static enum cs_status read_textures(struct cs_picture *picture, struct cs_error *error) {
+    const struct cs_scene *scene = picture->scene;
+    picture->textures = calloc(scene->bodies.n, sizeof *picture->textures);
+    if (!picture->textures)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u textures", scene->bodies.n);
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const char *name = cs_scene_bodies(scene)[b].material.texture;
+        if (*name && read_texture(scene, name, picture->textures + b, error))
+            return error->status;
+    }
+    return CS_OK;
+}
+
+/* false: out of memory */
+static bool take_marks(struct cs_picture *picture) {
+    if (picture->scene->render.look != CS_LOOK_CROSSINGS)
+        return true;
+    picture->triangle_marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
+    return picture->triangle_marks;
+}
+
+static enum cs_status alloc_arrays(struct cs_picture *picture, struct cs_error *error) {
+    const size_t n = picture->system->view.n;
+    const bool coloured = cs_picture_is_coloured(picture->scene);
+    const bool drawn_to = picture->scene->render.look == CS_LOOK_GOALS;
+    picture->x = calloc(n, 3 * sizeof(double));
+    picture->colliders = calloc(picture->scene->colliders.n + 1, sizeof *picture->colliders);
+    picture->inv_mass = calloc(n, sizeof(double));
+    if (coloured) {
+        picture->scalar = calloc(n, sizeof(double));
+        picture->work = calloc(n, 3 * sizeof(double));
+    }
+    if (drawn_to)
+        picture->goals = calloc(n, 3 * sizeof(double));
+    if (!picture->x || !picture->inv_mass || !picture->colliders ||
+        (drawn_to && !picture->goals) || !take_marks(picture) ||
+        (coloured && (!picture->scalar || !picture->work)))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the pictures of %zu particles",
+                       n);
+    return CS_OK;
+}
+
+static void free_textures(struct cs_picture *picture) {
+    for (uint32_t b = 0; picture->textures && b < picture->scene->bodies.n; b++)
+        free(picture->textures[b].rgb);
+    free(picture->textures);
+    picture->textures = NULL;
+}
+
+/* OpenGL is another's code, too; its libraries end the program where memory runs out */
+static void watch(const char *renderer, const char *place) {
+    cs_crash_watch(CS_CRASH_DRAWING, "renderer", renderer, place);
+}
+
+static void forget(struct cs_error *error) {
+    cs_crash_forget(CS_CRASH_DRAWING);
+    if (error->status != CS_ERR_MODULE || !cs_crash_was_starved(CS_CRASH_DRAWING))
+        return;
+    const struct cs_error said = *error;
+    *error = (struct cs_error){0};
+    cs_fail(error, CS_ERR_MEMORY, "out of memory: %.900s", said.message);
+}
+
+/* done by the worker thread, as all that touches the canvas */
+static void make_canvas(void *object) {
+    struct cs_picture *picture = object;
+    const struct cs_canvas_settings settings = {.scene = picture->scene,
+                                                .system = picture->system,
+                                                .textures = picture->textures,
+                                                .colliders = picture->colliders,
+                                                .fast_render = picture->fast_render,
+                                                .threads = cs_pool_threads(),
+                                                .parallel_for = cs_pool_run};
+    cs_posed_colliders_at(picture->system, 0, picture->colliders);
+    watch(picture->renderer->name, "while it was opened");
+    picture->renderer->create(&settings, &picture->canvas, &picture->error);
+    forget(&picture->error);
+}
+
+static enum cs_status open_renderer(enum cs_renderer_kind kind,
+                                    const struct cs_renderer **renderer,
+                                    struct cs_error *error) {
+    cs_crash_begin(CS_CRASH_DRAWING);
+    watch(cs_renderer_names[kind], "while it was loaded");
+    cs_renderer_open(cs_renderer_folder(), kind, renderer, error);
+    forget(error);
+    return error->status;
+}
+
+enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
+                               enum cs_renderer_kind kind, bool fast, bool beside,
+                               struct cs_error *error) {
+    *picture =
+        (struct cs_picture){.scene = system->scene, .system = system, .fast_render = fast};
+    if (!read_textures(picture, error) && !alloc_arrays(picture, error) &&
+        !open_renderer(kind, &picture->renderer, error)) {
+        /* what viewpoint forces see is drawn from the events, which move on with the run */
+        const bool apart = beside && !picture->scene->render.viewpoint_forces;
+        picture->worker = apart ? cs_worker_thread_create() : NULL;
+        cs_worker_thread_submit(picture->worker, make_canvas, picture);
+        cs_picture_end(picture, error);
+    }
+    /* the canvas has its own copy */
+    free_textures(picture);
+    if (error->status)
+        cs_picture_close(picture);
+    return error->status;
+}
+
+void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
+                       double *work) {
+    if (system->scene->render.look == CS_LOOK_FORCE)
+        cs_diagnostics_particle_force(system, run->t, run->x, run->v, scalar, work);
+    else
+        cs_diagnostics_particle_strain(system, run->x, scalar);
+}
+
+void cs_picture_range(const struct cs_scene *scene, double most, double range[2]) {
+    range[0] = scene->render.look == CS_LOOK_STRAIN ? -most : 0;
+    range[1] = most;
+}
+
+/* One pinched corner does not leave the others without colours. */
+static void measure(struct cs_picture *picture, const struct cs_run *run) {
+    const double *given = picture->scene->render.range;
+    const uint32_t n = picture->system->view.n;
+    cs_picture_values(picture->system, run, picture->scalar, picture->work);
+    memcpy(picture->range, given, sizeof picture->range);
+    if (isnan(given[0]))
+        cs_picture_range(picture->scene, cs_diagnostics_magnitude(picture->scalar, n),
+                         picture->range);
+}
+
+const char *cs_picture_title(int32_t look) {
+    return look == CS_LOOK_FORCE ? "force N" : look == CS_LOOK_STRAIN ? "strain %" : NULL;
+}
+
+double cs_picture_factor(int32_t look) {
+    return look == CS_LOOK_STRAIN ? 100 : 1;
+}
+
+static void paint(void *object) {
+    struct cs_picture *picture = object;
+    const int32_t look = picture->scene->render.look;
+    const double start = cs_clock_wall();
+    const struct cs_frame frame = {.t = picture->t,
+                                   .x = picture->x,
+                                   .scalar = picture->scalar,
+                                   .range = {picture->range[0], picture->range[1]},
+                                   .title = cs_picture_title(look),
+                                   .factor = cs_picture_factor(look),
+                                   .inv_mass = picture->inv_mass,
+                                   .goals = picture->goals,
+                                   .triangle_marks = picture->triangle_marks,
+                                   .colliders = picture->colliders};
+    watch(picture->renderer->name, "while it drew");
+    picture->renderer->paint(picture->canvas, &frame, picture->image, &picture->error);
+    forget(&picture->error);
+    picture->seconds += cs_clock_wall() - start;
+}
+
+void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
+                      struct cs_image *image) {
+    const size_t n = picture->system->view.n;
+    const double start = cs_clock_wall();
+    memcpy(picture->x, run->x, 3 * n * sizeof *picture->x);
+    memcpy(picture->inv_mass, picture->system->inv_mass, n * sizeof *picture->inv_mass);
+    cs_posed_colliders_at(picture->system, run->t, picture->colliders);
+    if (picture->scalar)
+        measure(picture, run);
+    if (picture->triangle_marks)
+        cs_crossings_mark(picture->system, run->t, run->x, picture->triangle_marks);
+    if (picture->goals)
+        cs_run_goals(run, picture->goals);
+    picture->t = run->t;
+    picture->image = image;
+    picture->seconds += cs_clock_wall() - start;
+    cs_worker_thread_submit(picture->worker, paint, picture);
+}
+
+enum cs_status cs_picture_end(struct cs_picture *picture, struct cs_error *error) {
+    cs_worker_thread_wait(picture->worker);
+    return picture->error.status
+               ? cs_fail(error, picture->error.status, "%s", picture->error.message)
+               : CS_OK;
+}
+
+const char *cs_picture_renderer(const struct cs_picture *picture) {
+    return picture->renderer->description(picture->canvas);
+}
+
+static void destroy_canvas(void *object) {
+    struct cs_picture *picture = object;
+    watch(picture->renderer->name, "while it was closed");
+    picture->renderer->destroy(picture->canvas);
+    forget(&picture->error);
+}
+
+void cs_picture_close(struct cs_picture *picture) {
+    if (picture->renderer)
+        cs_worker_thread_submit(picture->worker, destroy_canvas, picture);
+    cs_worker_thread_destroy(picture->worker);
+    free(picture->x);
+    free(picture->inv_mass);
+    free(picture->scalar);
+    free(picture->work);
+    free(picture->goals);
+    free(picture->triangle_marks);
+    free(picture->colliders);
+    *picture = (struct cs_picture){0};
+}

@@ -1,0 +1,170 @@
+/* Shares independent tasks among forked processes. */
+#include "study/process_pool.h"
+
+#include "sim/crash.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+/* In memory that all workers see. */
+struct shared {
+    atomic_uint next;
+    struct cs_error errors[CS_PROCESS_POOL_MAX]; /* one a worker */
+    struct cs_crash_log logs[CS_PROCESS_POOL_MAX];
+    atomic_bool done[CS_PROCESS_POOL_MAX]; /* it came to its end itself */
+};
+
+void *cs_process_pool_shared_alloc(size_t bytes, struct cs_error *error) {
+    void *memory =
+        mmap(NULL, bytes + 1, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory != MAP_FAILED)
+        return memory;
+    cs_fail(error, CS_ERR_MEMORY, "out of memory");
+    return NULL;
+}
+
+void cs_process_pool_shared_free(void *memory, size_t bytes) {
+    if (memory)
+        munmap(memory, bytes + 1);
+}
+
+void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks) {
+    __atomic_fetch_add(workers->ticks, ticks, __ATOMIC_RELAXED);
+}
+
+/* A task that never comes back to look at its budget ends with its worker, by SIGPROF. */
+static void limit_task(const struct cs_process_pool *workers) {
+    const struct itimerval limit = {.it_value.tv_sec = (time_t)workers->task_seconds_max};
+    if (workers->task_seconds_max > 0)
+        setitimer(ITIMER_PROF, &limit, NULL);
+}
+
+/* A task opens many sessions, one after the other: what one gives back is kept for the next,
+ * not given to the system and taken anew, page by page. The worker's end gives back all. */
+static void store_memory(void) {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 1 << 25);
+    mallopt(M_TRIM_THRESHOLD, 1 << 28);
+    mallopt(M_TOP_PAD, 1 << 22);
+#endif
+}
+
+static void serve(struct cs_process_pool *workers, struct shared *shared, uint32_t worker) {
+    struct cs_error *error = shared->errors + worker;
+    while (!error->status) {
+        const uint32_t task = atomic_fetch_add(&shared->next, 1);
+        if (task >= workers->n_tasks)
+            return;
+        limit_task(workers);
+        workers->task(workers->ctx, task, error);
+    }
+    /* no worker begins another task */
+    atomic_store(&shared->next, workers->n_tasks);
+}
+
+static void report(const struct cs_process_pool *workers) {
+    if (workers->progress)
+        workers->progress(workers->progress_ctx,
+                          __atomic_load_n(workers->ticks, __ATOMIC_RELAXED));
+}
+
+/* the first reason that a worker gave, or that it gave none */
+static void collect(struct shared *shared, uint32_t worker, int end, struct cs_error *error) {
+    if (error->status)
+        return;
+    if (shared->errors[worker].status)
+        *error = shared->errors[worker];
+    else if (WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF)
+        return;
+    else if (end || !shared->done[worker])
+        cs_crash_report_print(shared->logs + worker, end, error);
+    if (error->status)
+        atomic_store(&shared->next, UINT32_MAX / 2);
+}
+
+/* the process of a worker; < 0: there is none */
+static pid_t start(struct cs_process_pool *workers, struct shared *shared, uint32_t worker) {
+    /* that of the worker before, which was ended in a task */
+    shared->logs[worker] = (struct cs_crash_log){0};
+    const pid_t child = fork();
+    if (child)
+        return child;
+    cs_crash_log_to(shared->logs + worker);
+    store_memory();
+    serve(workers, shared, worker);
+    atomic_store(shared->done + worker, true);
+    _exit(0);
+}
+
+/* true if a worker was ended in a task and there are tasks left */
+static bool wants_another(const struct cs_process_pool *workers, struct shared *shared,
+                          int end) {
+    return WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF &&
+           atomic_load(&shared->next) < workers->n_tasks;
+}
+
+static void terminate_workers(const struct cs_process_pool *workers, const pid_t *children,
+                              uint32_t n) {
+    for (uint32_t k = 0; workers->stop && *workers->stop && k < n; k++)
+        if (children[k] > 0)
+            kill(children[k], SIGTERM);
+}
+
+/* Waits for all, looking often, so that progress shows and a signal is heard. */
+static void wait_for(struct cs_process_pool *workers, struct shared *shared, pid_t *children,
+                     uint32_t n, struct cs_error *error) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    uint32_t left = n;
+    while (left) {
+        for (uint32_t k = 0; k < n; k++) {
+            int end = 0;
+            if (children[k] <= 0 || waitpid(children[k], &end, WNOHANG) != children[k])
+                continue;
+            collect(shared, k, end, error);
+            children[k] = wants_another(workers, shared, end) ? start(workers, shared, k) : 0;
+            left -= children[k] <= 0;
+        }
+        terminate_workers(workers, children, n);
+        if (left)
+            nanosleep(&pause, NULL);
+        report(workers);
+    }
+}
+
+enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_error *error) {
+    struct shared *shared = cs_process_pool_shared_alloc(sizeof *shared, error);
+    pid_t children[CS_PROCESS_POOL_MAX];
+    uint32_t n = 0;
+    if (!shared)
+        return error->status;
+    /* what waits in the buffers is not to be written twice */
+    fflush(NULL);
+    while (n < workers->n_workers && n < workers->n_tasks && n < CS_PROCESS_POOL_MAX) {
+        children[n] = start(workers, shared, n);
+        if (children[n] < 0) {
+            if (!n)
+                cs_fail(error, CS_ERR_MEMORY, "cannot start a worker: %s", strerror(errno));
+            break;
+        }
+        n++;
+    }
+    wait_for(workers, shared, children, n, error);
+    if (workers->stop && *workers->stop) {
+        *error = (struct cs_error){0};
+        cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
+    }
+    cs_process_pool_shared_free(shared, sizeof *shared);
+    return error->status;
+}

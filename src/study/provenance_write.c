@@ -1,0 +1,145 @@
+/* Tells what a result hangs on. */
+#include "study/provenance_write.h"
+
+#include "base/hash.h"
+#include "sim/module.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATH_BYTES = 4096 };
+
+struct walk {
+    const struct cs_scene *scene;
+    void (*take)(void *ctx, const char *path, const char *what);
+    void *ctx;
+};
+
+static void add_referenced_file(const struct walk *walk, const char *file, const char *what) {
+    char path[PATH_BYTES];
+    if (*file &&
+        snprintf(path, sizeof path, "%s/%s", walk->scene->folder, file) < (int)sizeof path)
+        walk->take(walk->ctx, path, what);
+}
+
+void cs_scene_each_file(const struct cs_scene *scene,
+                        void (*take)(void *ctx, const char *path, const char *what),
+                        void *ctx) {
+    const struct walk walk = {scene, take, ctx};
+    if (strcmp(scene->path, "-") != 0)
+        take(ctx, scene->path, "the scene");
+    for (uint32_t b = 0; b < scene->bodies.n; b++) {
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        add_referenced_file(&walk, body->mesh.file, "a mesh");
+        add_referenced_file(&walk, body->material.texture, "a texture");
+    }
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        add_referenced_file(&walk, cs_scene_colliders(scene)[c].mesh.file, "a mesh");
+}
+
+struct list {
+    struct cs_text *out;
+    bool any;
+    struct cs_error *error;
+};
+
+static void add_file(void *ctx, const char *path, const char *what) {
+    struct list *list = ctx;
+    char hash[CS_HASH_DIGITS];
+    uint64_t bytes;
+    (void)what;
+    if (list->error->status || access(path, F_OK) ||
+        cs_hash_file(path, &bytes, hash, list->error))
+        return;
+    cs_text_add(list->out, "%s\n    {\"path\": ", list->any ? "," : "");
+    cs_text_add_json(list->out, path);
+    cs_text_add(list->out, ", \"hash\": \"%s\"}", hash);
+    list->any = true;
+}
+
+static bool is_own(const char *file) {
+    const char *folder = cs_module_folder();
+    const size_t length = strlen(folder);
+    return !strncmp(file, folder, length) && file[length] == '/' &&
+           !strchr(file + length + 1, '/');
+}
+
+void cs_provenance_out_find_module(struct cs_session *session,
+                                   struct cs_provenance_out_module *module) {
+    const struct cs_integrator *integrator = session->method.integrator;
+    const struct cs_registry_entry *found;
+    struct cs_error none = {0};
+    *module = (struct cs_provenance_out_module){.library = ""};
+    if (CS_HAS(integrator, library) && integrator->library)
+        module->library = integrator->library;
+    if (cs_registry_find(&session->registry, integrator->name, &found, &none))
+        return;
+    cs_module_hash(found->file, module->hash);
+    snprintf(module->file, sizeof module->file, "%s",
+             is_own(found->file) ? strrchr(found->file, '/') + 1 : found->file);
+}
+
+static void add_text(struct cs_text *out, const char *before, const char *value) {
+    cs_text_add(out, "%s", before);
+    cs_text_add_json(out, value);
+}
+
+enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struct cs_text *out,
+                                             struct cs_error *error) {
+    struct list list = {.out = out, .error = error};
+    add_text(out, "  \"scene_file\": ", scene->path);
+    cs_text_add(out, ",\n  \"files\": [");
+    cs_scene_each_file(scene, add_file, &list);
+    cs_text_add(out, "%s]", list.any ? "\n  " : "");
+    if (!error->status && out->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on");
+    return error->status;
+}
+
+enum cs_status cs_provenance_out_print(struct cs_session *session, const char *hash,
+                                       const char *method, struct cs_text *out,
+                                       struct cs_error *error) {
+    struct cs_provenance_out_module module;
+    if (cs_provenance_out_print_scene(&session->scene, out, error))
+        return error->status;
+    cs_provenance_out_find_module(session, &module);
+    cs_text_add(out, ",\n  \"scene_hash\": \"%s\"", hash);
+    add_text(out, ",\n  \"method\": ", method);
+    add_text(out, ",\n  \"module\": {\"file\": ", module.file);
+    cs_text_add(out, ", \"hash\": \"%s\"", module.hash);
+    add_text(out, ", \"library\": ", module.library);
+    cs_text_add(out, "}");
+    return out->failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on")
+               : CS_OK;
+}
+
+void cs_provenance_out_add_restarts(uint32_t frames, struct cs_text *out) {
+    if (frames)
+        cs_text_add(out, "  \"restarted_every\": %u,\n", frames);
+}
+
+/* JSON's texts hold no line break of their own: those that there are stand between values. */
+static void add_compact(const char *json, struct cs_text *out) {
+    while (*json) {
+        const size_t length = strcspn(json, "\n");
+        cs_text_add(out, "%.*s", (int)length, json);
+        json += length;
+        json += strspn(json, "\n ");
+    }
+}
+
+void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
+                                    struct cs_text *out) {
+    struct cs_text whole = {0};
+    cs_text_add(&whole, "{\"versions\": {\"clothsim\": \"%s\"},\n", CS_VERSION);
+    add_text(&whole, "\"renderer\": ", recipe->renderer_description);
+    add_text(&whole, ",\n\"renderer_name\": ", recipe->renderer);
+    cs_text_add(&whole, ",\n\"fast_render\": %s,\n", recipe->fast_render ? "true" : "false");
+    cs_provenance_out_add_restarts(recipe->restarts, &whole);
+    cs_text_add(&whole, "%s,\n\"scene\": %s}", recipe->provenance, recipe->scene);
+    add_compact(cs_text_get(&whole), out);
+    out->failed |= whole.failed;
+    cs_text_finish(&whole);
+}

@@ -1,0 +1,55 @@
+/* provenance_write.h - what a result hangs on: told beside it, so that it can be made again.
+ *
+ * As members of a JSON object, of the scene and of the method:
+ *   "scene_file"  as it was given     "files"   [{"path", "hash"}]: it and those that it names
+ *   "scene_hash"  see scene_hash.h    "method"  with every option
+ *   "module"      {"file", "hash", "library"}
+ * The scene itself, with every value, stands beside them as "scene".
+ */
+#ifndef CS_PROVENANCE_WRITE_H
+#define CS_PROVENANCE_WRITE_H
+
+#include "base/text.h"
+#include "study/session.h"
+
+/* Calls for each file that a scene is read from or names. what: "the scene", "a mesh", "a
+ * texture". Standard input is none; a texture may not be there. */
+void cs_scene_each_file(const struct cs_scene *scene,
+                        void (*take)(void *ctx, const char *path, const char *what), void *ctx);
+
+/* Adds the members of a scene, each line indented by two. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struct cs_text *out,
+                                             struct cs_error *error);
+/* Adds those of an open session, scene and method; hash and method are those of
+ * the resolved scene. As above. */
+enum cs_status cs_provenance_out_print(struct cs_session *session, const char *hash,
+                                       const char *method, struct cs_text *out,
+                                       struct cs_error *error);
+
+/* What a single picture carries of the run that it is of. */
+struct cs_picture_provenance {
+    const char *provenance;                      /* the members above */
+    const char *scene;                           /* as cs_scene_print prints it */
+    const char *renderer, *renderer_description; /* name, and description */
+    bool fast_render;                            /* --fast-render */
+    uint32_t restarts;                           /* see cs_provenance_out_add_restarts */
+};
+/* Adds it as one JSON object in one line. */
+void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
+                                    struct cs_text *out);
+
+/* Adds the member "restarted_every": frames between two checkpoints at which a method without
+ * save was started anew; 0: none, and nothing is added. */
+void cs_provenance_out_add_restarts(uint32_t frames, struct cs_text *out);
+
+/* The module that a session's method came from, as it is told: the name of a module of the
+ * program's own folder, the path of any other; its hash; its library, or "". */
+struct cs_provenance_out_module {
+    char file[4096];
+    char hash[CS_HASH_DIGITS];
+    const char *library; /* borrowed from the module */
+};
+void cs_provenance_out_find_module(struct cs_session *session,
+                                   struct cs_provenance_out_module *module);
+
+#endif

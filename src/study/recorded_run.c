@@ -1,0 +1,183 @@
+/* Runs a method on the smooth form of a scene, and records its trajectory. */
+#include "study/recorded_run.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool has_strain_limit(const struct cs_scene *scene) {
+    for (uint32_t b = 0; b < scene->bodies.n; b++)
+        if (!isnan(cs_scene_bodies(scene)[b].strain_limit))
+            return true;
+    return false;
+}
+
+void cs_recorded_run_describe_changes(const struct cs_scene *scene, struct cs_text *out) {
+    const bool projected = scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT;
+    const bool parts[] = {projected, has_strain_limit(scene), scene->forces.velocity_loss > 0};
+    const char *const names[] = {"contact", "strain limit", "velocity loss"};
+    bool any = false;
+    for (int k = 0; k < 3; k++)
+        if (parts[k]) {
+            cs_text_add(out, "%s%s", any ? ", " : "", names[k]);
+            any = true;
+        }
+}
+
+enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *settings,
+                                            double seconds, struct cs_error *error) {
+    struct cs_session session;
+    struct cs_session_settings asked = settings->session;
+    asked.integrator = "velocity-verlet";
+    if (cs_session_open_plan(&session, &asked, error))
+        return error->status;
+    const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
+    if (!(frames <= 1e6))
+        cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
+    settings->frames = (uint32_t)frames;
+    cs_session_close(&session);
+    return error->status;
+}
+
+static enum cs_status store_start(struct cs_recorded_run *recording, struct cs_error *error) {
+    const size_t values = 6 * (size_t)recording->session.system.view.n;
+    recording->initial_state = malloc(values * sizeof *recording->initial_state);
+    if (!recording->initial_state)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the start of a run");
+    memcpy(recording->initial_state, recording->session.system.state,
+           values * sizeof *recording->initial_state);
+    return CS_OK;
+}
+
+enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
+                                    const struct cs_recorded_run_settings *settings,
+                                    const char *integrator, struct cs_error *error) {
+    struct cs_session_settings asked = settings->session;
+    *recording = (struct cs_recorded_run){.frames = settings->frames};
+    asked.integrator = integrator;
+    asked.switch_off_corrections = true;
+    // a crossing is a property of a method at its step
+    asked.count_crossings_only = true;
+    if (!cs_session_open_system(&recording->session, &asked, error) &&
+        store_start(recording, error))
+        cs_recorded_run_close(recording);
+    return error->status;
+}
+
+static void store_state(struct cs_trajectory *track, const struct cs_run *run,
+                        struct cs_crossing_stats *crossings) {
+    if (!track)
+        return;
+    cs_crossing_stats_add(crossings, run);
+    memcpy(cs_trajectory_state(track, run->frame), run->x, 6 * track->n * sizeof *run->x);
+    track->n_recorded = run->frame;
+}
+
+/* One frame, or all that are left, between two looks at the clocks. */
+static enum cs_status step_timed(struct cs_recorded_run *recording, uint32_t last,
+                                 struct cs_recorded_run_result *end, struct cs_error *error) {
+    struct cs_run *run = &recording->session.run;
+    const double cpu = cs_clock_cpu(), wall = cs_clock_wall();
+    while (run->frame < last && run->outcome == CS_RUNNING && !error->status)
+        cs_run_frame(run, error);
+    end->cpu += cs_clock_cpu() - cpu;
+    end->wall += cs_clock_wall() - wall;
+    return error->status;
+}
+
+/* Copies and counts are not timed; where there are none, the clocks are read twice in all. */
+static enum cs_status step_frames(struct cs_recorded_run *recording,
+                                  struct cs_trajectory *track,
+                                  struct cs_recorded_run_result *end, struct cs_error *error) {
+    struct cs_run *run = &recording->session.run;
+    store_state(track, run, &end->crossings);
+    while (run->frame < recording->frames && run->outcome == CS_RUNNING) {
+        if (step_timed(recording, track ? run->frame + 1 : recording->frames, end, error))
+            return error->status;
+        store_state(track, run, &end->crossings);
+    }
+    return CS_OK;
+}
+
+/* A run with events leaves pins, values and times as they were at its end: the next one, and
+ * who measures, get the system as at the start. */
+static enum cs_status renew(struct cs_recorded_run *recording, struct cs_error *error) {
+    return recording->session.system.events ? cs_session_build(&recording->session, error)
+                                            : CS_OK;
+}
+
+static void store_notes(struct cs_recorded_run_result *end, const struct cs_run *run) {
+    for (uint32_t k = 0; k < run->n_notes; k++) {
+        const size_t used = strlen(end->note);
+        snprintf(end->note + used, sizeof end->note - used, "%s%s", k ? "; " : "",
+                 run->notes[k]);
+    }
+}
+
+/* Two ways to fail: the method's own, which is a row, and the world's. */
+static enum cs_status judge(struct cs_recorded_run_result *end, const struct cs_error *failure,
+                            struct cs_error *error) {
+    if (failure->status == CS_ERR_MODULE) {
+        end->failed = true;
+        snprintf(end->note, sizeof end->note, "%.239s", failure->message);
+        return CS_OK;
+    }
+    if (failure->status)
+        return cs_fail(error, failure->status, "%s", failure->message);
+    if (end->outcome == CS_INTERRUPTED)
+        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
+    return CS_OK;
+}
+
+enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double budget,
+                                       struct cs_trajectory *track,
+                                       struct cs_recorded_run_result *end,
+                                       struct cs_error *error) {
+    struct cs_session *session = &recording->session;
+    struct cs_error failure = {0};
+    *end = (struct cs_recorded_run_result){0};
+    session->settings.run.budget = budget;
+    if (!cs_session_begin(session, recording->initial_state, &failure)) {
+        step_frames(recording, track, end, &failure);
+        end->outcome = session->run.outcome;
+        const bool blew_up = end->outcome == CS_NOT_FINITE || end->outcome == CS_UNBOUNDED;
+        end->time = blew_up ? session->run.blow_up.time : session->run.t;
+        end->counts = session->run.counts;
+        store_notes(end, &session->run);
+        cs_hash_doubles(session->run.x, 6 * (size_t)session->system.view.n, end->hash);
+        cs_run_finish(&session->run);
+    }
+    if (renew(recording, error))
+        return error->status;
+    return judge(end, &failure, error);
+}
+
+void cs_recorded_run_close(struct cs_recorded_run *recording) {
+    cs_session_close(&recording->session);
+    free(recording->initial_state);
+    *recording = (struct cs_recorded_run){0};
+}
+
+enum cs_status cs_trajectory_init(struct cs_trajectory *track,
+                                  const struct cs_recorded_run *recording,
+                                  struct cs_error *error) {
+    *track = (struct cs_trajectory){.n = recording->session.system.view.n,
+                                    .frames = recording->frames,
+                                    .fps = recording->session.scene.time.fps};
+    track->states = calloc((size_t)track->frames + 1, 6 * (size_t)track->n * sizeof(double));
+    if (!track->states)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for %u states", track->frames + 1);
+    return CS_OK;
+}
+
+double *cs_trajectory_state(const struct cs_trajectory *track, uint32_t frame) {
+    return track->states + 6 * (size_t)track->n * frame;
+}
+
+void cs_trajectory_finish(struct cs_trajectory *track) {
+    free(track->states);
+    *track = (struct cs_trajectory){0};
+}

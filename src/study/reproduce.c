@@ -1,0 +1,280 @@
+/* Makes a run or a picture again, and names the first thing that differs. */
+#include "study/reproduce.h"
+
+#include "base/hash.h"
+#include "draw/image_diff.h"
+#include "io/png.h"
+#include "sim/run_record.h"
+#include "study/snapshot.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One result under way. Zeroed: nothing. */
+struct work {
+    struct cs_reproduction *again;
+    const struct cs_reproduction_settings *settings;
+    struct cs_provenance carried;
+    struct cs_session session;
+    struct cs_serialiser record; /* of methods that start anew at each checkpoint */
+};
+
+static void differ(struct work *work, const char *what, const char *then, const char *now) {
+    cs_text_add(&work->again->first_difference, "%s was %s, is %s", what, then, now);
+}
+
+static bool has_differed(const struct work *work) {
+    return work->again->first_difference.length;
+}
+
+static enum cs_status begin(struct work *work, bool render, struct cs_error *error) {
+    struct cs_session_settings asked = work->settings->session;
+    asked.render = render;
+    if (cs_provenance_to_session(&work->carried, work->settings->folder, &asked, error) ||
+        cs_session_open(&work->session, &asked, error))
+        return error->status;
+    return cs_provenance_add_changes(&work->carried, &work->session, &work->again->notes,
+                                     error);
+}
+
+static void finish(struct work *work) {
+    cs_serialiser_finish(&work->record);
+    cs_session_close(&work->session);
+    cs_provenance_finish(&work->carried);
+}
+
+/* A method that saves nothing was started anew at each checkpoint. */
+static enum cs_status restart(struct work *work, struct cs_error *error) {
+    struct cs_run *run = &work->session.run;
+    const uint32_t every = work->carried.restarts;
+    if (!every || run->frame % every != 0 || cs_run_method_has_history(run->integrator))
+        return CS_OK;
+    cs_serialiser_begin(&work->record);
+    return cs_run_save(run, &work->record, error);
+}
+
+/* One frame; false: the run has ended, or failed. */
+static bool step(struct work *work, uint32_t total, struct cs_error *error) {
+    const struct cs_reproduction_settings *settings = work->settings;
+    struct cs_run *run = &work->session.run;
+    if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
+        return false;
+    if (settings->progress)
+        settings->progress(settings->ctx, run->frame, total);
+    return true;
+}
+
+static enum cs_status check_interrupt(const struct work *work, struct cs_error *error) {
+    return work->session.run.outcome == CS_INTERRUPTED
+               ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted in frame %u",
+                         work->session.run.frame + 1)
+               : error->status;
+}
+
+static void compare_state(struct work *work, const char *then) {
+    const struct cs_run *run = &work->session.run;
+    char now[CS_HASH_DIGITS], what[48];
+    cs_hash_doubles(run->x, 6 * (size_t)run->system->view.n, now);
+    snprintf(what, sizeof what, "the state of frame %u", run->frame);
+    if (strcmp(then, now) != 0)
+        differ(work, what, then, now);
+}
+
+/* "finished", "blew up ...", "failed" */
+static const char *outcome_of(const struct work *work, const struct cs_error *failure) {
+    return failure->status == CS_ERR_MODULE ? "failed"
+                                            : cs_outcome_text(work->session.run.outcome);
+}
+
+/* A run that ended of itself ends in the frame behind its last, and in the same way; what was
+ * interrupted says nothing. */
+static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_error *error) {
+    const struct cs_json *root = work->carried.json;
+    const char *then = cs_provenance_text(root, "outcome");
+    const bool ended = strcmp(then, cs_outcome_text(CS_RUNNING)) != 0;
+    struct cs_error failure = {0};
+    if (!strcmp(then, cs_outcome_text(CS_INTERRUPTED)))
+        return CS_OK;
+    if (ended)
+        step(work, total, &failure);
+    if (failure.status && failure.status != CS_ERR_MODULE)
+        return cs_fail(error, failure.status, "%s", failure.message);
+    if (strcmp(then, outcome_of(work, &failure)) != 0)
+        differ(work, "the outcome", then, outcome_of(work, &failure));
+    else if (failure.status &&
+             strcmp(cs_provenance_text(root, "outcome_detail"), failure.message))
+        differ(work, "the reason", cs_provenance_text(root, "outcome_detail"), failure.message);
+    else
+        cs_text_add(&work->again->equal_items, " and the outcome");
+    return check_interrupt(work, error);
+}
+
+static void describe_early_end(struct work *work, struct cs_error *error) {
+    struct cs_text what = {0};
+    struct cs_error failure = *error;
+    if (failure.status && failure.status != CS_ERR_MODULE)
+        return;
+    *error = (struct cs_error){0};
+    cs_text_add(&what, "the end of frame %u", work->session.run.frame + 1);
+    differ(work, cs_text_get(&what), "a state",
+           failure.status ? failure.message : outcome_of(work, &failure));
+    cs_text_finish(&what);
+}
+
+static enum cs_status compare_frames(struct work *work, struct cs_error *error) {
+    const struct cs_json *frames = cs_json_find(work->carried.json, "frames");
+    const uint32_t total = cs_json_count(frames);
+    const struct cs_json *frame = cs_json_first(frames);
+    uint32_t equal = 0;
+    for (; frame && !has_differed(work) && !error->status; frame = cs_json_next(frame)) {
+        if (!step(work, total, error)) {
+            if (!check_interrupt(work, error) || error->status == CS_ERR_MODULE)
+                describe_early_end(work, error);
+            break;
+        }
+        compare_state(work, cs_provenance_text(frame, "hash"));
+        equal += !has_differed(work);
+        restart(work, error);
+    }
+    cs_text_add(&work->again->equal_items, "%u of %u states", equal, total);
+    return error->status || has_differed(work) ? error->status
+                                               : compare_end(work, total, error);
+}
+
+static void describe(struct work *work, uint32_t frames) {
+    cs_text_add(&work->again->description, "%u frame%s of %s by %s", frames,
+                frames == 1 ? "" : "s", work->carried.scene_file, work->carried.method);
+}
+
+enum cs_status cs_reproduction_of_run(struct cs_reproduction *again,
+                                      const struct cs_reproduction_settings *settings,
+                                      struct cs_error *error) {
+    struct work work = {.again = again, .settings = settings};
+    if (!cs_provenance_read(&work.carried, settings->file, error)) {
+        const struct cs_json *frames = cs_json_find(work.carried.json, "frames");
+        describe(&work, frames ? cs_json_count(frames) : 0);
+        if (!frames || cs_json_kind_of(frames) != CS_JSON_LIST)
+            cs_fail(error, CS_ERR_FILE, "%s: expected \"frames\", a list of states",
+                    settings->file);
+        else if (!begin(&work, false, error))
+            compare_frames(&work, error);
+    }
+    finish(&work);
+    return error->status;
+}
+
+enum { FRAME, STATE, PIXELS, RUN, TEXTS };
+static const char *const keys[TEXTS] = {"clothsim:frame", "clothsim:state-hash",
+                                        "clothsim:pixel-hash", "clothsim:run"};
+
+/* the renderer by the name that was told, so that its pixels can be the same */
+static enum cs_renderer_kind renderer_of(const struct cs_provenance *provenance) {
+    for (int k = 0; cs_renderer_names[k]; k++)
+        if (!strcmp(cs_renderer_names[k], provenance->renderer_name))
+            return (enum cs_renderer_kind)k;
+    return CS_RENDERER_AUTO;
+}
+
+/* Pixels of another renderer, or of another version of it, are close at best. */
+static void compare_pixels(struct work *work, const struct cs_image *then,
+                           const struct cs_image *now, const char *drawn_by) {
+    struct cs_reproduction *again = work->again;
+    const bool same = !work->carried.fast_render && !strcmp(drawn_by, work->carried.renderer);
+    if (then->width != now->width || then->height != now->height) {
+        cs_text_add(&again->first_difference, "it has %u x %u pixels, the scene says %u x %u",
+                    then->width, then->height, now->width, now->height);
+        return;
+    }
+    const struct cs_image_difference d = cs_image_compare(then, now);
+    if (!same)
+        cs_text_add(&again->notes, "the renderer was %s, is %s\n", work->carried.renderer,
+                    drawn_by);
+    if (d.pixels && (same || !cs_image_difference_passes(&d)))
+        cs_text_add(&again->first_difference,
+                    "%llu of %llu pixels differ, by at most %d levels of 255",
+                    (unsigned long long)d.pixels,
+                    (unsigned long long)then->width * then->height, d.largest);
+    else
+        cs_text_add(&again->equal_items,
+                    d.pixels ? ", pixels within what renderers differ by" : " and all pixels");
+}
+
+static enum cs_status draw(struct work *work, const struct cs_image *then, const char *pixels,
+                           struct cs_error *error) {
+    struct cs_image now = {0};
+    struct cs_text drawn_by = {0};
+    char hash[CS_HASH_DIGITS];
+    cs_hash_bytes(then->rgb, cs_image_bytes(then), hash);
+    if (strcmp(hash, pixels) != 0)
+        cs_text_add(&work->again->notes,
+                    "the pixels in the file are not those that were written\n");
+    const struct cs_render *render = &work->session.scene.render;
+    /* as the run had it: colours are not laid on white then */
+    if (render->background.kind == CS_BACKGROUND_NONE &&
+        !(now.alpha = malloc((size_t)render->size[0] * (size_t)render->size[1])))
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+    else if (!cs_snapshot_draw(&work->session, renderer_of(&work->carried), &now, &drawn_by,
+                               error))
+        compare_pixels(work, then, &now, cs_text_get(&drawn_by));
+    free(now.rgb);
+    free(now.alpha);
+    cs_text_finish(&drawn_by);
+    return error->status;
+}
+
+static enum cs_status compare_picture(struct work *work, uint32_t frame, char **texts,
+                                      const struct cs_image *image, struct cs_error *error) {
+    while (work->session.run.frame < frame && !error->status) {
+        if (!step(work, frame, error)) {
+            if (!check_interrupt(work, error) || error->status == CS_ERR_MODULE)
+                describe_early_end(work, error);
+            return error->status;
+        }
+        if (work->session.run.frame < frame)
+            restart(work, error);
+    }
+    if (error->status)
+        return error->status;
+    compare_state(work, texts[STATE]);
+    if (has_differed(work))
+        return CS_OK;
+    cs_text_add(&work->again->equal_items, "the state");
+    return draw(work, image, texts[PIXELS], error);
+}
+
+enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
+                                          const struct cs_reproduction_settings *settings,
+                                          struct cs_error *error) {
+    struct work work = {.again = again, .settings = settings};
+    struct cs_image image;
+    char *texts[TEXTS];
+    double frame = 0;
+    if (cs_png_read_texts(settings->file, keys, TEXTS, texts, &image, error))
+        return error->status;
+    for (int k = 0; k < TEXTS && !error->status; k++)
+        if (!texts[k] ||
+            (k == FRAME && (!cs_parse_real(texts[k], &frame) || !(frame >= 1) || frame > 1e9)))
+            cs_fail(error, CS_ERR_FILE,
+                    "%s: expected a picture of clothsim run, with a text %s", settings->file,
+                    keys[k]);
+    if (!error->status &&
+        !cs_provenance_read_text(&work.carried, settings->file, texts[RUN], error)) {
+        cs_text_add(&again->description, "frame %.0f of %s by %s", frame,
+                    work.carried.scene_file, work.carried.method);
+        if (!begin(&work, true, error))
+            compare_picture(&work, (uint32_t)frame, texts, &image, error);
+    }
+    finish(&work);
+    free(image.rgb);
+    for (int k = 0; k < TEXTS; k++)
+        free(texts[k]);
+    return error->status;
+}
+
+void cs_reproduction_finish(struct cs_reproduction *again) {
+    cs_text_finish(&again->description);
+    cs_text_finish(&again->notes);
+    cs_text_finish(&again->equal_items);
+    cs_text_finish(&again->first_difference);
+}

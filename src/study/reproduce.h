@@ -1,0 +1,35 @@
+/* reproduce.h - a result made again from what it carries, and held against itself. */
+#ifndef CS_REPRODUCE_H
+#define CS_REPRODUCE_H
+
+#include "study/provenance_read.h"
+
+struct cs_reproduction_settings {
+    const char *file;                   /* run.json, or a picture of a run */
+    const char *folder;                 /* see cs_provenance_to_session */
+    struct cs_session_settings session; /* modules, threads, stop */
+    /* called after each frame; may be NULL */
+    void (*progress)(void *ctx, uint32_t done, uint32_t total);
+    void *ctx;
+};
+
+/* What was found. Zeroed: nothing. */
+struct cs_reproduction {
+    struct cs_text description;      /* was made again: "3 frames of a.json by rk4:dt=0.001" */
+    struct cs_text notes;            /* what has changed since, a line each */
+    struct cs_text equal_items;      /* "3 states and the outcome" */
+    struct cs_text first_difference; /* the first; empty: there is none */
+};
+
+/* Runs what run.json carries, and compares the state of each frame and how the run ended. */
+enum cs_status cs_reproduction_of_run(struct cs_reproduction *again,
+                                      const struct cs_reproduction_settings *settings,
+                                      struct cs_error *error);
+/* Runs what a picture carries up to its frame, compares the state, draws it by the same
+ * renderer, and compares the pixels. */
+enum cs_status cs_reproduction_of_picture(struct cs_reproduction *again,
+                                          const struct cs_reproduction_settings *settings,
+                                          struct cs_error *error);
+void cs_reproduction_finish(struct cs_reproduction *again);
+
+#endif

@@ -1,0 +1,51 @@
+/* Says how contact enters linear theory and runs, and what it takes to cross an obstacle. */
+#include "study/stability/contact_note.h"
+
+#include "model/contact/barrier_law.h"
+#include "model/contact/collider_params.h"
+#include "scene/body_pairs.h"
+
+#include <math.h>
+
+void cs_contact_note_add(const struct cs_scene *scene, const char *before,
+                         struct cs_text *out) {
+    if (scene->colliders.n > 0 || cs_scene_has_body_contact(scene))
+        cs_text_add(out, "%s%s", before,
+                    scene->contact.law == CS_CONTACT_FORCE
+                        ? "contact is a force, in linear theory and in runs"
+                        : "contact is off in linear theory; in runs it acts after each step");
+}
+
+static bool any_friction(const struct cs_scene *scene) {
+    for (uint32_t c = 0; c < scene->colliders.n; c++)
+        if (cs_scene_colliders(scene)[c].friction > 0)
+            return true;
+    return false;
+}
+
+void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
+                                  struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    double least = HUGE_VAL, heaviest = 0;
+    if (!system->collider_params)
+        return;
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        const double range = system->collider_params[c].range;
+        least = fmin(least, cs_barrier_energy(CS_BARRIER_CORE * range, range,
+                                              system->collider_params[c].k));
+    }
+    for (uint32_t i = 0; i < system->view.n; i++)
+        if (system->inv_mass[i] > 0)
+            heaviest = fmax(heaviest, system->mass[i]);
+    cs_text_add(out, "a particle needs %.3g J to cross an obstacle", least);
+    if (speed > 0)
+        cs_text_add(out, ", and has at most %.3g J: %.3g kg at %.3g m/s",
+                    0.5 * heaviest * speed * speed, heaviest, speed);
+    cs_text_add(out, "\n");
+    if (any_friction(scene))
+        cs_text_add(
+            out,
+            "friction under a load N damps a particle of m kg at up to mu N/(m %.3g m/s), "
+            "which limits explicit steps\n",
+            scene->contact.friction_speed);
+}

@@ -1,0 +1,95 @@
+/* Judges a step against the reference, and bisects the border of stable steps. */
+#include "study/stability/stability_boundary.h"
+
+#include <math.h>
+
+enum { MOST_SEARCHES = 12, BISECTIONS = 14 };
+#define RESOLUTION 1.01 /* of the border: unstable step / stable step */
+#define LONGEST_DT 10
+
+/* over the time of the reference, but most_seconds at most */
+static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
+                               const struct cs_reference *reference, double dt,
+                               double most_seconds, struct cs_stability_cell *cell,
+                               struct cs_error *error) {
+    struct cs_sampled_run_settings asked = *settings;
+    struct cs_sampled_run trial;
+    asked.session.dt = dt;
+    asked.seconds = fmin(reference->seconds, most_seconds);
+    asked.limits = cs_stability_limits(&reference->run);
+    if (cs_sampled_run_execute(&trial, &asked, error))
+        return error->status;
+    *cell = (struct cs_stability_cell){
+        .dt = dt,
+        .verdict =
+            cs_stability_judge(&trial, &reference->run, asked.seconds >= reference->seconds),
+        .drift = (double)NAN,
+        .time = trial.end_time,
+        .particles = trial.speed_excess.particles,
+        .crossings =
+            trial.crossings.is_counted ? (double)trial.crossings.max_count : (double)NAN,
+    };
+    /* drift compares the energies at the end, which both runs must have reached */
+    if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)
+        cell->drift = cs_stability_drift(&trial, &reference->run);
+    /* the time that is told is that of the first sign, not that of the end */
+    if (trial.outcome == CS_UNBOUNDED || trial.outcome == CS_NOT_FINITE)
+        cell->time = trial.blow_up.time;
+    if (cell->verdict == CS_STABILITY_GLOBAL && trial.exceeded_limit)
+        cell->time = trial.exceeded_time;
+    else if (cell->verdict == CS_STABILITY_LOCAL)
+        cell->time = trial.speed_excess.time;
+    return CS_OK;
+}
+
+enum cs_status cs_stability_run_cell(const struct cs_sampled_run_settings *settings,
+                                     const struct cs_reference *reference, double dt,
+                                     struct cs_stability_cell *cell, struct cs_error *error) {
+    return try_step(settings, reference, dt, CS_CELL_STEPS * dt, cell, error);
+}
+
+/* Steps by a factor of 4 until both sides are known; *known is false where a budget ran out. */
+static enum cs_status bracket(const struct cs_sampled_run_settings *settings,
+                              const struct cs_reference *reference, double *stable,
+                              double *unstable, bool *known, struct cs_error *error) {
+    struct cs_stability_cell cell;
+    for (int k = 0; k < MOST_SEARCHES && (*stable <= 0 || *unstable > LONGEST_DT); k++) {
+        const double dt = *stable > 0 ? 4 * *stable : *unstable / 4;
+        if (!(dt <= LONGEST_DT))
+            break;
+        if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
+            return error->status;
+        *known = cell.verdict != CS_STABILITY_OVER_BUDGET;
+        if (!*known)
+            break;
+        *(cs_stability_is_stable(cell.verdict) ? stable : unstable) = dt;
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_stability_boundary(const struct cs_sampled_run_settings *settings,
+                                     const struct cs_reference *reference, double stable,
+                                     double unstable, double *border, struct cs_error *error) {
+    struct cs_stability_cell cell;
+    bool known = true;
+    *border = (double)NAN;
+    if (bracket(settings, reference, &stable, &unstable, &known, error) || !known)
+        return error->status;
+    /* no stable step was found, or no unstable one */
+    *border = stable <= 0 ? 0 : HUGE_VAL;
+    if (stable <= 0 || unstable > LONGEST_DT)
+        return CS_OK;
+    for (int k = 0; k < BISECTIONS && unstable > RESOLUTION * stable; k++) {
+        /* the geometric mean, since steps cover decades */
+        const double dt = sqrt(stable * unstable);
+        if (try_step(settings, reference, dt, HUGE_VAL, &cell, error))
+            return error->status;
+        if (cell.verdict == CS_STABILITY_OVER_BUDGET) {
+            *border = (double)NAN;
+            return CS_OK;
+        }
+        *(cs_stability_is_stable(cell.verdict) ? &stable : &unstable) = dt;
+    }
+    *border = sqrt(stable * unstable);
+    return CS_OK;
+}

@@ -1,0 +1,241 @@
+/* Finds the largest eigenvalue of M^-1/2 (a K + b C) M^-1/2 by restarted Lanczos steps. */
+#include "study/stability/stiffest_modes.h"
+
+#include "model/force/terms.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_RESTARTS = 12, MOST_SWEEPS = 40 };
+#define TOLERANCE 1e-4
+
+enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes,
+                                      const struct cs_system *system, struct cs_error *error) {
+    const size_t n = system->view.n;
+    *modes = (struct cs_stiffest_modes){.system = system};
+    double **arrays[] = {&modes->dx, &modes->dv, &modes->zeros, &modes->last_vector};
+    modes->basis = cs_arena_alloc_array(&modes->arena, (CS_STIFFEST_MODES_BASIS + 1) * 3 * n,
+                                        sizeof(double), error);
+    modes->root = cs_arena_alloc_array(&modes->arena, n, sizeof(double), error);
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        *arrays[k] = cs_arena_alloc_array(&modes->arena, 3 * n, sizeof(double), error);
+    if (error->status) {
+        cs_stiffest_modes_finish(modes);
+        return error->status;
+    }
+    for (size_t i = 0; i < n; i++)
+        modes->root[i] = sqrt(system->inv_mass[i]);
+    return CS_OK;
+}
+
+void cs_stiffest_modes_finish(struct cs_stiffest_modes *modes) {
+    cs_arena_finish(&modes->arena);
+    *modes = (struct cs_stiffest_modes){0};
+}
+
+static double dot(size_t n, const double *p, const double *q) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += p[i] * q[i];
+    return sum;
+}
+
+/* false where p is 0 or not finite */
+static bool normalise(size_t n, double *p) {
+    const double length = sqrt(dot(n, p, p));
+    if (!(length > 0 && length < HUGE_VAL))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        p[i] /= length;
+    return true;
+}
+
+/* y = M^-1/2 (a K + b C) M^-1/2 p; the velocities are taken as 0 */
+static void apply(struct cs_stiffest_modes *modes, const double *x, double a, double b,
+                  const double *p, double *y) {
+    const struct cs_system *system = modes->system;
+    const size_t n = system->view.n;
+    double *dx = modes->dx, *dv = modes->dv;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            /* negative, because the product of the Jacobian is -K dx - C dv */
+            dx[c * n + i] = -modes->root[i] * p[c * n + i];
+    for (size_t i = 0; i < 3 * n; i++) {
+        dv[i] = b * dx[i];
+        dx[i] *= a;
+    }
+    const struct cs_eval at = {.t = modes->t,
+                               .x = x,
+                               .v = modes->zeros,
+                               .parts = CS_PART_LINEARISED,
+                               .dx = a != 0 ? dx : NULL,
+                               .dv = b != 0 ? dv : NULL};
+    cs_terms_jvp(system, &at, y);
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
+            y[c * n + i] *= modes->root[i];
+}
+
+/* a start that no motion of a symmetric scene is missing from */
+static void start(struct cs_stiffest_modes *modes, double *p) {
+    const size_t length = 3 * (size_t)modes->system->view.n;
+    uint64_t bits = 1;
+    for (size_t i = 0; i < length; i++) {
+        bits = bits * 6364136223846793005u + 1442695040888963407u;
+        const double noise = (double)(bits >> 11) * 0x1p-52 - 1;
+        p[i] = modes->has_start ? modes->last_vector[i] + 0.02 * noise / sqrt((double)length)
+                                : noise;
+    }
+    for (uint32_t k = 0; k < modes->system->n_pinned; k++)
+        for (size_t c = 0; c < 3; c++)
+            p[c * modes->system->view.n + modes->system->pinned[k]] = 0;
+}
+
+/* takes from p what the basis holds, twice for orthogonality to rounding; parts (count) added
+ */
+static void orthogonalise(const struct cs_stiffest_modes *modes, uint32_t count, size_t length,
+                          double *p, double *parts) {
+    memset(parts, 0, sizeof *parts * count);
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t k = 0; k < count; k++) {
+            const double *q = modes->basis + k * length;
+            const double part = dot(length, p, q);
+            parts[k] += part;
+            for (size_t i = 0; i < length; i++)
+                p[i] -= part * q[i];
+        }
+}
+
+/* Fills the basis from its first vector on, and the projection h (count,count); returns count.
+ */
+static uint32_t build_basis(struct cs_stiffest_modes *modes, const double *x, double a,
+                            double b,
+                            double h[CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS]) {
+    const size_t length = 3 * (size_t)modes->system->view.n;
+    const uint32_t most =
+        length < CS_STIFFEST_MODES_BASIS ? (uint32_t)length : CS_STIFFEST_MODES_BASIS;
+    double parts[CS_STIFFEST_MODES_BASIS][CS_STIFFEST_MODES_BASIS];
+    uint32_t count = 0;
+    bool goes_on = true;
+    while (goes_on && count < most) {
+        double *next = modes->basis + (count + 1) * length;
+        apply(modes, x, a, b, modes->basis + count * length, next);
+        count++;
+        orthogonalise(modes, count, length, next, parts[count - 1]);
+        goes_on = dot(length, next, next) > 1e-24 * parts[0][0] * parts[0][0] &&
+                  normalise(length, next);
+    }
+    /* below its diagonal the projection is the image's length, by symmetry what stands above */
+    memset(h, 0, sizeof(double) * CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS);
+    for (uint32_t j = 0; j < count; j++)
+        for (uint32_t i = 0; i <= j; i++)
+            h[i * count + j] = h[j * count + i] = parts[j][i];
+    return count;
+}
+
+static double off_diagonal(uint32_t n, const double *a) {
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = 0; j < i; j++)
+            sum += a[i * n + j] * a[i * n + j];
+    return sum;
+}
+
+static double diagonal(uint32_t n, const double *a) {
+    double sum = 0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += a[i * n + i] * a[i * n + i];
+    return sum;
+}
+
+/* turns entries k and l of a pair of lines by the rotation (c, s) */
+static void givens_rotate(double *k, double *l, double c, double s) {
+    const double old = *k;
+    *k = c * old - s * *l;
+    *l = s * old + c * *l;
+}
+
+/* the rotation of rows and columns p and q that makes a[p][q] zero */
+static void rotate(uint32_t n, double *a, double *vectors, uint32_t p, uint32_t q) {
+    const double apq = a[p * n + q];
+    if (apq == 0)
+        return;
+    const double theta = (a[q * n + q] - a[p * n + p]) / (2 * apq);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (uint32_t i = 0; i < n; i++)
+        givens_rotate(a + i * n + p, a + i * n + q, c, s);
+    for (uint32_t i = 0; i < n; i++)
+        givens_rotate(a + p * n + i, a + q * n + i, c, s);
+    for (uint32_t i = 0; i < n; i++)
+        givens_rotate(vectors + i * n + p, vectors + i * n + q, c, s);
+}
+
+/* Diagonalises a (n,n), which is overwritten, by cyclic Jacobi rotations (Golub and Van Loan
+ * 2013, sec. 8.5): the eigenvalues stand on its diagonal, the eigenvectors in the columns of
+ * vectors (n,n). Row-major. */
+static void diagonalise(uint32_t n, double *a, double *vectors) {
+    memset(vectors, 0, sizeof *vectors * n * n);
+    for (uint32_t i = 0; i < n; i++)
+        vectors[i * n + i] = 1;
+    for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+        if (!(off_diagonal(n, a) > 1e-28 * diagonal(n, a)))
+            return;
+        for (uint32_t p = 0; p + 1 < n; p++)
+            for (uint32_t q = p + 1; q < n; q++)
+                rotate(n, a, vectors, p, q);
+    }
+}
+
+/* the combination of the basis with the largest value becomes modes->last */
+static double take_largest(struct cs_stiffest_modes *modes, uint32_t count, double *h) {
+    const size_t length = 3 * (size_t)modes->system->view.n;
+    double vectors[CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS];
+    diagonalise(count, h, vectors);
+    uint32_t best = 0;
+    for (uint32_t k = 1; k < count; k++)
+        if (h[k * count + k] > h[best * count + best])
+            best = k;
+    memset(modes->last_vector, 0, sizeof *modes->last_vector * length);
+    for (uint32_t k = 0; k < count; k++)
+        for (size_t i = 0; i < length; i++)
+            modes->last_vector[i] += vectors[k * count + best] * modes->basis[k * length + i];
+    return h[best * count + best];
+}
+
+/* what the motion found last is like */
+static struct cs_mode describe(struct cs_stiffest_modes *modes, const double *x) {
+    const size_t n = modes->system->view.n;
+    const double *p = modes->last_vector;
+    double *image = modes->basis;
+    struct cs_mode mode = {0};
+    apply(modes, x, 1, 0, p, image);
+    mode.omega_squared = dot(3 * n, p, image);
+    apply(modes, x, 0, 1, p, image);
+    mode.damping_rate = dot(3 * n, p, image);
+    for (size_t i = 0; i < n; i++) {
+        const double share = p[i] * p[i] + p[n + i] * p[n + i] + p[2 * n + i] * p[2 * n + i];
+        if (share > mode.participation) {
+            mode.participation = share;
+            mode.particle = (uint32_t)i;
+        }
+    }
+    return mode;
+}
+
+struct cs_mode cs_stiffest_modes_largest(struct cs_stiffest_modes *modes, const double *x,
+                                         double a, double b) {
+    const size_t length = 3 * (size_t)modes->system->view.n;
+    double h[CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS], before = 0;
+    start(modes, modes->basis);
+    for (int round = 0; round < MOST_RESTARTS && normalise(length, modes->basis); round++) {
+        const uint32_t count = build_basis(modes, x, a, b, h);
+        const double value = take_largest(modes, count, h);
+        modes->has_start = true;
+        if (round && fabs(value - before) <= TOLERANCE * fabs(value))
+            break;
+        before = value;
+        memcpy(modes->basis, modes->last_vector, sizeof *modes->last_vector * length);
+    }
+    return describe(modes, x);
+}

@@ -1,0 +1,114 @@
+/* Measures how far one recorded run is from another. */
+#include "study/trajectory_error.h"
+
+#include "model/force/diagnostics.h"
+
+#include <math.h>
+
+static double squared(size_t n, const double *a, const double *b, size_t i) {
+    double sum = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double d = a[c * n + i] - b[c * n + i];
+        sum += d * d;
+    }
+    return sum;
+}
+
+double cs_rms_difference(const double *a, const double *b, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum / (double)n);
+}
+
+double cs_distance_rms(const struct cs_system *system, const double *a, const double *b) {
+    const size_t n = system->view.n;
+    double sum = 0, mass = 0;
+    for (size_t i = 0; i < n; i++)
+        if (system->inv_mass[i] > 0) {
+            sum += system->mass[i] * squared(n, a, b, i);
+            mass += system->mass[i];
+        }
+    return mass > 0 ? sqrt(sum / mass) : 0;
+}
+
+double cs_distance_max(const struct cs_system *system, const double *a, const double *b) {
+    const size_t n = system->view.n;
+    double largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fmax(largest, squared(n, a, b, i));
+    return sqrt(largest);
+}
+
+void cs_distance_each(uint32_t n, const double *a, const double *b, double *out) {
+    for (uint32_t i = 0; i < n; i++)
+        out[i] = sqrt(squared(n, a, b, i));
+}
+
+static double energy_of(const struct cs_system *system, double t, const double *x) {
+    const struct cs_energy energy =
+        cs_diagnostics_energy(system, t, x, x + 3 * (size_t)system->view.n);
+    return cs_energy_total(&energy);
+}
+
+static double centre_distance(const struct cs_system *system, const double *a,
+                              const double *b) {
+    const size_t n = system->view.n;
+    double squares = 0;
+    for (size_t c = 0; c < 3; c++) {
+        double sum = 0, mass = 0;
+        for (size_t i = 0; i < n; i++) {
+            sum += system->mass[i] * (a[c * n + i] - b[c * n + i]);
+            mass += system->mass[i];
+        }
+        squares += sum / mass * (sum / mass);
+    }
+    return sqrt(squares);
+}
+
+/* largest difference of the six sides of the bounding boxes */
+static double box_distance(size_t n, const double *a, const double *b) {
+    double largest = 0;
+    for (size_t c = 0; c < 3; c++) {
+        double of_a[2], of_b[2];
+        cs_diagnostics_range(a + c * n, (uint32_t)n, of_a);
+        cs_diagnostics_range(b + c * n, (uint32_t)n, of_b);
+        largest = fmax(largest, fmax(fabs(of_a[0] - of_b[0]), fabs(of_a[1] - of_b[1])));
+    }
+    return largest;
+}
+
+static void take_statistics(struct cs_trajectory_error *deviation,
+                            const struct cs_system *system, double t, const double *a,
+                            const double *b) {
+    const size_t n = system->view.n;
+    deviation->energy =
+        fmax(deviation->energy, fabs(energy_of(system, t, a) - energy_of(system, t, b)));
+    deviation->centre = fmax(deviation->centre, centre_distance(system, a, b));
+    deviation->box = fmax(deviation->box, box_distance(n, a, b));
+    deviation->strain = fmax(deviation->strain, cs_diagnostics_strain(system, a));
+}
+
+void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
+                                 const struct cs_system *system,
+                                 const struct cs_trajectory *track,
+                                 const struct cs_trajectory *reference, uint32_t frames,
+                                 uint32_t pointwise_frames) {
+    const size_t v = 3 * (size_t)system->view.n;
+    *deviation = (struct cs_trajectory_error){0};
+    for (uint32_t k = 1; k <= frames; k++) {
+        const double *a = cs_trajectory_state(track, k), *b = cs_trajectory_state(reference, k);
+        take_statistics(deviation, system, k / system->scene->time.fps, a, b);
+        if (k > pointwise_frames)
+            continue;
+        deviation->end = cs_distance_rms(system, a, b);
+        deviation->end_max = cs_distance_max(system, a, b);
+        deviation->velocity = cs_distance_rms(system, a + v, b + v);
+        deviation->path += deviation->end * deviation->end;
+        deviation->path_max = fmax(deviation->path_max, deviation->end_max);
+    }
+    deviation->path = sqrt(deviation->path / frames);
+    if (pointwise_frames < frames)
+        deviation->end = deviation->end_max = deviation->path = deviation->path_max =
+            deviation->velocity = (double)NAN;
+}

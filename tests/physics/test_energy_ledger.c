@@ -1,0 +1,160 @@
+/* The account of energy closes: each term against a closed form or against the motion, and on a
+ * tight reference nothing is left to the method. */
+#include "fixture.h"
+
+#include "sim/energy_ledger.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define TIGHT         "dopri5:rtol=1e-12,atol=1e-13"
+#define LENGTH(array) (sizeof(array) / sizeof *(array))
+
+struct kept {
+    struct fixture fixture;
+    struct cs_energy_ledger account;
+    double start, moving; /* J: all at the start, most in motion */
+};
+
+static void run_kept(struct kept *kept, const char *method, const char *scene,
+                     uint32_t frames) {
+    struct cs_error error = {0};
+    fixture_open(&kept->fixture, method, "%s", scene);
+    struct cs_session *session = &kept->fixture.session;
+    session->settings.run.ledger = &kept->account;
+    cs_energy_ledger_open(&kept->account, &session->system, 0, &error);
+    ck_assert(!error.status);
+    fixture_start(&kept->fixture);
+    kept->start = cs_energy_ledger_sum(&kept->account);
+    kept->moving = 0;
+    for (uint32_t k = 0; k < frames; k++) {
+        fixture_frames(&kept->fixture, 1);
+        kept->moving = fmax(kept->moving, kept->account.energies[CS_HOLDING_KINETIC]);
+    }
+}
+
+static void close_kept(struct kept *kept) {
+    cs_energy_ledger_close(&kept->account);
+    fixture_close(&kept->fixture);
+}
+
+#define SHEET                                                                                  \
+    "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"size\": [0.5, 0.5], \"bump\": 0.02},"      \
+    " \"mass\": {\"particle\": 0.05}, \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\":" \
+    " 5, \"damping\": 0.05}, \"pins\": [%s]}], \"time\": {\"fps\": 60}, %s}"
+
+/* what acts, and the entry that must have it */
+static const struct {
+    const char *pins, *scene;
+    enum cs_ledger_work work;
+    double closure; /* of the energy in motion that may be left to the method */
+} terms[] = {
+    {"\"top-left\"", "\"forces\": {}", CS_WORK_DAMPERS, 1e-10},
+    {"\"top-left\"", "\"forces\": {\"drag\": 0.02}", CS_WORK_DRAG, 1e-10},
+    {"\"top-left\"", "\"forces\": {\"wind\": {\"direction\": [0.2, 0, 1], \"strength\": 2}}",
+     CS_WORK_WIND, 1e-10},
+    {"",
+     "\"events\": [{\"from\": 0.01, \"to\": 0.2, \"impact\": {\"direction\": [1, 0, 1],"
+     " \"impulse\": 0.3}}]",
+     CS_WORK_PUSH, 1e-10},
+    {"\"top-left\"",
+     "\"events\": [{\"from\": 0.02, \"to\": 0.2, \"ramp\": {\"key\":"
+     " \"bodies[0].springs.stretch\", \"value\": 90}}]",
+     CS_WORK_VALUES, 1e-10},
+    {"",
+     "\"events\": [{\"at\": 0.01, \"grab\": {\"particles\": [0], \"relative\": true,"
+     " \"path\": [{\"at\": 0.25, \"point\": [0.1, 0.2, 0.3]}]}}]",
+     CS_WORK_PINS, 1e-10},
+    {"",
+     "\"colliders\": [{\"floor\": {\"height\": -0.3}}], \"contact\": {\"law\": \"force\","
+     " \"stiffness\": 400, \"damping\": 0.1}, \"forces\": {\"wind\": {\"direction\":"
+     " [1, 0, 0], \"strength\": 1}}",
+     CS_WORK_FRICTION, 1e-7},
+};
+
+START_TEST(nothing_is_left_to_a_tight_method) {
+    for (size_t k = 0; k < LENGTH(terms); k++) {
+        struct kept kept;
+        char scene[2048];
+        snprintf(scene, sizeof scene, SHEET, terms[k].pins, terms[k].scene);
+        run_kept(&kept, TIGHT, scene, 15);
+        const double *work = kept.account.work, left = work[CS_WORK_INTEGRATOR];
+        ck_assert_msg(fabs(left) <= terms[k].closure * kept.moving,
+                      "case %zu: %.3g J of %.3g J are left to the method", k, left,
+                      kept.moving);
+        ck_assert_msg(fabs(work[terms[k].work]) > 1e-3 * kept.moving,
+                      "case %zu: the work is %.3g J", k, work[terms[k].work]);
+        close_kept(&kept);
+    }
+}
+END_TEST
+
+/* Free fall with drag c from rest: v = g m/c (1 - e), x = g m/c (t - m/c (1 - e)), e = exp(-c
+ * t/m); drag has taken m g x - m v^2/2. */
+START_TEST(drag_takes_what_a_fall_lacks) {
+    struct kept kept;
+    const double m = 0.05, c = 0.1, g = 9.81, t = 0.25, e = exp(-c * t / m);
+    const double v = g * m / c * (1 - e), x = g * m / c * (t - m / c * (1 - e));
+    run_kept(&kept, TIGHT,
+             "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]}, \"mass\": {\"particle\": 0.05}}],"
+             " \"forces\": {\"drag\": 0.1, \"gravity\": [0, -9.81, 0]}, \"time\": {\"fps\":"
+             " 60}}",
+             15);
+    ck_assert_double_eq_tol(kept.account.work[CS_WORK_DRAG], 4 * (m * v * v / 2 - m * g * x),
+                            1e-9);
+    ck_assert_double_eq_tol(kept.account.energies[CS_HOLDING_KINETIC], 4 * m * v * v / 2, 1e-9);
+    close_kept(&kept);
+}
+END_TEST
+
+/* A floor that absorbs all takes what a fall from h has gained, a velocity loss its share of
+ * each step, a strain limit what it pulls in: put down apart, and together they are the
+ * balance. */
+START_TEST(corrections_are_put_down_apart) {
+    struct kept kept;
+    run_kept(
+        &kept, "symplectic-euler:dt=0.001",
+        "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"size\": [0.5, 0.5]}, \"mass\":"
+        " {\"particle\": 0.05}, \"springs\": {\"stretch\": 20, \"damping\": 0.05},"
+        " \"strain_limit\": 1.05, \"pins\": [\"top-left\"]}, {\"cloth\": {\"grid\": [3, 3],"
+        " \"size\": [0.1, 0.1], \"place\": {\"translate\": [2, 0, 0]}}, \"mass\":"
+        " {\"particle\": 0.01}, \"springs\": {\"stretch\": 1}}], \"colliders\":"
+        " [{\"floor\": {\"height\": -0.7}}], \"forces\": {\"velocity_loss\": 0.0001},"
+        " \"time\": {\"fps\": 60}}",
+        30);
+    const double *work = kept.account.work;
+    double sum = kept.start;
+    for (int k = 0; k < CS_WORKS; k++)
+        sum += work[k];
+    ck_assert_double_eq_tol(sum, cs_energy_ledger_sum(&kept.account),
+                            1e-12 * (1 + kept.moving));
+    ck_assert(work[CS_WORK_LIMIT] < 0 && work[CS_WORK_LOSS] < 0 &&
+              work[CS_WORK_ABSORPTION] < 0);
+    ck_assert(fabs(work[CS_WORK_INTEGRATOR]) < 0.05 * kept.moving);
+    ck_assert_double_eq(work[CS_WORK_EVENTS], 0);
+    close_kept(&kept);
+}
+END_TEST
+
+/* Of methods that lose energy it says how much, and an order more precisely each halving */
+START_TEST(the_rest_is_the_methods_error) {
+    double left[2];
+    char scene[2048];
+    snprintf(scene, sizeof scene, SHEET, "\"top-left\"", "\"forces\": {}");
+    for (int k = 0; k < 2; k++) {
+        struct kept kept;
+        run_kept(&kept, k ? "backward-euler:dt=0.001" : "backward-euler:dt=0.002", scene, 12);
+        left[k] = kept.account.work[CS_WORK_INTEGRATOR];
+        close_kept(&kept);
+    }
+    ck_assert_msg(left[0] < 0 && fabs(left[0] / left[1] - 2) < 0.2, "%g and %g J", left[0],
+                  left[1]);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {nothing_is_left_to_a_tight_method,
+                                  drag_takes_what_a_fall_lacks, corrections_are_put_down_apart,
+                                  the_rest_is_the_methods_error};
+    return fixture_run("account", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,267 @@
+/* What is asked of a step between bodies that meet: whether it sees its contact, by all pairs
+ * there are, one after the other, whatever the list is that answers. */
+#include "fixture.h"
+
+#include "model/contact/broad_phase/swept_aabb.h"
+#include "model/contact/narrow_phase/contact_pairs.h"
+#include "model/contact/narrow_phase/pair_step_check.h"
+#include "model/contact/step_check.h"
+
+#include <math.h>
+#include <string.h>
+
+/* a sheet that meets itself and one above it, within each other's thickness here and there */
+static const char sheets[] =
+    "{\"bodies\": [{\"cloth\": {\"grid\": [7, 7], \"start\": \"flat\"}, \"thickness\": 0.05, "
+    "\"self_contact\": true, \"pins\": [\"top\"], \"mass\": {\"particle\": 0.1}}, {\"cloth\": "
+    "{\"grid\": [6, 5], \"start\": \"flat\", \"size\": [0.6, 0.7], \"place\": {\"translate\": "
+    "[0.03, 0.05, 0.05], \"rotate\": [0.03, 0.2, 0, 1]}}, \"thickness\": 0.07, \"mass\": "
+    "{\"particle\": 0.2}}], \"pairs\": {\"among\": \"all\"}, \"contact\": {\"law\": \"force\", "
+    "\"stiffness\": 40}, \"time\": {\"fps\": 10}}";
+enum { MOST = 3 * 100 };
+#define STEP 0.5
+
+/* all of a pair of parts */
+struct pair {
+    enum cs_pair_kind kind;
+    uint32_t items[2], at[4];
+    double from[4][3], by[4][3];
+};
+
+/* the largest component of any particle is `far` */
+static void shake(const struct fixture *cloth, double far, uint64_t *seed, double *x) {
+    for (size_t i = 0; i < 3 * cloth->n; i++) {
+        *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+        x[i] = cloth->x[i] + far * ((double)(*seed >> 11) / 4503599627370496.0 - 1);
+    }
+}
+
+/* the next pair without a particle in common, of points and triangles and then of edges; false:
+ * there is none. items and kind go on from what they are. */
+static bool next_pair(const struct fixture *cloth, const double *x, struct pair *pair) {
+    const struct cs_surfaces *s = cloth->system->surfaces;
+    bool same = true;
+    while (same) {
+        const bool edges = pair->kind == CS_PAIR_EDGE_EDGE;
+        if (++pair->items[1] >= (edges ? s->n_edges : s->n_triangles)) {
+            pair->items[1] = edges ? ++pair->items[0] + 1 : (++pair->items[0], 0);
+            if (edges && pair->items[1] >= s->n_edges)
+                return false;
+            if (!edges && pair->items[0] == cloth->n)
+                *pair = (struct pair){.kind = CS_PAIR_EDGE_EDGE, .items = {0, 1}};
+        }
+        cs_candidate_vertices(s, pair->kind, pair->items, pair->at);
+        same = false;
+        for (int i = 0; i < (pair->kind ? 2 : 1); i++)
+            for (int j = pair->kind ? 2 : 1; j < 4; j++)
+                same = same || pair->at[i] == pair->at[j];
+    }
+    for (size_t k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++) {
+            pair->from[k][c] = cloth->x[c * cloth->n + pair->at[k]];
+            pair->by[k][c] = x[c * cloth->n + pair->at[k]] - pair->from[k][c];
+        }
+    return true;
+}
+
+static const struct pair before_all = {.kind = CS_PAIR_POINT_TRIANGLE,
+                                       .items = {0, UINT32_MAX}};
+
+/* the most by which a point of one side goes against one of the other */
+static double longest(const struct pair *pair) {
+    double most = 0;
+    for (int i = 0; i < (pair->kind ? 2 : 1); i++)
+        for (int j = pair->kind ? 2 : 1; j < 4; j++) {
+            double squared = 0;
+            for (int c = 0; c < 3; c++)
+                squared +=
+                    (pair->by[i][c] - pair->by[j][c]) * (pair->by[i][c] - pair->by[j][c]);
+            most = fmax(most, sqrt(squared));
+        }
+    return most;
+}
+
+/* J, what force and stiffness at the start do not foretell, at the worst of some points */
+static double unseen_of(const struct pair *pair, const struct cs_pair_distance *at,
+                        double range, double k, double approach) {
+    const int points = 1 + (int)(longest(pair) / (0.5 * range));
+    const struct cs_barrier law = cs_barrier_at(at->d, range, k);
+    double most = 0;
+    for (int j = 1; j <= points; j++) {
+        double p[4][3];
+        struct cs_pair_distance s;
+        const double share = j / (double)points, come = share * approach;
+        for (int l = 0; l < 12; l++)
+            p[l / 3][l % 3] = pair->from[l / 3][l % 3] + share * pair->by[l / 3][l % 3];
+        cs_pair_distance_set(&s, pair->kind, p);
+        most = fmax(most,
+                    fabs(cs_barrier_energy(s.d, range, k) - cs_barrier_energy(at->d, range, k) -
+                         law.force * come - 0.5 * law.stiffness * come * come));
+    }
+    return most;
+}
+
+/* J, of the contact points against each other */
+static double kinetic_of(const struct fixture *cloth, const struct pair *pair,
+                         const struct cs_pair_distance *at) {
+    double weight[4], v[3] = {0, 0, 0}, inverse = 0;
+    cs_pair_distance_weights(at, weight);
+    for (int k = 0; k < 4; k++) {
+        inverse += weight[k] * weight[k] * cloth->system->inv_mass[pair->at[k]];
+        for (int c = 0; c < 3; c++)
+            v[c] += weight[k] * pair->by[k][c] / STEP;
+    }
+    return inverse > 0 ? 0.5 * cs_vec3_dot(v, v) / inverse : HUGE_VAL;
+}
+
+static bool pair_is_seen(const struct fixture *cloth, struct pair *pair) {
+    const struct cs_pairs *pairs = cloth->system->pairs;
+    const uint32_t *body = pairs->candidates.body;
+    const struct cs_body_pair_params *params =
+        cs_body_pair_params_of(&pairs->body_pairs, body[pair->at[0]], body[pair->at[2]]);
+    const double range = params->range * (pair->kind ? CS_EDGE_RANGE_RATIO : 1), k = params->k;
+    struct cs_pair_distance at;
+    double g[4][3], approach = 0;
+    if (!(range > 0))
+        return true;
+    cs_pair_distance_set(&at, pair->kind, pair->from);
+    cs_pair_distance_gradient(&at, g);
+    for (int l = 0; l < 4; l++)
+        approach -= cs_vec3_dot(g[l], pair->by[l]);
+    const double has = kinetic_of(cloth, pair, &at) + cs_barrier_energy(at.d, range, k) +
+                       cs_barrier_energy(0.5 * range, range, k);
+    return unseen_of(pair, &at, range, k, approach) <= CS_UNRESOLVED_ENERGY_MAX * has;
+}
+
+static bool all_are_seen(const struct fixture *cloth, const double *x) {
+    struct pair pair = before_all;
+    bool seen = true;
+    while (seen && next_pair(cloth, x, &pair))
+        seen = pair_is_seen(cloth, &pair);
+    return seen;
+}
+
+/* A list that was never made, one of another place and one that covers the way give the same.
+ */
+START_TEST(steps_are_seen_as_by_all_pairs) {
+    struct fixture cloth;
+    static double x[MOST], away[MOST];
+    uint64_t seed = 7;
+    uint32_t seen = 0, unseen = 0;
+    fixture_open(&cloth, "implicit-linearised:dt=0.02", "%s", sheets);
+    ck_assert_uint_le(3 * cloth.n, MOST);
+    struct cs_pairs *pairs = cloth.system->pairs;
+    for (int k = 0; k < 30; k++) {
+        shake(&cloth, 1e-4 * exp(0.18 * k), &seed, x);
+        shake(&cloth, 0.1, &seed, away);
+        const bool expected = all_are_seen(&cloth, x);
+        for (int list = 0; list < 3; list++) {
+            if (list == 0)
+                pairs->candidates.is_built = false;
+            if (list == 1)
+                ck_assert(cs_candidates_update(&pairs->candidates, away));
+            ck_assert_msg(cs_contact_pairs_resolve_step(pairs, 0, cloth.x, STEP, x) == expected,
+                          "move %d, list %d: expected %d", k, list, expected);
+        }
+        seen += expected;
+        unseen += !expected;
+    }
+    ck_assert_uint_gt(seen, 8);
+    ck_assert_uint_gt(unseen, 8);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* the sheet above goes down, slowly, from out of range until more is unseen than may be */
+START_TEST(steps_that_come_into_range_are_asked) {
+    struct fixture cloth;
+    static double x[MOST];
+    bool expected = true;
+    double least = 0;
+    fixture_open(&cloth, "implicit-linearised:dt=0.02", "%s", sheets);
+    struct cs_pairs *pairs = cloth.system->pairs;
+    const uint32_t first = cloth.system->bodies[1].first;
+    for (size_t i = first; i < cloth.n; i++)
+        cloth.x[cloth.n + i] += 0.1;
+    for (double down = 0.06; expected; down += 0.001) {
+        memcpy(x, cloth.x, 3 * cloth.n * sizeof *x);
+        for (size_t i = first; i < cloth.n; i++)
+            x[cloth.n + i] -= down;
+        expected = all_are_seen(&cloth, x);
+        pairs->candidates.is_built = false;
+        ck_assert_msg(cs_contact_pairs_resolve_step(pairs, 0, cloth.x, STEP, x) == expected,
+                      "down %g", down);
+        least = down;
+    }
+    ck_assert_double_gt(least, 0.07);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* a list that covers a step has room for the next one, where that goes on alike */
+START_TEST(lists_look_ahead) {
+    struct fixture cloth;
+    static double x[MOST];
+    enum { STEPS = 12 };
+    fixture_open(&cloth, "implicit-linearised:dt=0.02", "%s", sheets);
+    struct cs_candidates *search = &cloth.system->pairs->candidates;
+    const size_t first = cloth.system->bodies[1].first;
+    const uint64_t before = search->n_builds;
+    for (int step = 0; step < STEPS; step++) {
+        memcpy(x, cloth.x, 3 * cloth.n * sizeof *x);
+        for (size_t i = first; i < cloth.n; i++)
+            x[i] += 0.6 * search->body_pairs->range_min;
+        ck_assert(cs_candidates_cover_step(search, cloth.x, x));
+        memcpy(cloth.x, x, 3 * cloth.n * sizeof *x);
+    }
+    ck_assert_uint_le(search->n_builds - before, STEPS / 2);
+    fixture_close(&cloth);
+}
+END_TEST
+
+/* one pair through the distance filter */
+static bool passes(const struct fixture *cloth, const struct pair *pair, double reach) {
+    uint32_t out[2];
+    const struct cs_moving_pairs one = {.surfaces = cloth->system->surfaces,
+                                        .edges = pair->kind == CS_PAIR_EDGE_EDGE,
+                                        .items = pair->items,
+                                        .n = 1};
+    return cs_point_motion_filter(cloth->system->pairs->point_motion, &one, reach, out) == 1;
+}
+
+/* the boxes of a pair's sides as swept boxes know them, to the last bit */
+START_TEST(sieves_hold_what_swaths_do) {
+    struct fixture cloth;
+    static double x[MOST];
+    uint64_t seed = 3;
+    uint32_t meet = 0, all = 0;
+    fixture_open(&cloth, "implicit-linearised:dt=0.02", "%s", sheets);
+    for (int k = 0; k < 3; k++) {
+        struct pair pair = before_all;
+        const double reach = 0.02 * k;
+        shake(&cloth, 0.1, &seed, x);
+        cs_point_motion_set(cloth.system, cloth.x, x, cloth.system->pairs->point_motion);
+        while (next_pair(&cloth, x, &pair)) {
+            struct cs_swept_aabb swept_boxes[2] = {cs_swept_aabb_empty(),
+                                                   cs_swept_aabb_empty()};
+            for (int l = 0; l < 4; l++)
+                cs_swept_aabb_add_point(swept_boxes + (l >= (pair.kind ? 2 : 1)), cloth.n,
+                                        pair.at[l], cloth.x, x);
+            const bool expected = cs_swept_aabbs_overlap(swept_boxes, swept_boxes + 1, reach);
+            ck_assert(passes(&cloth, &pair, reach) == expected);
+            meet += expected;
+            all++;
+        }
+    }
+    ck_assert_uint_gt(meet, all / 20);
+    ck_assert_uint_lt(meet, all / 2);
+    fixture_close(&cloth);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {steps_are_seen_as_by_all_pairs,
+                                  steps_that_come_into_range_are_asked, lists_look_ahead,
+                                  sieves_hold_what_swaths_do};
+    return fixture_run("seen", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,84 @@
+/* Cameras that frame places: what they show reaches as far as it was asked to. */
+#include "draw/camera_fit.h"
+#include "unit.h"
+
+#include <math.h>
+
+enum { N = 500 };
+
+/* a cloud, of no symmetry */
+static void scatter(double x[3 * N]) {
+    uint32_t seed = 7;
+    for (size_t i = 0; i < 3 * N; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        x[i] = (double)seed / 4294967296.0 * (1 + (double)(i / N)) - 0.3;
+    }
+}
+
+static void begin(struct cs_camera_fit *fit, int32_t projection, int64_t width) {
+    const struct cs_camera camera = {.eye = {1, 2, 3},
+                                     .target = {0, 0.5, 0},
+                                     .up = {0, 1, 0},
+                                     .fov = 35,
+                                     .projection = projection};
+    cs_camera_fit_begin(fit, &camera, (const int64_t[2]){width, 480});
+}
+
+/* highest and lowest place at the share that was asked for; the view keeps its direction */
+START_TEST(places_reach_as_far_as_they_should) {
+    double x[3 * N], rows[2];
+    scatter(x);
+    for (int32_t projection = 0; projection < 2; projection++)
+        for (double share = 0.3; share < 1; share += 0.2) {
+            struct cs_camera_fit fit;
+            struct cs_camera camera;
+            begin(&fit, projection, 2000);
+            cs_camera_fit_solve(&fit, N, x, share, &camera);
+            cs_camera_fit_rows(&fit, &camera, N, x, rows);
+            ck_assert_double_eq_tol(rows[0], -share, 1e-12);
+            ck_assert_double_eq_tol(rows[1], share, 1e-12);
+            const double lean =
+                (camera.eye[1] - camera.target[1]) /
+                hypot(camera.eye[0] - camera.target[0], camera.eye[2] - camera.target[2]);
+            ck_assert_double_eq_tol(lean, 1.5 / sqrt(10), 1e-12);
+        }
+}
+END_TEST
+
+/* a picture that is narrow is filled from side to side, and its height less than was asked */
+START_TEST(a_narrow_picture_is_full_in_its_width) {
+    struct cs_camera_fit fit;
+    struct cs_camera camera;
+    double x[3 * N], rows[2];
+    scatter(x);
+    begin(&fit, CS_PROJECTION_PERSPECTIVE, 160);
+    cs_camera_fit_solve(&fit, N, x, 0.9, &camera);
+    cs_camera_fit_rows(&fit, &camera, N, x, rows);
+    ck_assert_double_lt(rows[1] - rows[0], 1.2);
+    ck_assert_double_gt(rows[1] - rows[0], 0.2);
+}
+END_TEST
+
+/* those that bound a cloud give its camera to a hundredth, and what is not finite counts not */
+START_TEST(extremes_stand_for_all) {
+    struct cs_camera_fit fit;
+    struct cs_camera camera;
+    double x[3 * N], few[3 * CS_CAMERA_FIT_EXTREMES], rows[2];
+    scatter(x);
+    x[3] = (double)NAN;
+    x[N + 4] = HUGE_VAL;
+    begin(&fit, CS_PROJECTION_PERSPECTIVE, 640);
+    cs_camera_fit_extremes(&fit, N, x, few);
+    cs_camera_fit_solve(&fit, CS_CAMERA_FIT_EXTREMES, few, 0.6, &camera);
+    x[3] = x[N + 4] = 0.2;
+    cs_camera_fit_rows(&fit, &camera, N, x, rows);
+    ck_assert_double_eq_tol(rows[1] - rows[0], 1.2, 0.012);
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {places_reach_as_far_as_they_should,
+                                  a_narrow_picture_is_full_in_its_width,
+                                  extremes_stand_for_all};
+    return unit_run("fit", tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,136 @@
+/* What a pair in range does to its four particles, with friction and damping, over pairs at
+ * random of which many are at hard places: force against the slope of the energy, its change
+ * against differences, and nothing pushed or turned as a whole. A tenth of the pairs by
+ * default; "all" for 1e5. */
+#include "model/contact/narrow_phase/pair_contact.h"
+#include "pair_positions.h"
+#include "unit.h"
+
+static int n_pairs = 10000;
+
+static const struct cs_contact_keys keys = {.damping = 0.05, .friction_speed = 0.5};
+static const struct cs_feature_kind forms[] = {{1, 1, 0.2}, {0, 1, 0.2}, {0, 0, 0.2}};
+
+/* A pair at one state and a direction to move in. */
+struct place {
+    enum cs_pair_kind kind;
+    struct cs_feature_kind form;
+    struct cs_body_pair_params meeting;
+    double p[4][3], v[4][3], dp[4][3], dv[4][3];
+};
+
+static void react(const struct place *place, double p[4][3], double v[4][3],
+                  struct cs_pair_contact *reaction) {
+    cs_pair_contact_measure(reaction, place->kind, place->form, p);
+    cs_pair_contact_set(reaction, &place->meeting, &keys, v);
+}
+
+static void draw_four(uint64_t *state, double to[4][3]) {
+    for (int k = 0; k < 12; k++)
+        to[k / 3][k % 3] = draw(state);
+}
+
+/* in a range that it is anywhere in, but for the innermost tenth; false: not to be measured */
+static bool put(uint64_t *state, int pair, struct place *place,
+                struct cs_pair_contact *reaction) {
+    place->kind = pair % 2 ? CS_PAIR_EDGE_EDGE : CS_PAIR_POINT_TRIANGLE;
+    place->form = forms[pair / 2 % 3];
+    if (place->kind == CS_PAIR_EDGE_EDGE)
+        place_stencil(state, pair / 2, place->kind, place->p);
+    else
+        place_facet(state, pair / 2, place->p);
+    draw_four(state, place->v);
+    draw_four(state, place->dp);
+    draw_four(state, place->dv);
+    const double y = 0.54 + 0.44 * draw(state);
+    place->meeting = (struct cs_body_pair_params){.range = 1, .k = 10, .friction = 0.4};
+    react(place, place->p, place->v, reaction);
+    const bool edges = place->kind == CS_PAIR_EDGE_EDGE;
+    place->meeting.range = (edges ? reaction->distance.d : reaction->feature.d) / y;
+    react(place, place->p, place->v, reaction);
+    return !edges || place_is_good(&reaction->distance);
+}
+
+static double energy(const struct cs_pair_contact *reaction) {
+    const struct cs_point_contact *touch = &reaction->contact;
+    return cs_barrier_energy(touch->d, touch->range, touch->k);
+}
+
+/* by the best of several steps: of the energy against the elastic force, and of the whole force
+ * against its change; relative to these */
+static void differ(const struct place *place, const struct cs_pair_contact *reaction,
+                   double best[2]) {
+    struct cs_pair_contact_motion move;
+    double f[4][3], push[4][3], df[4][3], along = 0;
+    memcpy(move.p, place->p, sizeof move.p);
+    memcpy(move.v, place->v, sizeof move.v);
+    memcpy(move.dp, place->dp, sizeof move.dp);
+    memcpy(move.dv, place->dv, sizeof move.dv);
+    cs_pair_contact_force(reaction, (struct cs_contact_force_parts){1, 1}, f);
+    cs_pair_contact_force(reaction, (struct cs_contact_force_parts){1, 0}, push);
+    cs_pair_contact_jvp(reaction, (struct cs_contact_force_parts){1, 1}, &move, df);
+    for (int k = 0; k < 4; k++)
+        along += cs_vec3_dot(push[k], move.dp[k]);
+    for (int i = 0; i < PLACE_STEPS; i++) {
+        double slope = 0, off[4][3] = {{0}}, p[4][3], v[4][3], there[4][3];
+        place_add(off, -1, df);
+        for (int j = 0; j < PLACE_AT; j++) {
+            const double by = place_at[j] * place_steps[i];
+            const double share = place_share[j] / place_steps[i];
+            struct cs_pair_contact moved;
+            place_move(move.p, by, move.dp, p);
+            place_move(move.v, by, move.dv, v);
+            react(place, p, v, &moved);
+            cs_pair_contact_force(&moved, (struct cs_contact_force_parts){1, 1}, there);
+            slope += share * energy(&moved);
+            place_add(off, share, there);
+        }
+        best[0] = fmin(best[0], fabs(slope + along) / place_size(push));
+        best[1] = fmin(best[1], place_size(off) / (place_size(df) + place_size(f)));
+    }
+}
+
+START_TEST(derivatives_are_those_of_differences) {
+    uint64_t state = 11;
+    double worst[2] = {0};
+    int tried = 0;
+    for (int pair = 0; pair < n_pairs; pair++) {
+        struct place place;
+        struct cs_pair_contact reaction;
+        double best[2] = {HUGE_VAL, HUGE_VAL};
+        if (!put(&state, pair, &place, &reaction))
+            continue;
+        differ(&place, &reaction, best);
+        for (int k = 0; k < 2; k++)
+            worst[k] = fmax(worst[k], best[k]);
+        tried++;
+    }
+    ck_assert_msg(worst[0] < 1e-6 && worst[1] < 1e-6, "%g %g", worst[0], worst[1]);
+    ck_assert_int_gt(tried, n_pairs / 2);
+}
+END_TEST
+
+/* friction acts at two points and turns the pair: it pushes nothing all the same */
+START_TEST(nothing_is_pushed_as_a_whole) {
+    uint64_t state = 12;
+    double worst[2] = {0};
+    for (int pair = 0; pair < n_pairs; pair++) {
+        struct place place;
+        struct cs_pair_contact reaction;
+        double f[4][3], here[4][3] = {{0}};
+        put(&state, pair, &place, &reaction);
+        cs_pair_contact_force(&reaction, (struct cs_contact_force_parts){1, 1}, f);
+        worst[0] = fmax(worst[0], place_whole(here, f) / place_size(f));
+        cs_pair_contact_force(&reaction, (struct cs_contact_force_parts){1, 0}, f);
+        worst[1] = fmax(worst[1], place_whole(place.p, f) / place_size(f));
+    }
+    ck_assert_msg(worst[0] < 1e-12 && worst[1] < 1e-12, "%g %g", worst[0], worst[1]);
+}
+END_TEST
+
+int main(int argc, char **argv) {
+    const TTest *const tests[] = {derivatives_are_those_of_differences,
+                                  nothing_is_pushed_as_a_whole};
+    n_pairs = argc > 1 && !strcmp(argv[1], "all") ? 100000 : n_pairs;
+    return unit_run("reaction", tests, sizeof tests / sizeof *tests);
+}

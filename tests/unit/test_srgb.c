@@ -1,0 +1,222 @@
+/* Bytes of sRGB against the standard's formula, blending, and copies of textures. */
+#include "unit.h"
+
+#include "draw/mipmap.h"
+#include "draw/srgb.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct cs_srgb tone;
+
+static double encode(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+static double decode(double c) {
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+/* the nearest byte, but where the formula is within its own rounding of the middle of two */
+START_TEST(a_byte_is_the_nearest_of_the_curve) {
+    double most = 0;
+    cs_srgb_make(&tone);
+    for (int i = 0; i <= 1000000; i++) {
+        const float linear = (float)i / 1000000;
+        const double exact = 255 * encode((double)linear);
+        most = fmax(most, fabs(exact - cs_srgb_encode(&tone, linear)));
+    }
+    ck_assert_double_le(most, 0.5 + 1e-5);
+}
+END_TEST
+
+START_TEST(bytes_come_back) {
+    cs_srgb_make(&tone);
+    for (uint32_t byte = 0; byte < 256; byte++) {
+        ck_assert_uint_eq(cs_srgb_encode(&tone, tone.linear[byte]), byte);
+        ck_assert_double_le(fabs(255 * encode((double)tone.linear[byte]) - byte), 1e-4);
+    }
+    ck_assert_uint_eq(cs_srgb_pack(&tone, 1, 0, 1), 0xff00ff);
+}
+END_TEST
+
+/* all or nothing is exact; between, at most one off the exact mean, and nothing overflows */
+START_TEST(blending_is_a_mean) {
+    double most = 0;
+    uint32_t wrong = 0;
+    for (uint32_t a = 0; a < 256; a += 3)
+        for (uint32_t b = 0; b < 256; b += 5)
+            for (uint32_t share = 0; share < 256; share += 5) {
+                const uint32_t under = a << 16 | b, over = b << 16 | a;
+                const uint32_t found = cs_srgb_blend(under, over, share);
+                const double high = (b * share + a * (255.0 - share)) / 255;
+                const double low = (a * share + b * (255.0 - share)) / 255;
+                most = fmax(most, fmax(fabs(found / 65536 - high), fabs(found % 65536 - low)));
+                wrong += (share == 0 && found != under) || (share == 255 && found != over);
+            }
+    ck_assert_double_le(most, 1);
+    ck_assert_uint_eq(wrong, 0);
+}
+END_TEST
+
+/* Four samples give the byte of the mean of their light; whoever of them comes first. */
+START_TEST(samples_give_the_mean_of_their_light) {
+    uint32_t wrong = 0;
+    cs_srgb_make(&tone);
+    for (uint32_t a = 0; a < 256; a++)
+        for (uint32_t b = 0; b < 256; b += 3) {
+            const uint32_t pair[2] = {a << 16 | b << 8 | 255, b << 16 | a << 8};
+            const double light = 0.75 * decode(a / 255.0) + 0.25 * decode(b / 255.0);
+            for (uint32_t odd = 0; odd < 4; odd++) {
+                uint32_t samples[4] = {pair[0], pair[0], pair[0], pair[0]};
+                wrong += cs_srgb_mean(&tone, samples) != pair[0];
+                samples[odd] = pair[1];
+                const double found = cs_srgb_mean(&tone, samples) >> 16;
+                wrong += fabs(found - 255 * encode(light)) > 0.5 + 1e-4;
+                // three parts of white light and one of none
+                wrong += (cs_srgb_mean(&tone, samples) & 255) != 225;
+            }
+        }
+    ck_assert_uint_eq(wrong, 0);
+}
+END_TEST
+
+/* A colour laid on nothing stays what it is and covers by its share; laid on what covers by
+ * half, the two count as Porter and Duff have it. */
+START_TEST(colours_lie_on_nothing) {
+    const uint32_t nothing = 0xff000000, colour = 0x102030;
+    for (uint32_t share = 1; share < 256; share++)
+        ck_assert_uint_eq(cs_srgb_blend(nothing, colour, share), colour | (255 - share) << 24);
+    ck_assert_uint_eq(cs_srgb_blend(nothing, colour, 0), nothing);
+    // 100 covers by 102 of 255; 200 over it by 51: they are seen by 51 and by 81.6
+    ck_assert_uint_eq(cs_srgb_blend(0x99000064, 200, 51), (255u - 133) << 24 | 138);
+    ck_assert_uint_eq(cs_srgb_blend(0x99000064, 200, 255), 200);
+}
+END_TEST
+
+/* What three of four samples show is the pixel's colour, and they cover three quarters; on
+ * white it is the mean of the light. */
+START_TEST(samples_of_nothing_leave_the_colour) {
+    const uint32_t nothing = 0xff000000, colour = 0x4080c0, white = 0xffffff;
+    const uint32_t none[4] = {nothing, nothing, nothing, nothing};
+    uint32_t some[4] = {colour, nothing, colour, colour}, on_white[4];
+    cs_srgb_make(&tone);
+    ck_assert_uint_eq(cs_srgb_mean(&tone, some), colour | (255u - 191) << 24);
+    ck_assert_uint_eq(cs_srgb_mean(&tone, none), nothing);
+    ck_assert_uint_eq(cs_srgb_blend_on_white(&tone, nothing), white);
+    for (uint32_t covered = 0; covered <= 4; covered++) {
+        for (uint32_t s = 0; s < 4; s++) {
+            some[s] = s < covered ? colour : nothing;
+            on_white[s] = s < covered ? colour : white;
+        }
+        const uint32_t found = cs_srgb_blend_on_white(&tone, cs_srgb_mean(&tone, some));
+        const uint32_t expected = cs_srgb_mean(&tone, on_white);
+        for (int k = 0; k < 24; k += 8)
+            ck_assert_int_le(abs((int)(found >> k & 255) - (int)(expected >> k & 255)), 1);
+    }
+}
+END_TEST
+
+static void near(float found, float expected, double by) {
+    ck_assert_double_le(fabs((double)found - (double)expected), by);
+}
+
+enum { WIDE = 12, HIGH = 8 };
+
+static void make(struct cs_mipmap *mips, struct cs_arena *arena, int (*value)(int x, int y)) {
+    struct cs_error error = {0};
+    uint8_t rgb[3 * WIDE * HIGH];
+    const struct cs_image image = {WIDE, HIGH, rgb, NULL};
+    cs_srgb_make(&tone);
+    for (int i = 0; i < WIDE * HIGH; i++)
+        for (int k = 0; k < 3; k++)
+            rgb[3 * i + k] = (uint8_t)value(i % WIDE, i / WIDE);
+    ck_assert_int_eq(cs_mipmap_make(mips, &image, &tone, arena, &error), CS_OK);
+}
+
+static int columns(int x, int y) {
+    (void)y;
+    return x % 2 ? 200 : 100;
+}
+static int slope(int x, int y) {
+    return 10 * x + 5 * y;
+}
+
+/* 12 x 8, 6 x 4, 3 x 2, 1 x 1: each the mean of the light of what it replaces */
+START_TEST(copies_are_means) {
+    struct cs_arena arena = {0};
+    struct cs_mipmap mips;
+    const double expected = 65535 * (decode(100 / 255.0) + decode(200 / 255.0)) / 2;
+    make(&mips, &arena, columns);
+    ck_assert_int_eq(mips.n, 4);
+    ck_assert_int_eq(mips.levels[2].width, 3);
+    ck_assert_int_eq(mips.levels[2].height, 2);
+    for (int copy = 1; copy < mips.n; copy++)
+        for (int i = 0; i < 3 * mips.levels[copy].width * mips.levels[copy].height; i++)
+            near(mips.levels[copy].light[i], (float)expected, 1.5);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+// light of a byte
+static float light(double byte) {
+    return (float)decode(byte / 255);
+}
+
+/* in the middle of a texel its own light, between two their mean, and the same a repeat on */
+START_TEST(a_texture_repeats_and_is_blended) {
+    struct cs_arena arena = {0};
+    struct cs_mipmap mips;
+    float rgb[3];
+    make(&mips, &arena, slope);
+    for (int turn = -2; turn <= 2; turn++) {
+        cs_mipmap_sample(&mips, (4.5f / WIDE) + (float)turn, 2.5f / HIGH, 0.5f, rgb);
+        near(rgb[0], light(50), 2e-5);
+        cs_mipmap_sample(&mips, 5.0f / WIDE, 3.0f / HIGH + (float)turn, 1, rgb);
+        near(rgb[1], (light(50) + light(55) + light(60) + light(65)) / 4, 2e-5);
+        // across the seam: between the last column and the first
+        cs_mipmap_sample(&mips, (float)turn, 0.5f / HIGH, 1, rgb);
+        near(rgb[2], (light(0) + light(110)) / 2, 2e-5);
+    }
+    // from afar: the mean of all, and nothing beyond the smallest copy
+    float sum = 0;
+    for (int i = 0; i < WIDE * HIGH; i++)
+        sum += light(slope(i % WIDE, i / WIDE)) / (WIDE * HIGH);
+    cs_mipmap_sample(&mips, 0.3f, 0.4f, 1e6f, rgb);
+    near(rgb[0], sum, 1e-4);
+    cs_mipmap_sample(&mips, 0.3f, 0.4f, NAN, rgb);
+    near(rgb[0], 0.5f, 0.5);
+    cs_arena_finish(&arena);
+}
+END_TEST
+
+/* rows of an odd length lose nothing: of three texels each counts by a third */
+START_TEST(odd_copies_are_means_too) {
+    struct cs_error error = {0};
+    for (int lit = 0; lit < 9; lit++) {
+        struct cs_arena arena = {0};
+        struct cs_mipmap mips;
+        uint8_t rgb[27] = {0};
+        const struct cs_image image = {3, 3, rgb, NULL};
+        rgb[3 * lit] = 255;
+        cs_srgb_make(&tone);
+        ck_assert_int_eq(cs_mipmap_make(&mips, &image, &tone, &arena, &error), CS_OK);
+        ck_assert_int_eq(mips.n, 2);
+        near(mips.levels[1].light[0], 65535.0f / 9, 0.6);
+        cs_arena_finish(&arena);
+    }
+}
+END_TEST
+
+int main(void) {
+    const TTest *const tests[] = {a_byte_is_the_nearest_of_the_curve,
+                                  bytes_come_back,
+                                  blending_is_a_mean,
+                                  samples_give_the_mean_of_their_light,
+                                  colours_lie_on_nothing,
+                                  samples_of_nothing_leave_the_colour,
+                                  copies_are_means,
+                                  odd_copies_are_means_too,
+                                  a_texture_repeats_and_is_blended};
+    return unit_run("tone", tests, sizeof tests / sizeof *tests);
+}
