@@ -17,8 +17,6 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,
                built = asked && any_without_mesh(scene);
     return (struct cs_plan_row){.built = built,
-                                .bytes =
-                                    built ? scene->colliders.n * sizeof(struct cs_pairing) : 0,
                                 .why = !asked               ? NULL
                                        : built              ? "contact.law is force"
                                        : scene->colliders.n ? "every collider is a mesh"
