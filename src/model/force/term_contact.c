@@ -153,6 +153,8 @@ const struct cs_term cs_term_contact = {
     .add_jvp = add_jvp,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
     .add_blocks = add_blocks,
     .add_bound_at = add_bound_at,
 };
