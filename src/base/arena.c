@@ -47,6 +47,8 @@ void *cs_arena_take(struct cs_arena *arena, size_t bytes, struct cs_error *error
     void *taken = block->bytes + block->used;
     block->used += size;
     arena->used += bytes;
+    if (arena->part)
+        *arena->part += bytes;
     return taken;
 }
 
@@ -96,5 +98,5 @@ void cs_arena_finish(struct cs_arena *arena) {
         free(arena->blocks);
         arena->blocks = next;
     }
-    arena->used = 0;
+    *arena = (struct cs_arena){0};
 }

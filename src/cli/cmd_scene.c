@@ -69,7 +69,7 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
 /* What was decided, and what it came to once the method had taken its own. */
 static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
-    cs_plan_print(&session->system.plan, out);
+    cs_plan_print(&session->run.plan, out);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", "method", "built",
                 session->run.method_bytes, session->method.integrator->name);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f a particle\n", "in all", "", bytes,

@@ -39,22 +39,6 @@ static struct sizes sizes_of(const struct cs_scene *scene, uint32_t threads) {
     return sizes;
 }
 
-static size_t most_lots(const struct sizes *sizes) {
-    return sizes->listed_springs / CS_LOT_MOST + sizes->listed_runs;
-}
-
-size_t cs_shares_bytes(const struct cs_scene *scene, uint32_t threads) {
-    if (threads == 1)
-        return 0;
-    const struct sizes sizes = sizes_of(scene, threads);
-    const size_t grids = sizes.blocks * sizeof(struct cs_block) + sizes.runs * sizeof(double);
-    if (!sizes.listed_runs)
-        return grids;
-    return grids + sizes.runs * sizeof(struct cs_wait) +
-           most_lots(&sizes) * sizeof(struct cs_lot) + sizes.starts * sizeof(uint32_t) +
-           sizes.listed_springs * (2 * sizeof(uint32_t) + 3 * sizeof(double));
-}
-
 /* end of the block that begins there: of a whole row in a grid */
 static uint32_t end_of_block(const struct cs_system *system, uint32_t begin, uint32_t size) {
     if (system->view.n - begin <= size)
@@ -129,7 +113,8 @@ static void build_lots(struct cs_system *system, const struct sizes *sizes,
     struct cs_springs *springs = &system->springs;
     struct cs_arena *arena = &system->arena;
     struct cs_wait *waits = cs_arena_take_n(arena, sizes->runs, sizeof *waits, error);
-    struct cs_lot *lots = cs_arena_take_n(arena, most_lots(sizes), sizeof *lots, error);
+    const size_t most_lots = sizes->listed_springs / CS_LOT_MOST + sizes->listed_runs;
+    struct cs_lot *lots = cs_arena_take_n(arena, most_lots, sizeof *lots, error);
     uint32_t *starts = cs_arena_take_n(arena, sizes->starts, sizeof *starts, error);
     uint32_t *around = cs_arena_take_n(arena, sizes->listed_springs, 2 * sizeof *around, error);
     double *forces = cs_arena_take_n(arena, sizes->listed_springs, 3 * sizeof *forces, error);

@@ -14,16 +14,34 @@ enum { POINTS = 3 };
 static const double points[POINTS] = {0.11270166537925831, 0.5, 0.88729833462074169};
 static const double weights[POINTS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/* the forces without an energy, by the part that they are */
-static const struct {
-    uint32_t part;
-    enum cs_work work;
-} forces[] = {{CS_PART_DAMPING, CS_WORK_DAMPERS},
-              {CS_PART_DRAG, CS_WORK_DRAG},
-              {CS_PART_WIND, CS_WORK_WIND},
-              {CS_PART_DISSIPATIVE, CS_WORK_FRICTION},
-              {CS_PART_EXTERNAL, CS_WORK_PUSH}};
-enum { FORCES = sizeof forces / sizeof *forces };
+static const char *const holdings[] = {
+#define X(name, column) column,
+    CS_HOLDING_LIST(X)};
+static const char *const works[] = {CS_WORK_LIST(X)};
+#undef X
+
+/* Columns of energies or of works: those of a list, and behind them one a force. */
+struct columns {
+    const char *const *names;
+    uint32_t n, parts; /* of forces that have one */
+    bool work;
+};
+/* springs have columns by their kinds */
+static const struct columns energies = {holdings, CS_HOLDINGS,
+                                        CS_PART_WITH_ENERGY & ~CS_PART_SPRINGS, false};
+static const struct columns work_done = {works, CS_WORKS, CS_PART_WITHOUT_ENERGY, true};
+
+/* of force k of the list of forces */
+static uint32_t column_of(const struct columns *columns, uint32_t k) {
+    const struct cs_term *term = cs_terms[k];
+    const char *name = columns->work ? term->work_column : term->energy_column;
+    if (!(term->parts & columns->parts))
+        return CS_NO_COLUMN;
+    for (uint32_t c = 0; c < columns->n; c++)
+        if (!strcmp(columns->names[c], name ? name : term->name))
+            return c;
+    return columns->n + k;
+}
 
 static size_t length_of(const struct cs_account *account) {
     return 3 * (size_t)account->system->view.n;
@@ -42,21 +60,23 @@ static void move_values(const struct cs_account *account, double t) {
 }
 
 static void measure(const struct cs_account *account, double t, const double *x,
-                    const double *v, double holds[CS_HOLDINGS]) {
+                    const double *v, double holds[CS_HOLDINGS_MOST]) {
     const struct cs_system *system = account->system;
-    const struct cs_energy energy = cs_measure_energy(system, t, x, v);
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     const uint32_t n = system->view.n;
-    holds[CS_HOLDING_KINETIC] = energy.kinetic;
+    memset(holds, 0, CS_HOLDINGS_MOST * sizeof *holds);
+    holds[CS_HOLDING_KINETIC] = cs_measure_kinetic(system, v);
     holds[CS_HOLDING_STRETCH] = cs_springs_energy(&system->springs, n, x, CS_PART_STRETCH);
     holds[CS_HOLDING_SHEAR] = cs_springs_energy(&system->springs, n, x, CS_PART_SHEAR);
     holds[CS_HOLDING_BEND] = cs_springs_energy(&system->springs, n, x, CS_PART_BEND);
-    holds[CS_HOLDING_GRAVITY] = energy.gravity;
-    holds[CS_HOLDING_OTHER] = energy.other;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (account->holding_of[k] != CS_NO_COLUMN)
+            holds[account->holding_of[k]] += cs_terms[k]->energy(system, &at);
 }
 
-static double sum_of(const double holds[CS_HOLDINGS]) {
+static double sum_of(const double holds[CS_HOLDINGS_MOST]) {
     double sum = 0;
-    for (int k = 0; k < CS_HOLDINGS; k++)
+    for (int k = 0; k < CS_HOLDINGS_MOST; k++)
         sum += holds[k];
     return sum;
 }
@@ -67,20 +87,20 @@ double cs_account_sum(const struct cs_account *account) {
 
 /* f = the parts at (t, x, v), on pinned particles too: what they bear is work where they move
  */
-static void find_force(const struct cs_account *account, double t, const double *x,
+static void find_force(const struct cs_system *system, double t, const double *x,
                        const double *v, uint32_t parts, double *f) {
-    struct cs_system free = *account->system;
+    struct cs_system free = *system;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
     free.n_pinned = 0;
     if (cs_terms_need_normals(&free, parts))
-        cs_normals_update(account->system, x);
+        cs_normals_update(&free, x);
     cs_terms_force(&free, &at, f);
 }
 
 static void find_acceleration(const struct cs_account *account, double t, const double *x,
                               const double *v, double *a) {
     const size_t n = account->system->view.n;
-    find_force(account, t, x, v, CS_PART_ALL, a);
+    find_force(account->system, t, x, v, CS_PART_ALL, a);
     for (size_t k = 0; k < 3 * n; k++)
         a[k] *= account->system->inv_mass[k % n];
 }
@@ -89,6 +109,11 @@ enum cs_status cs_account_open(struct cs_account *account, struct cs_system *sys
                                struct cs_error *error) {
     const size_t n3 = 3 * (size_t)system->view.n;
     *account = (struct cs_account){.system = system};
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const bool built = system->plan.forces[k].built;
+        account->holding_of[k] = built ? column_of(&energies, k) : CS_NO_COLUMN;
+        account->work_of[k] = built ? column_of(&work_done, k) : CS_NO_COLUMN;
+    }
     double **const arrays[] = {&account->x, &account->y, &account->a, &account->f, &account->b};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         *arrays[k] =
@@ -101,7 +126,7 @@ enum cs_status cs_account_open(struct cs_account *account, struct cs_system *sys
 
 void cs_account_go_on(struct cs_account *account, double t) {
     const double *x = account->system->state;
-    double work[CS_WORKS];
+    double work[CS_WORKS_MOST];
     memcpy(work, account->work, sizeof work);
     cs_account_keep(account, t, x, x + length_of(account));
     memcpy(account->work, work, sizeof work);
@@ -157,7 +182,7 @@ static double find_drift(const struct cs_account *account, double t, double h) {
     const double away = h / 100, *x = account->y, *v = x + n3;
     double ends[2];
     for (int k = 0; k < 2; k++) {
-        double holds[CS_HOLDINGS];
+        double holds[CS_HOLDINGS_MOST];
         const double at = k ? t + away : t - away;
         move_values(account, at);
         measure(account, at, x, v, holds);
@@ -173,33 +198,41 @@ static double find_pins(const struct cs_account *account, double t) {
     const struct cs_system *system = account->system;
     const size_t n = system->view.n, n3 = 3 * n;
     double power = 0;
-    find_force(account, t, account->y, account->y + n3, CS_PART_ALL, account->f);
+    find_force(system, t, account->y, account->y + n3, CS_PART_ALL, account->f);
     for (uint32_t p = 0; p < system->n_pinned; p++)
         for (size_t k = system->pinned[p]; k < n3; k += n)
             power -= account->f[k] * account->y[n3 + k];
     return power;
 }
 
-static uint32_t parts_of(const struct cs_system *system) {
-    uint32_t parts = 0;
-    for (uint32_t k = 0; k < system->n_terms; k++)
-        parts |= system->terms[k]->parts;
-    return parts;
+/* leaves those of a system's forces that have a column */
+static void choose_forces(const struct cs_account *account, uint32_t column,
+                          struct cs_system *some) {
+    some->n_terms = 0;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (account->work_of[k] == column)
+            some->terms[some->n_terms++] = cs_terms[k];
+}
+
+/* adds the works of forces at one point of the step, over `time` */
+static void add_forces(struct cs_account *account, double t, double time) {
+    struct cs_system some = *account->system;
+    const size_t n3 = length_of(account);
+    const double *v = account->y + n3;
+    for (uint32_t c = 0; c < CS_WORKS_MOST; c++) {
+        choose_forces(account, c, &some);
+        if (!some.n_terms)
+            continue;
+        find_force(&some, t, account->y, v, CS_PART_WITHOUT_ENERGY, account->f);
+        account->work[c] += time * dot(n3, account->f, v);
+    }
 }
 
 /* adds the works at one point of the step, over `time` */
 static void add_works(struct cs_account *account, double t, double time, double h) {
-    const struct cs_system *system = account->system;
-    const size_t n3 = length_of(account);
-    const double *v = account->y + n3;
     move_values(account, t);
-    for (int k = 0; k < FORCES; k++) {
-        if (!(forces[k].part & parts_of(system)))
-            continue;
-        find_force(account, t, account->y, v, forces[k].part, account->f);
-        account->work[forces[k].work] += time * dot(n3, account->f, v);
-    }
-    if (!system->events)
+    add_forces(account, t, time);
+    if (!account->system->events)
         return;
     account->work[CS_WORK_PINS] += time * find_pins(account, t);
     account->work[CS_WORK_VALUES] += time * find_drift(account, t, h);
@@ -207,8 +240,8 @@ static void add_works(struct cs_account *account, double t, double time, double 
 
 static double sum_forces(const struct cs_account *account) {
     double sum = 0;
-    for (int k = 0; k < CS_WORK_INTEGRATOR; k++)
-        sum += account->work[k];
+    for (int k = 0; k < CS_WORKS_MOST; k++)
+        sum += k < CS_WORK_INTEGRATOR || k >= CS_WORKS ? account->work[k] : 0;
     return sum;
 }
 
@@ -249,30 +282,45 @@ void cs_account_keep(struct cs_account *account, double t, const double *x, cons
     find_acceleration(account, t, x, v, account->a);
 }
 
-void cs_account_print_head(struct cs_text *out) {
-    cs_text_add(out, "frame,t");
-#define X(name, column) cs_text_add(out, "," column);
-    CS_HOLDING_LIST(X)
-    cs_text_add(out, ",sum");
-    CS_WORK_LIST(X)
-#undef X
-    cs_text_add(out, "\n");
+/* a field of the head, or with values one of a row */
+static void add_field(struct cs_text *out, const char *name, const double *value) {
+    cs_text_add(out, ",");
+    for (; !value && *name; name++)
+        cs_text_add(out, "%c", *name == ' ' ? '_' : *name);
+    if (value && isfinite(*value))
+        cs_text_add_real(out, *value);
 }
 
-static void add_real(struct cs_text *out, double value) {
-    cs_text_add(out, ",");
-    if (isfinite(value))
-        cs_text_add_real(out, value);
+/* values NULL: the head */
+static void add_columns(const struct columns *columns, const double *values,
+                        struct cs_text *out) {
+    for (uint32_t c = 0; c < columns->n; c++)
+        add_field(out, columns->names[c], values ? values + c : NULL);
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const uint32_t c = column_of(columns, k);
+        if (c < columns->n || c == CS_NO_COLUMN)
+            continue;
+        add_field(out, cs_terms[k]->name, values ? values + c : NULL);
+        if (!values && columns->work && column_of(&energies, k) != CS_NO_COLUMN)
+            cs_text_add(out, "_work");
+    }
+}
+
+void cs_account_print_head(struct cs_text *out) {
+    cs_text_add(out, "frame,t");
+    add_columns(&energies, NULL, out);
+    cs_text_add(out, ",sum");
+    add_columns(&work_done, NULL, out);
+    cs_text_add(out, "\n");
 }
 
 void cs_account_print_row(const struct cs_account *account, uint32_t frame,
                           struct cs_text *out) {
+    const double sum = cs_account_sum(account);
     cs_text_add(out, "%u", frame);
-    add_real(out, account->t);
-    for (int k = 0; k < CS_HOLDINGS; k++)
-        add_real(out, account->holds[k]);
-    add_real(out, cs_account_sum(account));
-    for (int k = 0; k < CS_WORKS; k++)
-        add_real(out, account->work[k]);
+    add_field(out, NULL, &account->t);
+    add_columns(&energies, account->holds, out);
+    add_field(out, NULL, &sum);
+    add_columns(&work_done, account->work, out);
     cs_text_add(out, "\n");
 }

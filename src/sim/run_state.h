@@ -34,9 +34,9 @@ enum cs_stage {
 /* Exact counts, the same on every machine. */
 struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
-    uint64_t clamped;       /* solver set-ups that fell back to CS_SOLVE_PSD or CS_SOLVE_BOUND */
-    uint64_t contacts;      /* particles pushed out */
-    uint64_t cut_steps;     /* moves that were too long for contact or crossings */
+    uint64_t clamped;   /* solver set-ups that fell back to CS_SOLVE_PSD or CS_SOLVE_BOUND */
+    uint64_t contacts;  /* particles pushed out */
+    uint64_t cut_steps; /* moves that were too long for contact or crossings */
     uint64_t contact_tests; /* particle-collider pairs tested */
     uint64_t limit_moves;   /* springs shortened by the strain limit */
     uint64_t normals;       /* times that normals were computed in a step */
@@ -66,6 +66,7 @@ struct cs_run {
     struct cs_counts counts;
     double stage_seconds[CS_STAGES]; /* all 0 unless timed */
     double advance_seconds;          /* wall time inside the method */
+    struct cs_plan plan;             /* the system's, with the bytes of the run's own arrays */
     size_t method_bytes;             /* of arrays that the method took from the host */
     char notes[CS_NOTES_MAX][160];   /* remarks of the method */
     uint32_t n_notes;

@@ -2,10 +2,12 @@
  * tight reference nothing is left to the method. */
 #include "fixture.h"
 
+#include "model/force/terms.h"
 #include "sim/account.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define TIGHT         "dopri5:rtol=1e-12,atol=1e-13"
 #define LENGTH(array) (sizeof(array) / sizeof *(array))
@@ -151,8 +153,41 @@ START_TEST(the_rest_is_the_methods_error) {
 }
 END_TEST
 
+/* how often a name stands in a part of the head, which begins and ends with a comma */
+static uint32_t times_in(const char *part, const char *end, const char *name) {
+    char field[80];
+    uint32_t n = 0;
+    snprintf(field, sizeof field, ",%s,", name);
+    for (; (part = strstr(part, field)) && part < end; part++)
+        n++;
+    return n;
+}
+
+/* the list of forces: what has an energy is among what is held, what does work without one
+ * behind the sum, and no column is there twice */
+START_TEST(every_force_has_its_column) {
+    struct cs_text head = {0};
+    cs_account_print_head(&head);
+    head.bytes[head.length - 1] = ',';
+    const char *all = cs_text_get(&head), *end = all + head.length;
+    const char *sum = strstr(all, ",sum,");
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const struct cs_term *term = cs_terms[k];
+        const char *held = term->energy_column, *work = term->work_column;
+        ck_assert(term->parts & CS_PART_SPRINGS || !term->energy ||
+                  times_in(all, sum, held ? held : term->name) == 1);
+        ck_assert(!(term->parts & CS_PART_WITHOUT_ENERGY) ||
+                  times_in(sum, end, work ? work : term->name) == 1);
+    }
+    ck_assert_uint_eq(times_in(all, sum, "stretch"), 1);
+    ck_assert_uint_eq(times_in(all, sum, "gravity"), 1);
+    ck_assert_uint_eq(times_in(sum, end, "dampers"), 1);
+    cs_text_finish(&head);
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {nothing_is_left_to_a_tight_method,
+    const TTest *const tests[] = {every_force_has_its_column, nothing_is_left_to_a_tight_method,
                                   drag_takes_what_a_fall_lacks, corrections_are_put_down_apart,
                                   the_rest_is_the_methods_error};
     return fixture_run("account", tests, sizeof tests / sizeof *tests);

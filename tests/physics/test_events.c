@@ -232,7 +232,7 @@ START_TEST(bytes_are_planned) {
                  " \"path\": [{\"at\": 0.5, \"point\": [0, 0, 1]}]}}");
     fixture_open(&without, "velocity-verlet", CLOTH, "");
     const size_t more = with.system->arena.used - without.system->arena.used;
-    ck_assert_uint_eq(more, with.session.plan.rows[CS_FEATURE_EVENTS].bytes);
+    ck_assert_uint_eq(more, with.system->plan.rows[CS_FEATURE_EVENTS].bytes);
     fixture_close(&with);
     fixture_close(&without);
 }
@@ -244,7 +244,7 @@ START_TEST(nothing_without_events) {
     ck_assert_ptr_null(cloth.system->events);
     ck_assert_ptr_eq(cloth.system->scene, &cloth.session.scene);
     ck_assert(!cloth.session.plan.rows[CS_FEATURE_EVENTS].built);
-    ck_assert_uint_eq(cloth.session.plan.rows[CS_FEATURE_EVENTS].bytes, 0);
+    ck_assert_uint_eq(cloth.system->plan.rows[CS_FEATURE_EVENTS].bytes, 0);
     fixture_close(&cloth);
 }
 END_TEST

@@ -79,6 +79,10 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
                                                : !!host->linear.factors);
         ck_assert((needs & CS_NEED_SOLVE) == 0 ? !host->kept_x : !!host->kept_x);
         ck_assert(rows[CS_FEATURE_SOLVER].built == !!(needs & CS_NEED_SOLVE));
+        /* the solver's vectors, its four numbers a spring, and the positions it was made for */
+        const size_t numbers = 4 * (size_t)cloth.system->springs.n + (19 + 3) * cloth.n;
+        ck_assert_uint_eq(cloth.session.run.plan.rows[CS_FEATURE_SOLVER].bytes,
+                          needs & CS_NEED_SOLVE ? numbers * sizeof(double) : 0);
         ck_assert(rows[CS_FEATURE_SPRING_LIST].built == !!(needs & CS_NEED_SPRINGS));
         ck_assert(!cloth.system->view.ends == !(needs & CS_NEED_SPRINGS));
         fixture_close(&cloth);
@@ -86,26 +90,34 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
 }
 END_TEST
 
-/* all that the plan promises of a run, with the list of pins, which only the system knows */
-static size_t promised(const struct fixture *cloth) {
-    const struct cs_system *system = cloth->system;
-    size_t bytes = system->plan.state_bytes + system->n_pinned * sizeof *system->pinned;
+/* all rows of a run's plan */
+static size_t sum_of(const struct cs_run *run) {
+    size_t bytes = run->plan.state_bytes + run->method_bytes;
     for (uint32_t f = 0; f < CS_FEATURES; f++)
-        bytes += system->plan.rows[f].bytes;
+        bytes += run->plan.rows[f].bytes;
     for (uint32_t k = 0; k < CS_TERMS_MOST; k++)
-        bytes += system->plan.forces[k].bytes;
+        bytes += run->plan.forces[k].bytes;
     return bytes;
 }
 
-START_TEST(run_takes_what_was_planned_and_the_method_its_own) {
+/* also where the same system is run a second time */
+START_TEST(bytes_of_a_run_are_in_its_plan) {
+    static const char *const scenes[][2] = {{"", ""},
+                                            {", \"strain_limit\": 1.001", WIND COLLIDERS},
+                                            {", \"self_contact\": true, \"thickness\": 0.01",
+                                             ", \"contact\": {\"law\": \"force\"}"}};
     for (size_t k = 0; k < METHODS; k++)
-        for (int full = 0; full < 2; full++) {
+        for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++) {
             struct fixture cloth;
-            run(&cloth, methods[k], full ? ", \"strain_limit\": 1.001" : "",
-                full ? WIND COLLIDERS : "");
+            struct cs_error error = {0};
+            run(&cloth, methods[k], scenes[s][0], scenes[s][1]);
             const struct cs_run *done = &cloth.session.run;
+            const size_t bytes = cs_run_bytes(done);
             ck_assert_uint_gt(done->method_bytes, 0);
-            ck_assert_uint_eq(cs_run_bytes(done), promised(&cloth) + done->method_bytes);
+            ck_assert_uint_eq(sum_of(done), bytes);
+            ck_assert_int_eq(done->plan.rows[CS_FEATURE_CONTACT].bytes > 0, s == 1);
+            ck_assert_int_eq(cs_session_begin(&cloth.session, NULL, &error), CS_OK);
+            ck_assert_uint_eq(sum_of(done), bytes);
             fixture_close(&cloth);
         }
 }
@@ -126,8 +138,7 @@ START_TEST(mesh_is_planned_with_its_geometry) {
                       sizeof *mesh + mesh->n * (4 * sizeof(double) + sizeof(uint32_t)) +
                           2 * corners * sizeof(uint32_t) +
                           link * ((size_t)2 * mesh->n_edges + mesh->n_inner));
-    ck_assert_uint_eq(cs_run_bytes(&box.session.run),
-                      promised(&box) + box.session.run.method_bytes);
+    ck_assert_uint_eq(cs_run_bytes(&box.session.run), sum_of(&box.session.run));
     fixture_close(&box);
 }
 END_TEST
@@ -204,7 +215,7 @@ int main(void) {
     const TTest *const tests[] = {bare_scene_makes_no_calls,
                                   full_scene_makes_its_calls,
                                   method_gets_what_it_needs_and_no_more,
-                                  run_takes_what_was_planned_and_the_method_its_own,
+                                  bytes_of_a_run_are_in_its_plan,
                                   mesh_is_planned_with_its_geometry,
                                   large_explicit_run_takes_little_a_particle,
                                   allocations_are_counted,

@@ -183,7 +183,7 @@ START_TEST(bytes_are_planned) {
                  " \"path\": [{\"at\": 0.5, \"point\": [0, 0, 1]}]}}");
     fixture_open(&without, "velocity-verlet", FAR, "");
     const size_t more = with.system->arena.used - without.system->arena.used;
-    ck_assert_uint_eq(more, with.session.plan.rows[CS_FEATURE_EVENTS].bytes);
+    ck_assert_uint_eq(more, with.system->plan.rows[CS_FEATURE_EVENTS].bytes);
     ck_assert_ptr_nonnull(with.system->motions);
     ck_assert_ptr_null(without.system->motions);
     ck_assert_uint_eq(with.system->view.n_colliders, 2);

@@ -12,6 +12,7 @@
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "planted_terms.h"
+#include "sim/account.h"
 #include "sim/registry.h"
 
 #include <math.h>
@@ -221,9 +222,81 @@ START_TEST(bounds_follow_the_state) {
 }
 END_TEST
 
+/* what the column of a name has in the account's row */
+static double entry(const struct cs_account *account, const char *name) {
+    struct cs_text text = {0};
+    char *head_at, *row_at, *head, *row;
+    double value = (double)NAN;
+    cs_account_print_head(&text);
+    cs_account_print_row(account, 0, &text);
+    head = strtok_r(text.bytes, "\n", &head_at);
+    row = strtok_r(NULL, "\n", &head_at);
+    head = strtok_r(head, ",", &head_at);
+    row = strtok_r(row, ",", &row_at);
+    for (; head && row;
+         head = strtok_r(NULL, ",", &head_at), row = strtok_r(NULL, ",", &row_at))
+        if (!strcmp(head, name))
+            value = strtod(row, NULL);
+    cs_text_finish(&text);
+    return value;
+}
+
+/* the account of a second of the sheet, which stands where it is until close */
+static void run_account(struct fixture *cloth, struct cs_account *account) {
+    struct cs_error error = {0};
+    fixture_open(cloth, "dopri5:rtol=1e-12,atol=1e-13", SHEET);
+    cloth->session.settings.run.account = account;
+    cs_account_open(account, cloth->system, 0, &error);
+    ck_assert_int_eq(error.status, CS_OK);
+    fixture_start(cloth);
+    fixture_frames(cloth, 60);
+}
+
+static void close_account(struct fixture *cloth, struct cs_account *account) {
+    cs_account_close(account);
+    fixture_close(cloth);
+}
+
+/* by its name alone, and none is friction or a push; nothing is left to a tight method */
+START_TEST(energy_ledger_has_a_column_for_each) {
+    const double kinetic = 0.5 * MASS * 12 * 1.25;
+    struct fixture cloth;
+    struct cs_account account;
+    planted = (struct planted){.resist = 2};
+    run_account(&cloth, &account);
+    ck_assert_double_eq_tol(entry(&account, "planted_resistance"), (exp(-4) - 1) * kinetic,
+                            1e-9);
+    ck_assert_double_eq(entry(&account, "friction"), 0);
+    ck_assert_double_eq_tol(entry(&account, "integrator"), 0, 1e-9);
+    close_account(&cloth, &account);
+
+    planted = (struct planted){.trap = 3, .trap_damping = 0.5};
+    run_account(&cloth, &account);
+    ck_assert_double_gt(entry(&account, "planted_trap"), 1e-3);
+    ck_assert_double_lt(entry(&account, "planted_trap_work"), -1e-3);
+    ck_assert_double_eq(entry(&account, "other"), 0);
+    ck_assert_double_eq(entry(&account, "friction"), 0);
+    ck_assert_double_eq_tol(entry(&account, "integrator"), 0, 1e-9);
+    ck_assert_double_eq_tol(entry(&account, "sum"),
+                            kinetic + entry(&account, "planted_trap_work"), 1e-9);
+    close_account(&cloth, &account);
+
+    planted = (struct planted){.swing = 1};
+    run_account(&cloth, &account);
+    ck_assert_double_eq_tol(entry(&account, "planted_swing"),
+                            entry(&account, "kinetic") - kinetic, 1e-9);
+    ck_assert_double_eq(entry(&account, "push"), 0);
+    close_account(&cloth, &account);
+    planted = (struct planted){0};
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {resistance_reaches_every_method, trap_reaches_every_method,
-                                  swing_reaches_every_method, solver_takes_blocks,
+    const TTest *const tests[] = {energy_ledger_has_a_column_for_each,
+                                  resistance_reaches_every_method,
+                                  trap_reaches_every_method,
+                                  swing_reaches_every_method,
+                                  solver_takes_blocks,
                                   bounds_follow_the_state};
     return fixture_run("planted_force", tests, sizeof tests / sizeof *tests);
 }

@@ -308,12 +308,12 @@ START_TEST(bytes_are_planned) {
     fixture_open(&blow, "velocity-verlet", CLOTH,
                  "{\"at\": 0.1, \"viewpoint_force\": {\"force\": 1}}");
     fixture_open(&without, "velocity-verlet", CLOTH, "");
-    const struct cs_plan_row *rows = with.session.plan.rows;
+    const struct cs_plan_row *rows = with.system->plan.rows;
     const size_t more = with.system->arena.used - without.system->arena.used;
     ck_assert_uint_eq(more,
                       rows[CS_FEATURE_EVENTS].bytes + rows[CS_FEATURE_VIEWPOINT_FORCES].bytes);
     ck_assert(!without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].built);
-    ck_assert_uint_eq(without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes, 0);
+    ck_assert_uint_eq(without.system->plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes, 0);
     ck_assert_ptr_null(blow.system->push);
     fixture_close(&with);
     fixture_close(&blow);

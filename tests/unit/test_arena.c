@@ -38,6 +38,25 @@ START_TEST(pieces_are_aligned_zeroed_and_apart) {
 }
 END_TEST
 
+/* the same takes, part by part; what was refused is in none */
+START_TEST(parts_are_counted) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    size_t parts[2] = {0, 5};
+    cs_arena_take(&arena, 10, &error);
+    arena.part = parts;
+    cs_arena_take(&arena, 20, &error);
+    cs_arena_take(&arena, SIZE_MAX, &error);
+    arena.part = parts + 1;
+    cs_arena_take_n(&arena, 10, 3, &error);
+    ck_assert_uint_eq(parts[0], 20);
+    ck_assert_uint_eq(parts[1], 35);
+    ck_assert_uint_eq(arena.used, 60);
+    cs_arena_finish(&arena);
+    ck_assert_ptr_null(arena.part);
+}
+END_TEST
+
 /* and the arena can be used again; what it gives is zeroed again */
 START_TEST(finish_empties) {
     struct cs_arena arena = {0};
@@ -96,7 +115,7 @@ START_TEST(text_is_copied) {
 END_TEST
 
 int main(void) {
-    const TTest *const tests[] = {pieces_are_aligned_zeroed_and_apart, finish_empties,
-                                  impossible_sizes_are_refused, text_is_copied};
+    const TTest *const tests[] = {pieces_are_aligned_zeroed_and_apart, parts_are_counted,
+                                  finish_empties, impossible_sizes_are_refused, text_is_copied};
     return unit_run("arena", tests, sizeof tests / sizeof *tests);
 }

@@ -251,33 +251,11 @@ START_TEST(shared_moves_and_blow_ups) {
 }
 END_TEST
 
-/* the bytes that a plan would name are those taken, but for rounding to 64 */
-START_TEST(bytes_are_told) {
-    struct sheet sheet;
-    struct cs_error error = {0};
-    char bodies[1024];
-    snprintf(bodies, sizeof bodies, SHEET ", " SHEET, 30, 20, 1.0, 1.0, 0.0, 0.0, 0.0, "", 25,
-             1, 1.0, 1.0, 0.0, 0.0, 0.0, "");
-    sheet_open(&sheet, 0, "{\"bodies\": [%s]}", bodies);
-    const size_t before = sheet.system.arena.used;
-    cs_crossings_build(&sheet.system, &error);
-    UNIT_ASSERT_OK(&error);
-    const size_t taken = sheet.system.arena.used - before;
-    const size_t told = cs_crossings_bytes(&sheet.scene) + cs_surfaces_bytes(&sheet.scene);
-    ck_assert_msg(taken >= told && taken < told + 20 * 64, "%zu, %zu", taken, told);
-    sheet_close(&sheet);
-}
-END_TEST
-
 int main(void) {
-    const TTest *const tests[] = {sheets_through_each_other,
-                                  sheet_in_a_column_of_another,
-                                  columns_in_each_other,
-                                  what_lies_in_a_plane_does_not_cross,
-                                  counts_are_those_of_all_pairs,
-                                  shares_are_those_of_all_pairs,
-                                  shared_moves_and_blow_ups,
-                                  spikes_of_either_body_are_seen,
-                                  bytes_are_told};
+    const TTest *const tests[] = {
+        sheets_through_each_other,     sheet_in_a_column_of_another,
+        columns_in_each_other,         what_lies_in_a_plane_does_not_cross,
+        counts_are_those_of_all_pairs, shares_are_those_of_all_pairs,
+        shared_moves_and_blow_ups,     spikes_of_either_body_are_seen};
     return unit_run("crossings", tests, sizeof tests / sizeof *tests);
 }

@@ -209,10 +209,6 @@ static double weigh(const struct cs_system *system) {
     return sum;
 }
 
-size_t cs_balance_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced) {
-    return 3 * n * sizeof(double) + cs_response_bytes(scene, n, n_springs, forced);
-}
-
 enum cs_status cs_balance_init(struct cs_balance *balance, struct cs_system *system,
                                struct cs_arena *arena, struct cs_error *error) {
     *balance = (struct cs_balance){.system = system, .weight = weigh(system)};

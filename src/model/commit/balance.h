@@ -50,10 +50,6 @@ struct cs_blow {
 enum cs_status cs_balance_init(struct cs_balance *balance, struct cs_system *system,
                                struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes that init takes, of a scene with n particles; forced: forces have blocks of their own
- * in the solver's matrix. */
-size_t cs_balance_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced);
-
 /* Corrects blow->to as said above. false: particles are left behind a surface. */
 bool cs_balance_hold(struct cs_balance *balance, const struct cs_blow *blow);
 

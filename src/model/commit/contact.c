@@ -160,11 +160,6 @@ void cs_contact_start(struct cs_contact *contact, double t, const double *x, con
     cs_stick_start(&contact->stick, contact->obstacles, t, x, v, contact->to);
 }
 
-size_t cs_contact_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced) {
-    return scene->colliders.n * sizeof(struct cs_obstacle) + 12 * n * sizeof(double) +
-           n * sizeof(bool) + cs_stick_bytes(n) + cs_balance_bytes(scene, n, n_springs, forced);
-}
-
 enum cs_status cs_contact_init(struct cs_contact *contact, struct cs_system *system,
                                struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;

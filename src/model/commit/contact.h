@@ -27,10 +27,6 @@ struct cs_contact {
 enum cs_status cs_contact_init(struct cs_contact *contact, struct cs_system *system,
                                struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes that init takes, of a scene with n particles; forced: forces have blocks of their own
- * in the solver's matrix. */
-size_t cs_contact_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced);
-
 /* The state that the next step starts from. resolved: it is what cs_contact_resolve left. */
 void cs_contact_keep(struct cs_contact *contact, const double *x, const double *v,
                      bool resolved);

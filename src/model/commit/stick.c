@@ -12,10 +12,6 @@
 /* m: on a surface, as far as the scene's numbers tell */
 #define TOUCHING 1e-9
 
-size_t cs_stick_bytes(size_t n) {
-    return n * (2 * sizeof(uint32_t) + sizeof(bool) + 3 * sizeof(double));
-}
-
 enum cs_status cs_stick_init(struct cs_stick *stick, struct cs_system *system,
                              struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;

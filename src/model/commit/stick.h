@@ -29,7 +29,6 @@ struct cs_stick {
 /* Takes the arrays from arena. CS_ERR_MEMORY. */
 enum cs_status cs_stick_init(struct cs_stick *stick, struct cs_system *system,
                              struct cs_arena *arena, struct cs_error *error);
-size_t cs_stick_bytes(size_t n);
 
 /* Pins the held particles, and unpins them: pinned within steps, free for all that follows a
  * step and all that looks on. */

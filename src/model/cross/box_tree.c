@@ -83,25 +83,16 @@ static void add_nodes(struct cs_box_tree *tree, const uint32_t *groups, uint32_t
     add_nodes(tree, groups, n_groups, cut, end);
 }
 
-/* a cut leaves leaves of two items and more, but where groups end */
-static size_t nodes_most(size_t n, size_t n_groups) {
-    return n + 2 * n_groups + 1;
-}
-
-size_t cs_box_tree_bytes(size_t n, size_t n_groups) {
-    return nodes_most(n, n_groups) * sizeof(struct cs_box_node) +
-           n * (sizeof(uint32_t) + sizeof(struct cs_swath)) +
-           CS_BOX_JOBS_MOST * sizeof(struct cs_box_job);
-}
-
 enum cs_status cs_box_tree_init(struct cs_box_tree *tree, const double *centres,
                                 const uint32_t *first, uint32_t n_groups,
                                 struct cs_arena *arena, struct cs_error *error) {
     const uint32_t n = first[n_groups];
+    /* a cut leaves leaves of two items and more, but where groups end */
+    const size_t nodes_most = n + 2 * (size_t)n_groups + 1;
     *tree = (struct cs_box_tree){.n = n};
     struct placed *placed = calloc(n ? n : 1, sizeof *placed);
     tree->items = cs_arena_take_n(arena, n, sizeof *tree->items, error);
-    tree->nodes = cs_arena_take_n(arena, nodes_most(n, n_groups), sizeof *tree->nodes, error);
+    tree->nodes = cs_arena_take_n(arena, nodes_most, sizeof *tree->nodes, error);
     tree->swaths = cs_arena_take_n(arena, n, sizeof *tree->swaths, error);
     tree->jobs = cs_arena_take_n(arena, CS_BOX_JOBS_MOST, sizeof *tree->jobs, error);
     if (!placed)

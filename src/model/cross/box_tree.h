@@ -43,9 +43,6 @@ enum cs_status cs_box_tree_init(struct cs_box_tree *tree, const double *centres,
                                 const uint32_t *first, uint32_t n_groups,
                                 struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes of a tree over n items. */
-size_t cs_box_tree_bytes(size_t n, size_t n_groups);
-
 /* Sets the boxes from tree->swaths, which the caller has filled, and shares the work out. */
 void cs_box_tree_update(struct cs_box_tree *tree, double reach);
 

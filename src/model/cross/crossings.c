@@ -32,29 +32,19 @@ static void list_apart(const struct cs_scene *scene, bool *apart) {
             apart[(size_t)a * n + b] = cs_scene_bodies_meet(scene, a, b, &friction);
 }
 
-static size_t pairs_of_bodies(const struct cs_scene *scene) {
-    const size_t n = cs_scene_surfaces(scene);
-    return cs_scene_crossings_by_pairs(scene) ? n * n : 0;
-}
-
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
     struct cs_crossings *crossings = cs_arena_take(&system->arena, sizeof *crossings, error);
     if (error->status)
         return error->status;
     crossings->found =
         cs_arena_take_n(&system->arena, CS_BOX_JOBS_MOST, sizeof *crossings->found, error);
-    const size_t pairs = pairs_of_bodies(system->scene);
-    if (pairs &&
-        (crossings->apart = cs_arena_take_n(&system->arena, pairs, sizeof(bool), error)))
+    const size_t n = cs_scene_surfaces(system->scene);
+    if (cs_scene_crossings_by_pairs(system->scene) &&
+        (crossings->apart = cs_arena_take_n(&system->arena, n * n, sizeof(bool), error)))
         list_apart(system->scene, crossings->apart);
     if (!error->status && !cs_parts_build(system, &crossings->parts, error))
         system->crossings = crossings;
     return error->status;
-}
-
-size_t cs_crossings_bytes(const struct cs_scene *scene) {
-    return sizeof(struct cs_crossings) + CS_BOX_JOBS_MOST * sizeof(struct found) +
-           pairs_of_bodies(scene) * sizeof(bool) + cs_parts_bytes(scene);
 }
 
 /* One question to all pairs, and where the job at work puts its answer. */

@@ -3,7 +3,6 @@
 
 #include "base/vector.h"
 #include "model/contact/points.h"
-#include "scene/pairs.h"
 
 #include <stdlib.h>
 
@@ -154,19 +153,6 @@ enum cs_status cs_parts_build(struct cs_system *system, struct cs_parts *parts,
     free(centres);
     free(work);
     return error->status;
-}
-
-size_t cs_parts_bytes(const struct cs_scene *scene) {
-    const uint32_t n_bodies = cs_scene_surfaces(scene);
-    size_t n = 0, edges = 0;
-    for (uint32_t b = 0; b < n_bodies; b++) {
-        const struct cs_surface_size size = cs_surface_size_of(scene, b);
-        // a rope is all edges
-        n += size.triangles ? size.triangles : size.edges;
-        edges += size.edges;
-    }
-    const size_t points = cs_surfaces_points(scene);
-    return (4 * n + 2 + edges + points) * sizeof(uint32_t) + cs_box_tree_bytes(n, n_bodies);
 }
 
 struct placing {

@@ -24,9 +24,6 @@ struct cs_parts {
 enum cs_status cs_parts_build(struct cs_system *system, struct cs_parts *parts,
                               struct cs_error *error);
 
-/* Bytes for the bodies of a scene, without their surfaces. */
-size_t cs_parts_bytes(const struct cs_scene *scene);
-
 /* Sets where the parts are during the move from x0 to x1 (3,n_points); x1 NULL: they stay at
  * x0. Then cs_box_tree_visit over parts->tree has all pairs that may come as near as reach. */
 void cs_parts_place(struct cs_parts *parts, const double *x0, const double *x1, double reach);

@@ -43,10 +43,6 @@ void cs_sight_make(struct cs_sight *sight, const struct cs_viewpoint_force *view
     sight->high[1] = (1 - 2 * rectangle[1]) * slope;
 }
 
-size_t cs_sight_bytes(uint32_t n) {
-    return 3 * (size_t)n * sizeof(double) + (3 * (size_t)n + 1) * sizeof(uint32_t);
-}
-
 enum cs_status cs_sight_work_init(struct cs_sight_work *work, uint32_t n,
                                   struct cs_arena *arena, struct cs_error *error) {
     work->places = cs_arena_take_n(arena, 3 * (size_t)n, sizeof *work->places, error);

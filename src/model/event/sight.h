@@ -26,7 +26,6 @@ struct cs_sight_work {
 /* From a checked event of the scene (no fault, no empty rectangle). */
 void cs_sight_make(struct cs_sight *sight, const struct cs_viewpoint_force *viewpoint_force);
 
-size_t cs_sight_bytes(uint32_t n);
 enum cs_status cs_sight_work_init(struct cs_sight_work *work, uint32_t n,
                                   struct cs_arena *arena, struct cs_error *error);
 

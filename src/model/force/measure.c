@@ -7,17 +7,22 @@
 #include <math.h>
 #include <string.h>
 
+double cs_measure_kinetic(const struct cs_system *system, const double *v) {
+    const size_t n = system->view.n;
+    double energy = 0;
+    for (size_t i = 0; i < n; i++)
+        energy += 0.5 * system->mass[i] *
+                  (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+    return energy;
+}
+
 struct cs_energy cs_measure_energy(const struct cs_system *system, double t, const double *x,
                                    const double *v) {
-    const size_t n = system->view.n;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
-    struct cs_energy energy = {0};
+    struct cs_energy energy = {.kinetic = cs_measure_kinetic(system, v)};
     double *const kinds[CS_ENERGIES] = {[CS_ENERGY_ELASTIC] = &energy.elastic,
                                         [CS_ENERGY_GRAVITY] = &energy.gravity,
                                         [CS_ENERGY_OTHER] = &energy.other};
-    for (size_t i = 0; i < n; i++)
-        energy.kinetic += 0.5 * system->mass[i] *
-                          (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->energy)
             *kinds[system->terms[k]->energy_kind] += system->terms[k]->energy(system, &at);

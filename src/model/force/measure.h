@@ -8,6 +8,8 @@ struct cs_energy {
     double kinetic, elastic, gravity; /* J; gravity's potential is 0 at the origin */
     double other;                     /* J, potential of all other forces that have one */
 };
+/* J; the kinetic part alone. */
+double cs_measure_kinetic(const struct cs_system *system, const double *v);
 struct cs_energy cs_measure_energy(const struct cs_system *system, double t, const double *x,
                                    const double *v);
 

@@ -17,8 +17,6 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,
                built = asked && any_without_mesh(scene);
     return (struct cs_plan_row){.built = built,
-                                .bytes =
-                                    built ? scene->colliders.n * sizeof(struct cs_pairing) : 0,
                                 .why = !asked               ? NULL
                                        : built              ? "contact.law is force"
                                        : scene->colliders.n ? "every collider is a mesh"
@@ -155,6 +153,8 @@ const struct cs_term cs_term_contact = {
     .add_jvp = add_jvp,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
     .add_blocks = add_blocks,
     .add_bound_at = add_bound_at,
 };

@@ -12,16 +12,14 @@ static bool any_round(const struct cs_scene *scene) {
     return false;
 }
 
-/* What depends on the number of points comes on top. Lengths are known to idle_why alone. */
+/* Lengths are known to idle_why alone. */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
                built = asked && any_round(scene);
-    return (struct cs_plan_row){
-        .built = built,
-        .bytes = built ? cs_surfaces_bytes(scene) + sizeof(struct cs_covers) : 0,
-        .why = !asked  ? NULL
-               : built ? "colliders are finer than edges are long"
-                       : "every collider is flat"};
+    return (struct cs_plan_row){.built = built,
+                                .why = !asked  ? NULL
+                                       : built ? "colliders are finer than edges are long"
+                                               : "every collider is flat"};
 }
 
 static const char *idle_why(const struct cs_system *system) {
@@ -74,6 +72,8 @@ const struct cs_term cs_term_cover = {
     .add_jvp = add,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_product = add_product,

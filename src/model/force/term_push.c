@@ -34,5 +34,6 @@ const struct cs_term cs_term_push = {
     .parts = CS_PART_EXTERNAL,
     .plan = plan,
     .add_force = add_force,
+    .work_column = "push",
     .strongest = strongest,
 };

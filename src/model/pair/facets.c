@@ -1,8 +1,6 @@
 /* How the triangles of surfaces hang together. */
 #include "model/pair/facets.h"
 
-#include "scene/pairs.h"
-
 static uint32_t corner_opposite(const uint32_t *corners, const uint32_t *edge) {
     uint32_t k = 0;
     while (k < 2 && (corners[k] == edge[0] || corners[k] == edge[1]))
@@ -55,14 +53,4 @@ enum cs_status cs_facets_init(struct cs_facets *facets, const struct cs_surfaces
         facets->started[i + 1] += facets->started[i];
     share_corners(facets, inner);
     return CS_OK;
-}
-
-size_t cs_facets_bytes(const struct cs_scene *scene) {
-    size_t bytes = sizeof(uint32_t);
-    for (uint32_t b = 0; b < cs_scene_surfaces(scene); b++) {
-        const struct cs_surface_size size = cs_surface_size_of(scene, b);
-        bytes += 3 * size.triangles * sizeof(uint32_t) +
-                 size.points * (sizeof(double) + 2 * sizeof(uint32_t));
-    }
-    return bytes;
 }

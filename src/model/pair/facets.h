@@ -19,9 +19,6 @@ struct cs_facets {
 enum cs_status cs_facets_init(struct cs_facets *facets, const struct cs_surfaces *surfaces,
                               struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes that it takes, for a plan. */
-size_t cs_facets_bytes(const struct cs_scene *scene);
-
 /* A facet in range, as the first rim of its triangle. */
 struct cs_facet_use {
     uint32_t at[4];

@@ -152,7 +152,8 @@ enum cs_status cs_clusters_make(const struct cs_body *body, struct cs_clusters *
     return error->status;
 }
 
-void cs_clusters_count(const struct cs_scene *scene, size_t *n_clusters, size_t *n_items) {
+/* clusters and items of all bodies */
+static void count_all(const struct cs_scene *scene, size_t *n_clusters, size_t *n_items) {
     *n_clusters = *n_items = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const struct cs_clusters *parts = cs_scene_bodies(scene)[b].shape_matching.parts;
@@ -181,7 +182,7 @@ static void put_clusters(struct place *at, const struct cs_shape_matching *of, u
 
 enum cs_status cs_clusters_build(struct cs_system *system, struct cs_error *error) {
     size_t n, n_items;
-    cs_clusters_count(system->scene, &n, &n_items);
+    count_all(system->scene, &n, &n_items);
     struct place at = {
         .begin = cs_arena_take_n(&system->arena, n + 1, sizeof *at.begin, error),
         .items = cs_arena_take_n(&system->arena, n_items, sizeof *at.items, error),

@@ -34,7 +34,7 @@ enum cs_feature {
 
 struct cs_plan_row {
     bool built;
-    size_t bytes;    /* of arrays that exist for this feature alone */
+    size_t bytes;    /* taken when it was built; 0 before */
     const char *why; /* why it is built, or why it is left out */
 };
 
@@ -43,7 +43,7 @@ enum { CS_TERMS_MOST = 16 };
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
     uint32_t n_surface, n_inner; /* springs on the surfaces of meshes, of networks in them */
-    size_t state_bytes;          /* state, masses, start and ranges of bodies */
+    size_t state_bytes;          /* of all arrays that no row has: state, masses, pins */
     struct cs_plan_row rows[CS_FEATURES];
     struct cs_plan_row
         forces[CS_TERMS_MOST]; /* of the list in terms.h; why NULL: not printed */
