@@ -1,0 +1,21 @@
+/* json_writer.h - writes JSON by a template that looks like the text it makes. */
+#ifndef CS_JSON_WRITER_H
+#define CS_JSON_WRITER_H
+
+#include "base/text.h"
+
+/* Adds JSON by a template in which ' stands for ". Conversions are those of printf, checked by
+ * the compiler, but write values of JSON:
+ *   %s         a text in quotes with JSON's escapes; NULL: null
+ *   %g         the shortest decimal that reads back as the same double; inf and nan: null
+ *   %d         a bool: true or false
+ *   %u %llu %zu %ld   whole numbers
+ * A comma that begins a template, and a blank after it, is left out where no member or item
+ * stands before it. A text that holds JSON already is added by cs_text_add. */
+void cs_json_write(struct cs_text *out, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Begins a line for a member or an item, with a comma where one stands before it. */
+void cs_json_line(struct cs_text *out, int indent);
+
+#endif
