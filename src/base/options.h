@@ -45,10 +45,18 @@ enum cs_status cs_option_check_range(const struct cs_option *row, double value, 
                                      const char *where, enum cs_status status,
                                      struct cs_error *error);
 
-/* Adds the value as JSON (REAL, INT, BOOL, CHOICE, VECTOR, COUNTS, TEXT). */
+/* Adds the value as JSON, but for TABLE and LIST; object NULL: the default. */
 void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out);
+
+/* The same of numbers, switches and choices as a user writes them: without quotes and brackets.
+ */
+void cs_option_print_plain(const struct cs_option *row, const void *object,
+                           struct cs_text *out);
 
 /* Adds "-1e+09..1e+09" or the list of choices: what the row accepts. */
 void cs_option_print_range(const struct cs_option *row, struct cs_text *out);
+
+/* Adds what a row stands for and its range, for messages: "a list of 3 numbers (0..1)". */
+void cs_option_print_expected(const struct cs_option *row, struct cs_text *out);
 
 #endif

@@ -3,42 +3,6 @@
 
 #include "base/options.h"
 
-void cs_table_add_expected(const struct cs_option *row, struct cs_text *out) {
-    switch (row->type) {
-    case CS_REAL:
-        cs_text_add(out, "a number (");
-        break;
-    case CS_INT:
-        cs_text_add(out, "a whole number (");
-        break;
-    case CS_BOOL:
-        cs_text_add(out, "true or false");
-        return;
-    case CS_CHOICE:
-        cs_text_add(out, "one of ");
-        cs_option_print_range(row, out);
-        return;
-    case CS_VECTOR:
-        cs_text_add(out, "a list of %u numbers (", row->count);
-        break;
-    case CS_COUNTS:
-        cs_text_add(out, "a list of %u whole numbers (", row->count);
-        break;
-    case CS_TEXT:
-        cs_text_add(out, "a text");
-        return;
-    case CS_LIST:
-        cs_text_add(out, "a list");
-        return;
-    case CS_TABLE:
-        cs_text_add(out, "an object");
-        return;
-    }
-    /* only rows of numbers get here; the others returned without a range */
-    cs_option_print_range(row, out);
-    cs_text_add(out, ")");
-}
-
 bool cs_table_needs_row(const struct cs_option *row) {
     if (row->type == CS_VECTOR || row->type == CS_COUNTS)
         return !row->defs;
@@ -84,7 +48,7 @@ static enum cs_status check_complete(struct cs_reader *reader, const struct cs_j
         /* a row without a default is a list of numbers or a table that holds one */
         if (row->type != CS_TABLE) {
             struct cs_text expected = {0};
-            cs_table_add_expected(row, &expected);
+            cs_option_print_expected(row, &expected);
             cs_reader_fail(reader, value, false, "missing, expected %s",
                            cs_text_get(&expected));
             cs_text_finish(&expected);

@@ -1,13 +1,10 @@
-/* table_complete.h - what a table insists on, and what its rows stand for in messages. */
+/* table_complete.h - what a table insists on. */
 #ifndef CS_TABLE_COMPLETE_H
 #define CS_TABLE_COMPLETE_H
 
 #include "io/reader.h"
 
 #include <clothsim/option.h>
-
-/* Adds what a row stands for and its range, for messages: "a list of 3 numbers (0..1)". */
-void cs_table_add_expected(const struct cs_option *row, struct cs_text *out);
 
 /* true if the reader insists on the row: no default, or a table that insists on one of its own.
  */
