@@ -61,6 +61,15 @@ bool cs_option_is_optional(const struct cs_option *row) {
     return !cs_value_kind_of(row)->get || (has_default(row) && is_absent(row, NULL));
 }
 
+bool cs_table_needs_row(const struct cs_option *row) {
+    if (row->type != CS_TABLE || row->table->optional)
+        return !has_default(row);
+    bool needs = row->table->one_of;
+    for (uint32_t r = 0; r < row->table->n; r++)
+        needs = needs || cs_table_needs_row(row->table->rows + r);
+    return needs;
+}
+
 bool cs_option_is_given(const struct cs_option *row, const void *object) {
     const struct cs_value_kind *kind = cs_value_kind_of(row);
     return kind->is_given ? kind->is_given(row, const_field_of(row, object))

@@ -14,6 +14,10 @@ void cs_options_default(const struct cs_table *table, void *object);
  * default outside the range. */
 bool cs_option_is_optional(const struct cs_option *row);
 
+/* true if the reader insists on the row: no default, or a table that insists on one of its own.
+ */
+bool cs_table_needs_row(const struct cs_option *row);
+
 /* true if the value of an optional row was given. */
 bool cs_option_is_given(const struct cs_option *row, const void *object);
 

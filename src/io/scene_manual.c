@@ -1,7 +1,6 @@
 /* Prints the scene tables as scdoc text for clothsim-scene(5). */
 #include "base/options.h"
 #include "io/scene_write.h"
-#include "io/table_complete.h"
 
 #include <stdio.h>
 #include <string.h>

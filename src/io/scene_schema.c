@@ -3,7 +3,6 @@
 #include "base/options.h"
 #include "base/value_kind.h"
 #include "io/scene_write.h"
-#include "io/table_complete.h"
 
 enum { STEP = 2 };
 
