@@ -33,6 +33,20 @@ static const char *add_value(struct cs_text *out, const char *format, va_list *a
     return format + 1;
 }
 
+static void add_template(struct cs_text *out, const char *format, va_list *args) {
+    while (*format) {
+        const size_t plain = strcspn(format, "'%");
+        cs_text_add(out, "%.*s", (int)plain, format);
+        format += plain;
+        if (*format == '\'') {
+            cs_text_add(out, "\"");
+            format++;
+        } else if (*format) {
+            format = add_value(out, format + 1, args);
+        }
+    }
+}
+
 /* true at the begin of a text, an object or a list: a text in quotes ends otherwise */
 static bool is_first(const struct cs_text *out) {
     return !out->length || strchr("{[", out->bytes[out->length - 1]);
@@ -43,20 +57,14 @@ void cs_json_write(struct cs_text *out, const char *format, ...) {
     if (*format == ',' && is_first(out))
         format += format[1] == ' ' ? 2 : 1;
     va_start(args, format);
-    while (*format) {
-        const size_t plain = strcspn(format, "'%");
-        cs_text_add(out, "%.*s", (int)plain, format);
-        format += plain;
-        if (*format == '\'') {
-            cs_text_add(out, "\"");
-            format++;
-        } else if (*format) {
-            format = add_value(out, format + 1, &args);
-        }
-    }
+    add_template(out, format, &args);
     va_end(args);
 }
 
-void cs_json_line(struct cs_text *out, int indent) {
+void cs_json_line(struct cs_text *out, int indent, const char *format, ...) {
+    va_list args;
     cs_text_add(out, "%s\n%*s", is_first(out) ? "" : ",", indent, "");
+    va_start(args, format);
+    add_template(out, format, &args);
+    va_end(args);
 }

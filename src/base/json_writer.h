@@ -15,7 +15,8 @@
 void cs_json_write(struct cs_text *out, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Begins a line for a member or an item, with a comma where one stands before it. */
-void cs_json_line(struct cs_text *out, int indent);
+/* The same on a line of its own, with a comma before it where a member or item stands there. */
+void cs_json_line(struct cs_text *out, int indent, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -31,7 +31,7 @@ static void add_default(const struct cs_option *row, struct cs_text *out) {
 static void add_table(const struct cs_table *table, int indent, struct cs_text *out);
 
 static void add_row(const struct cs_option *row, int indent, struct cs_text *out) {
-    cs_json_write(out, row->type == CS_TABLE ? "%s: {" : "%s: { ", row->name);
+    cs_json_line(out, indent, row->type == CS_TABLE ? "%s: {" : "%s: { ", row->name);
     if (row->type == CS_LIST) {
         cs_json_write(out, "'type': 'array', 'items': {");
         add_table(row->table, indent + STEP, out);
@@ -47,17 +47,13 @@ static void add_row(const struct cs_option *row, int indent, struct cs_text *out
 }
 
 static void add_rows(const struct cs_table *table, int indent, struct cs_text *out) {
-    for (uint32_t r = 0; r < table->n; r++) {
-        cs_json_line(out, indent);
+    for (uint32_t r = 0; r < table->n; r++)
         add_row(table->rows + r, indent, out);
-    }
 }
 
 static void add_other_keys(int indent, struct cs_text *out) {
-    cs_json_line(out, indent);
-    cs_json_write(out, "'patternProperties': " FREE_KEYS);
-    cs_json_line(out, indent);
-    cs_json_write(out, "'additionalProperties': false");
+    cs_json_line(out, indent, "'patternProperties': " FREE_KEYS);
+    cs_json_line(out, indent, "'additionalProperties': false");
 }
 
 static void add_needs(const struct cs_table *table, int indent, struct cs_text *out) {
@@ -66,15 +62,14 @@ static void add_needs(const struct cs_table *table, int indent, struct cs_text *
         if (!cs_table_needs_row(table->rows + r))
             continue;
         /* opened at the first row that is needed, so that there is no empty list */
-        if (!n)
-            cs_json_line(out, indent);
-        cs_json_write(out, n++ ? ", %s" : "'required': [%s", table->rows[r].name);
+        if (!n++)
+            cs_json_line(out, indent, "'required': [");
+        cs_json_write(out, ", %s", table->rows[r].name);
     }
     cs_text_add(out, n ? "]" : "");
     if (!table->one_of)
         return;
-    cs_json_line(out, indent);
-    cs_json_write(out, "'oneOf': [");
+    cs_json_line(out, indent, "'oneOf': [");
     /* rows before `uncounted` are not part of the choice */
     for (uint32_t r = table->uncounted; r < table->n; r++)
         if (cs_option_is_optional(table->rows + r))
@@ -83,10 +78,8 @@ static void add_needs(const struct cs_table *table, int indent, struct cs_text *
 }
 
 static void add_object(const struct cs_table *table, int indent, struct cs_text *out) {
-    cs_json_line(out, indent);
-    cs_json_write(out, "'type': 'object'");
-    cs_json_line(out, indent);
-    cs_json_write(out, "'properties': {");
+    cs_json_line(out, indent, "'type': 'object'");
+    cs_json_line(out, indent, "'properties': {");
     add_rows(table, indent + STEP, out);
     cs_text_add(out, "\n%*s}", indent, "");
     add_other_keys(indent, out);
@@ -101,8 +94,7 @@ static void add_table(const struct cs_table *table, int indent, struct cs_text *
         add_object(table, indent, out);
         return;
     }
-    cs_json_line(out, indent);
-    cs_json_write(out, "'anyOf': [{");
+    cs_json_line(out, indent, "'anyOf': [{");
     add_object(table, indent + STEP, out);
     cs_text_add(out, "\n%*s}", indent, "");
     for (uint32_t i = 0; i < 3; i++)

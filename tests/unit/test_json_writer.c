@@ -52,10 +52,8 @@ END_TEST
 START_TEST(lines_are_indented) {
     struct cs_text text = {0};
     cs_json_write(&text, "{");
-    cs_json_line(&text, 2);
-    cs_json_write(&text, "'a': %u", 1u);
-    cs_json_line(&text, 4);
-    cs_json_write(&text, "'b': {}}");
+    cs_json_line(&text, 2, "'a': %u", 1u);
+    cs_json_line(&text, 4, "'b': {}}");
     expect(&text, "{\n  \"a\": 1,\n    \"b\": {}}");
 }
 END_TEST

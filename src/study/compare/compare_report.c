@@ -64,7 +64,7 @@ static void add_verdict(const struct cs_ranking *ranking, const struct cs_compar
     const struct cs_cell *cells = compare->sweep.cells;
     cs_json_write(out, "  'rank': %s,\n  'verdict': [", cs_norm_names[ranking->norm]);
     for (uint32_t k = 0; k < ranking->n; k++) {
-        cs_json_line(out, 4);
+        cs_json_write(out, ",\n    ");
         add_rank(ranking->ranks + k, cells, out);
         cs_text_add(out, ", \"error\": 1e%d}", ranking->ranks[k].exponent);
     }
