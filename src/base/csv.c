@@ -1,6 +1,7 @@
 /* Writes and reads the fields of tables. */
 #include "base/csv.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -14,6 +15,12 @@ void cs_csv_add_field(struct cs_text *out, const char *text) {
         cs_text_add(out, "%s%c", *text == '"' ? "\"" : "",
                     *text == '\n' || *text == '\r' ? ' ' : *text);
     cs_text_add(out, "\"");
+}
+
+void cs_csv_add_real(struct cs_text *out, double value) {
+    cs_text_add(out, ",");
+    if (isfinite(value))
+        cs_text_add_real(out, value);
 }
 
 char *cs_csv_cut_line(char *line, char **fields, uint32_t most, uint32_t *n) {

@@ -1,5 +1,6 @@
 /* clothsim conform: prints a method's conformance card as text or JSON. */
 #include "base/file.h"
+#include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/outside.h"
@@ -58,22 +59,22 @@ static void print_row(const struct cs_conform_row *row, struct cs_error *error) 
     cs_print_out(stdout, &out, error);
 }
 
+/* with all 17 digits */
 static void add_number(struct cs_text *json, const char *key, double value) {
+    cs_json_write(json, ", %s: ", key);
     if (isfinite(value))
-        cs_text_add(json, ", \"%s\": %.17g", key, value);
+        cs_text_add(json, "%.17g", value);
     else
-        cs_text_add(json, ", \"%s\": null", key);
+        cs_text_add(json, "null");
 }
 
 static void add_json(struct output *output, const struct cs_conform_row *row) {
     struct cs_text *json = &output->json;
-    cs_text_add(json, "%s\n    {\"check\": \"%s\", \"verdict\": \"%s\"",
-                output->first ? "" : ",", row->check, cs_verdict_text(row->verdict));
+    cs_json_write(json, ",\n    {'check': %s, 'verdict': %s", row->check,
+                  cs_verdict_text(row->verdict));
     add_number(json, "figure", row->figure);
     add_number(json, "bound", row->bound);
-    cs_text_add(json, ", \"note\": ");
-    cs_text_add_json(json, row->note);
-    cs_text_add(json, "}");
+    cs_json_write(json, ", 'note': %s}", row->note);
     output->first = false;
 }
 
@@ -118,10 +119,8 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .ctx = output,
     };
     output->card = &card;
-    cs_text_add(&output->json, "%s\n  {\"integrator\": \"%s\", \"settings\": ",
-                output->json.length > 1 ? "," : "", method->name);
-    cs_text_add_json(&output->json, output->settings);
-    cs_text_add(&output->json, ", \"checks\": [");
+    cs_json_write(&output->json, ",\n  {'integrator': %s, 'settings': %s, 'checks': [",
+                  method->name, output->settings);
     output->first = true;
     cs_conform_check(&card, error);
     output->card = NULL;

@@ -1,4 +1,5 @@
 /* clothsim golden: recomputes golden hashes and images, and reports what differs. */
+#include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
@@ -50,22 +51,13 @@ static bool takes_stdout(const char *json) {
     return json && !strcmp(json, "-");
 }
 
-static void add_member(struct cs_text *out, const char *key, const char *value) {
-    cs_text_add(out, "\"%s\": ", key);
-    cs_text_add_json(out, value);
-    cs_text_add(out, ", ");
-}
-
 static void add_json(const struct cs_golden_row *row, const char *verdict,
                      struct cs_text *out) {
-    cs_text_add(out, "%s\n    {", out->length ? "," : "");
-    add_member(out, "verdict", verdict);
-    add_member(out, "image", row->image ? row->image : "");
-    add_member(out, "scene", row->run.scene);
-    add_member(out, "integrator", row->run.integrator);
-    add_member(out, "overrides", row->run.overrides);
-    add_member(out, "message", cs_text_get(&row->message));
-    cs_text_add(out, "\"frame\": %u}", row->run.frames);
+    cs_json_write(out,
+                  ",\n    {'verdict': %s, 'image': %s, 'scene': %s, 'integrator': %s, "
+                  "'overrides': %s, 'message': %s, 'frame': %u}",
+                  verdict, row->image ? row->image : "", row->run.scene, row->run.integrator,
+                  row->run.overrides, cs_text_get(&row->message), row->run.frames);
 }
 
 static void print_row(void *ctx, const struct cs_golden_row *row) {
@@ -95,10 +87,11 @@ static enum cs_status write_json(const struct cs_golden *check, struct sink *sin
     const char *path = cs_args_get(sink->args, GOLDEN_JSON);
     struct cs_text out = {0};
     if (path) {
-        cs_text_add(&out, "{\n  \"agree\": %u, \"differ\": %u, \"accepted\": %u, ",
-                    check->passed, check->failed, check->accepted);
-        cs_text_add(&out, "\"skipped\": %u,\n  \"rows\": [%s\n  ]\n}\n", check->skipped,
-                    cs_text_get(&sink->json));
+        cs_json_write(&out,
+                      "{\n  'agree': %u, 'differ': %u, 'accepted': %u, 'skipped': %u,\n"
+                      "  'rows': [",
+                      check->passed, check->failed, check->accepted, check->skipped);
+        cs_text_add(&out, "%s\n  ]\n}\n", cs_text_get(&sink->json));
         out.failed |= sink->json.failed;
         cs_print_file(path, &out, error);
     }

@@ -93,10 +93,8 @@ static void add_option(const struct cs_option *row, const void *defaults, struct
     const bool given = !cs_option_is_optional(row) || cs_option_is_given(row, defaults);
     if (!given)
         cs_text_add(&value, "not set");
-    else if (row->type == CS_CHOICE)
-        cs_text_add(&value, "%s", row->choices[(int)row->def]);
     else
-        cs_option_print(row, defaults, &value);
+        cs_option_print_plain(row, defaults, &value);
     cs_option_print_range(row, &range);
     cs_text_add(&left, "%-*s%-*s%s", DETAIL_COLUMN, row->name, DETAIL_COLUMN,
                 cs_text_get(&value), cs_text_get(&range));

@@ -1,4 +1,5 @@
 /* clothsim stability: maps which steps a method survives, as text, CSV, JSON and a picture. */
+#include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/stability_map.h"
@@ -19,21 +20,13 @@ static bool takes_stdout(const struct cs_args *args) {
     return json && !strcmp(json, "-");
 }
 
-static void add_member(struct cs_text *out, const char *key, const char *value) {
-    cs_text_add(out, "\"%s\": ", key);
-    cs_text_add_json(out, value);
-    cs_text_add(out, ", ");
-}
-
 static void add_json(const struct cs_extreme_row *row, struct cs_text *out) {
-    cs_text_add(out, "%s\n    {", out->length ? "," : "");
-    add_member(out, "scene", row->scene);
-    add_member(out, "method", row->method);
-    add_member(out, "expected", row->expected);
-    add_member(out, "verdict", cs_stability_word(row->verdict));
-    add_member(out, "message", row->message);
-    cs_text_add(out, "\"met\": %s, \"seconds\": %.3g}", row->met ? "true" : "false",
-                row->seconds);
+    cs_json_write(out,
+                  ",\n    {'scene': %s, 'method': %s, 'expected': %s, 'verdict': %s, "
+                  "'message': %s, 'met': %d, 'seconds': ",
+                  row->scene, row->method, row->expected, cs_stability_word(row->verdict),
+                  row->message, row->met);
+    cs_text_add(out, "%.3g}", row->seconds);
 }
 
 static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
@@ -54,8 +47,9 @@ static void write_json(const struct cs_extreme *extreme, struct sink *sink,
     struct cs_text out = {0};
     struct cs_error failure = {0};
     if (path) {
-        cs_text_add(&out, "{\n  \"met\": %u, \"missed\": %u,\n  \"rows\": [%s\n  ]\n}\n",
-                    extreme->met, extreme->missed, cs_text_get(&sink->json));
+        cs_json_write(&out, "{\n  'met': %u, 'missed': %u,\n  'rows': [", extreme->met,
+                      extreme->missed);
+        cs_text_add(&out, "%s\n  ]\n}\n", cs_text_get(&sink->json));
         out.failed |= sink->json.failed;
         if (cs_print_file(path, &out, &failure))
             *error = failure;

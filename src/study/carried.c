@@ -12,14 +12,13 @@
 #include <string.h>
 
 const char *cs_carried_text(const struct cs_json *object, const char *key) {
-    const struct cs_json *found = object ? cs_json_find(object, key) : NULL;
-    return found && cs_json_kind_of(found) == CS_JSON_TEXT ? cs_json_text(found) : "";
+    const struct cs_json *found = cs_json_find_kind(object, key, CS_JSON_TEXT);
+    return found ? cs_json_text(found) : "";
 }
 
 double cs_carried_number(const struct cs_json *object, const char *key) {
-    const struct cs_json *found = object ? cs_json_find(object, key) : NULL;
-    return found && cs_json_kind_of(found) == CS_JSON_NUMBER ? cs_json_number(found)
-                                                             : (double)NAN;
+    const struct cs_json *found = cs_json_find_kind(object, key, CS_JSON_NUMBER);
+    return found ? cs_json_number(found) : (double)NAN;
 }
 
 /* behind the object that begins at a place of a text that was checked */
@@ -34,10 +33,9 @@ static size_t end_of_object(const char *text, size_t at) {
 }
 
 static enum cs_status take_scene(struct cs_carried *carried, struct cs_error *error) {
-    const struct cs_json *scene = cs_json_find(carried->root, "scene");
+    const struct cs_json *scene = cs_json_find_kind(carried->root, "scene", CS_JSON_OBJECT);
     size_t begin;
-    if (!scene || cs_json_kind_of(scene) != CS_JSON_OBJECT || !*carried->scene_file ||
-        !cs_json_place(scene, carried->text, false, &begin))
+    if (!scene || !*carried->scene_file || !cs_json_place(scene, carried->text, false, &begin))
         return cs_fail(error, CS_ERR_FILE,
                        "%s: expected \"scene\" and \"scene_file\", as clothsim writes them",
                        carried->name);
@@ -47,7 +45,8 @@ static enum cs_status take_scene(struct cs_carried *carried, struct cs_error *er
 }
 
 static void take_members(struct cs_carried *carried) {
-    const struct cs_json *root = carried->root, *fast = cs_json_find(root, "fast_render");
+    const struct cs_json *root = carried->root;
+    const struct cs_json *fast = cs_json_find_kind(root, "fast_render", CS_JSON_BOOL);
     const struct cs_json *module = cs_json_find(root, "module");
     const double restarts = cs_carried_number(root, "restarted_every");
     carried->version = cs_carried_text(cs_json_find(root, "versions"), "clothsim");
@@ -60,7 +59,7 @@ static void take_members(struct cs_carried *carried) {
     carried->module_hash = cs_carried_text(module, "hash");
     carried->library = cs_carried_text(module, "library");
     carried->restarts = restarts >= 1 && restarts < 1e9 ? (uint32_t)restarts : 0;
-    carried->fast = fast && cs_json_kind_of(fast) == CS_JSON_BOOL && cs_json_is_true(fast);
+    carried->fast = fast && cs_json_is_true(fast);
 }
 
 static enum cs_status parse(struct cs_carried *carried, size_t length, struct cs_error *error) {

@@ -248,6 +248,10 @@ START_TEST(members_are_found_exactly) {
     ck_assert_str_eq(cs_json_text(cs_json_find(root, "AB")), "t");
     ck_assert_uint_eq(cs_json_count(cs_json_find(root, "ab")), 2);
     ck_assert_ptr_null(cs_json_find(root, "Ab"));
+    ck_assert_ptr_null(cs_json_find(NULL, "AB"));
+    ck_assert_ptr_eq(cs_json_find_kind(root, "AB", CS_JSON_TEXT), cs_json_find(root, "AB"));
+    ck_assert_ptr_null(cs_json_find_kind(root, "AB", CS_JSON_NUMBER));
+    ck_assert_ptr_null(cs_json_find_kind(root, "Ab", CS_JSON_TEXT));
     ck_assert_ptr_null(cs_json_at(cs_json_find(root, "ab"), 2));
     ck_assert_ptr_null(cs_json_at(root, 0));
     ck_assert_ptr_null(cs_json_find(cs_json_find(root, "n"), "x"));

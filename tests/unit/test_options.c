@@ -225,10 +225,49 @@ START_TEST(ranges_are_printed) {
 }
 END_TEST
 
+/* without an object: the default */
+START_TEST(defaults_and_words_are_printed) {
+    static const char *const json[] = {"0.25",      "null",      "3",     "true",
+                                       "\"exact\"", "[1.5, -2]", "[4, 4]"};
+    static const char *const plain[] = {"0.25",  "null",    "3",   "true",
+                                        "exact", "1.5, -2", "4, 4"};
+    for (uint32_t r = 0; r < sizeof json / sizeof *json; r++) {
+        struct cs_text text = {0}, words = {0};
+        cs_option_print(rows + r, NULL, &text);
+        cs_option_print_plain(rows + r, NULL, &words);
+        ck_assert_str_eq(cs_text_get(&text), json[r]);
+        ck_assert_str_eq(cs_text_get(&words), plain[r]);
+        cs_text_finish(&text);
+        cs_text_finish(&words);
+    }
+}
+END_TEST
+
+START_TEST(what_is_expected_is_named) {
+    static const char *const expected[] = {"a number (0..1 s)",
+                                           "a number (0..1 m)",
+                                           "a whole number (1..9)",
+                                           "true or false",
+                                           "one of fast, exact",
+                                           "a list of 2 numbers (-5..5 m)",
+                                           "a list of 2 whole numbers (0..5)",
+                                           "a text",
+                                           "an object",
+                                           "a list"};
+    for (uint32_t r = 0; r < table.n; r++) {
+        struct cs_text text = {0};
+        cs_option_print_expected(rows + r, &text);
+        ck_assert_str_eq(cs_text_get(&text), expected[r]);
+        cs_text_finish(&text);
+    }
+}
+END_TEST
+
 int main(void) {
-    const TTest *const tests[] = {every_field_gets_its_default, absent_values_are_known,
-                                  text_sets_each_type,          wrong_values_are_refused,
-                                  components_are_named,         rows_are_found_by_name,
-                                  values_are_printed_as_json,   ranges_are_printed};
+    const TTest *const tests[] = {
+        every_field_gets_its_default, absent_values_are_known, text_sets_each_type,
+        wrong_values_are_refused,     components_are_named,    rows_are_found_by_name,
+        values_are_printed_as_json,   ranges_are_printed,      defaults_and_words_are_printed,
+        what_is_expected_is_named};
     return unit_run("options", tests, sizeof tests / sizeof *tests);
 }

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json_writer.h"
 #include "io/scene_write.h"
 #include "model/event/events.h"
 #include "scene/pairs.h"
@@ -71,8 +72,8 @@ static enum cs_status tell_origin(struct cs_compare *compare, struct cs_error *e
     if (cs_scene_read(&scene, cs_data_find(asked->scene, found, sizeof found), asked->overrides,
                       asked->n_overrides, error))
         return error->status;
-    cs_text_add(out, "{\n  \"versions\": {\"clothsim\": \"%s\"},\n  \"frames\": %u,\n",
-                CS_VERSION, course->frames);
+    cs_json_write(out, "{\n  'versions': {'clothsim': %s},\n  'frames': %u,\n", CS_VERSION,
+                  course->frames);
     cs_origin_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     cs_scene_print(&scene, NULL, NULL, 2, out);
