@@ -1,6 +1,7 @@
 /* Keeps the account of a run's energy, step by step. */
 #include "sim/account.h"
 
+#include "base/table.h"
 #include "model/event/events.h"
 #include "model/force/measure.h"
 #include "model/force/normals.h"
@@ -259,20 +260,14 @@ void cs_account_print_head(struct cs_text *out) {
     cs_text_add(out, "\n");
 }
 
-static void add_real(struct cs_text *out, double value) {
-    cs_text_add(out, ",");
-    if (isfinite(value))
-        cs_text_add_real(out, value);
-}
-
 void cs_account_print_row(const struct cs_account *account, uint32_t frame,
                           struct cs_text *out) {
     cs_text_add(out, "%u", frame);
-    add_real(out, account->t);
+    cs_csv_add_number(out, account->t);
     for (int k = 0; k < CS_HOLDINGS; k++)
-        add_real(out, account->holds[k]);
-    add_real(out, cs_account_sum(account));
+        cs_csv_add_number(out, account->holds[k]);
+    cs_csv_add_number(out, cs_account_sum(account));
     for (int k = 0; k < CS_WORKS; k++)
-        add_real(out, account->work[k]);
+        cs_csv_add_number(out, account->work[k]);
     cs_text_add(out, "\n");
 }

@@ -2,6 +2,7 @@
  * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
 #include "study/stability/stability_report.h"
 
+#include "base/table.h"
 #include "study/stability/contact_line.h"
 
 #include <math.h>
@@ -171,13 +172,6 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
 
 /* --- CSV and JSON --- */
 
-/* a number; an empty field for one that is not there */
-static void add_field(struct cs_text *out, double value) {
-    cs_text_add(out, ",");
-    if (isfinite(value))
-        cs_text_add_real(out, value);
-}
-
 /* the middle between two neighbours on a logarithmic scale, and as far beyond the ends; without
  * neighbours so many times the value */
 static double edge(double before, double here, double after, double alone) {
@@ -201,16 +195,16 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     const double right = value_at(map, c + 1), below = r ? dt_at(map, r - 1) : 0;
     const double above = dt_at(map, r + 1);
     cs_text_add_real(out, value);
-    add_field(out, cell->dt);
+    cs_csv_add_number(out, cell->dt);
     cs_text_add(out, ",%s,%d", cs_stability_word(cell->verdict), (int)cell->verdict);
-    add_field(out, cell->drift);
-    add_field(out, cell->time);
+    cs_csv_add_number(out, cell->drift);
+    cs_csv_add_number(out, cell->time);
     cs_text_add(out, ",%u", cell->particles);
-    add_field(out, edge(left, value, right, 1 / ALONE));
-    add_field(out, edge(right, value, left, ALONE));
-    add_field(out, edge(below, cell->dt, above, 1 / ALONE));
-    add_field(out, edge(above, cell->dt, below, ALONE));
-    add_field(out, cell->crossings);
+    cs_csv_add_number(out, edge(left, value, right, 1 / ALONE));
+    cs_csv_add_number(out, edge(right, value, left, ALONE));
+    cs_csv_add_number(out, edge(below, cell->dt, above, 1 / ALONE));
+    cs_csv_add_number(out, edge(above, cell->dt, below, ALONE));
+    cs_csv_add_number(out, cell->crossings);
     cs_text_add(out, "\n");
 }
 
@@ -237,11 +231,11 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
         cs_text_add_real(out, column->value);
         /* 0 stands for no stable step, which no logarithmic scale shows */
         for (int k = 0; k < 4; k++)
-            add_field(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
-        add_field(out, mode->square > 0 ? sqrt(mode->square) : 0);
-        add_field(out, mode->rate);
+            cs_csv_add_number(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
+        cs_csv_add_number(out, mode->square > 0 ? sqrt(mode->square) : 0);
+        cs_csv_add_number(out, mode->rate);
         cs_text_add(out, ",%u", mode->particle);
-        add_field(out, mode->share);
+        cs_csv_add_number(out, mode->share);
         cs_text_add(out, "\n");
     }
 }
