@@ -3,9 +3,8 @@
 #include "cli/commands.h"
 #include "study/compare/compare_ledger.h"
 #include "study/product.h"
+#include "study/stability/stability_journal.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,26 +17,6 @@ static const struct cs_arg rows[MERGE_ROWS] = {
     [MERGE_OUT] = {"out", 'o', "DIR", "folder of the whole (default: merged)", false},
     [MERGE_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
 };
-
-static bool is_partial(const char *name) {
-    const size_t length = strlen(name);
-    return length > 8 && !strcmp(name + length - 8, ".partial");
-}
-
-/* Records say themselves what they are of: those of two files may stand behind each other. */
-static enum cs_status append_file(const char *from, const char *to, struct cs_error *error) {
-    char *bytes;
-    size_t length;
-    if (cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
-        return error->status;
-    FILE *file = fopen(to, "ae");
-    if (!file || fwrite(bytes, 1, length, file) != length || fflush(file))
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", to, strerror(errno));
-    if (file)
-        fclose(file);
-    free(bytes);
-    return error->status;
-}
 
 /* Any part says which scene a comparison is of. */
 static enum cs_status copy_origin(const char *folder, const char *out, struct cs_error *error) {
@@ -53,44 +32,28 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
     return error->status;
 }
 
-static enum cs_status append_maps(const char *folder, const char *out, uint32_t *n,
-                                  struct cs_error *error) {
-    char from[4096], to[4096];
-    DIR *directory = opendir(folder);
-    if (!directory)
-        return cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", folder, strerror(errno));
-    for (const struct dirent *entry; !error->status && (entry = readdir(directory));)
-        if (is_partial(entry->d_name)) {
-            snprintf(from, sizeof from, "%s/%s", folder, entry->d_name);
-            snprintf(to, sizeof to, "%s/%s", out, entry->d_name);
-            append_file(from, to, error);
-            ++*n;
-        }
-    closedir(directory);
-    return error->status;
-}
-
 static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     const char *given = cs_args_get(args, MERGE_OUT), *out = given ? given : "merged";
+    const char *const *folders = args->operands;
+    const uint32_t n = args->n_operands;
     uint32_t cells = 0, rows_of_sweep = 0, maps = 0;
-    for (uint32_t k = 0; k < args->n_operands; k++)
-        if (!strcmp(args->operands[k], out))
+    for (uint32_t k = 0; k < n; k++)
+        if (!strcmp(folders[k], out))
             return cs_fail(error, CS_ERR_USAGE, "%s is both a part and the whole", out);
-    if (cs_folder_make(out, error) ||
-        cs_ledger_merge(args->operands, args->n_operands, out, &cells, error) ||
-        cs_product_merge(args->operands, args->n_operands, out, &rows_of_sweep, error))
+    if (cs_ledger_merge(folders, n, out, &cells, error) ||
+        cs_product_merge(folders, n, out, &rows_of_sweep, error))
         return error->status;
     cells += rows_of_sweep;
-    for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
-        if (!copy_origin(args->operands[k], out, error))
-            append_maps(args->operands[k], out, &maps, error);
-    if (!error->status && cells + maps == 0)
+    for (uint32_t k = 0; k < n && !error->status; k++)
+        copy_origin(folders[k], out, error);
+    if (error->status || cs_journal_merge(folders, n, out, &maps, error))
+        return error->status;
+    if (cells + maps == 0)
         return cs_fail(error, CS_ERR_FILE,
                        "no folder holds a compare.csv, a sweep.csv or the .partial of a map");
-    if (!error->status && !cs_args_get(args, MERGE_QUIET))
-        printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps,
-               args->n_operands, out);
-    return error->status;
+    if (!cs_args_get(args, MERGE_QUIET))
+        printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps, n, out);
+    return CS_OK;
 }
 
 const struct cs_command cs_command_merge = {

@@ -1,7 +1,7 @@
 /* clothsim plot: draws two columns of a comparison against each other. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "study/compare/compare_csv.h"
+#include "study/compare/compare_cell.h"
 #include "study/compare/compare_plot.h"
 
 #include <stdio.h>

@@ -44,16 +44,11 @@ static void show_progress(void *ctx, uint32_t done, uint32_t total) {
 static enum cs_status write_one(const char *folder, const char *name,
                                 void (*print)(const struct cs_soft *, struct cs_text *),
                                 const struct cs_soft *soft, struct cs_error *error) {
-    struct cs_text path = {0}, text = {0};
-    cs_text_add(&path, "%s/%s", folder, name);
+    struct cs_text text = {0};
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
     print(soft, &text);
-    if (path.failed || text.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", name);
-    else
-        cs_file_write(cs_text_get(&path), cs_text_get(&text), text.length, error);
-    cs_text_finish(&path);
-    cs_text_finish(&text);
-    return error->status;
+    return cs_file_write_text(path, &text, error);
 }
 
 static enum cs_status write_files(const char *folder, const struct cs_soft *soft,

@@ -23,14 +23,10 @@ static void show_progress(void *ctx, uint32_t done, uint32_t total) {
 static enum cs_status write_file(const struct cs_args *args, const char *folder,
                                  const char *name, const char *ending, struct cs_text *text,
                                  struct cs_error *error) {
-    struct cs_text path = {0};
-    cs_text_add(&path, "%s/%s%s", folder, name, ending);
-    if (text->failed || path.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the files of a map");
-    else if (cs_args_get(args, STABILITY_OVERWRITE) ||
-             !cs_output_check_file(cs_text_get(&path), error))
-        cs_file_write(cs_text_get(&path), text->bytes, text->length, error);
-    cs_text_finish(&path);
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
+    if (cs_args_get(args, STABILITY_OVERWRITE) || !cs_output_check_file(path, error))
+        cs_file_write_text(path, text, error);
     cs_text_finish(text);
     return error->status;
 }
@@ -87,7 +83,7 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
 static void tell_shard(const struct cs_stability *map, bool quiet) {
     if (!quiet)
         printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,
-               map->settings->shard.number, map->settings->shard.of, map->journal.path);
+               map->settings->shard.number, map->settings->shard.of, map->journal.table.path);
 }
 
 static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
@@ -119,7 +115,7 @@ enum cs_status cs_stability_map_one(const struct cs_args *args,
         *error = (struct cs_error){0};
         cs_fail(error, CS_ERR_INTERRUPT,
                 "interrupted; what was found is in %s, and the same command goes on from it",
-                map.journal.path);
+                map.journal.table.path);
     }
     if (!error->status && !map.complete)
         tell_shard(&map, quiet);

@@ -1,6 +1,7 @@
 /* Keeps the account of a run's energy, step by step. */
 #include "sim/account.h"
 
+#include "base/table.h"
 #include "model/event/events.h"
 #include "model/force/measure.h"
 #include "model/force/normals.h"
@@ -282,25 +283,27 @@ void cs_account_keep(struct cs_account *account, double t, const double *x, cons
     find_acceleration(account, t, x, v, account->a);
 }
 
-/* a field of the head, or with values one of a row */
-static void add_field(struct cs_text *out, const char *name, const double *value) {
+/* value NULL: the name, as in the head */
+static void add_column(struct cs_text *out, const char *name, const double *value) {
+    if (value) {
+        cs_csv_add_number(out, *value);
+        return;
+    }
     cs_text_add(out, ",");
-    for (; !value && *name; name++)
+    for (; *name; name++)
         cs_text_add(out, "%c", *name == ' ' ? '_' : *name);
-    if (value && isfinite(*value))
-        cs_text_add_real(out, *value);
 }
 
 /* values NULL: the head */
 static void add_columns(const struct columns *columns, const double *values,
                         struct cs_text *out) {
     for (uint32_t c = 0; c < columns->n; c++)
-        add_field(out, columns->names[c], values ? values + c : NULL);
+        add_column(out, columns->names[c], values ? values + c : NULL);
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         const uint32_t c = column_of(columns, k);
         if (c < columns->n || c == CS_NO_COLUMN)
             continue;
-        add_field(out, cs_terms[k]->name, values ? values + c : NULL);
+        add_column(out, cs_terms[k]->name, values ? values + c : NULL);
         if (!values && columns->work && column_of(&energies, k) != CS_NO_COLUMN)
             cs_text_add(out, "_work");
     }
@@ -316,11 +319,10 @@ void cs_account_print_head(struct cs_text *out) {
 
 void cs_account_print_row(const struct cs_account *account, uint32_t frame,
                           struct cs_text *out) {
-    const double sum = cs_account_sum(account);
     cs_text_add(out, "%u", frame);
-    add_field(out, NULL, &account->t);
+    cs_csv_add_number(out, account->t);
     add_columns(&energies, account->holds, out);
-    add_field(out, NULL, &sum);
+    cs_csv_add_number(out, cs_account_sum(account));
     add_columns(&work_done, account->work, out);
     cs_text_add(out, "\n");
 }

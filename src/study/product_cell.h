@@ -29,7 +29,7 @@ void cs_product_cell_close(struct cs_product_cell *cell);
 enum cs_status cs_product_cell_run(struct cs_product_cell *cell, struct cs_product *product,
                                    struct cs_text *out, struct cs_error *error);
 
-/* Adds the first line of the table. */
+/* Adds the names of the columns, without the end of the line. */
 void cs_product_add_head(const struct cs_product *product, struct cs_text *out);
 
 #endif

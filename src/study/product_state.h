@@ -2,8 +2,8 @@
 #ifndef CS_PRODUCT_STATE_H
 #define CS_PRODUCT_STATE_H
 
+#include "base/table.h"
 #include "study/session.h"
-#include "study/shard.h"
 
 enum { CS_PRODUCT_KEYS = 16, CS_PRODUCT_CELLS = 10000000 };
 

@@ -1,7 +1,7 @@
 /* Judges by its energy alone whether a run is still sound. */
 #include "study/watch.h"
 
-#include "base/csv.h"
+#include "base/table.h"
 #include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
@@ -202,7 +202,7 @@ void cs_watch_print_row(const struct cs_watch_row *row, uint32_t frame, struct c
                              row->speed};
     cs_text_add(out, "%u", frame);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++)
-        cs_csv_add_real(out, values[k]);
+        cs_csv_add_number(out, values[k]);
     cs_text_add(out, ",%u,%u,%s\n", row->particle, row->particles,
                 cs_stability_word(row->verdict));
 }

@@ -1,6 +1,6 @@
 /* A whole comparison: rows, orders, the file, the verdict. */
 #include "place.h"
-#include "study/compare/compare_csv.h"
+#include "study/compare/compare_cell.h"
 #include "study/compare/compare_plot.h"
 #include "study/compare/compare_svg.h"
 #include "study/compare/ranking.h"
@@ -82,9 +82,9 @@ START_TEST(quotes_read_back) {
     cs_cell_init(&cell, "rk4");
     snprintf(cell.note, sizeof cell.note, "a, \"b\" and \"\"");
     snprintf(cell.options, sizeof cell.options, "dt=0.1,order=2");
-    cs_csv_add_head(&text);
-    cs_csv_add_cell(&text, &cell);
-    cs_csv_add_cell(&text, &cell);
+    cs_columns_print_names(cs_columns, cs_n_columns, &text);
+    cs_columns_print_row(cs_columns, cs_n_columns, &cell, &text);
+    cs_columns_print_row(cs_columns, cs_n_columns, &cell, &text);
     // the end of a line that was being written
     text.bytes[text.length - 8] = 0;
     FILE *file = fdopen(mkstemp(path), "w");

@@ -1,6 +1,6 @@
 /* The folder of a comparison: what an interrupt leaves, and what another run adds. */
 #include "place.h"
-#include "study/compare/compare_csv.h"
+#include "study/compare/compare_cell.h"
 #include "study/compare/ranking.h"
 
 #include <sys/wait.h>

@@ -3,9 +3,9 @@
 #define CS_ARGS_H
 
 #include "base/arena.h"
+#include "base/table.h"
 #include "base/text.h"
 #include "io/scene_read.h"
-#include "study/shard.h"
 
 #include <stdbool.h>
 #include <stdint.h>

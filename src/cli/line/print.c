@@ -60,12 +60,6 @@ void cs_print_message(const char *message) {
 }
 
 enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error) {
-    if (!strcmp(path, "-"))
-        return cs_print_out(stdout, text, error);
-    if (text->failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", path);
-    else
-        cs_file_write(path, text->bytes, text->length, error);
-    cs_text_finish(text);
-    return error->status;
+    return strcmp(path, "-") != 0 ? cs_file_write_text(path, text, error)
+                                  : cs_print_out(stdout, text, error);
 }

@@ -1,7 +1,6 @@
 /* Makes a row of a comparison again. */
 #include "study/compare/compare_again.h"
 
-#include "study/compare/compare_csv.h"
 #include "study/compare/sweep.h"
 #include "study/course.h"
 #include "study/origin.h"

@@ -2,13 +2,13 @@
 #include "study/compare/compare_ledger.h"
 
 #include "base/file.h"
-#include "base/lock.h"
-#include "study/compare/compare_csv.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+static const char *const NAME = "compare.csv";
 
 static struct cs_cell *find(const struct cs_sweep *sweep, const struct cs_cell *cell) {
     for (uint32_t k = 0; k < sweep->n; k++)
@@ -23,39 +23,38 @@ static enum cs_status write_rows(const struct cs_ledger *ledger,
                                  const struct cs_compare *compare, bool others,
                                  struct cs_error *error) {
     struct cs_text text = {0};
-    cs_csv_add_head(&text);
+    cs_columns_print_names(cs_columns, cs_n_columns, &text);
     for (uint32_t k = 0; k < compare->sweep.n; k++)
         if (*compare->sweep.cells[k].outcome)
-            cs_csv_add_cell(&text, compare->sweep.cells + k);
+            cs_columns_print_row(cs_columns, cs_n_columns, compare->sweep.cells + k, &text);
     for (uint32_t k = 0; k < ledger->n_old && others; k++)
         if (!find(&compare->sweep, ledger->old + k))
-            cs_csv_add_cell(&text, ledger->old + k);
-    if (text.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", ledger->path);
-    else
-        cs_file_write(ledger->path, cs_text_get(&text), text.length, error);
-    cs_text_finish(&text);
-    return error->status;
+            cs_columns_print_row(cs_columns, cs_n_columns, ledger->old + k, &text);
+    return cs_file_write_text(ledger->table.path, &text, error);
 }
 
-static enum cs_status read_rows(struct cs_ledger *ledger, const struct cs_compare *compare,
-                                struct cs_error *error) {
-    free(ledger->old);
-    ledger->old = NULL;
-    ledger->n_old = 0;
-    if (access(ledger->path, F_OK))
-        return CS_OK;
-    if (cs_csv_read(ledger->path, &ledger->old, &ledger->n_old, error))
+/* The rows of a file, where there is one. */
+static enum cs_status read_rows(const char *path, const char *machine, struct cs_cell **cells,
+                                uint32_t *n, struct cs_error *error) {
+    *cells = NULL;
+    *n = 0;
+    if (access(path, F_OK) || cs_csv_read(path, cells, n, error))
         return error->status;
-    for (uint32_t i = 0; i < ledger->n_old; i++)
-        cs_cell_name_machine(ledger->old + i, compare->machine);
+    for (uint32_t i = 0; i < *n; i++)
+        cs_cell_name_machine(*cells + i, machine);
     return CS_OK;
+}
+
+static enum cs_status read_again(struct cs_ledger *ledger, const struct cs_compare *compare,
+                                 struct cs_error *error) {
+    free(ledger->old);
+    return read_rows(ledger->table.path, compare->machine, &ledger->old, &ledger->n_old, error);
 }
 
 /* A file that is none of ours, or of another comparison, is not written over. */
 static enum cs_status read_old(struct cs_ledger *ledger, const struct cs_compare *compare,
                                struct cs_error *error) {
-    if (read_rows(ledger, compare, error))
+    if (read_again(ledger, compare, error))
         return error->status;
     if (compare->settings->fresh)
         ledger->n_old = 0;
@@ -64,7 +63,7 @@ static enum cs_status read_old(struct cs_ledger *ledger, const struct cs_compare
             return cs_fail(error, CS_ERR_USAGE,
                            "%s is of another scene, time or reference: give another folder "
                            "with --out, or --fresh to write over it",
-                           ledger->path);
+                           ledger->table.path);
     return CS_OK;
 }
 
@@ -101,53 +100,45 @@ static enum cs_status take_over(struct cs_ledger *ledger, struct cs_compare *com
 
 enum cs_status cs_ledger_open(struct cs_ledger *ledger, struct cs_compare *compare,
                               struct cs_error *error) {
-    struct cs_lock lock;
     *ledger = (struct cs_ledger){0};
-    snprintf(ledger->path, sizeof ledger->path, "%s/compare.csv", compare->settings->folder);
-    snprintf(ledger->lock, sizeof ledger->lock, "%s/.lock", compare->settings->folder);
-    if (cs_folder_make(compare->settings->folder, error) ||
-        cs_lock_take(&lock, ledger->lock, error))
+    if (cs_row_table_open(&ledger->table, compare->settings->folder, NAME, ".lock", 0, error) ||
+        cs_row_table_lock(&ledger->table, error))
         return error->status;
     if (!read_old(ledger, compare, error) && !take_over(ledger, compare, error))
         write_rows(ledger, compare, false, error);
-    cs_lock_give(&lock);
+    cs_row_table_unlock(&ledger->table);
     return error->status;
 }
 
 enum cs_status cs_ledger_append(struct cs_ledger *ledger, const struct cs_cell *cell,
                                 struct cs_error *error) {
     struct cs_text line = {0};
-    struct cs_lock lock;
-    cs_csv_add_cell(&line, cell);
+    cs_columns_print_row(cs_columns, cs_n_columns, cell, &line);
     if (line.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
-    else if (!cs_lock_take(&lock, ledger->lock, error)) {
-        cs_file_append(ledger->path, line.bytes, line.length, error);
-        cs_lock_give(&lock);
-    }
+    else
+        cs_row_table_append(&ledger->table, line.bytes, line.length, error);
     cs_text_finish(&line);
     return error->status;
 }
 
 enum cs_status cs_ledger_refresh(struct cs_ledger *ledger, struct cs_compare *compare,
                                  struct cs_error *error) {
-    struct cs_lock lock;
-    if (cs_lock_take(&lock, ledger->lock, error))
+    if (cs_row_table_lock(&ledger->table, error))
         return error->status;
-    if (!read_rows(ledger, compare, error))
+    if (!read_again(ledger, compare, error))
         take_over(ledger, compare, error);
-    cs_lock_give(&lock);
+    cs_row_table_unlock(&ledger->table);
     return error->status;
 }
 
 enum cs_status cs_ledger_rewrite(struct cs_ledger *ledger, const struct cs_compare *compare,
                                  struct cs_error *error) {
-    struct cs_lock lock;
-    if (cs_lock_take(&lock, ledger->lock, error))
+    if (cs_row_table_lock(&ledger->table, error))
         return error->status;
-    if (!read_rows(ledger, compare, error))
+    if (!read_again(ledger, compare, error))
         write_rows(ledger, compare, true, error);
-    cs_lock_give(&lock);
+    cs_row_table_unlock(&ledger->table);
     return error->status;
 }
 
@@ -157,20 +148,20 @@ void cs_ledger_close(struct cs_ledger *ledger) {
 }
 
 /* Adds the rows of one file. */
-static enum cs_status add_file(struct cs_sweep *sweep, const char *path, const char *here,
+static enum cs_status add_file(struct cs_compare *compare, const char *folder,
                                struct cs_error *error) {
+    struct cs_sweep *sweep = &compare->sweep;
     struct cs_cell *cells;
+    char path[4200];
     uint32_t n;
-    if (access(path, F_OK) || cs_csv_read(path, &cells, &n, error))
-        return error->status;
-    for (uint32_t k = 0; k < n && !error->status; k++) {
-        cs_cell_name_machine(cells + k, here);
+    snprintf(path, sizeof path, "%s/%s", folder, NAME);
+    read_rows(path, compare->machine, &cells, &n, error);
+    for (uint32_t k = 0; k < n && !error->status; k++)
         if (strncmp(cells[k].key, sweep->n ? sweep->cells[0].key : cells[k].key,
                     CS_COMPARE_DIGITS) != 0)
             cs_fail(error, CS_ERR_USAGE, "%s is of another scene, time or reference", path);
         else
             cs_sweep_add(sweep, cells + k, error);
-    }
     free(cells);
     return error->status;
 }
@@ -179,15 +170,12 @@ enum cs_status cs_ledger_merge(const char *const *folders, uint32_t n_folders, c
                                uint32_t *n, struct cs_error *error) {
     struct cs_ledger ledger = {0};
     struct cs_compare compare = {0};
-    char path[4096];
     cs_machine_name(compare.machine);
-    snprintf(ledger.path, sizeof ledger.path, "%s/compare.csv", out);
     // what is in the whole already is a part of it
-    add_file(&compare.sweep, ledger.path, compare.machine, error);
-    for (uint32_t k = 0; k < n_folders && !error->status; k++) {
-        snprintf(path, sizeof path, "%s/compare.csv", folders[k]);
-        add_file(&compare.sweep, path, compare.machine, error);
-    }
+    if (!cs_row_table_open(&ledger.table, out, NAME, ".lock", 0, error))
+        add_file(&compare, out, error);
+    for (uint32_t k = 0; k < n_folders && !error->status; k++)
+        add_file(&compare, folders[k], error);
     *n = compare.sweep.n;
     if (!error->status && *n > 0)
         write_rows(&ledger, &compare, false, error);

@@ -217,15 +217,10 @@ static enum cs_status draw(const struct cs_compare *compare, const char *name, c
 }
 
 static enum cs_status write_text(const struct cs_compare *compare, const char *name,
-                                 const struct cs_text *text, struct cs_error *error) {
-    struct cs_text path = {0};
-    cs_text_add(&path, "%s/%s", compare->settings->folder, name);
-    if (text->failed || path.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", name);
-    else
-        cs_file_write(cs_text_get(&path), cs_text_get(text), text->length, error);
-    cs_text_finish(&path);
-    return error->status;
+                                 struct cs_text *text, struct cs_error *error) {
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s", compare->settings->folder, name);
+    return cs_file_write_text(path, text, error);
 }
 
 enum cs_status cs_compare_write_report(const struct cs_compare *compare,

@@ -241,12 +241,11 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                                                              : "has no option dt");
     if (name_series(map, error) || cs_session_build(&map->session, error) ||
         lay_out(map, error) || cs_journal_open(map, error) || share_out(map, error) ||
-        check_references(map, error)) {
-        cs_journal_close(map, false);
+        check_references(map, error))
         return error->status;
-    }
     map->complete = is_complete(map);
-    cs_journal_close(map, map->complete);
+    if (map->complete)
+        cs_journal_remove(map);
     map->wall = cs_clock_wall() - begin;
     return CS_OK;
 }

@@ -2,8 +2,8 @@
  * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
 #include "study/stability/stability_report.h"
 
-#include "base/csv.h"
 #include "base/json_writer.h"
+#include "base/table.h"
 #include "study/stability/contact_line.h"
 
 #include <math.h>
@@ -196,16 +196,16 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     const double right = value_at(map, c + 1), below = r ? dt_at(map, r - 1) : 0;
     const double above = dt_at(map, r + 1);
     cs_text_add_real(out, value);
-    cs_csv_add_real(out, cell->dt);
+    cs_csv_add_number(out, cell->dt);
     cs_text_add(out, ",%s,%d", cs_stability_word(cell->verdict), (int)cell->verdict);
-    cs_csv_add_real(out, cell->drift);
-    cs_csv_add_real(out, cell->time);
+    cs_csv_add_number(out, cell->drift);
+    cs_csv_add_number(out, cell->time);
     cs_text_add(out, ",%u", cell->particles);
-    cs_csv_add_real(out, edge(left, value, right, 1 / ALONE));
-    cs_csv_add_real(out, edge(right, value, left, ALONE));
-    cs_csv_add_real(out, edge(below, cell->dt, above, 1 / ALONE));
-    cs_csv_add_real(out, edge(above, cell->dt, below, ALONE));
-    cs_csv_add_real(out, cell->crossings);
+    cs_csv_add_number(out, edge(left, value, right, 1 / ALONE));
+    cs_csv_add_number(out, edge(right, value, left, ALONE));
+    cs_csv_add_number(out, edge(below, cell->dt, above, 1 / ALONE));
+    cs_csv_add_number(out, edge(above, cell->dt, below, ALONE));
+    cs_csv_add_number(out, cell->crossings);
     cs_text_add(out, "\n");
 }
 
@@ -232,11 +232,11 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
         cs_text_add_real(out, column->value);
         /* 0 stands for no stable step, which no logarithmic scale shows */
         for (int k = 0; k < 4; k++)
-            cs_csv_add_real(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
-        cs_csv_add_real(out, mode->square > 0 ? sqrt(mode->square) : 0);
-        cs_csv_add_real(out, mode->rate);
+            cs_csv_add_number(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
+        cs_csv_add_number(out, mode->square > 0 ? sqrt(mode->square) : 0);
+        cs_csv_add_number(out, mode->rate);
         cs_text_add(out, ",%u", mode->particle);
-        cs_csv_add_real(out, mode->share);
+        cs_csv_add_number(out, mode->share);
         cs_text_add(out, "\n");
     }
 }
