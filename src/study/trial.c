@@ -2,8 +2,6 @@
 #include "study/trial.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* particles above the speed limit; *fastest the fastest of all */
 static uint32_t count_fast(const struct cs_run *run, double limit, uint32_t *fastest,
@@ -77,34 +75,18 @@ static double choose_fps(const struct cs_trial_settings *settings) {
 
 static void run_samples(struct cs_trial *trial, const struct cs_trial_settings *settings,
                         struct cs_run *run, struct cs_error *error) {
-    const double frames = ceil(settings->seconds * run->system->scene->time.fps * (1 - 1e-9));
-    take_sample(trial, settings, run);
-    while (run->frame < frames && run->outcome == CS_RUNNING && !error->status &&
-           !(settings->stop_early && trial->beyond)) {
-        cs_run_frame(run, error);
-        if (!error->status && run->outcome == CS_RUNNING)
-            take_sample(trial, settings, run);
-    }
-    trial->outcome = run->outcome;
-    trial->blow_up = run->blow_up;
-    trial->end = run->t;
+    struct cs_follow follow = {
+        .run = run,
+        .last = cs_follow_frames(run->system->scene, settings->seconds),
+        .every = 1};
+    do
+        take_sample(trial, settings, run);
+    while (!(settings->stop_early && trial->beyond) && cs_follow_next(&follow, error));
     trial->steps = run->counts.steps;
     trial->step =
         run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->session.dt;
     trial->seconds = run->advance_seconds;
     trial->mean_kinetic /= run->frame + 1;
-}
-
-/* a method that gives up is a result */
-static enum cs_status judge(struct cs_trial *trial, struct cs_error *error) {
-    if (error->status == CS_ERR_MODULE) {
-        trial->failed = true;
-        snprintf(trial->message, sizeof trial->message, "%.300s", error->message);
-        *error = (struct cs_error){0};
-    }
-    if (trial->outcome == CS_INTERRUPTED)
-        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
-    return error->status;
 }
 
 enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settings *settings,
@@ -118,7 +100,7 @@ enum cs_status cs_trial_run(struct cs_trial *trial, const struct cs_trial_settin
         return error->status;
     if (!cs_session_begin(&session, NULL, error))
         run_samples(trial, settings, &session.run, error);
-    judge(trial, error);
+    cs_follow_result(&session.run, "", &trial->result, error);
     cs_session_close(&session);
     return error->status;
 }

@@ -6,6 +6,7 @@
 #ifndef CS_TRIAL_H
 #define CS_TRIAL_H
 
+#include "study/follow.h"
 #include "study/session.h"
 #include "study/tally.h"
 
@@ -37,11 +38,7 @@ struct cs_trial_excess {
 };
 
 struct cs_trial {
-    enum cs_outcome outcome;
-    bool failed; /* the method gave up: message says why */
-    char message[320];
-    struct cs_blow_up blow_up; /* where outcome says so */
-    double end;                /* s simulated */
+    struct cs_run_result result;
     uint64_t steps;
     double step;                     /* s, mean length of a step */
     double start_energy, end_energy; /* J, whole */

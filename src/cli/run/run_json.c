@@ -50,7 +50,7 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
     cs_text_add_json(out, cs_text_get(&sentence));
     cs_text_finish(&sentence);
     /* only a blow-up has a particle to name and a bound that it crossed */
-    if (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED) {
+    if (cs_outcome_is_blow_up(run->outcome)) {
         add_real(out, ",\n  \"blow_up\": {\"time\": ", run->blow_up.time);
         cs_text_add(out, ", \"particle\": %u", run->blow_up.particle);
         add_real(out, ", \"kinetic_energy\": ", run->blow_up.energy);

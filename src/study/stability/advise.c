@@ -30,12 +30,12 @@ static enum cs_status try_safe(struct cs_advice *row, const struct cs_trial_sett
     if (cs_trial_run(&trial, &asked, error))
         return error->status;
     row->verdict = cs_stability_judge(&trial, &reference->trial, true);
-    row->watched = trial.end;
-    if (trial.failed)
-        snprintf(row->message, sizeof row->message, "%s", trial.message);
-    if (trial.end > 0) {
-        row->frame_cost = trial.seconds / trial.end * frame;
-        row->steps = (double)trial.steps / trial.end * frame;
+    row->watched = trial.result.reached;
+    if (trial.result.outcome == CS_FAILED)
+        snprintf(row->message, sizeof row->message, "%.300s", trial.result.message);
+    if (row->watched > 0) {
+        row->frame_cost = trial.seconds / row->watched * frame;
+        row->steps = (double)trial.steps / row->watched * frame;
     }
     return CS_OK;
 }

@@ -2,6 +2,7 @@
 #include "study/stability/extreme.h"
 
 #include "base/clock.h"
+#include "study/follow.h"
 #include "study/perturb.h"
 #include "study/stability/extreme_scene.h"
 #include "study/workers.h"
@@ -29,33 +30,25 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
     struct cs_run *run = &session->run;
     struct cs_watch watch;
     struct cs_watch_row look;
-    struct cs_error failure = {0};
+    struct cs_run_result result;
     struct cs_text text = {0};
-    const double frames = ceil(seconds * session->scene.time.fps * (1 - 1e-9));
+    struct cs_follow follow = {
+        .run = run, .last = cs_follow_frames(&session->scene, seconds), .every = 1};
     if (cs_watch_begin(&watch, run, error))
         return;
-    while (run->frame < frames && run->outcome == CS_RUNNING && !cs_run_frame(run, &failure))
-        if (run->outcome == CS_RUNNING) {
-            cs_watch_look(&watch, run, &look);
-            ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
-        }
-    row->verdict = watch.worst;
+    while (cs_follow_next(&follow, error)) {
+        cs_watch_look(&watch, run, &look);
+        ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
+    }
+    cs_follow_result(run, "", &result, error);
     cs_watch_print(&watch, run->system, &text);
-    /* the method's own error is an outcome, any other one ends the study */
-    if (failure.status == CS_ERR_MODULE) {
-        ending->refused = true;
-        row->verdict = CS_STABILITY_FAILED;
-        say(row, failure.message);
-    } else if (failure.status)
-        *error = failure;
-    else if (run->outcome == CS_OVER_BUDGET)
-        row->verdict = CS_STABILITY_OVER_BUDGET;
-    else if (run->outcome == CS_NOT_FINITE)
-        row->verdict = CS_STABILITY_NOT_FINITE;
-    else if (run->outcome == CS_UNBOUNDED)
-        row->verdict = CS_STABILITY_GLOBAL;
-    if (!*row->message)
-        say(row, cs_text_get(&text));
+    ending->refused = result.outcome == CS_FAILED;
+    row->verdict = result.outcome == CS_FAILED        ? CS_STABILITY_FAILED
+                   : result.outcome == CS_OVER_BUDGET ? CS_STABILITY_OVER_BUDGET
+                   : result.outcome == CS_NOT_FINITE  ? CS_STABILITY_NOT_FINITE
+                   : result.outcome == CS_UNBOUNDED   ? CS_STABILITY_GLOBAL
+                                                      : watch.worst;
+    say(row, ending->refused ? result.message : cs_text_get(&text));
     cs_text_finish(&text);
 }
 
