@@ -25,6 +25,9 @@ struct cs_registry {
 /* Adds one module file (--plugin). A refused file is an error here: CS_ERR_MODULE. */
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error);
+/* Adds n of them. */
+enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
+                                     uint32_t n, struct cs_error *error);
 
 /* Finds an integrator by name: files that were added first, then the modules in the folders
  * (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute folders only) by their
@@ -42,6 +45,10 @@ enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *fil
 
 /* Opens every module of the folders, for the list. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
+/* Does so and lists the integrators by their names, (*n), closed by NULL. others: also those
+ * that do not follow the scene's equation of motion. The list is the registry's; NULL: failed. */
+const char *const *cs_registry_names(struct cs_registry *registry, bool others, uint32_t *n,
+                                     struct cs_error *error);
 
 void cs_registry_finish(struct cs_registry *registry);
 

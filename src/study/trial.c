@@ -3,35 +3,14 @@
 
 #include <math.h>
 
-/* particles above the speed limit; *fastest the fastest of all */
-static uint32_t count_fast(const struct cs_run *run, double limit, uint32_t *fastest,
-                           double *speed) {
-    const size_t n = run->system->view.n;
-    const double *v = run->v;
-    uint32_t count = 0;
-    double largest = -1;
-    for (size_t i = 0; i < n; i++) {
-        const double squared = v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i];
-        count += !(squared <= limit * limit);
-        if (!(squared <= largest)) {
-            largest = squared;
-            *fastest = (uint32_t)i;
-        }
-    }
-    *speed = sqrt(largest > 0 ? largest : 0);
-    return count;
-}
-
 static void note_excess(struct cs_trial *trial, const struct cs_run *run, double limit) {
     struct cs_trial_excess *excess = &trial->excess;
-    uint32_t fastest = 0;
-    double speed;
-    const uint32_t count = count_fast(run, limit, &fastest, &speed);
+    uint32_t fastest, count;
+    const double speed = cs_measure_speed(run->system, run->v, limit, &fastest, &count);
     trial->speed = fmax(trial->speed, speed);
     if (count && !excess->found) {
         excess->found = true;
         excess->time = run->t;
-        excess->particle = fastest;
     }
     excess->particles = count > excess->particles ? count : excess->particles;
 }

@@ -33,7 +33,6 @@ struct cs_trial_settings {
 struct cs_trial_excess {
     bool found;
     double time;        /* s, of the first sample that shows it */
-    uint32_t particle;  /* the fastest there */
     uint32_t particles; /* most at one time */
 };
 
