@@ -46,7 +46,8 @@ enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *fil
 /* Opens every module of the folders, for the list. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
 /* Does so and lists the integrators by their names, (*n), closed by NULL. others: also those
- * that do not follow the scene's equation of motion. The list is the registry's; NULL: failed. */
+ * that do not follow the scene's equation of motion. The list is the registry's; NULL: failed.
+ */
 const char *const *cs_registry_names(struct cs_registry *registry, bool others, uint32_t *n,
                                      struct cs_error *error);
 

@@ -18,8 +18,8 @@ struct cs_follow {
     double cpu, wall;   /* s, out: of all steps, without what is done between them */
 };
 
-/* Steps to the next multiple of `every`, or to the last frame. Returns false if no such multiple
- * was reached: at the last frame, after the end of the run, and after a failure. */
+/* Steps to the next multiple of `every`, or to the last frame. Returns false if no such
+ * multiple was reached: at the last frame, after the end of the run, and after a failure. */
 bool cs_follow_next(struct cs_follow *follow, struct cs_error *error);
 
 /* How a run ended. */
@@ -30,8 +30,8 @@ struct cs_run_result {
     char message[1024];      /* why the method gave up, else the outcome as text */
 };
 
-/* Fills the result. A method that gave up is a result, and *error is cleared. An interrupted run
- * is CS_ERR_INTERRUPT: "interrupted" followed by the text. Other errors stay. */
+/* Fills the result. A method that gave up is a result, and *error is cleared. An interrupted
+ * run is CS_ERR_INTERRUPT: "interrupted" followed by the text. Other errors stay. */
 enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupted,
                                 struct cs_run_result *result, struct cs_error *error);
 /* The same of a run whose method must not give up: its failure stays an error. */

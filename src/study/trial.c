@@ -54,10 +54,9 @@ static double choose_fps(const struct cs_trial_settings *settings) {
 
 static void run_samples(struct cs_trial *trial, const struct cs_trial_settings *settings,
                         struct cs_run *run, struct cs_error *error) {
-    struct cs_follow follow = {
-        .run = run,
-        .last = cs_follow_frames(run->system->scene, settings->seconds),
-        .every = 1};
+    struct cs_follow follow = {.run = run,
+                               .last = cs_follow_frames(run->system->scene, settings->seconds),
+                               .every = 1};
     do
         take_sample(trial, settings, run);
     while (!(settings->stop_early && trial->beyond) && cs_follow_next(&follow, error));

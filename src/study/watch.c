@@ -78,8 +78,8 @@ static void start(struct cs_watch *watch, const struct cs_run *run) {
     watch->held = cs_energy_held(&energy);
     watch->gravity = energy.gravity;
     watch->released = 0;
-    watch->start_speed = fmax(watch->start_speed,
-                              cs_measure_speed(system, run->v, HUGE_VAL, &particle, &count));
+    watch->start_speed =
+        fmax(watch->start_speed, cs_measure_speed(system, run->v, HUGE_VAL, &particle, &count));
     watch->pull = watch->push = watch->mass = watch->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
         /* pinned particles do not move, whatever pushes them */

@@ -38,8 +38,7 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->outliers = 0;
     cell->crossings = end->crossings.counted ? (double)end->crossings.most : (double)NAN;
     cell->time = end->result.time;
-    cell->step =
-        end->result.outcome == CS_RUNNING ? cell->time / cell->steps : (double)NAN;
+    cell->step = end->result.outcome == CS_RUNNING ? cell->time / cell->steps : (double)NAN;
     snprintf(cell->outcome, sizeof cell->outcome, "%s", cs_outcome_text(end->result.outcome));
     snprintf(cell->note, sizeof cell->note, "%s", end->note);
 }

@@ -160,8 +160,7 @@ static enum cs_status list_methods(struct catalogue *catalogue, struct cs_regist
     catalogue->n_methods = extreme->n_methods;
     if (!cs_registry_add_files(registry, extreme->plugins, extreme->n_plugins, error) &&
         !extreme->n_methods)
-        catalogue->methods =
-            cs_registry_names(registry, false, &catalogue->n_methods, error);
+        catalogue->methods = cs_registry_names(registry, false, &catalogue->n_methods, error);
     return error->status;
 }
 
