@@ -171,9 +171,12 @@ static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *regi
                                   struct cs_error *error) {
     const char *const *files;
     uint32_t n;
-    return cs_args_all(args, CONFORM_PLUGIN, &files, &n, error)
-               ? error->status
-               : cs_registry_add_files(registry, files, n, error);
+    if (cs_args_all(args, CONFORM_PLUGIN, &files, &n, error))
+        return error->status;
+    for (uint32_t i = 0; i < n; i++)
+        if (cs_registry_add_file(registry, files[i], error))
+            return error->status;
+    return CS_OK;
 }
 
 /* The JSON where it was asked for, and the count. */

@@ -11,8 +11,12 @@
 
 #include <stdio.h>
 
+struct screen {
+    struct cs_progress progress;
+};
+
 static void show_progress(void *ctx, uint32_t done, uint32_t total) {
-    cs_progress_show(ctx, done, total);
+    cs_progress_show(&((struct screen *)ctx)->progress, done, total);
 }
 
 /* Writes one file of a map; frees the text. */
@@ -99,18 +103,18 @@ static enum cs_status check_cells(const struct cs_stability *map, struct cs_erro
 enum cs_status cs_stability_map_one(const struct cs_args *args,
                                     const struct cs_stability_settings *settings,
                                     const char *folder, struct cs_error *error) {
-    struct cs_progress progress;
+    struct screen screen;
     struct cs_stability map;
     struct cs_stability_settings asked = *settings;
     const bool quiet = cs_args_get(args, STABILITY_QUIET);
     bool drawn = false;
     asked.progress = show_progress;
-    asked.ctx = &progress;
-    cs_progress_begin(&progress, quiet);
-    progress.what = "cell";
+    asked.ctx = &screen;
+    cs_progress_begin(&screen.progress, quiet);
+    screen.progress.what = "cell";
     asked.folder = folder;
     cs_stability_run(&map, &asked, error);
-    cs_progress_end(&progress);
+    cs_progress_end(&screen.progress);
     if (error->status == CS_ERR_INTERRUPT) {
         *error = (struct cs_error){0};
         cs_fail(error, CS_ERR_INTERRUPT,
@@ -141,9 +145,11 @@ enum cs_status cs_stability_map_all(const struct cs_args *args,
                                     struct cs_stability_settings *settings, const char *folder,
                                     struct cs_error *error) {
     struct cs_registry registry = {0};
-    if (!cs_registry_add_files(&registry, settings->session.plugins,
-                               settings->session.n_plugins, error))
-        cs_registry_open_all(&registry, error);
+    for (uint32_t k = 0; k < settings->session.n_plugins; k++)
+        if (cs_registry_add_file(&registry, settings->session.plugins[k], error))
+            goto done;
+    if (cs_registry_open_all(&registry, error))
+        goto done;
     for (uint32_t k = 0; k < registry.n && !error->status; k++) {
         const struct cs_integrator *integrator = registry.entries[k].integrator;
         /* a module that was refused */
@@ -160,6 +166,7 @@ enum cs_status cs_stability_map_all(const struct cs_args *args,
                    : integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                       : "has no option dt");
     }
+done:
     cs_registry_finish(&registry);
     return error->status;
 }

@@ -25,7 +25,8 @@ struct cs_registry {
 /* Adds one module file (--plugin). A refused file is an error here: CS_ERR_MODULE. */
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error);
-/* Adds n of them. */
+
+/* Adds n module files, until one is refused. */
 enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
                                      uint32_t n, struct cs_error *error);
 
@@ -45,9 +46,8 @@ enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *fil
 
 /* Opens every module of the folders, for the list. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
-/* Does so and lists the integrators by their names, (*n), closed by NULL. others: also those
- * that do not follow the scene's equation of motion. The list is the registry's; NULL: failed.
- */
+/* Does so and lists the names of the integrators, (*n) and a NULL. others: also of those that
+ * do not follow the scene's equation of motion. The list is the registry's; NULL: it failed. */
 const char *const *cs_registry_names(struct cs_registry *registry, bool others, uint32_t *n,
                                      struct cs_error *error);
 

@@ -23,14 +23,12 @@ static void take_sample(struct cs_trial *trial, const struct cs_trial_settings *
         trial->start_energy = whole;
     trial->end_energy = whole;
     trial->kinetic = fmax(trial->kinetic, energy.kinetic);
-    trial->elastic = fmax(trial->elastic, energy.elastic);
     trial->held = fmax(trial->held, cs_energy_held(&energy));
     /* energy that keeps growing from one half to the next marks an instability */
     double *half = run->t < settings->seconds / 2 ? &trial->early : &trial->late;
     *half = fmax(*half, cs_energy_held(&energy));
     trial->gained = fmax(trial->gained, whole - trial->start_energy);
     trial->mean_kinetic += energy.kinetic;
-    trial->strain = fmax(trial->strain, cs_measure_strain(run->system, run->x));
     note_excess(trial, run, settings->limits.speed);
     cs_tally_take(&trial->crossings, run);
     /* only the first crossing counts: its time is reported */
@@ -59,7 +57,7 @@ static void run_samples(struct cs_trial *trial, const struct cs_trial_settings *
                                .every = 1};
     do
         take_sample(trial, settings, run);
-    while (!(settings->stop_early && trial->beyond) && cs_follow_next(&follow, error));
+    while (cs_follow_next(&follow, error));
     trial->steps = run->counts.steps;
     trial->step =
         run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->session.dt;

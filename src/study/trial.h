@@ -23,7 +23,6 @@ struct cs_trial_settings {
     double seconds;                     /* to simulate */
     uint32_t samples;                   /* about so many; at least 1 */
     struct cs_trial_limits limits;
-    bool stop_early; /* once the energy is beyond its limit */
     /* called at the start and at each sample; may be NULL */
     void (*sampled)(void *ctx, const struct cs_run *run, const struct cs_energy *energy);
     void *ctx;
@@ -42,11 +41,11 @@ struct cs_trial {
     double step;                     /* s, mean length of a step */
     double start_energy, end_energy; /* J, whole */
     double early, late;              /* J, largest kinetic + elastic of each half of the time */
-    double kinetic, elastic;         /* J, largest */
+    double kinetic;                  /* J, largest */
     double held;                     /* J, largest kinetic + elastic */
     double gained;                   /* J, largest energy above the start's */
     double mean_kinetic;             /* J, over the samples */
-    double speed, strain;            /* largest */
+    double speed;                    /* m/s, largest */
     double seconds;                  /* wall time in the method */
     bool beyond;                     /* held or gained passed its limit */
     double beyond_time;              /* s */
