@@ -5,8 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { SAMPLES = 32, HALVINGS = 6 };
 #define PERTURBATION 1e-4 /* of the shortest spring */
