@@ -8,18 +8,24 @@
 #include <clothsim/integrator.h>
 #include <signal.h>
 
-/* How a run stands. All but the first end it; none of them is an error. */
+/* How a run stands. All but the first end it; none of them is an error. CS_FAILED stands in
+ * results only: a run says by an error that its method gave up. */
 #define CS_OUTCOME_LIST(X)                                                                     \
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
     X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                        \
     X(CS_INTERRUPTED, "interrupted")                                                           \
-    X(CS_OVER_BUDGET, "over budget")
+    X(CS_OVER_BUDGET, "over budget")                                                           \
+    X(CS_FAILED, "failed")
 enum cs_outcome {
 #define X(name, text) name,
     CS_OUTCOME_LIST(X)
 #undef X
 };
+
+static inline bool cs_outcome_is_blow_up(enum cs_outcome outcome) {
+    return outcome == CS_NOT_FINITE || outcome == CS_UNBOUNDED;
+}
 
 /* Stages that the host times, when asked to. */
 enum cs_stage {

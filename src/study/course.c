@@ -1,8 +1,6 @@
 /* Runs a method on the smooth form of a scene, and records its trajectory. */
 #include "study/course.h"
 
-#include "base/clock.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +32,7 @@ enum cs_status cs_course_count_frames(struct cs_course_settings *settings, doubl
     asked.integrator = "velocity-verlet";
     if (cs_session_open_plan(&session, &asked, error))
         return error->status;
-    const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
+    const double frames = cs_follow_frames(&session.scene, seconds);
     if (!(frames <= 1e6))
         cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
     settings->frames = (uint32_t)frames;
@@ -74,29 +72,19 @@ static void keep_state(struct cs_track *track, const struct cs_run *run,
     track->done = run->frame;
 }
 
-/* One frame, or all that are left, between two looks at the clocks. */
-static enum cs_status step_timed(struct cs_course *course, uint32_t last,
-                                 struct cs_course_end *end, struct cs_error *error) {
-    struct cs_run *run = &course->session.run;
-    const double cpu = cs_clock_cpu(), wall = cs_clock_wall();
-    while (run->frame < last && run->outcome == CS_RUNNING && !error->status)
-        cs_run_frame(run, error);
-    end->cpu += cs_clock_cpu() - cpu;
-    end->wall += cs_clock_wall() - wall;
-    return error->status;
-}
-
 /* Copies and counts are not timed; where there are none, the clocks are read twice in all. */
-static enum cs_status step_frames(struct cs_course *course, struct cs_track *track,
-                                  struct cs_course_end *end, struct cs_error *error) {
+static void step_frames(struct cs_course *course, struct cs_track *track,
+                        struct cs_course_end *end, struct cs_error *error) {
     struct cs_run *run = &course->session.run;
-    keep_state(track, run, &end->crossings);
-    while (run->frame < course->frames && run->outcome == CS_RUNNING) {
-        if (step_timed(course, track ? run->frame + 1 : course->frames, end, error))
-            return error->status;
+    struct cs_follow follow = {.run = run, .last = course->frames, .every = track ? 1 : 0};
+    do
         keep_state(track, run, &end->crossings);
-    }
-    return CS_OK;
+    while (cs_follow_next(&follow, error));
+    // a state between two frames, at which the run ended, counts as well
+    if (run->outcome != CS_RUNNING && !error->status)
+        keep_state(track, run, &end->crossings);
+    end->cpu = follow.cpu;
+    end->wall = follow.wall;
 }
 
 /* A run with events leaves pins, values and times as they were at its end: the next one, and
@@ -113,40 +101,22 @@ static void keep_notes(struct cs_course_end *end, const struct cs_run *run) {
     }
 }
 
-/* Two ways to fail: the method's own, which is a row, and the world's. */
-static enum cs_status judge(struct cs_course_end *end, const struct cs_error *failure,
-                            struct cs_error *error) {
-    if (failure->status == CS_ERR_MODULE) {
-        end->failed = true;
-        snprintf(end->note, sizeof end->note, "%.239s", failure->message);
-        return CS_OK;
-    }
-    if (failure->status)
-        return cs_fail(error, failure->status, "%s", failure->message);
-    if (end->outcome == CS_INTERRUPTED)
-        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
-    return CS_OK;
-}
-
 enum cs_status cs_course_run(struct cs_course *course, double budget, struct cs_track *track,
                              struct cs_course_end *end, struct cs_error *error) {
     struct cs_session *session = &course->session;
-    struct cs_error failure = {0};
     *end = (struct cs_course_end){0};
     session->settings.run.budget = budget;
-    if (!cs_session_begin(session, course->start, &failure)) {
-        step_frames(course, track, end, &failure);
-        end->outcome = session->run.outcome;
-        const bool blew_up = end->outcome == CS_NOT_FINITE || end->outcome == CS_UNBOUNDED;
-        end->time = blew_up ? session->run.blow_up.time : session->run.t;
+    if (!cs_session_begin(session, course->start, error)) {
+        step_frames(course, track, end, error);
         end->counts = session->run.counts;
         keep_notes(end, &session->run);
         cs_hash_doubles(session->run.x, 6 * (size_t)session->system.view.n, end->hash);
-        cs_run_finish(&session->run);
     }
-    if (renew(course, error))
-        return error->status;
-    return judge(end, &failure, error);
+    cs_follow_result(&session->run, "; finished rows were kept", &end->result, error);
+    if (end->result.outcome == CS_FAILED)
+        snprintf(end->note, sizeof end->note, "%.239s", end->result.message);
+    cs_run_finish(&session->run);
+    return error->status ? error->status : renew(course, error);
 }
 
 void cs_course_close(struct cs_course *course) {

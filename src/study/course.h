@@ -8,6 +8,7 @@
 #define CS_COURSE_H
 
 #include "base/hash.h"
+#include "study/follow.h"
 #include "study/session.h"
 #include "study/tally.h"
 
@@ -34,9 +35,7 @@ struct cs_track {
 
 /* What one run came to, beside its states. */
 struct cs_course_end {
-    enum cs_outcome outcome;
-    bool failed;      /* the method gave up: outcome does not say so */
-    double time;      /* reached, s */
+    struct cs_run_result result;
     double cpu, wall; /* s, of stepping only */
     struct cs_counts counts;
     struct cs_tally crossings; /* of the frames of a track, where the scene counts them */

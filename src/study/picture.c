@@ -241,3 +241,22 @@ void cs_picture_close(struct cs_picture *picture) {
     free(picture->obstacles);
     *picture = (struct cs_picture){0};
 }
+
+enum cs_status cs_still_paint(const struct cs_run *run, enum cs_renderer_kind kind,
+                              struct cs_image *image, struct cs_text *renderer,
+                              struct cs_error *error) {
+    const struct cs_render *render = &run->system->scene->render;
+    struct cs_picture picture;
+    image->width = (uint32_t)render->size[0];
+    image->height = (uint32_t)render->size[1];
+    image->rgb = malloc(cs_image_bytes(image));
+    if (!image->rgb)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+    if (cs_picture_open(&picture, run->system, kind, false, false, error))
+        return error->status;
+    cs_picture_begin(&picture, run, image);
+    cs_picture_end(&picture, error);
+    cs_text_add(renderer, "%s", cs_picture_renderer(&picture));
+    cs_picture_close(&picture);
+    return error->status;
+}

@@ -67,4 +67,10 @@ const char *cs_picture_renderer(const struct cs_picture *picture);
 
 void cs_picture_close(struct cs_picture *picture);
 
+/* Draws the state of a run once, at the size that its scene says. The caller frees image->rgb,
+ * also on failure; image->alpha is the caller's. Adds the renderer's description. */
+enum cs_status cs_still_paint(const struct cs_run *run, enum cs_renderer_kind kind,
+                              struct cs_image *image, struct cs_text *renderer,
+                              struct cs_error *error);
+
 #endif

@@ -1,11 +1,11 @@
 /* One cell of a sweep: reads the scene with its values, names it by what it means, runs it. */
 #include "study/product_cell.h"
 
-#include "base/clock.h"
 #include "base/table.h"
 #include "io/scene_hash.h"
 #include "model/force/measure.h"
 #include "sim/module.h"
+#include "study/follow.h"
 #include "study/machine.h"
 
 static bool is_own_fault(const struct cs_error *failure) {
@@ -118,18 +118,15 @@ static enum cs_status add_failure(struct cs_product *product, const struct cs_er
     return CS_OK;
 }
 
-/* From the plan to the last frame; *cpu: s that the frames took. */
-static void run_frames(struct cs_product_cell *cell, uint32_t frames, double *cpu) {
+/* From the plan to the last frame. Returns the s that the frames took. */
+static double run_frames(struct cs_product_cell *cell, uint32_t frames) {
     struct cs_session *session = &cell->session;
     struct cs_error *failure = &cell->failure;
-    if (failure->status || cs_session_build(session, failure) ||
-        cs_session_begin(session, NULL, failure))
-        return;
-    const double begin = cs_clock_cpu();
-    while (session->run.frame < frames && session->run.outcome == CS_RUNNING &&
-           !cs_run_frame(&session->run, failure))
-        ;
-    *cpu = cs_clock_cpu() - begin;
+    struct cs_follow follow = {.run = &session->run, .last = frames};
+    if (!failure->status && !cs_session_build(session, failure) &&
+        !cs_session_begin(session, NULL, failure))
+        cs_follow_next(&follow, failure);
+    return follow.cpu;
 }
 
 enum cs_status cs_product_cell_run(struct cs_product_cell *cell, struct cs_product *product,
@@ -137,17 +134,15 @@ enum cs_status cs_product_cell_run(struct cs_product_cell *cell, struct cs_produ
     const struct cs_session *session = &cell->session;
     const struct cs_integrator *integrator = session->method.integrator;
     char machine[CS_MACHINE_NAME];
-    double cpu = 0;
     cs_text_add(out, "%u", cell->number);
     for (uint32_t k = 0; k < product->n_keys; k++)
         cs_csv_add_text(out, cell->overrides[k].value);
-    run_frames(cell, product->frames, &cpu);
+    const double cpu = run_frames(cell, product->frames);
     cs_csv_add_text(out, cell->method ? cell->method : integrator ? integrator->name : "");
-    if (session->run.outcome == CS_INTERRUPTED)
-        cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
-    else if (cell->failure.status)
+    cs_follow_check(&session->run, "; finished rows were kept", error);
+    if (!error->status && cell->failure.status)
         add_failure(product, &cell->failure, out, error);
-    else
+    else if (!error->status)
         add_result(session, cs_outcome_text(session->run.outcome), cpu, out);
     cs_machine_name(machine);
     cs_csv_add_text(out, machine);

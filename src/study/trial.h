@@ -6,6 +6,7 @@
 #ifndef CS_TRIAL_H
 #define CS_TRIAL_H
 
+#include "study/follow.h"
 #include "study/session.h"
 #include "study/tally.h"
 
@@ -22,7 +23,6 @@ struct cs_trial_settings {
     double seconds;                     /* to simulate */
     uint32_t samples;                   /* about so many; at least 1 */
     struct cs_trial_limits limits;
-    bool stop_early; /* once the energy is beyond its limit */
     /* called at the start and at each sample; may be NULL */
     void (*sampled)(void *ctx, const struct cs_run *run, const struct cs_energy *energy);
     void *ctx;
@@ -32,25 +32,20 @@ struct cs_trial_settings {
 struct cs_trial_excess {
     bool found;
     double time;        /* s, of the first sample that shows it */
-    uint32_t particle;  /* the fastest there */
     uint32_t particles; /* most at one time */
 };
 
 struct cs_trial {
-    enum cs_outcome outcome;
-    bool failed; /* the method gave up: message says why */
-    char message[320];
-    struct cs_blow_up blow_up; /* where outcome says so */
-    double end;                /* s simulated */
+    struct cs_run_result result;
     uint64_t steps;
     double step;                     /* s, mean length of a step */
     double start_energy, end_energy; /* J, whole */
     double early, late;              /* J, largest kinetic + elastic of each half of the time */
-    double kinetic, elastic;         /* J, largest */
+    double kinetic;                  /* J, largest */
     double held;                     /* J, largest kinetic + elastic */
     double gained;                   /* J, largest energy above the start's */
     double mean_kinetic;             /* J, over the samples */
-    double speed, strain;            /* largest */
+    double speed;                    /* m/s, largest */
     double seconds;                  /* wall time in the method */
     bool beyond;                     /* held or gained passed its limit */
     double beyond_time;              /* s */

@@ -50,24 +50,6 @@ static enum cs_status spring_speed(const struct cs_run *run, double *speed,
     return CS_OK;
 }
 
-/* largest speed; count: particles above limit */
-static double fastest(const struct cs_run *run, double limit, uint32_t *particle,
-                      uint32_t *count) {
-    const size_t n = run->system->view.n;
-    double largest = -1;
-    *particle = *count = 0;
-    for (size_t i = 0; i < n; i++) {
-        const double v[3] = {run->v[i], run->v[n + i], run->v[2 * n + i]};
-        const double speed = length_of(v);
-        *count += !(speed <= limit);
-        if (!(speed <= largest)) {
-            largest = speed;
-            *particle = (uint32_t)i;
-        }
-    }
-    return largest;
-}
-
 /* largest acceleration in m/s2 of a particle by forces with an energy, or by the others */
 static double push_of(const struct cs_system *system, size_t i, bool with_energy) {
     double push = 0;
@@ -97,7 +79,8 @@ static void start(struct cs_watch *watch, const struct cs_run *run) {
     watch->held = cs_energy_held(&energy);
     watch->gravity = energy.gravity;
     watch->released = 0;
-    watch->start_speed = fmax(watch->start_speed, fastest(run, HUGE_VAL, &particle, &count));
+    watch->start_speed =
+        fmax(watch->start_speed, cs_measure_speed(system, run->v, HUGE_VAL, &particle, &count));
     watch->pull = watch->push = watch->mass = watch->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
         /* pinned particles do not move, whatever pushes them */
@@ -154,7 +137,8 @@ void cs_watch_look(struct cs_watch *watch, const struct cs_run *run, struct cs_w
     const double fall = fmin((watch->pull + watch->push) * passed, SPEED_SPREAD * mean);
     row->energy_limit = ENERGY_FACTOR * energy;
     row->speed_limit = SPEED_FACTOR * fmax(watch->start_speed + fall, LEAST_SPEED);
-    row->speed = fastest(run, row->speed_limit, &row->particle, &row->particles);
+    row->speed =
+        cs_measure_speed(system, run->v, row->speed_limit, &row->particle, &row->particles);
     const double held = cs_energy_held(&row->energy);
     /* first, because no comparison with NAN is true */
     if (!isfinite(held + row->speed + row->strain))

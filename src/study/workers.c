@@ -21,6 +21,7 @@
 /* In memory that all workers see. */
 struct shared {
     atomic_uint next;
+    uint32_t ticks;
     struct cs_error errors[CS_WORKERS_MOST]; /* one a worker */
     struct cs_crash_log logs[CS_WORKERS_MOST];
     atomic_bool done[CS_WORKERS_MOST]; /* it came to its end itself */
@@ -147,6 +148,7 @@ enum cs_status cs_workers_run(struct cs_workers *workers, struct cs_error *error
     uint32_t n = 0;
     if (!shared)
         return error->status;
+    workers->ticks = &shared->ticks;
     /* what waits in the buffers is not to be written twice */
     fflush(NULL);
     while (n < workers->n_workers && n < workers->n_tasks && n < CS_WORKERS_MOST) {

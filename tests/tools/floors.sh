@@ -4,7 +4,7 @@
 # units (a unit: NAME.c, NAME.h or both). Units form no circle either, in src or in plugins: one that
 # includes another's header, or names what another's .c defines (a header may declare for several),
 # stands above it.
-# The host is known to sim alone, and only a session begins a run.
+# The host is known to sim alone, only a session begins a run, and only follow.c steps one.
 cd "$1" || exit 1
 awk '
     BEGIN {
@@ -46,6 +46,9 @@ awk '
     }
     /cs_run_begin\(/ && from != "sim" && FILENAME != "src/study/session.c" {
         wrong(FILENAME " begins a run: see cs_session_begin")
+    }
+    /cs_run_frame\(/ && FILENAME ~ /^src/ && from != "sim" && FILENAME != "src/study/follow.c" {
+        wrong(FILENAME " steps a run: see cs_follow_next")
     }
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {
         wrong(FILENAME ": " $0 ": only the standard library and clothsim")

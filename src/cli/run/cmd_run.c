@@ -272,7 +272,7 @@ static enum cs_status tell_outcome(const struct cs_job *job, bool strict,
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
-    else if (strict && (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED))
+    else if (strict && cs_outcome_is_blow_up(run->outcome))
         cs_fail(error, CS_ERR_UNSTABLE, "%s", cs_text_get(&outcome));
     else
         cs_print_message(cs_text_get(&outcome));

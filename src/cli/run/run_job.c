@@ -11,6 +11,7 @@
 #include "io/scene_write.h"
 #include "study/coarse.h"
 #include "study/company.h"
+#include "study/follow.h"
 #include "study/origin.h"
 #include "study/within.h"
 
@@ -249,16 +250,16 @@ static enum cs_status make_recipe(struct cs_job *job, struct cs_error *error) {
 
 static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
+    struct cs_follow follow = {.run = run, .last = job->frames, .every = 1};
     struct cs_progress progress;
     cs_progress_begin(&progress, job->settings->quiet);
     cs_run_trail_begin(&job->trail, run);
-    while (run->frame < job->frames && !error->status) {
-        cs_run_trail_step(&job->trail, run);
-        if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
-            break;
+    cs_run_trail_step(&job->trail, run);
+    while (cs_follow_next(&follow, error)) {
         if (!cs_run_trail_frame(&job->trail, run, error) && !take_frame(job, error))
             make_checkpoint(job, error);
         cs_progress_show(&progress, run->frame, job->frames);
+        cs_run_trail_step(&job->trail, run);
     }
     cs_progress_end(&progress);
     cs_run_trail_end(&job->trail, run);

@@ -38,7 +38,7 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
                   cs_text_get(&sentence));
     cs_text_finish(&sentence);
     /* only a blow-up has a particle to name and a bound that it crossed */
-    if (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED)
+    if (cs_outcome_is_blow_up(run->outcome))
         cs_json_write(out,
                       ",\n  'blow_up': {'time': %g, 'particle': %u, 'kinetic_energy': %g, "
                       "'bound': %g}",

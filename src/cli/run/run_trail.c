@@ -67,6 +67,6 @@ void cs_run_trail_end(struct cs_run_trail *trail, const struct cs_run *run) {
                                          .name = "end",
                                          .values = where,
                                          .n = 2};
-    if (trail->asked && (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED))
+    if (trail->asked && cs_outcome_is_blow_up(run->outcome))
         cs_trail_write(stdout, &point);
 }

@@ -43,6 +43,23 @@ double cs_measure_strain(const struct cs_system *system, const double *x) {
     return cs_springs_largest_strain(&system->springs, system->view.n, x);
 }
 
+double cs_measure_speed(const struct cs_system *system, const double *v, double limit,
+                        uint32_t *fastest, uint32_t *count) {
+    const size_t n = system->view.n;
+    double largest = -1;
+    *fastest = *count = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double speed =
+            sqrt(v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        *count += !(speed <= limit);
+        if (!(speed <= largest)) {
+            largest = speed;
+            *fastest = (uint32_t)i;
+        }
+    }
+    return largest;
+}
+
 void cs_measure_particle_strain(const struct cs_system *system, const double *x, double *out) {
     for (uint32_t i = 0; i < system->view.n; i++)
         out[i] = 0;

@@ -27,6 +27,11 @@ double cs_measure_strain(const struct cs_system *system, const double *x);
 /* The same per particle: the largest strain (signed) of the springs at it; out (n). */
 void cs_measure_particle_strain(const struct cs_system *system, const double *x, double *out);
 
+/* Largest speed in m/s. *count: particles that are not at the limit or below it, *fastest: the
+ * first that is as fast as the fastest. */
+double cs_measure_speed(const struct cs_system *system, const double *v, double limit,
+                        uint32_t *fastest, uint32_t *count);
+
 /* Magnitude of the whole force on each particle, 0 on pinned ones; out (n), work (3,n). */
 void cs_measure_particle_force(const struct cs_system *system, double t, const double *x,
                                const double *v, double *out, double *work);

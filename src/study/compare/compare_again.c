@@ -74,9 +74,8 @@ static void compare_texts(struct cs_again *again, const char *what, const char *
 
 static void compare_ends(struct cs_again *again, const struct cs_cell *cell,
                          const struct cs_course_end *end) {
-    compare_texts(again, "the outcome", cell->outcome,
-                  end->failed ? "failed" : cs_outcome_text(end->outcome));
-    compare_numbers(again, "the time", cell->time, end->time);
+    compare_texts(again, "the outcome", cell->outcome, cs_outcome_text(end->result.outcome));
+    compare_numbers(again, "the time", cell->time, end->result.time);
     compare_numbers(again, "the number of steps", cell->steps, (double)end->counts.steps);
     compare_texts(again, "the state at the end", cell->state_hash, end->hash);
     if (!again->difference.length)

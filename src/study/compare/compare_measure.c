@@ -37,11 +37,9 @@ static void take_counts(struct cs_cell *cell, const struct cs_course_end *end) {
     cell->runs = 1;
     cell->outliers = 0;
     cell->crossings = end->crossings.counted ? (double)end->crossings.most : (double)NAN;
-    cell->time = end->time;
-    cell->step =
-        end->outcome == CS_RUNNING && !end->failed ? end->time / cell->steps : (double)NAN;
-    snprintf(cell->outcome, sizeof cell->outcome, "%s",
-             end->failed ? "failed" : cs_outcome_text(end->outcome));
+    cell->time = end->result.time;
+    cell->step = end->result.outcome == CS_RUNNING ? cell->time / cell->steps : (double)NAN;
+    snprintf(cell->outcome, sizeof cell->outcome, "%s", cs_outcome_text(end->result.outcome));
     snprintf(cell->note, sizeof cell->note, "%s", end->note);
 }
 

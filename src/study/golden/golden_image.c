@@ -4,7 +4,7 @@
 
 #include "draw/compare.h"
 #include "io/png.h"
-#include "study/still.h"
+#include "study/picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,7 +92,7 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
                                  struct cs_error *error) {
     struct cs_image found = {0};
     struct cs_text renderer = {0};
-    if (!cs_still_paint(session, kind, &found, &renderer, error)) {
+    if (!cs_still_paint(&session->run, kind, &found, &renderer, error)) {
         cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->found);
         if (golden->accept)
             bless(golden, row, &found, &renderer, error);

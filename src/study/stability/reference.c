@@ -46,21 +46,20 @@ static bool run_once(struct cs_reference *reference, const struct cs_trial_setti
     reference->worst = reference->at_rest;
     reference->gershgorin = way->gershgorin;
     return !cs_trial_run(&reference->trial, &asked, error) && !way->error->status &&
-           reference->trial.outcome == CS_RUNNING && !reference->trial.failed;
+           reference->trial.result.outcome == CS_RUNNING;
 }
 
 static void run_way(struct cs_reference *reference, const struct cs_trial_settings *settings,
                     double dt, struct way *way, struct cs_error *error) {
     for (int k = 0; k < MOST_HALVINGS && !reference->found && !error->status; k++) {
         reference->found = run_once(reference, settings, dt, way, error);
-        if (reference->trial.outcome == CS_OVER_BUDGET)
+        if (reference->trial.result.outcome == CS_OVER_BUDGET)
             break;
         dt /= 2;
     }
     if (!reference->found)
         snprintf(reference->message, sizeof reference->message, "velocity-verlet: %.280s",
-                 reference->trial.failed ? reference->trial.message
-                                         : cs_outcome_text(reference->trial.outcome));
+                 reference->trial.result.message);
 }
 
 /* Growth that a run cannot show: from the perturbation to the length of a spring in its time.

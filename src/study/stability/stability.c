@@ -128,11 +128,7 @@ static enum cs_status share_out(struct cs_stability *map, struct cs_error *error
                          .progress_ctx = map,
                          .stop = map->settings->session.run.stop}};
     work.workers.ctx = &work;
-    work.workers.ticks = cs_workers_take(sizeof *work.workers.ticks, error);
-    if (work.workers.ticks)
-        cs_workers_run(&work.workers, error);
-    cs_workers_give_back(work.workers.ticks, sizeof *work.workers.ticks);
-    return error->status;
+    return cs_workers_run(&work.workers, error);
 }
 
 /* under the name that was given, or its own: dt is what the map varies */

@@ -24,16 +24,14 @@ static enum cs_status try_step(const struct cs_trial_settings *settings,
         .verdict =
             cs_stability_judge(&trial, &reference->trial, asked.seconds >= reference->seconds),
         .drift = (double)NAN,
-        .time = trial.end,
+        .time = trial.result.time,
         .particles = trial.excess.particles,
         .crossings = trial.crossings.counted ? (double)trial.crossings.most : (double)NAN,
     };
     /* drift compares the energies at the end, which both runs must have reached */
-    if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)
+    if (trial.result.outcome == CS_RUNNING && asked.seconds >= reference->seconds)
         cell->drift = cs_stability_drift(&trial, &reference->trial);
     /* the time that is told is that of the first sign, not that of the end */
-    if (trial.outcome == CS_UNBOUNDED || trial.outcome == CS_NOT_FINITE)
-        cell->time = trial.blow_up.time;
     if (cell->verdict == CS_STABILITY_GLOBAL && trial.beyond)
         cell->time = trial.beyond_time;
     else if (cell->verdict == CS_STABILITY_LOCAL)
