@@ -11,12 +11,18 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MERGE_OUT, MERGE_QUIET, MERGE_ROWS };
 enum { FILE_BYTES_MAX = 1 << 30 };
 
-static const struct cs_arg rows[MERGE_ROWS] = {
-    [MERGE_OUT] = {"out", 'o', "DIR", "folder of the whole (default: merged)", false},
-    [MERGE_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
+struct options {
+    const char *out;
+    bool quiet;
+};
+static const struct options defaults = {.out = "merged"};
+
+static const struct cs_arg rows[] = {
+    {"out", 'o', "DIR", "folder of the whole (default: merged)",
+     CS_ARG_INTO(struct options, out)},
+    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
 static bool is_partial(const char *name) {
@@ -71,7 +77,8 @@ static enum cs_status append_maps(const char *folder, const char *out, uint32_t 
 }
 
 static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
-    const char *given = cs_args_get(args, MERGE_OUT), *out = given ? given : "merged";
+    const struct options *options = args->options;
+    const char *out = options->out;
     uint32_t cells = 0, rows_of_sweep = 0, maps = 0;
     for (uint32_t k = 0; k < args->n_operands; k++)
         if (!strcmp(args->operands[k], out))
@@ -87,7 +94,7 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     if (!error->status && cells + maps == 0)
         return cs_fail(error, CS_ERR_FILE,
                        "no folder holds a compare.csv, a sweep.csv or the .partial of a map");
-    if (!error->status && !cs_args_get(args, MERGE_QUIET))
+    if (!error->status && !options->quiet)
         printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps,
                args->n_operands, out);
     return error->status;
@@ -101,8 +108,7 @@ const struct cs_command cs_command_merge = {
         "The command of the study, without --shard and with -o DIR, then makes the report\n"
         "or map of the whole.\n\n"
         "Example: clothsim merge part1 part2 -o whole\n",
-    .rows = rows,
-    .n_rows = MERGE_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .least = 1,
     .most = 10000,
     .main = merge,

@@ -94,6 +94,13 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
     return CS_OK;
 }
 
+enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
+                                     uint32_t n, struct cs_error *error) {
+    for (uint32_t k = 0; k < n && !error->status; k++)
+        cs_registry_add_file(registry, files[k], error);
+    return error->status;
+}
+
 /* Whether the file's bytes hold the name as a whole string: a module that could have the
  * integrator is opened, and no other (opening one loads its libraries). */
 static bool may_hold(const char *file, const char *name) {

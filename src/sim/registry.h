@@ -26,6 +26,10 @@ struct cs_registry {
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error);
 
+/* Adds n module files, until one is refused. */
+enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
+                                     uint32_t n, struct cs_error *error);
+
 /* Finds an integrator by name: files that were added first, then the modules in the folders
  * (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute folders only) by their
  * names. First comes the module that the build's own list, modules.txt, names. Else only a

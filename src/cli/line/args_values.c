@@ -1,4 +1,4 @@
-/* Reads the values of options as numbers, choices and overrides, and checks them. */
+/* Reads the values of options into the struct of their command, and checks them. */
 #include "cli/line/args.h"
 #include "sim/method.h"
 
@@ -6,137 +6,139 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum cs_status cs_args_whole(const struct cs_args *args, uint32_t row, uint32_t min,
-                             uint32_t max, uint32_t *value, struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    if (!text)
-        return CS_OK;
+static enum cs_status read_whole(const struct cs_arg *row, const char *text, uint32_t *value,
+                                 struct cs_error *error) {
     const size_t digits = strspn(text, "0123456789");
-    const unsigned long read = digits <= 10 ? strtoul(text, NULL, 10) : max + 1ul;
-    if (!digits || text[digits] || read < min || read > max)
+    const unsigned long read = digits <= 10 ? strtoul(text, NULL, 10) : row->max + 1ul;
+    if (!digits || text[digits] || read < row->min || read > row->max)
         return cs_fail(error, CS_ERR_USAGE,
                        "--%s: expected a whole number from %u to %u, found \"%.60s\"",
-                       args->command->rows[row].name, min, max, text);
+                       row->name, row->min, row->max, text);
     *value = (uint32_t)read;
     return CS_OK;
 }
 
-enum cs_status cs_args_methods(struct cs_args *args, uint32_t row, const char *const **methods,
-                               uint32_t *n, struct cs_error *error) {
-    size_t most = 0;
-    for (uint32_t i = 0; i < args->n_given; i++)
-        if (args->given[i].row == row)
-            most += strlen(args->given[i].value) + 1;
-    const char **all = cs_arena_take_n(&args->arena, most, sizeof *all, error);
-    *n = 0;
-    for (uint32_t i = 0; i < args->n_given && !error->status; i++) {
-        if (args->given[i].row != row)
-            continue;
-        char *rest = cs_arena_take_text(&args->arena, args->given[i].value, error);
-        while (rest)
-            all[(*n)++] = cs_method_split(&rest);
-    }
-    *methods = all;
-    return error->status;
-}
-
-enum cs_status cs_args_shard(const struct cs_args *args, uint32_t row, struct cs_shard *shard,
-                             struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    char end;
-    unsigned number, of;
-    if (!text)
-        return CS_OK;
-    if (strspn(text, "0123456789/") < strlen(text) || strlen(text) > 13 ||
-        sscanf(text, "%u/%u%c", &number, &of, &end) != 2 || number < 1 || number > of)
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--%s: expected K/N with K from 1 to N, found \"%.60s\"",
-                       args->command->rows[row].name, text);
-    *shard = (struct cs_shard){number, of};
-    return CS_OK;
-}
-
-enum cs_status cs_args_real(const struct cs_args *args, uint32_t row, double *value,
-                            struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    double read = 0;
-    if (!text)
-        return CS_OK;
-    if (!cs_parse_real(text, &read) || !(read > 0 && read <= 1e9))
-        return cs_fail(error, CS_ERR_USAGE,
-                       "--%s: expected a number above 0 and up to 1e9, found \"%.60s\"",
-                       args->command->rows[row].name, text);
-    *value = read;
-    return CS_OK;
-}
-
-/* *index = place of the text among the names */
-static enum cs_status find(const struct cs_args *args, uint32_t row, const char *const *names,
-                           const char *text, int *index, struct cs_error *error) {
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(names[i], text)) {
-            *index = i;
-            return CS_OK;
-        }
+enum cs_status cs_args_refuse_name(const char *option, const char *const *names,
+                                   const char *text, struct cs_error *error) {
     struct cs_text list = {0};
     for (int i = 0; names[i]; i++)
         cs_text_add(&list, "%s%s", i ? ", " : "", names[i]);
-    cs_fail(error, CS_ERR_USAGE, "--%s: expected one of %s, found \"%.60s\"",
-            args->command->rows[row].name, cs_text_get(&list), text);
+    cs_fail(error, CS_ERR_USAGE, "--%s: expected one of %s, found \"%.60s\"", option,
+            cs_text_get(&list), text);
     cs_text_finish(&list);
     return error->status;
 }
 
-enum cs_status cs_args_choice(const struct cs_args *args, uint32_t row,
-                              const char *const *names, int *index, struct cs_error *error) {
-    const char *text = cs_args_get(args, row);
-    return text ? find(args, row, names, text, index, error) : CS_OK;
+/* the number of a name, or its bit in the set of those given */
+static enum cs_status read_name(const struct cs_arg *row, const char *text, uint32_t *value,
+                                struct cs_error *error) {
+    for (uint32_t i = 0; row->names[i]; i++)
+        if (!strcmp(row->names[i], text)) {
+            *value = row->many ? *value | 1u << i : i;
+            return CS_OK;
+        }
+    return cs_args_refuse_name(row->name, row->names, text, error);
 }
 
-enum cs_status cs_args_choices(struct cs_args *args, uint32_t row, const char *const *names,
-                               uint32_t *set, struct cs_error *error) {
-    const char *const *texts;
-    uint32_t n, found = 0;
-    if (cs_args_all(args, row, &texts, &n, error))
-        return error->status;
-    for (uint32_t i = 0; i < n; i++) {
-        int index = 0;
-        if (find(args, row, names, texts[i], &index, error))
-            return error->status;
-        found |= 1u << index;
-    }
-    if (found)
-        *set = found;
+static enum cs_status read_real(const struct cs_arg *row, const char *text, double *value,
+                                struct cs_error *error) {
+    double read = 0;
+    if (!cs_parse_real(text, &read) || !(read > 0 && read <= 1e9))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--%s: expected a number above 0 and up to 1e9, found \"%.60s\"",
+                       row->name, text);
+    *value = read;
     return CS_OK;
 }
 
+static enum cs_status read_shard(const struct cs_arg *row, const char *text,
+                                 struct cs_shard *shard, struct cs_error *error) {
+    char end;
+    unsigned number, of;
+    if (strspn(text, "0123456789/") < strlen(text) || strlen(text) > 13 ||
+        sscanf(text, "%u/%u%c", &number, &of, &end) != 2 || number < 1 || number > of)
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--%s: expected K/N with K from 1 to N, found \"%.60s\"", row->name,
+                       text);
+    *shard = (struct cs_shard){number, of};
+    return CS_OK;
+}
+
+/* Room for one more item at the end of a list, which is moved where it is full. */
+static void *append(struct cs_args *args, const struct cs_arg *row, size_t size,
+                    struct cs_error *error) {
+    char *options = args->options;
+    uint32_t *n = (uint32_t *)(options + row->count);
+    char *items;
+    memcpy(&items, options + row->offset, sizeof items);
+    /* the room is a power of two */
+    if ((*n & (*n - 1)) == 0) {
+        char *larger = cs_arena_take_n(&args->arena, *n ? 2 * (size_t)*n : 1, size, error);
+        if (!larger)
+            return NULL;
+        if (*n)
+            memcpy(larger, items, *n * size);
+        items = larger;
+        memcpy(options + row->offset, &items, sizeof items);
+    }
+    return items + size * (*n)++;
+}
+
+static enum cs_status add_word(struct cs_args *args, const struct cs_arg *row, const char *text,
+                               struct cs_error *error) {
+    const char **word = append(args, row, sizeof *word, error);
+    if (word)
+        *word = text;
+    return error->status;
+}
+
+static enum cs_status add_methods(struct cs_args *args, const struct cs_arg *row,
+                                  const char *text, struct cs_error *error) {
+    char *rest = cs_arena_take_text(&args->arena, text, error);
+    while (rest && !error->status)
+        add_word(args, row, cs_method_split(&rest), error);
+    return error->status;
+}
+
 /* Splits PATH=VALUE; the copy lives in the arena. */
-static enum cs_status split(struct cs_args *args, const char *option, const char *text,
-                            struct cs_override *override, struct cs_error *error) {
+static enum cs_status add_override(struct cs_args *args, const struct cs_arg *row,
+                                   const char *text, struct cs_error *error) {
     const char *equals = strchr(text, '=');
     if (!equals || equals == text || !equals[1])
         return cs_fail(error, CS_ERR_USAGE, "--%s: expected PATH=VALUE, found \"%.60s\"",
-                       option, text);
+                       row->name, text);
     char *path = cs_arena_take_text(&args->arena, text, error);
-    if (!path)
+    struct cs_override *override = append(args, row, sizeof *override, error);
+    if (!path || !override)
         return error->status;
     path[equals - text] = 0;
     *override = (struct cs_override){path, path + (equals - text) + 1};
     return CS_OK;
 }
 
-enum cs_status cs_args_overrides(struct cs_args *args, uint32_t row,
-                                 const struct cs_override **overrides, uint32_t *n,
-                                 struct cs_error *error) {
-    const char *const *texts;
-    if (cs_args_all(args, row, &texts, n, error))
-        return error->status;
-    struct cs_override *all = cs_arena_take_n(&args->arena, *n, sizeof *all, error);
-    if (!all)
-        return error->status;
-    for (uint32_t i = 0; i < *n; i++)
-        if (split(args, args->command->rows[row].name, texts[i], all + i, error))
-            return error->status;
-    *overrides = all;
+enum cs_status cs_args_read(struct cs_args *args, const struct cs_given *given,
+                            struct cs_error *error) {
+    const struct cs_arg *row = given->row;
+    void *field = (char *)args->options + row->offset;
+    switch (row->kind) {
+    case CS_ARG_SWITCH:
+        *(bool *)field = !*(bool *)field;
+        break;
+    case CS_ARG_TEXT:
+        *(const char **)field = given->value;
+        break;
+    case CS_ARG_WHOLE:
+        return row->names ? read_name(row, given->value, field, error)
+                          : read_whole(row, given->value, field, error);
+    case CS_ARG_REAL:
+        return read_real(row, given->value, field, error);
+    case CS_ARG_SHARD:
+        return read_shard(row, given->value, field, error);
+    case CS_ARG_WORDS:
+        return row->methods ? add_methods(args, row, given->value, error)
+                            : add_word(args, row, given->value, error);
+    case CS_ARG_OVERRIDES:
+        return add_override(args, row, given->value, error);
+    }
     return CS_OK;
 }

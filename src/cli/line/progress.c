@@ -25,7 +25,8 @@ static void write_line(struct cs_progress *progress, const char *line) {
     progress->width = width;
 }
 
-void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total) {
+void cs_progress_show(void *ctx, uint32_t done, uint32_t total) {
+    struct cs_progress *progress = ctx;
     const double now = cs_clock_wall();
     if (!progress->shown || !done ||
         now - progress->last < (progress->terminal ? 0.1 : OFF_TERMINAL))

@@ -53,8 +53,7 @@ static bool has_processors(void) {
 
 static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    if (cs_picture_open(&job->picture, &job->session.system,
-                        (enum cs_renderer_kind)settings->renderer, settings->fast,
+    if (cs_picture_open(&job->picture, &job->session.system, settings->renderer, settings->fast,
                         has_processors(), error))
         return error->status;
     cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));

@@ -5,6 +5,7 @@
 #include "cli/run/run_export.h"
 #include "cli/run/run_resume.h"
 #include "cli/run/run_trail.h"
+#include "draw/render.h"
 #include "study/session.h"
 
 struct cs_job_settings {
@@ -14,12 +15,12 @@ struct cs_job_settings {
     const char *folder, *states, *json; /* json "-": stdout; states, json NULL: none */
     const char *watch;                  /* CSV of energy, strain and velocity; NULL: none */
     const char *ledger;                 /* CSV of where energy went; NULL: none */
-    int renderer;                       /* enum cs_renderer_kind */
-    uint32_t level;                     /* zlib */
-    struct cs_resume_pace checkpoint;   /* zeroed: none */
-    struct cs_run_trail trail;          /* zeroed: none */
-    bool resume;                        /* go on from the checkpoint in the folder */
-    struct cs_export_settings export;   /* into the folder, as often as pictures */
+    enum cs_renderer_kind renderer;
+    uint32_t level;                   /* zlib */
+    struct cs_resume_pace checkpoint; /* zeroed: none */
+    struct cs_run_trail trail;        /* zeroed: none */
+    bool resume;                      /* go on from the checkpoint in the folder */
+    struct cs_export_settings export; /* into the folder, as often as pictures */
     bool fast, hash, overwrite, quiet;
 };
 

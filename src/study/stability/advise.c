@@ -207,10 +207,9 @@ static void report(void *ctx, uint32_t ticks) {
 }
 
 static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *error) {
-    for (uint32_t k = 0; k < advise->session.n_plugins; k++)
-        if (cs_registry_add_file(&advise->registry, advise->session.plugins[k], error))
-            return error->status;
-    if (!advise->n_methods && cs_registry_open_all(&advise->registry, error))
+    if (cs_registry_add_files(&advise->registry, advise->session.plugins,
+                              advise->session.n_plugins, error) ||
+        (!advise->n_methods && cs_registry_open_all(&advise->registry, error)))
         return error->status;
     advise->names = calloc(advise->n_methods + advise->registry.n + 1, sizeof(char *));
     if (!advise->names)

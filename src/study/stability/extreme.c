@@ -164,10 +164,8 @@ static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error)
 static enum cs_status list_methods(struct catalogue *catalogue, struct cs_registry *registry,
                                    struct cs_error *error) {
     const struct cs_extreme *extreme = catalogue->extreme;
-    for (uint32_t k = 0; k < extreme->n_plugins; k++)
-        if (cs_registry_add_file(registry, extreme->plugins[k], error))
-            return error->status;
-    if (!extreme->n_methods && cs_registry_open_all(registry, error))
+    if (cs_registry_add_files(registry, extreme->plugins, extreme->n_plugins, error) ||
+        (!extreme->n_methods && cs_registry_open_all(registry, error)))
         return error->status;
     catalogue->methods = calloc(extreme->n_methods + registry->n + 1, sizeof(char *));
     if (!catalogue->methods)
