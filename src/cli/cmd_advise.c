@@ -104,8 +104,7 @@ static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
         return advise_for_error(args, error);
     study->progress = cs_progress_show;
     study->ctx = &progress;
-    cs_progress_begin(&progress, options->quiet);
-    progress.what = "method";
+    cs_progress_begin(&progress, "method", options->quiet);
     cs_advise_run(study, error);
     /* the line goes before anything is printed below it */
     cs_progress_end(&progress);

@@ -103,7 +103,6 @@ static void show(struct screen *screen, struct cs_text *text) {
 static void show_reference(void *ctx, uint32_t done, uint32_t total, const char *what) {
     struct screen *screen = ctx;
     (void)what;
-    screen->progress.what = "reference, run";
     cs_progress_show(&screen->progress, done, total);
     if (done == total)
         cs_progress_end(&screen->progress);
@@ -118,8 +117,7 @@ static void show_begin(void *ctx) {
         cs_table_add_head(&screen->compare, &text);
     }
     show(screen, &text);
-    cs_progress_begin(&screen->progress, screen->quiet);
-    screen->progress.what = "cell";
+    cs_progress_begin(&screen->progress, "cell", screen->quiet);
 }
 
 static void show_row(void *ctx, const struct cs_cell *cell, bool taken) {
@@ -233,7 +231,7 @@ static enum cs_status compare_here(void *ctx, struct cs_error *error) {
     settings->row = show_row;
     settings->round = show_round;
     settings->ctx = &screen;
-    cs_progress_begin(&screen.progress, screen.quiet);
+    cs_progress_begin(&screen.progress, "reference, run", screen.quiet);
     if (!cs_compare_run(&screen.compare, settings, error)) {
         cs_progress_end(&screen.progress);
         /* files first: they must not be lost because printing failed */

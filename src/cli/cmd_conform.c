@@ -1,5 +1,4 @@
 /* clothsim conform: prints a method's conformance card as text or JSON. */
-#include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/outside.h"
@@ -183,12 +182,8 @@ static enum cs_status finish(struct output *output, struct cs_error *error) {
                output->counts[CS_VERDICT_PASS], output->counts[CS_VERDICT_FAIL],
                output->counts[CS_VERDICT_EXPECTED], output->counts[CS_VERDICT_STALE],
                output->counts[CS_VERDICT_NONE]);
-    if (file && output->json.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the JSON");
-    else if (file && strcmp(file, "-") != 0)
-        cs_file_write(file, cs_text_get(&output->json), output->json.length, error);
-    else if (file)
-        fputs(cs_text_get(&output->json), stdout);
+    if (file)
+        cs_print_file(file, &output->json, error);
     if (output->error.status)
         cs_fail(error, output->error.status, "%s", output->error.message);
     const uint32_t bad = output->counts[CS_VERDICT_FAIL] + output->counts[CS_VERDICT_STALE];
@@ -208,8 +203,7 @@ static enum cs_status conform_here(void *ctx, struct cs_error *error) {
     const struct options *options = args->options;
     struct cs_registry registry = {0};
     /* JSON on standard output takes the place of the text */
-    struct output output = {.options = options,
-                            .text = !options->json || strcmp(options->json, "-") != 0};
+    struct output output = {.options = options, .text = !cs_print_is_stdout(options->json)};
     if (options->list)
         return print_list(error);
     if (args->n_operands == 0)

@@ -41,10 +41,6 @@ struct sink {
     struct cs_text json;
 };
 
-static bool takes_stdout(const char *json) {
-    return json && !strcmp(json, "-");
-}
-
 static void add_member(struct cs_text *out, const char *key, const char *value) {
     cs_text_add(out, "\"%s\": ", key);
     cs_text_add_json(out, value);
@@ -71,7 +67,7 @@ static void print_row(void *ctx, const struct cs_golden_row *row) {
     if (differs && options->check.accept)
         verdict = "accepted";
     add_json(row, verdict, &sink->json);
-    if ((!differs && options->quiet) || takes_stdout(options->json))
+    if ((!differs && options->quiet) || cs_print_is_stdout(options->json))
         return;
     printf("%-8s %s%s%s  %s", verdict, row->image ? "image " : "", row->image ? row->image : "",
            row->image ? " " : "", row->run.scene);
@@ -121,7 +117,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     cs_text_finish(&sink.json);
     if (error->status)
         return error->status;
-    if (!takes_stdout(options->json))
+    if (!cs_print_is_stdout(options->json))
         printf("%u agree, %u differ, %u accepted, %u skipped\n", check->passed, check->failed,
                check->accepted, check->skipped);
     /* a misspelt --only must not look like success */

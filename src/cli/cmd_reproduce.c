@@ -102,7 +102,7 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     settings->session.run.stop = cs_interrupt_catch();
     settings->progress = cs_progress_show;
     settings->ctx = &progress;
-    cs_progress_begin(&progress, options->quiet);
+    cs_progress_begin(&progress, "frame", options->quiet);
     make_again(&again, settings, path, error);
     cs_progress_end(&progress);
     if (!error->status && (options->quiet || !print(&again, error)) && again.difference.length)

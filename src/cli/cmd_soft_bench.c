@@ -70,8 +70,7 @@ static enum cs_status prepare(const struct options *options, struct cs_error *er
 
 static enum cs_status measure(struct cs_soft *soft, bool quiet, struct cs_error *error) {
     struct cs_progress progress;
-    cs_progress_begin(&progress, quiet);
-    progress.what = "body";
+    cs_progress_begin(&progress, "body", quiet);
     soft->progress = cs_progress_show;
     soft->ctx = &progress;
     cs_soft_run(soft, error);

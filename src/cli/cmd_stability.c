@@ -111,10 +111,6 @@ struct sink {
     struct cs_text json;
 };
 
-static bool takes_stdout(const struct cs_stability_options *options) {
-    return options->json && !strcmp(options->json, "-");
-}
-
 static void add_member(struct cs_text *out, const char *key, const char *value) {
     cs_text_add(out, "\"%s\": ", key);
     cs_text_add_json(out, value);
@@ -135,7 +131,7 @@ static void add_json(const struct cs_extreme_row *row, struct cs_text *out) {
 static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
     struct sink *sink = ctx;
     add_json(row, &sink->json);
-    if ((row->met && sink->options->quiet) || takes_stdout(sink->options))
+    if ((row->met && sink->options->quiet) || cs_print_is_stdout(sink->options->json))
         return;
     printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n", row->met ? "ok" : "MISSED",
            row->scene, row->method, cs_stability_word(row->verdict), row->expected,
@@ -185,7 +181,7 @@ static enum cs_status run_extreme(const struct cs_stability_options *options,
     if (!error->status || error->status == CS_ERR_CHECK)
         write_json(&extreme, &sink, error);
     cs_text_finish(&sink.json);
-    if ((!error->status || error->status == CS_ERR_CHECK) && !takes_stdout(options))
+    if ((!error->status || error->status == CS_ERR_CHECK) && !cs_print_is_stdout(options->json))
         printf("%u as expected, %u not\n", extreme.met, extreme.missed);
     return error->status;
 }

@@ -92,8 +92,7 @@ static enum cs_status sweep(struct cs_args *args, struct cs_error *error) {
     product->ctx = &progress;
     if (read_keys(args, options, product, error))
         return error->status;
-    cs_progress_begin(&progress, options->quiet);
-    progress.what = "cell";
+    cs_progress_begin(&progress, "cell", options->quiet);
     cs_product_run(product, error);
     cs_progress_end(&progress);
     if (error->status || options->quiet)

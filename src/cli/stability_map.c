@@ -101,8 +101,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     bool drawn = false;
     asked.progress = cs_progress_show;
     asked.ctx = &progress;
-    cs_progress_begin(&progress, quiet);
-    progress.what = "cell";
+    cs_progress_begin(&progress, "cell", quiet);
     cs_stability_run(&map, &asked, error);
     cs_progress_end(&progress);
     if (error->status == CS_ERR_INTERRUPT) {

@@ -59,8 +59,12 @@ void cs_print_message(const char *message) {
     fputc('\n', stderr);
 }
 
+bool cs_print_is_stdout(const char *path) {
+    return path && !strcmp(path, "-");
+}
+
 enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error) {
-    if (!strcmp(path, "-"))
+    if (cs_print_is_stdout(path))
         return cs_print_out(stdout, text, error);
     if (text->failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", path);

@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-void cs_progress_begin(struct cs_progress *progress, bool quiet) {
-    *progress = (struct cs_progress){
-        .shown = !quiet, .terminal = isatty(STDERR_FILENO), .what = "frame"};
+void cs_progress_begin(struct cs_progress *progress, const char *what, bool quiet) {
+    *progress =
+        (struct cs_progress){.shown = !quiet, .terminal = isatty(STDERR_FILENO), .what = what};
     progress->start = progress->last = cs_clock_wall();
 }
 

@@ -13,7 +13,7 @@ struct cs_progress {
     int width;          /* of the line that is there */
 };
 
-void cs_progress_begin(struct cs_progress *progress, bool quiet);
+void cs_progress_begin(struct cs_progress *progress, const char *what, bool quiet);
 
 /* Rewrites the line, at most ten times a second; off a terminal, adds one every half minute.
  * progress is a struct cs_progress: studies call this with their ctx. */

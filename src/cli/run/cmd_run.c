@@ -4,7 +4,8 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/manifest.h"
+#include "cli/run/run_job.h"
+#include "cli/run/run_outputs.h"
 #include "cli/run/run_range.h"
 #include "cli/run/run_report.h"
 #include "model/force/measure.h"
@@ -116,10 +117,6 @@ static enum cs_status read_checkpoints(const struct cs_args *args, struct option
                : CS_OK;
 }
 
-static bool is_stdout(const char *path) {
-    return path && !strcmp(path, "-");
-}
-
 /* A program could not tell two apart in one stream. */
 static enum cs_status check_stream(const struct cs_job_settings *settings,
                                    struct cs_error *error) {
@@ -127,9 +124,9 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
         const char *name;
         bool asks;
     } outputs[] = {{"--hash", settings->hash},
-                   {"--json -", is_stdout(settings->json)},
-                   {"--watch -", is_stdout(settings->watch)},
-                   {"--ledger -", is_stdout(settings->ledger)},
+                   {"--json -", cs_print_is_stdout(settings->json)},
+                   {"--watch -", cs_print_is_stdout(settings->watch)},
+                   {"--ledger -", cs_print_is_stdout(settings->ledger)},
                    {"--trace", settings->trail.asked}};
     const char *first = NULL;
     for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
@@ -148,9 +145,12 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     settings->session.run.stop = cs_interrupt_catch();
     if (read_checkpoints(args, options, error) ||
         (options->trace && cs_run_trail_read(options->trace, &settings->trail, error)) ||
-        check_stream(settings, error))
+        check_stream(settings, error) ||
+        cs_run_export_read(options->export, options->values, &settings->export, error))
         return error->status;
-    return cs_run_export_read(options->export, options->values, &settings->export, error);
+    if (!cs_job_uses_folder(settings))
+        settings->folder = NULL;
+    return CS_OK;
 }
 
 static enum cs_status write_json(const struct cs_job *job, struct cs_error *error) {
@@ -164,29 +164,18 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
     if (!error->status && settings->session.render)
         cs_file_write(cs_text_get(&path), json.bytes, json.length, error);
-    if (!error->status && settings->json && strcmp(settings->json, "-"))
-        cs_file_write(settings->json, json.bytes, json.length, error);
-    else if (!error->status && settings->json)
-        cs_print_out(stdout, &json, error);
+    if (!error->status && settings->json)
+        cs_print_file(settings->json, &json, error);
     cs_text_finish(&json);
     cs_text_finish(&path);
     return error->status;
 }
 
-/* Of each folder that the run owns, once all of its files are there. */
-static enum cs_status write_manifests(const struct cs_job *job, struct cs_error *error) {
-    if (job->folder.lock)
-        cs_manifest_write(job->settings->folder, error);
-    if (job->states.lock && !error->status)
-        cs_manifest_write(job->settings->states, error);
-    return error->status;
-}
-
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const bool taken = settings->hash || is_stdout(settings->json) ||
-                       is_stdout(settings->watch) || is_stdout(settings->ledger) ||
-                       settings->trail.asked;
+    const bool taken = settings->hash || cs_print_is_stdout(settings->json) ||
+                       cs_print_is_stdout(settings->watch) ||
+                       cs_print_is_stdout(settings->ledger) || settings->trail.asked;
     struct cs_text table = {0};
     if (settings->quiet)
         return CS_OK;
@@ -241,8 +230,8 @@ static enum cs_status run_here(void *ctx, struct cs_error *error) {
     /* a failed step leaves the report of the frames before; its own message stands */
     struct cs_error later = {0};
     if (job.failure && !write_json(&job, &later))
-        write_manifests(&job, &later);
-    if (!error->status && !write_json(&job, error) && !write_manifests(&job, error) &&
+        cs_run_outputs_sign(&job, &later);
+    if (!error->status && !write_json(&job, error) && !cs_run_outputs_sign(&job, error) &&
         !print_table(&job, error))
         tell_outcome(&job, options->strict, error);
     cs_job_finish(&job);

@@ -2,6 +2,7 @@
 #include "cli/run/run_range.h"
 
 #include "model/force/measure.h"
+#include "study/picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -16,20 +16,3 @@ bool cs_job_uses_folder(const struct cs_job_settings *settings) {
     return settings->session.render || cs_job_makes_checkpoints(settings) ||
            settings->export.formats;
 }
-
-static const char *yes(bool fact) {
-    return fact ? "yes" : "no";
-}
-
-void cs_job_print_outputs(const struct cs_job_settings *settings, const char *renderer,
-                          struct cs_text *out) {
-    cs_text_add(out,
-                "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
-                "%s\nwatch: %s\nledger: %s\nJSON: %s\nexport:",
-                settings->session.render ? renderer : "none", settings->every, settings->level,
-                yes(settings->fast), yes(settings->states != NULL),
-                yes(settings->watch != NULL), yes(settings->ledger != NULL),
-                yes(cs_job_wants_json(settings)));
-    cs_run_export_print(&settings->export, out);
-    cs_text_add(out, "\n");
-}
