@@ -19,7 +19,7 @@ struct options {
     const char *const *plugins; /* (n_plugins) */
     uint32_t n_plugins;
 };
-static const struct options defaults = {NULL};
+static const struct options defaults = {.json = NULL};
 
 static const struct cs_arg rows[] = {
     {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",

@@ -36,14 +36,14 @@ static enum cs_status read_axis(const char *option, const char *name,
     *column = cs_column_find(name);
     return *column && (*column)->label
                ? CS_OK
-               : cs_args_refuse_name(option, cs_column_axes(), name, error);
+               : cs_arg_refuse_name(option, cs_column_axes(), name, error);
 }
 
 static enum cs_status check_family(const char *family, struct cs_error *error) {
     for (uint32_t k = 0; family && cs_family_names[k]; k++)
         if (!strcmp(family, cs_family_names[k]))
             return CS_OK;
-    return family ? cs_args_refuse_name("family", cs_family_names, family, error) : CS_OK;
+    return family ? cs_arg_refuse_name("family", cs_family_names, family, error) : CS_OK;
 }
 
 /* a name inside a quoted text of the script */

@@ -12,9 +12,8 @@
 #include <string.h>
 
 static const struct cs_stability_options defaults = {
-    .map = {.columns = 9, .rows = 15, .seconds = 0.5, .budget = 5},
-    .axis = CS_AXES,
-    .folder = "stability"};
+    .map = {.folder = "stability", .columns = 9, .rows = 15, .seconds = 0.5, .budget = 5},
+    .axis = CS_AXES};
 
 static const struct cs_arg rows[] = {
     {"integrators", 'i', "LIST",
@@ -49,7 +48,7 @@ static const struct cs_arg rows[] = {
     {"out", 'o', "DIR",
      "folder for NAME.csv, NAME_border.csv, NAME.json, NAME.gp and, with gnuplot, NAME.png "
      "(default: stability)",
-     CS_ARG_INTO(struct cs_stability_options, folder)},
+     CS_ARG_INTO(struct cs_stability_options, map.folder)},
     {"overwrite", 'y', NULL, "replace the files of an earlier map",
      CS_ARG_INTO(struct cs_stability_options, overwrite)},
     {"extreme", 0, NULL,
@@ -222,7 +221,6 @@ static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
     struct cs_stability_settings *settings = &options->map;
     settings->session.scene = args->n_operands ? args->operands[0] : NULL;
     settings->session.run.stop = cs_interrupt_catch();
-    settings->folder = options->folder;
     if (!settings->workers)
         settings->workers = cs_pool_processors(CS_WORKERS_MOST);
     if (read_axis(options, error))

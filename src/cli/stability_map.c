@@ -16,7 +16,7 @@ static enum cs_status write_file(const struct cs_stability_options *options, con
                                  const char *ending, struct cs_text *text,
                                  struct cs_error *error) {
     struct cs_text path = {0};
-    cs_text_add(&path, "%s/%s%s", options->folder, name, ending);
+    cs_text_add(&path, "%s/%s%s", options->map.folder, name, ending);
     if (text->failed || path.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the files of a map");
     else if (options->overwrite || !cs_output_check_file(cs_text_get(&path), error))
@@ -68,7 +68,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     if (!error->status)
         write_file(options, name, ".gp", &plot, error);
     if (!error->status)
-        *drawn = draw(options->folder, name);
+        *drawn = draw(options->map.folder, name);
     cs_text_finish(&borders);
     cs_text_finish(&json);
     cs_text_finish(&plot);
@@ -112,8 +112,8 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
     }
     if (!error->status && !map.complete)
         tell_shard(&map, quiet);
-    else if (!error->status && !cs_folder_make(options->folder, error) &&
-             !keep_inputs(&map, options->folder, error) &&
+    else if (!error->status && !cs_folder_make(options->map.folder, error) &&
+             !keep_inputs(&map, options->map.folder, error) &&
              !write_files(options, &map, &drawn, error) && !quiet) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];
@@ -121,7 +121,7 @@ enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
         cs_stability_print_table(&map, &out);
         /* gnuplot may be missing: the line then says that there is no picture */
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                    options->folder, name, drawn ? ", .png" : "; no gnuplot: no picture");
+                    options->map.folder, name, drawn ? ", .png" : "; no gnuplot: no picture");
         cs_print_out(stdout, &out, error);
     }
     if (!error->status && options->strict)

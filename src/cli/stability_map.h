@@ -12,8 +12,8 @@ struct cs_stability_options {
     enum cs_axis axis;           /* CS_AXES: not named */
     const char *values[CS_AXES]; /* LOW..HIGH of the axes, one of them at most, or NULL */
     const char *dt;              /* likewise */
-    const char *folder, *json;   /* json: of the extreme scenes */
-    const char *catalogue;       /* folder of the extreme scenes; NULL: the installed one */
+    const char *json;            /* of the extreme scenes */
+    const char *catalogue;       /* their folder; NULL: the installed one */
     bool overwrite, extreme, strict, quiet;
 };
 

@@ -46,17 +46,31 @@ static void read_method(const char *text) {
     cs_method_finish(&method);
 }
 
+/* numbers that were read are in their bounds */
+static void check_value(const struct cs_args *args, const struct cs_given *given) {
+    const struct cs_arg *row = given->row;
+    const void *field = (const char *)args->options + row->offset;
+    struct cs_error error = {0};
+    struct cs_resume_pace pace;
+    if (row->kind == CS_ARG_REAL)
+        CS_ASSERT(*(const double *)field >= 0 && *(const double *)field <= 1e9);
+    if (row->kind == CS_ARG_SHARD)
+        CS_ASSERT(((const struct cs_shard *)field)->number <=
+                  ((const struct cs_shard *)field)->of);
+    if (!strcmp(row->name, "checkpoint"))
+        expect(cs_resume_read_pace(given->value, &pace, &error), &error);
+}
+
 static void read_as(const struct cs_command *command, int argc, char **argv) {
     struct cs_args args = {0};
     struct cs_error error = {0};
     struct cs_text help = {0};
-    struct cs_resume_pace pace;
     expect(cs_args_parse(&args, command, argc, argv, &error), &error);
     if (args.help)
         cs_command_print_help(command, &help);
+    /* what was read before a mistake, too */
     for (uint32_t k = 0; k < args.n_given; k++)
-        if (!strcmp(args.given[k].row->name, "checkpoint"))
-            expect(cs_resume_read_pace(args.given[k].value, &pace, &error), &error);
+        check_value(&args, args.given + k);
     cs_text_finish(&help);
     cs_args_finish(&args);
 }

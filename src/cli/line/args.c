@@ -140,7 +140,8 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
         return error->status;
     memcpy(args->options, command->defaults, command->size);
     for (uint32_t i = 0; i < args->n_given && !error->status; i++)
-        cs_args_read(args, args->given + i, error);
+        cs_arg_read(args->given[i].row, args->given[i].value, args->options, &args->arena,
+                    error);
     return error->status;
 }
 

@@ -29,6 +29,8 @@ static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) 
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const struct cs_render *render = &job->session.scene.render;
+    if (!settings->session.render)
+        return CS_OK;
     const struct cs_frames_settings frames = {
         (uint32_t)render->size[0], (uint32_t)render->size[1],
         render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
@@ -38,13 +40,10 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
                                      .drawn_by = cs_text_get(&job->renderer),
                                      .fast = settings->fast,
                                      .restarts = cs_job_restarts(job)};
-    if (!settings->session.render ||
-        cs_frames_create(settings->folder, &frames, &job->writer, error))
-        return error->status;
     cs_origin_print_recipe(&recipe, &job->recipe);
     return job->recipe.failed
                ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of pictures")
-               : CS_OK;
+               : cs_frames_create(settings->folder, &frames, &job->writer, error);
 }
 
 static void print_range(const struct cs_job_picture *picture, const struct cs_scene *scene,

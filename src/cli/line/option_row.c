@@ -1,5 +1,7 @@
 /* Reads the values of options into the struct of their command, and checks them. */
-#include "cli/line/args.h"
+#include "cli/line/option_row.h"
+
+#include "base/text.h"
 #include "sim/method.h"
 
 #include <stdio.h>
@@ -18,8 +20,8 @@ static enum cs_status read_whole(const struct cs_arg *row, const char *text, uin
     return CS_OK;
 }
 
-enum cs_status cs_args_refuse_name(const char *option, const char *const *names,
-                                   const char *text, struct cs_error *error) {
+enum cs_status cs_arg_refuse_name(const char *option, const char *const *names,
+                                  const char *text, struct cs_error *error) {
     struct cs_text list = {0};
     for (int i = 0; names[i]; i++)
         cs_text_add(&list, "%s%s", i ? ", " : "", names[i]);
@@ -37,7 +39,7 @@ static enum cs_status read_name(const struct cs_arg *row, const char *text, uint
             *value = row->many ? *value | 1u << i : i;
             return CS_OK;
         }
-    return cs_args_refuse_name(row->name, row->names, text, error);
+    return cs_arg_refuse_name(row->name, row->names, text, error);
 }
 
 static enum cs_status read_real(const struct cs_arg *row, const char *text, double *value,
@@ -64,51 +66,57 @@ static enum cs_status read_shard(const struct cs_arg *row, const char *text,
     return CS_OK;
 }
 
+/* The list that an option adds to. */
+struct list {
+    const struct cs_arg *row;
+    char *options;
+    struct cs_arena *arena;
+};
+
 /* Room for one more item at the end of a list, which is moved where it is full. */
-static void *append(struct cs_args *args, const struct cs_arg *row, size_t size,
-                    struct cs_error *error) {
-    char *options = args->options;
-    uint32_t *n = (uint32_t *)(options + row->count);
+static void *append(const struct list *list, size_t size, struct cs_error *error) {
+    char *field = list->options + list->row->offset;
+    uint32_t *n = (uint32_t *)(list->options + list->row->count);
     char *items;
-    memcpy(&items, options + row->offset, sizeof items);
+    memcpy(&items, field, sizeof items);
     /* the room is a power of two */
     if ((*n & (*n - 1)) == 0) {
-        char *larger = cs_arena_take_n(&args->arena, *n ? 2 * (size_t)*n : 1, size, error);
+        char *larger = cs_arena_take_n(list->arena, *n ? 2 * (size_t)*n : 1, size, error);
         if (!larger)
             return NULL;
         if (*n)
             memcpy(larger, items, *n * size);
         items = larger;
-        memcpy(options + row->offset, &items, sizeof items);
+        memcpy(field, &items, sizeof items);
     }
     return items + size * (*n)++;
 }
 
-static enum cs_status add_word(struct cs_args *args, const struct cs_arg *row, const char *text,
+static enum cs_status add_word(const struct list *list, const char *text,
                                struct cs_error *error) {
-    const char **word = append(args, row, sizeof *word, error);
+    const char **word = append(list, sizeof *word, error);
     if (word)
         *word = text;
     return error->status;
 }
 
-static enum cs_status add_methods(struct cs_args *args, const struct cs_arg *row,
-                                  const char *text, struct cs_error *error) {
-    char *rest = cs_arena_take_text(&args->arena, text, error);
+static enum cs_status add_methods(const struct list *list, const char *text,
+                                  struct cs_error *error) {
+    char *rest = cs_arena_take_text(list->arena, text, error);
     while (rest && !error->status)
-        add_word(args, row, cs_method_split(&rest), error);
+        add_word(list, cs_method_split(&rest), error);
     return error->status;
 }
 
 /* Splits PATH=VALUE; the copy lives in the arena. */
-static enum cs_status add_override(struct cs_args *args, const struct cs_arg *row,
-                                   const char *text, struct cs_error *error) {
+static enum cs_status add_override(const struct list *list, const char *text,
+                                   struct cs_error *error) {
     const char *equals = strchr(text, '=');
     if (!equals || equals == text || !equals[1])
         return cs_fail(error, CS_ERR_USAGE, "--%s: expected PATH=VALUE, found \"%.60s\"",
-                       row->name, text);
-    char *path = cs_arena_take_text(&args->arena, text, error);
-    struct cs_override *override = append(args, row, sizeof *override, error);
+                       list->row->name, text);
+    char *path = cs_arena_take_text(list->arena, text, error);
+    struct cs_override *override = append(list, sizeof *override, error);
     if (!path || !override)
         return error->status;
     path[equals - text] = 0;
@@ -116,29 +124,28 @@ static enum cs_status add_override(struct cs_args *args, const struct cs_arg *ro
     return CS_OK;
 }
 
-enum cs_status cs_args_read(struct cs_args *args, const struct cs_given *given,
-                            struct cs_error *error) {
-    const struct cs_arg *row = given->row;
-    void *field = (char *)args->options + row->offset;
+enum cs_status cs_arg_read(const struct cs_arg *row, const char *text, void *options,
+                           struct cs_arena *arena, struct cs_error *error) {
+    void *field = (char *)options + row->offset;
+    const struct list list = {row, options, arena};
     switch (row->kind) {
     case CS_ARG_SWITCH:
         *(bool *)field = !*(bool *)field;
         break;
     case CS_ARG_TEXT:
-        *(const char **)field = given->value;
+        *(const char **)field = text;
         break;
     case CS_ARG_WHOLE:
-        return row->names ? read_name(row, given->value, field, error)
-                          : read_whole(row, given->value, field, error);
+        return row->names ? read_name(row, text, field, error)
+                          : read_whole(row, text, field, error);
     case CS_ARG_REAL:
-        return read_real(row, given->value, field, error);
+        return read_real(row, text, field, error);
     case CS_ARG_SHARD:
-        return read_shard(row, given->value, field, error);
+        return read_shard(row, text, field, error);
     case CS_ARG_WORDS:
-        return row->methods ? add_methods(args, row, given->value, error)
-                            : add_word(args, row, given->value, error);
+        return row->methods ? add_methods(&list, text, error) : add_word(&list, text, error);
     case CS_ARG_OVERRIDES:
-        return add_override(args, row, given->value, error);
+        return add_override(&list, text, error);
     }
     return CS_OK;
 }
