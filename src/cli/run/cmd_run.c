@@ -148,7 +148,8 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
         check_stream(settings, error) ||
         cs_run_export_read(options->export, options->values, &settings->export, error))
         return error->status;
-    if (!cs_job_uses_folder(settings))
+    if (!settings->session.render && !cs_job_makes_checkpoints(settings) &&
+        !settings->export.formats)
         settings->folder = NULL;
     return CS_OK;
 }

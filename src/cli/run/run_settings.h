@@ -7,6 +7,8 @@
 #include "export/export.h"
 #include "study/session.h"
 
+#include <math.h>
+
 /* --trace. Zeroed: none. Must stay where it is while the run lasts. */
 struct cs_run_trail {
     bool asked;
@@ -32,16 +34,20 @@ struct cs_job_settings {
 };
 
 /* How many frames are simulated. */
-uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene);
+static inline uint32_t cs_job_frames(const struct cs_job_settings *settings,
+                                     const struct cs_scene *scene) {
+    const double second = floor(scene->time.fps + 0.5);
+    return settings->frames ? settings->frames : second < 1 ? 1 : (uint32_t)second;
+}
 
 /* true where the run is written as JSON somewhere. */
 static inline bool cs_job_wants_json(const struct cs_job_settings *settings) {
     return settings->session.render || settings->json;
 }
 
-bool cs_job_makes_checkpoints(const struct cs_job_settings *settings);
-/* Pictures, checkpoints or exports go into the folder. */
-bool cs_job_uses_folder(const struct cs_job_settings *settings);
+static inline bool cs_job_makes_checkpoints(const struct cs_job_settings *settings) {
+    return settings->checkpoint.frames || settings->checkpoint.seconds > 0 || settings->resume;
+}
 
 /* Reads --trace: "frames", or the number of a frame. CS_ERR_USAGE. */
 enum cs_status cs_run_trail_read(const char *value, struct cs_run_trail *trail,
