@@ -10,12 +10,18 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MERGE_OUT, MERGE_QUIET, MERGE_ROWS };
 enum { FILE_BYTES_MAX = 1 << 30 };
 
-static const struct cs_arg rows[MERGE_ROWS] = {
-    [MERGE_OUT] = {"out", 'o', "DIR", "folder of the whole (default: merged)", false},
-    [MERGE_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
+struct options {
+    const char *out;
+    bool quiet;
+};
+static const struct options defaults = {.out = "merged"};
+
+static const struct cs_arg rows[] = {
+    {"out", 'o', "DIR", "folder of the whole (default: merged)",
+     CS_ARG_INTO(struct options, out)},
+    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
 /* Any part says which scene a comparison is of. */
@@ -33,8 +39,8 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
 }
 
 static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
-    const char *given = cs_args_get(args, MERGE_OUT), *out = given ? given : "merged";
-    const char *const *folders = args->operands;
+    const struct options *options = args->options;
+    const char *out = options->out, *const *folders = args->operands;
     const uint32_t n = args->n_operands;
     uint32_t cells = 0, rows_of_sweep = 0, maps = 0;
     for (uint32_t k = 0; k < n; k++)
@@ -51,7 +57,7 @@ static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
     if (cells + maps == 0)
         return cs_fail(error, CS_ERR_FILE,
                        "no folder holds a compare.csv, a sweep.csv or the .partial of a map");
-    if (!cs_args_get(args, MERGE_QUIET))
+    if (!options->quiet)
         printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps, n, out);
     return CS_OK;
 }
@@ -64,8 +70,7 @@ const struct cs_command cs_command_merge = {
         "The command of the study, without --shard and with -o DIR, then makes the report\n"
         "or map of the whole.\n\n"
         "Example: clothsim merge part1 part2 -o whole\n",
-    .rows = rows,
-    .n_rows = MERGE_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .least = 1,
     .most = 10000,
     .main = merge,

@@ -2,7 +2,6 @@
 #include "cli/run_output.h"
 
 #include "base/file.h"
-#include "cli/line/print.h"
 #include "io/npy.h"
 
 #include <dirent.h>
@@ -156,15 +155,6 @@ void cs_output_release(struct cs_output *output) {
     if (output->lock)
         close(output->lock - 1);
     *output = (struct cs_output){0};
-}
-
-void cs_output_rows(const char *path, struct cs_text *rows, struct cs_error *error) {
-    struct cs_error failure = {0};
-    if (!path || rows->failed)
-        return;
-    cs_print_file(path, rows, &failure);
-    if (!error->status)
-        *error = failure;
 }
 
 enum cs_status cs_output_state(const char *folder, uint32_t number, const double *x,

@@ -59,7 +59,11 @@ void cs_print_message(const char *message) {
     fputc('\n', stderr);
 }
 
+bool cs_print_is_stdout(const char *path) {
+    return path && !strcmp(path, "-");
+}
+
 enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error) {
-    return strcmp(path, "-") != 0 ? cs_file_write_text(path, text, error)
-                                  : cs_print_out(stdout, text, error);
+    return cs_print_is_stdout(path) ? cs_print_out(stdout, text, error)
+                                    : cs_file_write_text(path, text, error);
 }

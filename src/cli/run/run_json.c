@@ -7,6 +7,8 @@
 
 #include <cjson/cJSON.h>
 #include <png.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { SCHEMA_VERSION = 1 };
 
@@ -166,3 +168,40 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     add_frames(job, out);
     cs_text_add(out, "}\n");
 }
+
+static bool has_room(struct cs_kept *kept, size_t frames) {
+    if (frames <= kept->capacity)
+        return true;
+    void *larger = cs_arena_grow(kept->frames, &kept->capacity, frames, sizeof *kept->frames);
+    kept->frames = larger ? larger : kept->frames;
+    return larger;
+}
+
+/* The row of a frame; its picture is noted there once it is begun. */
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const uint32_t number = job->session.run.frame;
+    if (!cs_job_wants_json(job->settings))
+        return CS_OK;
+    if (!has_room(&job->kept, number))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %u frames",
+                       number);
+    struct cs_job_frame *kept = job->kept.frames + number - 1;
+    *kept = (struct cs_job_frame){.crossings = job->tally.last};
+    memcpy(kept->hash, job->hash, sizeof kept->hash);
+    return CS_OK;
+}
+
+static void record_rows(struct cs_job *job, struct cs_record *record) {
+    struct cs_kept *kept = &job->kept;
+    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
+    CS_RECORD(record, n);
+    if (record->loading && (record->failed || n > record->length || !has_room(kept, (size_t)n)))
+        record->failed = true;
+    else
+        cs_record_bytes(record, kept->frames, (size_t)n * sizeof *kept->frames);
+}
+
+const struct cs_run_output cs_run_output_json = {.option = "--json",
+                                                 .path = offsetof(struct cs_job_settings, json),
+                                                 .at = {[CS_RUN_FRAME] = frame},
+                                                 .record = record_rows};

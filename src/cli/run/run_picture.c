@@ -1,10 +1,50 @@
-/* Tells in the text chunks of a picture what it shows and how it came about. */
-#include "cli/run/run_picture.h"
-
-#include "base/text.h"
-#include "study/picture.h"
+/* Draws the pictures of a run while it goes on, and writes into each how it came about. */
+#include "base/clock.h"
+#include "base/pool.h"
+#include "cli/run/job_state.h"
+#include "study/origin.h"
 
 #include <stdio.h>
+#include <string.h>
+
+/* more than one, so that drawing and encoding can overlap the run */
+static bool has_processors(void) {
+    return cs_pool_processors(2) > 1;
+}
+
+static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    if (!settings->session.render)
+        return CS_OK;
+    if (cs_picture_open(&job->picture, &job->session.system, settings->renderer, settings->fast,
+                        has_processors(), error))
+        return error->status;
+    cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));
+    return job->renderer.failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the renderer's name")
+               : CS_OK;
+}
+
+/* The recipe is known once a run has begun, or goes on at its pace of checkpoints. */
+static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const struct cs_render *render = &job->session.scene.render;
+    if (!settings->session.render)
+        return CS_OK;
+    const struct cs_frames_settings frames = {
+        (uint32_t)render->size[0], (uint32_t)render->size[1],
+        render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
+    const struct cs_recipe recipe = {.origin = cs_text_get(&job->origin),
+                                     .scene = cs_text_get(&job->scene),
+                                     .renderer = job->picture.renderer->name,
+                                     .drawn_by = cs_text_get(&job->renderer),
+                                     .fast = settings->fast,
+                                     .restarts = cs_job_restarts(job)};
+    cs_origin_print_recipe(&recipe, &job->recipe);
+    return job->recipe.failed
+               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of pictures")
+               : cs_frames_create(settings->folder, &frames, &job->writer, error);
+}
 
 static void print_range(const struct cs_job_picture *picture, const struct cs_scene *scene,
                         struct cs_text *range) {
@@ -16,25 +56,25 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
     cs_text_add(range, " %s", cs_picture_unit(scene));
 }
 
-enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
-                                   const struct cs_picture_origin *origin,
-                                   struct cs_frames *frames, struct cs_error *error) {
+/* Hands the image taken last over, as frame_NUMBER.png. */
+static enum cs_status give(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_picture *picture = &job->begun;
     char frame[16], pixels[CS_HASH_DIGITS];
     struct cs_text time = {0}, range = {0};
     snprintf(frame, sizeof frame, "%u", picture->frame);
     cs_hash_bytes(picture->image->rgb, cs_image_bytes(picture->image), pixels);
     cs_text_add_real(&time, picture->time);
-    print_range(picture, origin->scene, &range);
+    print_range(picture, &job->session.scene, &range);
     const struct cs_png_text texts[] = {
         {"Software", "clothsim " CS_VERSION},
-        {"Source", origin->scene_hash},
+        {"Source", job->scene_hash},
         {"clothsim:frame", frame},
         {"clothsim:time", cs_text_get(&time)},
-        {"clothsim:integrator", origin->method},
+        {"clothsim:integrator", cs_text_get(&job->method)},
         {"clothsim:state-hash", picture->hash},
-        {"clothsim:renderer", origin->renderer},
+        {"clothsim:renderer", cs_text_get(&job->renderer)},
         {"clothsim:pixel-hash", pixels},
-        {"clothsim:run", origin->recipe},
+        {"clothsim:run", cs_text_get(&job->recipe)},
         {"clothsim:range", cs_text_get(&range)},
     };
     /* the range comes last, so that it can be left out where nothing is coloured */
@@ -42,8 +82,62 @@ enum cs_status cs_job_picture_give(const struct cs_job_picture *picture,
     if (time.failed || range.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of a picture");
     else
-        cs_frames_give(frames, picture->number, texts, n_texts, error);
+        cs_frames_give(job->writer, picture->number, texts, n_texts, error);
     cs_text_finish(&time);
     cs_text_finish(&range);
     return error->status;
 }
+
+/* Waits for the picture under way and hands it over. */
+static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
+    const double start = cs_clock_wall();
+    if (!job->begun.number)
+        return CS_OK;
+    const enum cs_status status = cs_picture_end(&job->picture, error);
+    job->wait_seconds += cs_clock_wall() - start;
+    if (!status && !give(job, error))
+        job->drawn++;
+    job->begun.number = 0;
+    return error->status;
+}
+
+/* The picture of this frame; that of the one before has been drawn in the meantime. */
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    if (!job->writer || run->frame % job->settings->every || end_picture(job, error))
+        return error->status;
+    const double start = cs_clock_wall();
+    struct cs_image *image = cs_frames_take(job->writer);
+    job->wait_seconds += cs_clock_wall() - start;
+    cs_picture_begin(&job->picture, run, image);
+    job->begun = (struct cs_job_picture){.number = run->frame / job->settings->every,
+                                         .frame = run->frame,
+                                         .time = run->t,
+                                         .image = image};
+    struct cs_job_frame *row = job->kept.frames + run->frame - 1;
+    memcpy(job->begun.hash, job->hash, sizeof job->hash);
+    memcpy(job->begun.range, job->picture.range, sizeof job->begun.range);
+    memcpy(row->range, job->picture.range, sizeof row->range);
+    row->drawn = true;
+    return CS_OK;
+}
+
+/* Waits until every picture that was begun is a file. */
+static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
+    if (end_picture(job, error) || !job->writer)
+        return error->status;
+    const double start = cs_clock_wall();
+    cs_frames_finish(job->writer, &job->encode_seconds, error);
+    job->wait_seconds += cs_clock_wall() - start;
+    return error->status;
+}
+
+/* The folder is that of checkpoints and exports as well. */
+const struct cs_run_output cs_run_output_pictures = {
+    .option = "--out",
+    .path = offsetof(struct cs_job_settings, folder),
+    .is_ours = cs_output_is_result,
+    .at = {[CS_RUN_OPEN] = open_renderer,
+           [CS_RUN_BEGIN] = begin,
+           [CS_RUN_FRAME] = frame,
+           [CS_RUN_SETTLE] = settle}};

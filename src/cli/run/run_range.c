@@ -3,6 +3,7 @@
 
 #include "model/force/measure.h"
 #include "study/follow.h"
+#include "study/picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Writes the trail of a run. */
-#include "cli/run/run_trail.h"
+/* Writes the states of a run, or all that one frame computes, to standard output. */
+#include "cli/run/job_state.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,27 +38,37 @@ static void write_state(const struct cs_run *run) {
     cs_trail_write(stdout, &point);
 }
 
-void cs_run_trail_begin(struct cs_run_trail *trail, const struct cs_run *run) {
-    if (!trail->asked)
-        return;
-    cs_trail_begin(stdout);
-    write_state(run);
-}
-
-void cs_run_trail_step(struct cs_run_trail *trail, const struct cs_run *run) {
+/* everything is told of one frame alone */
+static void expect_frame(struct cs_run_trail *trail, const struct cs_run *run) {
     trail->trace.on = trail->only == run->frame + 1;
 }
 
-enum cs_status cs_run_trail_frame(struct cs_run_trail *trail, const struct cs_run *run,
-                                  struct cs_error *error) {
-    if (trail->asked && (!trail->only || trail->only == run->frame))
-        write_state(run);
-    if (trail->asked && (fflush(stdout) || ferror(stdout)))
-        return cs_fail(error, CS_ERR_FILE, "cannot write to standard output");
-    return CS_OK;
+static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    if (!job->trail.asked)
+        return CS_OK;
+    cs_trail_begin(stdout);
+    write_state(run);
+    expect_frame(&job->trail, run);
+    return error->status;
 }
 
-void cs_run_trail_end(struct cs_run_trail *trail, const struct cs_run *run) {
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    const struct cs_run_trail *trail = &job->trail;
+    if (!trail->asked)
+        return CS_OK;
+    if (!trail->only || trail->only == run->frame)
+        write_state(run);
+    expect_frame(&job->trail, run);
+    return fflush(stdout) || ferror(stdout)
+               ? cs_fail(error, CS_ERR_FILE, "cannot write to standard output")
+               : CS_OK;
+}
+
+/* when and where a run blew up */
+static enum cs_status end(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
     const double where[] = {run->blow_up.particle, run->blow_up.energy};
     const struct cs_trail_point point = {.frame = run->frame + 1,
                                          .step = run->counts.steps,
@@ -67,6 +77,10 @@ void cs_run_trail_end(struct cs_run_trail *trail, const struct cs_run *run) {
                                          .name = "end",
                                          .values = where,
                                          .n = 2};
-    if (trail->asked && cs_outcome_is_blow_up(run->outcome))
+    if (job->trail.asked && cs_outcome_is_blow_up(run->outcome))
         cs_trail_write(stdout, &point);
+    return error->status;
 }
+
+const struct cs_run_output cs_run_output_trail = {
+    .at = {[CS_RUN_BEGIN] = begin, [CS_RUN_FRAME] = frame, [CS_RUN_END] = end}};
