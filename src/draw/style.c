@@ -26,34 +26,11 @@ void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *ma
         style->mode = CS_SURFACE_TEXTURED;
 }
 
-/* three times the height of a chord of one diagonal, for cloth seen at a slant */
-static double chord(double cell, double radius) {
-    return fmin(3 * cell * cell / (4 * radius), radius / 4);
-}
-
-/* how far cloth may cut into a collider between its particles */
-static double sink_of(const struct cs_obstacle *obstacle, double cell) {
-    const double *core = obstacle->core, radius = obstacle->radius;
-    const double least = fmin(core[0], fmin(core[1], core[2])) + radius;
-    switch (obstacle->kind) {
-    case CS_OBSTACLE_PLANE:
-    case CS_OBSTACLE_MESH:
-        // cloth keeps off the triangles of a mesh
-        return 0;
-    case CS_OBSTACLE_BOX:
-        // a chord of one diagonal over a sharp edge
-        return fmin(0.5 * cell, least / 4);
-    case CS_OBSTACLE_SPHERE:
-    case CS_OBSTACLE_CAPSULE:
-        return chord(cell, radius);
-    }
-    return 0;
-}
-
 void cs_style_solid(struct cs_surface_style *style, const struct cs_obstacle *obstacle,
                     double cell) {
     const struct cs_collider *collider = obstacle->collider;
-    const bool flat = obstacle->kind == CS_OBSTACLE_PLANE;
+    const struct cs_shape *shape = obstacle->shape;
+    const bool flat = cs_shape_is_endless(shape);
     *style = (struct cs_surface_style){.ambient = 1,
                                        .diffuse = 1,
                                        .specular = flat ? 0.04 : 0.22,
@@ -61,5 +38,5 @@ void cs_style_solid(struct cs_surface_style *style, const struct cs_obstacle *ob
     memcpy(style->front, collider->colour, sizeof style->front);
     memcpy(style->back, collider->colour, sizeof style->back);
     style->fade = collider->floor.present ? collider->floor.extent : 0;
-    style->sink = sink_of(obstacle, cell);
+    style->sink = shape->chord_depth ? shape->chord_depth(obstacle, cell) : 0;
 }

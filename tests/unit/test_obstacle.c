@@ -158,7 +158,7 @@ START_TEST(derivatives_match_differences) {
             double p[3], g[3], h[6], ahead[3], behind[3], unused[6];
             draw_point(&seed, &of, p);
             const double d = cs_obstacle_smooth(&of, p, g, h);
-            if (d < -0.5 * of.radius && of.kind != CS_OBSTACLE_PLANE)
+            if (d < -0.5 * of.radius && !cs_shape_is_endless(of.shape))
                 continue;
             for (int c = 0; c < 3; c++) {
                 const double kept = p[c];
