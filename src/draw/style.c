@@ -1,29 +1,33 @@
 /* Derives the looks of bodies and colliders from their tables in the scene. */
 #include "draw/style.h"
 
+#include "draw/look.h"
 #include "draw/matrix.h"
-
-bool cs_look_has_values(int32_t look) {
-    return look == CS_LOOK_FORCE || look == CS_LOOK_STRAIN || look == CS_LOOK_CROSSINGS;
-}
 
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look) {
+    const enum cs_look_colours colours = cs_look_kind(look)->colours;
     const bool has_back = !isnan(material->back_colour[0]);
     *style = (struct cs_surface_style){.ambient = material->ambient,
                                        .diffuse = material->diffuse,
                                        .specular = material->specular,
                                        .shininess = material->shininess,
-                                       .folds = look == CS_LOOK_LIT};
+                                       .folds = colours == CS_COLOURS_MATERIAL};
     memcpy(style->front, material->colour, sizeof style->front);
     memcpy(style->back, has_back ? material->back_colour : material->colour,
            sizeof style->back);
-    if (cs_look_has_values(look))
-        style->mode = CS_SURFACE_VALUE;
-    else if (look != CS_LOOK_LIT)
+    switch (colours) {
+    case CS_COLOURS_MATERIAL:
+        style->mode = textured ? CS_SURFACE_TEXTURED : CS_SURFACE_PLAIN;
+        break;
+    case CS_COLOURS_FAINT:
         style->mode = CS_SURFACE_FAINT;
-    else if (textured)
-        style->mode = CS_SURFACE_TEXTURED;
+        break;
+    case CS_COLOURS_FORCE:
+    case CS_COLOURS_STRAIN:
+    case CS_COLOURS_CROSSINGS:
+        style->mode = CS_SURFACE_VALUE;
+    }
 }
 
 void cs_style_solid(struct cs_surface_style *style, const struct cs_obstacle *obstacle,
