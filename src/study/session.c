@@ -2,7 +2,6 @@
 #include "study/session.h"
 
 #include "base/pool.h"
-#include "draw/look.h"
 #include "model/plan.h"
 #include "model/system_build.h"
 #include "scene/crossings.h"
@@ -97,7 +96,7 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
     struct cs_error said = {0};
     if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
         return cs_fail(error, said.status, "%s: %s", session->scene.path, said.message);
-    if (render && cs_look_kind(session->scene.render.look)->goals && !cs_run_has_goals(method))
+    if (render && session->scene.render.look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
                        "%s: render.look: integrator \"%s\" has no goals that could be drawn",
                        session->scene.path, method->name);
