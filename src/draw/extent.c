@@ -26,12 +26,10 @@ static void grow_by(double low[3], double high[3], const struct cs_obstacle *obs
 static void grow_by_mesh(double low[3], double high[3], const struct cs_obstacle *obstacle) {
     const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
     for (size_t v = 0; v < mesh->n; v++) {
+        const double *own = mesh->places + v;
         double place[3];
-        for (int i = 0; i < 3; i++) {
-            place[i] = obstacle->centre[i];
-            for (size_t a = 0; a < 3; a++)
-                place[i] += obstacle->axes[a][i] * mesh->places[a * mesh->n + v];
-        }
+        cs_obstacle_place(obstacle, (double[3]){own[0], own[mesh->n], own[2 * (size_t)mesh->n]},
+                          place);
         grow(low, high, place);
     }
 }
@@ -49,9 +47,9 @@ struct cs_ball cs_extent_solid(const struct cs_system *system, const double *x,
     }
     /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++) {
-        if (!obstacles[i].collider->visible || obstacles[i].kind == CS_OBSTACLE_PLANE)
+        if (!obstacles[i].collider->visible || cs_shape_is_endless(obstacles[i].shape))
             continue;
-        if (obstacles[i].kind == CS_OBSTACLE_MESH)
+        if (obstacles[i].shape->bounds == CS_BOUNDS_MESH)
             grow_by_mesh(low, high, obstacles + i);
         else
             grow_by(low, high, obstacles + i);

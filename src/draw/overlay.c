@@ -2,6 +2,7 @@
 #include "draw/overlay.h"
 
 #include "draw/extent.h"
+#include "draw/look.h"
 #include "draw/style.h"
 #include "draw/viewpoint_forces.h"
 
@@ -27,22 +28,23 @@ void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m) {
 }
 
 bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
-    return scene->render.look == CS_LOOK_SPRINGS &&
+    return cs_look_kind(scene->render.look)->springs &&
            cs_scene_bodies(scene)[body].network.present;
 }
 
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
     const struct cs_render *render = &overlay->net.system->scene->render;
+    const struct cs_look_kind *look = cs_look_kind(render->look);
     const struct cs_net *net = &overlay->net;
     struct cs_lines *lines = overlay->lines;
     cs_net_draw_threads(net, lines, frame->x);
-    if (render->look == CS_LOOK_WIREFRAME)
+    if (look->edges)
         cs_net_draw_edges(net, lines, frame->x);
-    if (render->look == CS_LOOK_SPRINGS) {
+    if (look->springs) {
         cs_net_draw_springs(net, lines, frame->x);
         cs_net_draw_pins(net, lines, frame->x, frame->inv_mass);
     }
-    if (render->look == CS_LOOK_GOALS && frame->goals)
+    if (look->goals && frame->goals)
         cs_net_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
         cs_viewpoint_forces_draw(net, lines, frame);

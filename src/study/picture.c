@@ -12,11 +12,7 @@
 #include <string.h>
 
 bool cs_picture_is_coloured(const struct cs_scene *scene) {
-    return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN;
-}
-
-const char *cs_picture_unit(const struct cs_scene *scene) {
-    return scene->render.look == CS_LOOK_FORCE ? "N" : "";
+    return cs_look_kind(scene->render.look)->title;
 }
 
 static enum cs_status read_texture(const struct cs_scene *scene, const char *name,
@@ -46,7 +42,7 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
 
 /* false: out of memory */
 static bool take_marks(struct cs_picture *picture) {
-    if (picture->scene->render.look != CS_LOOK_CROSSINGS)
+    if (cs_look_kind(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
         return true;
     picture->marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
     return picture->marks;
@@ -55,7 +51,7 @@ static bool take_marks(struct cs_picture *picture) {
 static enum cs_status take_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
     const bool coloured = cs_picture_is_coloured(picture->scene);
-    const bool drawn_to = picture->scene->render.look == CS_LOOK_GOALS;
+    const bool drawn_to = cs_look_kind(picture->scene->render.look)->goals;
     picture->x = calloc(n, 3 * sizeof(double));
     picture->obstacles = calloc(picture->scene->colliders.n + 1, sizeof *picture->obstacles);
     picture->inv_mass = calloc(n, sizeof(double));
@@ -141,14 +137,14 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
 
 void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
                        double *work) {
-    if (system->scene->render.look == CS_LOOK_FORCE)
+    if (cs_look_kind(system->scene->render.look)->colours == CS_COLOURS_FORCE)
         cs_measure_particle_force(system, run->t, run->x, run->v, scalar, work);
     else
         cs_measure_particle_strain(system, run->x, scalar);
 }
 
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]) {
-    range[0] = scene->render.look == CS_LOOK_STRAIN ? -most : 0;
+    range[0] = cs_look_kind(scene->render.look)->has_sign ? -most : 0;
     range[1] = most;
 }
 
@@ -163,24 +159,16 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
                          picture->range);
 }
 
-const char *cs_picture_title(int32_t look) {
-    return look == CS_LOOK_FORCE ? "force N" : look == CS_LOOK_STRAIN ? "strain %" : NULL;
-}
-
-double cs_picture_factor(int32_t look) {
-    return look == CS_LOOK_STRAIN ? 100 : 1;
-}
-
 static void paint(void *object) {
     struct cs_picture *picture = object;
-    const int32_t look = picture->scene->render.look;
+    const struct cs_look_kind *look = cs_look_kind(picture->scene->render.look);
     const double start = cs_clock_wall();
     const struct cs_frame frame = {.t = picture->t,
                                    .x = picture->x,
                                    .scalar = picture->scalar,
                                    .range = {picture->range[0], picture->range[1]},
-                                   .title = cs_picture_title(look),
-                                   .factor = cs_picture_factor(look),
+                                   .title = look->title,
+                                   .factor = look->factor,
                                    .inv_mass = picture->inv_mass,
                                    .goals = picture->goals,
                                    .marks = picture->marks,

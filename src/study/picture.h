@@ -6,6 +6,7 @@
 #define CS_PICTURE_H
 
 #include "base/hand.h"
+#include "draw/look.h"
 #include "draw/render.h"
 #include "sim/folders.h"
 #include "sim/run.h"
@@ -54,13 +55,8 @@ void cs_picture_values(const struct cs_system *system, const struct cs_run *run,
 /* Its range, up to a magnitude: about 0 where the value has a sign, else from 0. */
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]);
 
-/* true if the colours show a value, so that picture->range has a meaning; its unit. */
+/* true if the colours show a value, so that picture->range has a meaning. */
 bool cs_picture_is_coloured(const struct cs_scene *scene);
-const char *cs_picture_unit(const struct cs_scene *scene);
-
-/* Of a look's colour bar: quantity and unit, NULL without; and the factor of its figures. */
-const char *cs_picture_title(int32_t look);
-double cs_picture_factor(int32_t look);
 
 /* What drew the pictures. */
 const char *cs_picture_renderer(const struct cs_picture *picture);

@@ -158,7 +158,7 @@ START_TEST(derivatives_match_differences) {
             double p[3], g[3], h[6], ahead[3], behind[3], unused[6];
             draw_point(&seed, &of, p);
             const double d = cs_obstacle_smooth(&of, p, g, h);
-            if (d < -0.5 * of.radius && of.kind != CS_OBSTACLE_PLANE)
+            if (d < -0.5 * of.radius && !cs_shape_is_endless(of.shape))
                 continue;
             for (int c = 0; c < 3; c++) {
                 const double kept = p[c];
@@ -401,6 +401,40 @@ START_TEST(moved_obstacle_stays_rigid) {
 }
 END_TEST
 
+/* the triangles of a shape, in its own frame and placed: each corner on the surface */
+START_TEST(triangles_lie_on_the_surface) {
+    for (uint32_t k = 0; k < N_COLLIDERS; k++) {
+        struct cs_arena arena = {0};
+        struct cs_error error = {0};
+        struct cs_trimesh mesh = {0};
+        struct cs_obstacle of;
+        cs_obstacle_at(&at_rest, k, 0, &of);
+        of.shape->triangles(&of, &mesh, &arena, &error);
+        UNIT_ASSERT_OK(&error);
+        ck_assert_uint_gt(mesh.n_triangles, 1);
+        for (size_t i = 0; i < mesh.n; i++) {
+            const double own[3] = {mesh.places[i], mesh.places[mesh.n + i],
+                                   mesh.places[2 * (size_t)mesh.n + i]};
+            double p[3], n[3];
+            cs_obstacle_place(&of, own, p);
+            ck_assert_double_eq_tol(cs_obstacle_distance(&of, p, n), 0, 1e-14);
+        }
+        cs_arena_finish(&arena);
+    }
+}
+END_TEST
+
+/* of every shape of the list all that is asked without looking */
+START_TEST(every_shape_answers) {
+#define X(name, keys, text)                                                                    \
+    ck_assert(cs_##name##_keys.n > 0 && cs_##name##_keys.optional);                            \
+    ck_assert(cs_shape_##name.pose && cs_shape_##name.distance && cs_shape_##name.smooth &&    \
+              cs_shape_##name.meets_line && cs_shape_##name.triangles);
+    CS_SHAPE_LIST(X)
+#undef X
+}
+END_TEST
+
 int main(void) {
     const TTest *const tests[] = {sine_and_cosine_are_those_of_libm,
                                   distance_is_the_least_to_the_core,
@@ -415,6 +449,8 @@ int main(void) {
                                   lines_meet_what_their_points_meet,
                                   quarter_turn_is_one,
                                   velocity_is_that_of_the_matter,
-                                  moved_obstacle_stays_rigid};
+                                  moved_obstacle_stays_rigid,
+                                  triangles_lie_on_the_surface,
+                                  every_shape_answers};
     return unit_run("obstacle", tests, sizeof tests / sizeof *tests);
 }

@@ -26,14 +26,25 @@ static struct cs_scene scene = {.colliders = {colliders, N_COLLIDERS}};
 static const struct cs_system rest = {.scene = &scene};
 static const float camera[4] = {0, 0, 5, 1};
 
+static struct cs_arena arena;
+static struct cs_solids solids;
+
+/* the vertices of one collider under cells of 0.02 m, in the arena; returns their number */
+static uint32_t fill(const struct cs_obstacle *of, const float eye[4]) {
+    struct cs_error error = {0};
+    struct cs_scene alone = {.colliders = {colliders, 1}};
+    cs_solids_init(&solids, &(struct cs_system){.scene = &alone}, of, &arena, &error);
+    UNIT_ASSERT_OK(&error);
+    solids.cell = 0.02;
+    if (solids.of[0].n)
+        cs_solids_fill(&solids, 0, eye);
+    return solids.of[0].n;
+}
+
 static struct cs_vertex *make(uint32_t k, struct cs_obstacle *of, uint32_t *n) {
     cs_obstacle_at(&rest, k, 0, of);
-    *n = cs_solid_count(of);
-    struct cs_vertex *vertices = calloc(*n + 1, sizeof *vertices);
-    ck_assert_ptr_nonnull(vertices);
-    cs_solid_fill(of, 0.02, camera, vertices);
-    ck_assert(vertices[*n].normal[0] == 0 && vertices[*n].normal[1] == 0);
-    return vertices;
+    *n = fill(of, camera);
+    return solids.vertices;
 }
 
 /* distance 0 but for the floats, and the normal of the surface there */
@@ -51,7 +62,6 @@ START_TEST(vertices_lie_on_the_surface) {
             for (int c = 0; c < 3; c++)
                 ck_assert_double_eq_tol((double)vertices[i].normal[c], normal[c], 3e-6);
         }
-        free(vertices);
     }
 }
 END_TEST
@@ -85,7 +95,6 @@ START_TEST(volume_is_that_of_the_solid) {
         }
         ck_assert_double_le(six / 6, volumes[k]);
         ck_assert_double_ge(six / 6, 0.99 * volumes[k]);
-        free(v);
     }
 }
 END_TEST
@@ -108,7 +117,6 @@ START_TEST(planes_are_squares) {
             ck_assert_double_eq_tol(cs_obstacle_distance(&of, p, normal), -0.0006, 1e-6);
             ck_assert_double_eq_tol(squared, 2 * extents[k] * extents[k], 1e-5);
         }
-        free(v);
     }
 }
 END_TEST
@@ -142,10 +150,8 @@ START_TEST(a_ball_covers_its_outline) {
     struct cs_vertex *v;
     double sum = 0;
     cs_obstacle_at(&rest, SPHERE, 0, &of);
-    ck_assert_uint_eq(cs_solid_count(&of), CS_BALL_VERTICES);
-    v = calloc(CS_BALL_VERTICES, sizeof *v);
-    ck_assert_ptr_nonnull(v);
-    cs_solid_fill(&of, 0.02, light, v);
+    ck_assert_uint_eq(fill(&of, light), CS_BALL_VERTICES);
+    v = solids.vertices;
     for (uint32_t i = 0; i < CS_BALL_VERTICES; i += 3) {
         double p[3][3], area[3];
         take(v + i, p);
@@ -155,7 +161,6 @@ START_TEST(a_ball_covers_its_outline) {
     }
     const double turn = 2 * acos(-1) / CS_BALL_OUTLINE;
     ck_assert_double_eq_tol(sum, 0.5 * CS_BALL_OUTLINE * sin(turn), 1e-5);
-    free(v);
 }
 END_TEST
 
@@ -164,10 +169,11 @@ END_TEST
 START_TEST(a_ball_ends_where_sight_touches_it) {
     static const float eye[4] = {1.2f, 1.6f, 0, 1};
     struct cs_obstacle of;
-    struct cs_vertex v[CS_BALL_VERTICES];
+    const struct cs_vertex *v;
     uint32_t outline = 0;
     cs_obstacle_at(&rest, SPHERE, 0, &of);
-    cs_solid_fill(&of, 0.02, eye, v);
+    fill(&of, eye);
+    v = solids.vertices;
     for (uint32_t i = 0; i < CS_BALL_VERTICES; i += 3) {
         double p[3][3];
         take(v + i, p);
@@ -191,10 +197,11 @@ END_TEST
 START_TEST(a_ball_is_whole_from_within) {
     static const float eye[4] = {0.1f, 0.2f, 0.3f, 1};
     struct cs_obstacle of;
-    struct cs_vertex v[CS_BALL_VERTICES];
+    const struct cs_vertex *v;
     double six = 0;
     cs_obstacle_at(&rest, SPHERE, 0, &of);
-    cs_solid_fill(&of, 0.02, eye, v);
+    fill(&of, eye);
+    v = solids.vertices;
     for (uint32_t i = 0; i < CS_BALL_VERTICES; i += 3) {
         double p[3][3], area[3];
         take(v + i, p);
@@ -209,7 +216,6 @@ END_TEST
 /* a box of side 1, turned and moved: each triangle where it is met, closed, of volume 1; and
  * what a line meets of it */
 START_TEST(a_mesh_is_as_it_is) {
-    struct cs_arena arena = {0};
     struct cs_error error = {0};
     struct cs_trimesh mesh = {0};
     cs_trimesh_make(&mesh, CS_MESH_BOX, 3, &arena, &error);
@@ -224,11 +230,9 @@ START_TEST(a_mesh_is_as_it_is) {
     struct cs_scene of_mesh = {.colliders = {&collider, 1}};
     struct cs_obstacle of;
     cs_obstacle_at(&(struct cs_system){.scene = &of_mesh}, 0, 0, &of);
-    const uint32_t n = cs_solid_count(&of);
+    const uint32_t n = fill(&of, camera);
     ck_assert_uint_eq(n, 3 * mesh.n_triangles);
-    struct cs_vertex *vertices = calloc(n, sizeof *vertices);
-    ck_assert_ptr_nonnull(vertices);
-    cs_solid_fill(&of, 0.02, camera, vertices);
+    const struct cs_vertex *vertices = solids.vertices;
     double volume = 0;
     for (uint32_t t = 0; t < n; t += 3) {
         double p[3][3], height = 0, cross[3];
@@ -251,15 +255,13 @@ START_TEST(a_mesh_is_as_it_is) {
     ck_assert(cs_obstacle_meets_line(&of, from, way, gap + 1e-6));
     ck_assert(!cs_obstacle_meets_line(&of, from, way, gap - 1e-6));
     ck_assert(!cs_obstacle_meets_line(&of, beside, way, 1));
-    free(vertices);
-    cs_arena_finish(&arena);
 }
 END_TEST
 
 START_TEST(hidden_ones_have_no_triangles) {
     struct cs_obstacle of;
     cs_obstacle_at(&rest, HIDDEN, 0, &of);
-    ck_assert_uint_eq(cs_solid_count(&of), 0);
+    ck_assert_uint_eq(fill(&of, camera), 0);
 }
 END_TEST
 

@@ -39,7 +39,7 @@ enum cs_status cs_run_export_read(const char *formats, const char *values,
     if (read_set("--export", formats, cs_export_format_names, &settings->formats, error) ||
         read_set("--export-values", values, cs_export_value_names, &settings->values, error))
         return error->status;
-    if (values && !(settings->formats & (CS_EXPORT_VTP | CS_EXPORT_NPZ)))
+    if (values && !(settings->formats & cs_export_with_values()))
         return cs_fail(error, CS_ERR_USAGE,
                        "--export-values: only files of VTP and NPZ hold values; expected one "
                        "of them in --export");

@@ -265,7 +265,9 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     const struct cs_ball solid =
         cs_extent_solid(canvas->settings.system, frame->x, frame->obstacles);
     const bool varies = cs_view_varies(canvas->settings.scene);
-    const bool moved = cs_solids_move(&canvas->solids, frame->obstacles);
+    bool moved = false;
+    for (uint32_t i = 0; i < canvas->solids.n; i++)
+        moved = cs_solid_move(canvas->solids.of + i, frame->obstacles + i) || moved;
     if (varies)
         move_camera(canvas, frame, &solid);
     if (moved || varies)

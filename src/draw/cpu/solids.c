@@ -1,39 +1,8 @@
 /* solids.c - colliders and the ground's rectangle become triangles. */
 #include "draw/cpu/solids.h"
 
-#include "draw/extent.h"
-#include "draw/solid.h"
-
 #include <math.h>
 #include <string.h>
-
-enum cs_status cs_solids_init(struct cs_solids *solids, const struct cs_system *system,
-                              const struct cs_obstacle *obstacles, struct cs_arena *arena,
-                              struct cs_error *error) {
-    uint32_t most = 0;
-    solids->n = system->scene->colliders.n;
-    solids->cell = cs_extent_cell(system);
-    for (uint32_t i = 0; i < solids->n; i++) {
-        const uint32_t count = cs_solid_count(obstacles + i);
-        most = count > most ? count : most;
-    }
-    solids->obstacles = cs_arena_take_n(arena, solids->n, sizeof *solids->obstacles, error);
-    solids->vertices = cs_arena_take_n(arena, most, sizeof *solids->vertices, error);
-    if (!error->status && solids->n > 0)
-        memcpy(solids->obstacles, obstacles, solids->n * sizeof *obstacles);
-    return error->status;
-}
-
-bool cs_solids_move(struct cs_solids *solids, const struct cs_obstacle *obstacles) {
-    bool moved = false;
-    for (uint32_t i = 0; i < solids->n; i++) {
-        struct cs_obstacle *now = solids->obstacles + i;
-        moved = moved || memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
-                memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
-        *now = obstacles[i];
-    }
-    return moved;
-}
 
 /* `sink` moves only the depth away from the eye: between its particles a cloth is a chord that
  * cuts into the ball it lies on, and would show specks of it */
@@ -82,9 +51,8 @@ static void add_obstacle(const struct cs_solids *solids, uint32_t i,
                          const struct cs_surface_style *style,
                          const struct cs_triangle_kind *kind,
                          const struct projection *projection) {
-    const struct cs_obstacle *obstacle = solids->obstacles + i;
-    cs_solid_fill(obstacle, solids->cell, projection->eye, solids->vertices);
-    add_vertices(solids->vertices, cs_solid_count(obstacle), style, kind, projection);
+    cs_solids_fill(solids, i, projection->eye);
+    add_vertices(solids->vertices, solids->of[i].n, style, kind, projection);
 }
 
 void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
@@ -93,9 +61,9 @@ void cs_solids_add(const struct cs_solids *solids, const struct cs_lens *lens,
     const struct projection projection = {lens, eye, true, triangles};
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < solids->n; i++) {
-            const struct cs_obstacle *obstacle = solids->obstacles + i;
+            const struct cs_obstacle *obstacle = &solids->of[i].at;
             const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
-            const bool square = obstacle->kind == CS_OBSTACLE_PLANE;
+            const bool square = cs_shape_is_endless(obstacle->shape);
             struct cs_surface_style style;
             cs_style_solid(&style, obstacle, solids->cell);
             cs_coat_make(coats + i, &style);
@@ -112,9 +80,9 @@ void cs_solids_add_shadow(const struct cs_solids *solids, const struct cs_lens *
     const struct cs_triangle_kind kind = {.attributes = 0};
     const struct projection projection = {lens, light, false, triangles};
     for (uint32_t i = 0; i < solids->n; i++) {
-        const struct cs_obstacle *obstacle = solids->obstacles + i;
+        const struct cs_obstacle *obstacle = &solids->of[i].at;
         struct cs_surface_style style;
-        if (!obstacle->collider->visible || obstacle->kind == CS_OBSTACLE_PLANE)
+        if (!obstacle->collider->visible || cs_shape_is_endless(obstacle->shape))
             continue;
         cs_style_solid(&style, obstacle, solids->cell);
         add_obstacle(solids, i, &style, &kind, &projection);

@@ -4,22 +4,7 @@
 
 #include "draw/cpu/shade.h"
 #include "draw/ground.h"
-#include "model/system/system.h"
-
-struct cs_solids {
-    uint32_t n;                    /* colliders of the scene */
-    double cell;                   /* m: how coarse the cloth is that lies on them */
-    struct cs_obstacle *obstacles; /* (n) as they are drawn */
-    struct cs_vertex *vertices;    /* work */
-};
-
-/* obstacles: at the start. */
-enum cs_status cs_solids_init(struct cs_solids *solids, const struct cs_system *system,
-                              const struct cs_obstacle *obstacles, struct cs_arena *arena,
-                              struct cs_error *error);
-
-/* Takes where they are now; true if any of them has moved. */
-bool cs_solids_move(struct cs_solids *solids, const struct cs_obstacle *obstacles);
+#include "draw/solid.h"
 
 /* Fills the coats of all colliders, and adds the squares and then all others as the camera sees
  * them, whose number is that of the coat. *n_squares: triangles of squares. */

@@ -1,39 +1,19 @@
 /* Draws colliders through OpenGL: as the camera sees them, and as the light does. */
 #include "draw/gl/collider.h"
 
-#include "draw/extent.h"
 #include "draw/gl/gl.h"
-#include "draw/solid.h"
-
-#include <string.h>
 
 static void upload(struct cs_gl_colliders *colliders, uint32_t i) {
-    const struct cs_obstacle *obstacle = colliders->obstacles + i;
-    const uint32_t n = cs_solid_count(obstacle);
-    if (n == 0)
+    const struct cs_solids *solids = &colliders->solids;
+    const struct cs_solid *solid = solids->of + i;
+    if (solid->n == 0)
         return;
-    cs_solid_fill(obstacle, colliders->cell, colliders->view->eye, colliders->vertices);
-    cs_surface_upload(colliders->surfaces + i, colliders->vertices, n);
-    if (obstacle->kind == CS_OBSTACLE_PLANE)
+    cs_solids_fill(solids, i, colliders->view->eye);
+    cs_surface_upload(colliders->surfaces + i, solids->vertices, solid->n);
+    if (cs_shape_is_endless(solid->at.shape))
         return;
-    cs_solid_fill(obstacle, colliders->cell, colliders->view->light, colliders->vertices);
-    cs_surface_upload(colliders->shadows + i, colliders->vertices, n);
-}
-
-static enum cs_status take(struct cs_gl_colliders *colliders,
-                           const struct cs_obstacle *obstacles, struct cs_arena *arena,
-                           struct cs_error *error) {
-    const uint32_t n = colliders->n;
-    uint32_t most = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t count = cs_solid_count(obstacles + i);
-        most = count > most ? count : most;
-    }
-    colliders->obstacles = cs_arena_take_n(arena, n, sizeof *colliders->obstacles, error);
-    colliders->surfaces = cs_arena_take_n(arena, n, sizeof *colliders->surfaces, error);
-    colliders->shadows = cs_arena_take_n(arena, n, sizeof *colliders->shadows, error);
-    colliders->vertices = cs_arena_take_n(arena, most, sizeof *colliders->vertices, error);
-    return error->status;
+    cs_solids_fill(solids, i, colliders->view->light);
+    cs_surface_upload(colliders->shadows + i, solids->vertices, solid->n);
 }
 
 enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
@@ -41,14 +21,13 @@ enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
                                     const struct cs_view_block *view,
                                     const struct cs_obstacle *obstacles, struct cs_arena *arena,
                                     struct cs_error *error) {
-    colliders->n = system->scene->colliders.n;
-    colliders->cell = cs_extent_cell(system);
+    const uint32_t n = system->scene->colliders.n;
     colliders->view = view;
-    if (take(colliders, obstacles, arena, error))
+    colliders->surfaces = cs_arena_take_n(arena, n, sizeof *colliders->surfaces, error);
+    colliders->shadows = cs_arena_take_n(arena, n, sizeof *colliders->shadows, error);
+    if (cs_solids_init(&colliders->solids, system, obstacles, arena, error))
         return error->status;
-    for (uint32_t i = 0; i < colliders->n; i++) {
-        // a copy, by which cs_gl_colliders_move sees what has moved
-        colliders->obstacles[i] = obstacles[i];
+    for (uint32_t i = 0; i < n; i++) {
         cs_surface_init(colliders->surfaces + i, NULL, 0);
         cs_surface_init(colliders->shadows + i, NULL, 0);
         upload(colliders, i);
@@ -58,27 +37,22 @@ enum cs_status cs_gl_colliders_init(struct cs_gl_colliders *colliders,
 
 void cs_gl_colliders_move(struct cs_gl_colliders *colliders,
                           const struct cs_obstacle *obstacles, bool seen_anew) {
-    for (uint32_t i = 0; i < colliders->n; i++) {
-        struct cs_obstacle *now = colliders->obstacles + i;
-        const bool moved = memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
-                           memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
-        *now = obstacles[i];
-        if (moved || seen_anew)
+    for (uint32_t i = 0; i < colliders->solids.n; i++)
+        if (cs_solid_move(colliders->solids.of + i, obstacles + i) || seen_anew)
             upload(colliders, i);
-    }
 }
 
 void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
                           const struct cs_surface_program *program) {
     // squares first, because they may be blended
     for (int pass = 0; pass < 2; pass++)
-        for (uint32_t i = 0; i < colliders->n; i++) {
-            const struct cs_obstacle *obstacle = colliders->obstacles + i;
-            const bool square = obstacle->kind == CS_OBSTACLE_PLANE;
+        for (uint32_t i = 0; i < colliders->solids.n; i++) {
+            const struct cs_obstacle *obstacle = &colliders->solids.of[i].at;
+            const bool square = cs_shape_is_endless(obstacle->shape);
             struct cs_surface_style style;
             if (!obstacle->collider->visible || square != (pass == 0))
                 continue;
-            cs_style_solid(&style, obstacle, colliders->cell);
+            cs_style_solid(&style, obstacle, colliders->solids.cell);
             cs_surface_program_use(program, &style);
             if (square)
                 gl.Enable(GL_BLEND);
@@ -88,9 +62,9 @@ void cs_gl_colliders_draw(const struct cs_gl_colliders *colliders,
 }
 
 void cs_gl_colliders_draw_shadow(const struct cs_gl_colliders *colliders) {
-    for (uint32_t i = 0; i < colliders->n; i++) {
-        const struct cs_obstacle *obstacle = colliders->obstacles + i;
-        if (obstacle->collider->visible && obstacle->kind != CS_OBSTACLE_PLANE)
+    for (uint32_t i = 0; i < colliders->solids.n; i++) {
+        const struct cs_obstacle *obstacle = &colliders->solids.of[i].at;
+        if (obstacle->collider->visible && !cs_shape_is_endless(obstacle->shape))
             cs_surface_draw(colliders->shadows + i);
     }
 }

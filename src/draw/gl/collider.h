@@ -3,17 +3,14 @@
 #define CS_DRAW_COLLIDER_H
 
 #include "draw/gl/surface.h"
+#include "draw/solid.h"
 #include "draw/view.h"
-#include "model/contact/obstacle.h"
 
 struct cs_gl_colliders {
-    uint32_t n;
-    struct cs_obstacle *obstacles; /* (n) where they are now */
-    struct cs_surface *surfaces;   /* (n) as the camera sees them */
-    struct cs_surface *shadows;    /* (n) as the light does */
-    struct cs_vertex *vertices;    /* work: room for the largest of them */
+    struct cs_solids solids;
+    struct cs_surface *surfaces; /* (n) as the camera sees them */
+    struct cs_surface *shadows;  /* (n) as the light does */
     const struct cs_view_block *view;
-    double cell; /* m: how coarse the cloth is that lies on them */
 };
 
 /* obstacles (scene->colliders.n): where they are at the start; view is borrowed, for camera and

@@ -61,7 +61,7 @@ CS_CLONES static uint32_t count_risky(const struct cs_passing *passing, size_t b
     const double *a = passing->x0 + begin, *b = passing->x1 + begin;
     const double *mass = passing->system->mass + begin, *c = after->centre;
     const double *g = after->axes[1], range = passing->pairing.range;
-    const bool sphere = after->kind == CS_OBSTACLE_SPHERE;
+    const bool sphere = after->shape->bounds == CS_BOUNDS_SPHERE;
     const double ux = c[0] - before->centre[0], uy = c[1] - before->centre[1];
     const double uz = c[2] - before->centre[2];
     const double stiff = passing->pairing.k * passing->h * passing->h;
@@ -102,8 +102,8 @@ bool cs_passing_is_far(const struct cs_passing *passing, size_t begin, size_t co
 
 /* a row is looked at particle by particle only where something may happen in it */
 static bool is_calm(const struct cs_passing *passing, size_t begin, size_t count) {
-    const enum cs_obstacle_kind kind = passing->after.kind;
-    return kind == CS_OBSTACLE_PLANE || kind == CS_OBSTACLE_SPHERE
+    const enum cs_shape_bounds bounds = passing->after.shape->bounds;
+    return bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE
                ? count_risky(passing, begin, count) == 0
                : cs_passing_is_far(passing, begin, count);
 }

@@ -9,9 +9,9 @@
 enum { LOT = 128 };
 
 double cs_cover_spacing(const struct cs_obstacle *obstacle, double range) {
-    return obstacle->kind == CS_OBSTACLE_PLANE || obstacle->kind == CS_OBSTACLE_MESH
-               ? HUGE_VAL
-               : sqrt(range * (2 * obstacle->radius + 0.75 * range));
+    return cs_shape_needs_points(obstacle->shape)
+               ? sqrt(range * (2 * obstacle->radius + 0.75 * range))
+               : HUGE_VAL;
 }
 
 /* --- lengths --- */

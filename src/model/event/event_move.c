@@ -112,7 +112,7 @@ void cs_event_follow_move(struct cs_system *system, uint32_t event, double t) {
 static double reach_of(const struct cs_system *system, const struct cs_obstacle *obstacle) {
     const double *core = obstacle->core, *x = system->state;
     const size_t n = system->view.n;
-    if (obstacle->kind != CS_OBSTACLE_PLANE)
+    if (!cs_shape_is_endless(obstacle->shape))
         return sqrt(core[0] * core[0] + core[1] * core[1] + core[2] * core[2]) +
                obstacle->radius;
     double squared = 0;

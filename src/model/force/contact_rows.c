@@ -11,8 +11,9 @@ enum { ROW = 64 };
 bool cs_contact_has_rows(const struct cs_near *near) {
     const struct cs_obstacle *pose = &near->pose;
     const double *spin = pose->spin;
-    return (pose->kind == CS_OBSTACLE_PLANE || pose->kind == CS_OBSTACLE_SPHERE) &&
-           spin[0] == 0 && spin[1] == 0 && spin[2] == 0;
+    const enum cs_shape_bounds bounds = pose->shape->bounds;
+    return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
+           spin[1] == 0 && spin[2] == 0;
 }
 
 /* distances of one row, and what lies between the obstacle and its particles */
@@ -91,7 +92,7 @@ CS_INLINE void add(const struct cs_near *near, size_t n, const struct cs_eval *a
 CS_CLONES void cs_contact_add_rows(const struct cs_near *near, size_t n,
                                    const struct cs_eval *at, struct cs_touch_parts parts,
                                    double *f) {
-    if (near->pose.kind == CS_OBSTACLE_SPHERE)
+    if (near->pose.shape->bounds == CS_BOUNDS_SPHERE)
         add(near, n, at, parts, true, f);
     else
         add(near, n, at, parts, false, f);
@@ -135,7 +136,7 @@ CS_INLINE void add_bounds(const struct cs_near *near, size_t n, const struct cs_
 CS_CLONES void cs_contact_add_row_bounds(const struct cs_near *near, size_t n,
                                          const struct cs_eval *at,
                                          const struct cs_gershgorin *sums) {
-    if (near->pose.kind == CS_OBSTACLE_SPHERE)
+    if (near->pose.shape->bounds == CS_BOUNDS_SPHERE)
         add_bounds(near, n, at, true, sums);
     else
         add_bounds(near, n, at, false, sums);

@@ -6,8 +6,7 @@
 static bool any_round(const struct cs_scene *scene) {
     const struct cs_collider *colliders = cs_scene_colliders(scene);
     for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (colliders[c].sphere.present || colliders[c].box.present ||
-            colliders[c].capsule.present)
+        if (cs_shape_needs_points(cs_collider_shape(colliders + c)))
             return true;
     return false;
 }

@@ -24,7 +24,7 @@
 #define CS_PAIR_STENCIL_H
 
 #include "base/vec3.h"
-#include "model/contact/soft.h"
+#include "scene/soft.h"
 
 #include <float.h>
 #include <stdbool.h>
