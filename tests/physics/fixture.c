@@ -66,17 +66,3 @@ double fixture_energy(const struct fixture *fixture) {
         cs_measure_energy(fixture->system, fixture->session.run.t, fixture->x, fixture->v);
     return cs_energy_whole(&energy);
 }
-
-int fixture_run(const char *name, const TTest *const *tests, size_t n_tests) {
-    Suite *suite = suite_create(name);
-    TCase *tcase = tcase_create(name);
-    for (size_t i = 0; i < n_tests; i++)
-        tcase_add_test(tcase, tests[i]);
-    tcase_set_timeout(tcase, 0); // the build has one, longer where a sanitizer is at work
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
-}

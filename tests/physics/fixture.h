@@ -2,11 +2,10 @@
 #ifndef FIXTURE_H
 #define FIXTURE_H
 
+#include "../suite.h"
 #include "study/deviation.h"
 #include "study/perturb.h"
 #include "study/session.h"
-
-#include <check.h>
 
 struct fixture {
     struct cs_session session;
@@ -30,8 +29,5 @@ void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]);
 
 /* Kinetic and potential energy in J. */
 double fixture_energy(const struct fixture *fixture);
-
-/* Runs the tests and returns the program's exit code. */
-int fixture_run(const char *name, const TTest *const *tests, size_t n_tests);
 
 #endif

@@ -13,10 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define G         9.81
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
+#define G 9.81
 
-START_TEST(law_is_one_function) {
+TEST(law_is_one_function) {
     const double range = 0.02, k = 700, e = 1e-7;
     for (double d = -0.01; d < 1.2 * range; d += 1.7e-4) {
         const struct cs_law law = cs_law_at(d, range, k);
@@ -40,7 +39,6 @@ START_TEST(law_is_one_function) {
     ck_assert_double_eq_tol(cs_law_energy(CS_LAW_CORE * range, range, k) / (k * range * range),
                             1.36, 0.005);
 }
-END_TEST
 
 /* the distance at which the law carries a force, by bisection */
 static double distance_of(double force, double range, double k) {
@@ -97,7 +95,7 @@ static const char *const all_able[] = {"symplectic-euler",
                                        "ark-imex:rtol=1e-6",
                                        "xpbd:dt=0.004"};
 
-START_TEST(blocks_slide_and_creep_as_the_law_says) {
+TEST(blocks_slide_and_creep_as_the_law_says) {
     const double ev = 1e-3, mu = 0.3;
     for (size_t m = 0; m < LENGTH(all_able); m++)
         for (double tangent = 0.1; tangent < 0.55; tangent += 0.1) {
@@ -122,10 +120,9 @@ START_TEST(blocks_slide_and_creep_as_the_law_says) {
             fixture_close(&block);
         }
 }
-END_TEST
 
 /* also those that move particles place by place see how fast the belt is */
-START_TEST(belts_carry_what_lies_on_them) {
+TEST(belts_carry_what_lies_on_them) {
     static const char *const methods[] = {"rk4", "implicit-linearised:dt=0.004",
                                           "backward-euler:dt=0.004", "xpbd:dt=0.004"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
@@ -145,7 +142,6 @@ START_TEST(belts_carry_what_lies_on_them) {
         fixture_close(&block);
     }
 }
-END_TEST
 
 /* a sheet in the range of a plane, soft enough for a smooth motion over a step */
 #define SHEET                                                                                  \
@@ -172,7 +168,7 @@ static uint32_t end_state(const char *name, double h, double state[VALUES]) {
     return order;
 }
 
-START_TEST(orders_hold_in_contact) {
+TEST(orders_hold_in_contact) {
     static const struct {
         const char *name;
         double h;
@@ -201,11 +197,10 @@ START_TEST(orders_hold_in_contact) {
                       methods[m].name, log2(error[0] / error[1]), order, error[0], error[1]);
     }
 }
-END_TEST
 
 /* The passes of a position-level method settle with contact among them, beside implicit Euler:
  * the distance to it is one of second order in a step. */
-START_TEST(passes_settle_beside_implicit_euler) {
+TEST(passes_settle_beside_implicit_euler) {
     double apart[2];
     for (int k = 0; k < 2; k++) {
         const double h = 2e-3 / (1 + k);
@@ -218,7 +213,6 @@ START_TEST(passes_settle_beside_implicit_euler) {
     }
     ck_assert_double_ge(log2(apart[0] / apart[1]), 0.8);
 }
-END_TEST
 
 /* the energy that a straight move of one particle does not see, as share.h has it */
 static bool move_is_seen(const struct cs_system *system, double h, const double from[3],
@@ -246,7 +240,7 @@ static bool move_is_seen(const struct cs_system *system, double h, const double 
 }
 
 /* whatever is told from a whole row of particles at once */
-START_TEST(steps_are_judged_as_stated) {
+TEST(steps_are_judged_as_stated) {
     static const char *const shapes[] = {
         "{\"floor\": {\"height\": 0}",
         "{\"sphere\": {\"centre\": [0, -0.3, 0], \"radius\": 0.3}",
@@ -278,7 +272,6 @@ START_TEST(steps_are_judged_as_stated) {
         fixture_close(&one);
     }
 }
-END_TEST
 
 /* a soft ball that falls 0.6 m on a floor, friction and damping 0 */
 #define BALL                                                                                   \
@@ -288,7 +281,7 @@ END_TEST
     "\"bend\": 0, \"damping\": 0}}], \"colliders\": [{\"floor\": {\"height\": 0}, "            \
     "\"thickness\": 0.02}], \"contact\": \"force\"}"
 
-START_TEST(bounces_make_no_energy) {
+TEST(bounces_make_no_energy) {
     static const struct {
         const char *name;
         double most; // 1.01, and 1.05 for methods without damping of their own
@@ -335,11 +328,10 @@ START_TEST(bounces_make_no_energy) {
         fixture_close(&ball);
     }
 }
-END_TEST
 
 /* Stiff springs at a long step: the stage of a Rosenbrock method lands on loads that are never
  * there. Friction under them made 7000 times the energy of the start. */
-START_TEST(friction_in_a_stage_makes_no_energy) {
+TEST(friction_in_a_stage_makes_no_energy) {
     struct fixture ball;
     fixture_open(
         &ball, "ros2:dt=0.016666666666666666",
@@ -357,9 +349,8 @@ START_TEST(friction_in_a_stage_makes_no_energy) {
     }
     fixture_close(&ball);
 }
-END_TEST
 
-START_TEST(methods_with_explicit_outer_forces_are_refused) {
+TEST(methods_with_explicit_outer_forces_are_refused) {
     struct fixture ball;
     struct cs_error error = {0};
     fixture_open(&ball, "velocity-verlet", BALL);
@@ -370,7 +361,6 @@ START_TEST(methods_with_explicit_outer_forces_are_refused) {
     ck_assert_ptr_nonnull(strstr(error.message, "contact.law"));
     fixture_close(&ball);
 }
-END_TEST
 
 /* the distance of the nearest triangle of a grid of 13 x 13 from the origin */
 static double nearest_triangle(const double *x) {
@@ -403,7 +393,7 @@ static double nearest_triangle(const double *x) {
 /* A coarse cloth on a ball of 0.35 m, the range left to the mesh: what hangs between the
  * particles sinks by s^2/8R at most, which is below a quarter of the range, and needs no points
  * of its own. */
-START_TEST(no_triangle_comes_into_a_ball) {
+TEST(no_triangle_comes_into_a_ball) {
     struct fixture cloth;
     double least = HUGE_VAL;
     fixture_open(&cloth, "implicit-linearised:dt=0.004166666666666667", BALLED);
@@ -415,19 +405,4 @@ START_TEST(no_triangle_comes_into_a_ball) {
     }
     ck_assert_double_gt(least, 0.35 + 0.01);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {law_is_one_function,
-                                  blocks_slide_and_creep_as_the_law_says,
-                                  belts_carry_what_lies_on_them,
-                                  orders_hold_in_contact,
-                                  bounces_make_no_energy,
-                                  friction_in_a_stage_makes_no_energy,
-                                  passes_settle_beside_implicit_euler,
-                                  steps_are_judged_as_stated,
-                                  no_triangle_comes_into_a_ball,
-                                  methods_with_explicit_outer_forces_are_refused};
-    return fixture_run("contact force", tests, LENGTH(tests));
 }

@@ -83,7 +83,7 @@ static double distance(const double *a, const double *b) {
     return cs_rms_difference(a, b, VALUES / 2);
 }
 
-START_TEST(all_converge_to_one_solution) {
+TEST(all_converge_to_one_solution) {
     double start[VALUES], reference[VALUES], state[VALUES];
     struct fixture drum;
     fixture_open(&drum, "velocity-verlet", DRUM, SIDE, SIDE, DAMPING, 10);
@@ -106,10 +106,4 @@ START_TEST(all_converge_to_one_solution) {
                       "%s: off by %.3g of the motion, %.3g of the speed", methods[i].name,
                       place, velocity);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {all_converge_to_one_solution};
-    return fixture_run("convergence", tests, sizeof tests / sizeof *tests);
 }

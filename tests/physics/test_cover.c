@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
-
 /* --- nothing comes in --- */
 
 #define SPRINGS                                                                                \
@@ -91,7 +89,7 @@ static double least_distance(const char *scene, const char *integrator, bool alo
     return least;
 }
 
-START_TEST(nothing_comes_in_between_particles) {
+TEST(nothing_comes_in_between_particles) {
     for (size_t k = 0; k < LENGTH(coarse); k++) {
         const double alone =
             least_distance(coarse[k].scene, "implicit-linearised:dt=0.004", true);
@@ -102,10 +100,9 @@ START_TEST(nothing_comes_in_between_particles) {
         ck_assert_msg(all > 0, "%s: %g m", coarse[k].name, all);
     }
 }
-END_TEST
 
 /* the same for every family, on the curtain */
-START_TEST(every_family_keeps_it_out) {
+TEST(every_family_keeps_it_out) {
     static const char *const methods[] = {"velocity-verlet",         "rk4",
                                           "backward-euler:dt=0.004", "bdf2:dt=0.004",
                                           "xpbd:dt=0.004",           "implicit-block:dt=0.002"};
@@ -114,7 +111,6 @@ START_TEST(every_family_keeps_it_out) {
         ck_assert_msg(all > 0, "%s: %g m", methods[m], all);
     }
 }
-END_TEST
 
 /* --- what is kept --- */
 
@@ -149,7 +145,7 @@ static uint32_t end_state(const char *name, double h, double state[VALUES]) {
     return order;
 }
 
-START_TEST(orders_hold) {
+TEST(orders_hold) {
     static const struct {
         const char *name;
         double h;
@@ -174,10 +170,9 @@ START_TEST(orders_hold) {
                       log2(error[0] / error[1]), order, error[0], error[1]);
     }
 }
-END_TEST
 
 /* without friction nothing but the method's own error takes energy: of fifth order in a step */
-START_TEST(energy_is_kept) {
+TEST(energy_is_kept) {
     double lost[2];
     for (int k = 0; k < 2; k++) {
         struct fixture sheet;
@@ -190,7 +185,6 @@ START_TEST(energy_is_kept) {
     ck_assert_double_lt(lost[0], 1e-4);
     ck_assert_double_gt(lost[0] / lost[1], 16);
 }
-END_TEST
 
 /* --- point by point --- */
 
@@ -216,7 +210,7 @@ static uint32_t add_point(const struct fixture *sheet, const struct cs_near *nea
 /* Force and moment of all particles, of the points at thirds of all edges and of the middles of
  * all triangles: the longest edges are 0.471 m, parts may have 0.224 m, and the sides 0.333 m,
  * which are cut at their middles. */
-START_TEST(force_is_that_of_points) {
+TEST(force_is_that_of_points) {
     struct fixture sheet;
     struct cs_near near;
     double f[3 * N], sum[6] = {0}, one[6] = {0};
@@ -257,11 +251,10 @@ START_TEST(force_is_that_of_points) {
     ck_assert_double_gt(one[1], 0.1);
     fixture_close(&sheet);
 }
-END_TEST
 
 /* --- bits, and what is left out --- */
 
-START_TEST(bits_are_those_of_one_thread) {
+TEST(bits_are_those_of_one_thread) {
     static const char *const methods[] = {"velocity-verlet:dt=5e-4",
                                           "implicit-linearised:dt=0.004"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
@@ -282,7 +275,6 @@ START_TEST(bits_are_those_of_one_thread) {
         }
     }
 }
-END_TEST
 
 static const struct cs_plan_row *row_of(const struct cs_system *system) {
     uint32_t k = 0;
@@ -298,7 +290,7 @@ static const struct cs_plan_row *row_of(const struct cs_system *system) {
 
 /* No array and no call where edges are short enough, or nothing is round; a part of an edge may
  * have sqrt(D (2R + 3/4 D)). */
-START_TEST(what_is_not_needed_is_left_out) {
+TEST(what_is_not_needed_is_left_out) {
     static const struct {
         const char *scene, *why;
         size_t points;
@@ -327,10 +319,9 @@ START_TEST(what_is_not_needed_is_left_out) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* a needle is finer than the points there may be */
-START_TEST(what_is_too_fine_is_told) {
+TEST(what_is_too_fine_is_told) {
     struct fixture cloth;
     struct cs_text warning = {0};
     fixture_open(&cloth, "velocity-verlet", "%s",
@@ -342,10 +333,9 @@ START_TEST(what_is_too_fine_is_told) {
     cs_text_finish(&warning);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* a ball in the middle of a cell, where no particle is */
-START_TEST(what_starts_inside_is_refused) {
+TEST(what_starts_inside_is_refused) {
     struct cs_session session = {0};
     struct cs_error error = {0};
     const struct cs_session_settings settings = {
@@ -356,18 +346,4 @@ START_TEST(what_starts_inside_is_refused) {
     ck_assert_msg(strstr(error.message, "starts 0.03 m inside colliders[0]") != NULL, "%s",
                   error.message);
     cs_session_close(&session);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {nothing_comes_in_between_particles,
-                                  every_family_keeps_it_out,
-                                  orders_hold,
-                                  energy_is_kept,
-                                  force_is_that_of_points,
-                                  bits_are_those_of_one_thread,
-                                  what_is_not_needed_is_left_out,
-                                  what_is_too_fine_is_told,
-                                  what_starts_inside_is_refused};
-    return fixture_run("cover", tests, LENGTH(tests));
 }

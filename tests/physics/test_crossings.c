@@ -52,7 +52,7 @@ static uint64_t run_frames(struct fixture *fixture, const char *method, const ch
     return most;
 }
 
-START_TEST(counted_sheets_pass_through_each_other) {
+TEST(counted_sheets_pass_through_each_other) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture fixture;
         struct cs_error error = {0};
@@ -63,11 +63,10 @@ START_TEST(counted_sheets_pass_through_each_other) {
         fixture_close(&fixture);
     }
 }
-END_TEST
 
 /* the state is that of the last step that was good: nothing has crossed, and it is not a step
  * too early */
-START_TEST(limited_sheets_stop_before_they_meet) {
+TEST(limited_sheets_stop_before_they_meet) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture fixture;
         struct cs_error error = {0};
@@ -90,7 +89,6 @@ START_TEST(limited_sheets_stop_before_they_meet) {
         fixture_close(&fixture);
     }
 }
-END_TEST
 
 static double time_in(const char *message) {
     const char *place = strstr(message, "step to t = ");
@@ -98,7 +96,7 @@ static double time_in(const char *message) {
     return strtod(place + strlen("step to t = "), NULL);
 }
 
-START_TEST(stopped_sheets_say_when) {
+TEST(stopped_sheets_say_when) {
     static const char *const asked[] = {"velocity-verlet:dt=0.0001", "xpbd:dt=0.001",
                                         "fast-mass-spring:dt=0.001",
                                         "implicit-linearised:dt=0.001"};
@@ -114,10 +112,9 @@ START_TEST(stopped_sheets_say_when) {
         fixture_close(&fixture);
     }
 }
-END_TEST
 
 /* before they come near each other a limit changes nothing, to the bit */
-START_TEST(limits_cost_no_bit_until_they_act) {
+TEST(limits_cost_no_bit_until_they_act) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture free, limited;
         fixture_open(&free, methods[k], SHEETS, "ignore");
@@ -135,7 +132,6 @@ START_TEST(limits_cost_no_bit_until_they_act) {
         fixture_close(&limited);
     }
 }
-END_TEST
 
 #define BODY(x, y, speed)                                                                      \
     "{\"cloth\": {\"grid\": [5, 5], \"size\": [0.4, 0.4], \"start\": \"flat\", \"velocity\": " \
@@ -164,7 +160,7 @@ static uint64_t run_meeting(struct fixture *fixture, const char *method, const c
 
 /* of three families; steps are limited where bodies keep off each other, and only these bodies
  */
-START_TEST(contact_is_limited_by_itself) {
+TEST(contact_is_limited_by_itself) {
     static const char *const asked[] = {"velocity-verlet:dt=0.001",
                                         "implicit-linearised:dt=0.01", "cvode-bdf:rtol=1e-2"};
     for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
@@ -176,13 +172,4 @@ START_TEST(contact_is_limited_by_itself) {
         ck_assert_msg(most > 0, "%s", asked[k]);
         fixture_close(&fixture);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {counted_sheets_pass_through_each_other,
-                                  limited_sheets_stop_before_they_meet, stopped_sheets_say_when,
-                                  limits_cost_no_bit_until_they_act,
-                                  contact_is_limited_by_itself};
-    return fixture_run("crossings", tests, sizeof tests / sizeof *tests);
 }

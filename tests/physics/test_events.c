@@ -28,7 +28,7 @@ static void restart(struct fixture *cloth, double t) {
 
 /* A blow at 0.0375 s and one at 0.05 s, which is frame 3: the same bits as three runs joined.
  * The blow that does not come lets no method pass frames there either. */
-START_TEST(runs_are_joined_at_events) {
+TEST(runs_are_joined_at_events) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth, parts;
         fixture_open(&cloth, methods[k], CLOTH,
@@ -58,11 +58,10 @@ START_TEST(runs_are_joined_at_events) {
         fixture_close(&parts);
     }
 }
-END_TEST
 
 /* At once, and over an interval that begins and ends within frames: momentum changes by the
  * impulse, and springs in between change nothing about it. */
-START_TEST(impact_gives_its_impulse) {
+TEST(impact_gives_its_impulse) {
     static const char *const times[] = {"\"at\": 0.03", "\"from\": 0.02, \"to\": 0.07"};
     static const char *const by_methods[] = {"symplectic-euler", "velocity-verlet",
                                              "implicit-linearised:dt=0.005,rtol=1e-13"};
@@ -85,10 +84,9 @@ START_TEST(impact_gives_its_impulse) {
             fixture_close(&dust);
         }
 }
-END_TEST
 
 /* Frame by frame the grabbed particles are on their path to the bit, whatever the method. */
-START_TEST(grab_is_exact) {
+TEST(grab_is_exact) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         fixture_open(&cloth, methods[k], CLOTH,
@@ -122,10 +120,9 @@ START_TEST(grab_is_exact) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* Let go on the way, a particle flies on as it went. */
-START_TEST(release_keeps_the_velocity) {
+TEST(release_keeps_the_velocity) {
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet", DUST, "0",
                  "{\"at\": 0, \"grab\": {\"particles\": [5], \"relative\": true,"
@@ -138,11 +135,10 @@ START_TEST(release_keeps_the_velocity) {
     ck_assert_double_eq_tol(dust.x[5], start + 1, 1e-12);
     fixture_close(&dust);
 }
-END_TEST
 
 /* Held in flight, a particle stays to the bit; a later holder is not robbed by an earlier one.
  */
-START_TEST(pins_come_and_go) {
+TEST(pins_come_and_go) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         fixture_open(&cloth, methods[k], CLOTH,
@@ -166,10 +162,9 @@ START_TEST(pins_come_and_go) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* From none to 3 Pa along x, over to 4 Pa along y, and off. */
-START_TEST(wind_rises_and_turns) {
+TEST(wind_rises_and_turns) {
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet:dt=0.001", DUST, "0",
                  "{\"from\": 0, \"to\": 0.1, \"wind\": {\"direction\": [9, 0, 0],"
@@ -191,11 +186,10 @@ START_TEST(wind_rises_and_turns) {
     ck_assert(wind->strength == 0 && wind->direction[1] == 1);
     fixture_close(&dust);
 }
-END_TEST
 
 /* A ramp, a path, a push and a wind at once: two methods that have nothing in common agree, and
  * the coarser comes near four times as fast when its step is halved. */
-START_TEST(methods_agree) {
+TEST(methods_agree) {
     static const char *const by[] = {"cvode-bdf:rtol=1e-9,linear_rtol=1e-9,max_order=5",
                                      "velocity-verlet:dt=0.0005", "velocity-verlet:dt=0.001"};
     struct fixture cloths[3];
@@ -221,10 +215,9 @@ START_TEST(methods_agree) {
     for (size_t k = 0; k < 3; k++)
         fixture_close(cloths + k);
 }
-END_TEST
 
 /* The plan says what they take, and without any there is nothing. */
-START_TEST(bytes_are_planned) {
+TEST(bytes_are_planned) {
     struct fixture with, without;
     fixture_open(&with, "velocity-verlet", CLOTH,
                  "{\"from\": 0.1, \"to\": 0.2, \"impact\": {\"direction\": [0, 0, 1]}},"
@@ -236,9 +229,8 @@ START_TEST(bytes_are_planned) {
     fixture_close(&with);
     fixture_close(&without);
 }
-END_TEST
 
-START_TEST(nothing_without_events) {
+TEST(nothing_without_events) {
     struct fixture cloth;
     fixture_open(&cloth, "velocity-verlet", CLOTH, "");
     ck_assert_ptr_null(cloth.system->events);
@@ -247,10 +239,9 @@ START_TEST(nothing_without_events) {
     ck_assert_uint_eq(cloth.session.plan.rows[CS_FEATURE_EVENTS].bytes, 0);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* A spin is a rotation about the centre: no momentum, and w for every particle. */
-START_TEST(cloth_starts_with_a_spin) {
+TEST(cloth_starts_with_a_spin) {
     struct fixture cloth;
     double p[3], l[3];
     fixture_open(&cloth, "velocity-verlet",
@@ -265,19 +256,4 @@ START_TEST(cloth_starts_with_a_spin) {
         ck_assert_double_eq_tol(cloth.v[cloth.n + i], 2 * (cloth.x[i] - 3), 1e-14);
     }
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {runs_are_joined_at_events,
-                                  impact_gives_its_impulse,
-                                  grab_is_exact,
-                                  release_keeps_the_velocity,
-                                  pins_come_and_go,
-                                  wind_rises_and_turns,
-                                  methods_agree,
-                                  bytes_are_planned,
-                                  nothing_without_events,
-                                  cloth_starts_with_a_spin};
-    return fixture_run("events", tests, sizeof tests / sizeof *tests);
 }

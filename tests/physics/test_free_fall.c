@@ -29,7 +29,7 @@ static double fall(const char *integrator, int grid, int fps, double *spread) {
 
 /* With constant acceleration the sums are closed: g h^2 times N (N - 1)/2, N (N + 1)/2 or
  * N^2/2 steps of h = 1/240 s. Springs stay at rest length, so that only rounding is left. */
-START_TEST(methods_fall_to_their_discrete_value) {
+TEST(methods_fall_to_their_discrete_value) {
     static const struct {
         const char *integrator;
         double shift; /* 2 / (g h^2) times the distance is N (N + shift) */
@@ -50,31 +50,21 @@ START_TEST(methods_fall_to_their_discrete_value) {
                       expected, spread);
     }
 }
-END_TEST
 
 /* An adaptive method falls to the exact value, within its tolerance. */
-START_TEST(cvode_falls_to_the_exact_value) {
+TEST(cvode_falls_to_the_exact_value) {
     double spread;
     const double found = fall("cvode-bdf:rtol=1e-8", 6, 60, &spread);
     ck_assert_double_eq_tol(found, 4.905, 1e-5);
     ck_assert_double_lt(spread, 1e-9);
 }
-END_TEST
 
 /* The thesis's shortcut takes h K_ii v_i for a force: at its own stiffness and step the cloth
  * falls 2.113 m instead of 4.905 m, and at half the step 3.034 m. */
-START_TEST(block_shortcut_falls_too_slowly) {
+TEST(block_shortcut_falls_too_slowly) {
     double spread;
     ck_assert_double_eq_tol(fall("implicit-block", 16, 165, &spread), 2.113, 5e-4);
     ck_assert_double_gt(spread, 0.01);
     ck_assert_double_eq_tol(fall("implicit-block", 16, 330, &spread), 3.034, 5e-4);
     ck_assert_double_eq_tol(fall("implicit-linearised", 16, 165, &spread), 4.934727, 5e-7);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {methods_fall_to_their_discrete_value,
-                                  cvode_falls_to_the_exact_value,
-                                  block_shortcut_falls_too_slowly};
-    return fixture_run("free fall", tests, sizeof tests / sizeof *tests);
 }

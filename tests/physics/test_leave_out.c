@@ -34,7 +34,7 @@ static const struct cs_counts *run(struct fixture *cloth, const char *method, co
     return &cloth->session.run.counts;
 }
 
-START_TEST(bare_scene_makes_no_calls) {
+TEST(bare_scene_makes_no_calls) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         const struct cs_counts *counts = run(&cloth, methods[k], "", "");
@@ -50,11 +50,10 @@ START_TEST(bare_scene_makes_no_calls) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* and where they are needed they are made: once a force with wind, once a particle, collider
  * and step */
-START_TEST(full_scene_makes_its_calls) {
+TEST(full_scene_makes_its_calls) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         const struct cs_counts *counts =
@@ -66,9 +65,8 @@ START_TEST(full_scene_makes_its_calls) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(method_gets_what_it_needs_and_no_more) {
+TEST(method_gets_what_it_needs_and_no_more) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         run(&cloth, methods[k], "", "");
@@ -84,7 +82,6 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* all that the plan promises of a run, with the list of pins, which only the system knows */
 static size_t promised(const struct fixture *cloth) {
@@ -97,7 +94,7 @@ static size_t promised(const struct fixture *cloth) {
     return bytes;
 }
 
-START_TEST(run_takes_what_was_planned_and_the_method_its_own) {
+TEST(run_takes_what_was_planned_and_the_method_its_own) {
     for (size_t k = 0; k < METHODS; k++)
         for (int full = 0; full < 2; full++) {
             struct fixture cloth;
@@ -109,9 +106,8 @@ START_TEST(run_takes_what_was_planned_and_the_method_its_own) {
             fixture_close(&cloth);
         }
 }
-END_TEST
 
-START_TEST(mesh_is_planned_with_its_geometry) {
+TEST(mesh_is_planned_with_its_geometry) {
     struct fixture box;
     fixture_open(&box, "symplectic-euler",
                  "{\"bodies\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3}, \"mass\": "
@@ -130,10 +126,9 @@ START_TEST(mesh_is_planned_with_its_geometry) {
                       promised(&box) + box.session.run.method_bytes);
     fixture_close(&box);
 }
-END_TEST
 
 /* counted, not measured */
-START_TEST(large_explicit_run_takes_little_a_particle) {
+TEST(large_explicit_run_takes_little_a_particle) {
     struct fixture sheet;
     fixture_open(
         &sheet, "symplectic-euler",
@@ -143,10 +138,10 @@ START_TEST(large_explicit_run_takes_little_a_particle) {
     ck_assert_uint_le(cs_run_bytes(&sheet.session.run), 250 * (size_t)1000000);
     fixture_close(&sheet);
 }
-END_TEST
 
 /* the counter sees this program and what it loads */
-START_TEST(allocations_are_counted) {
+TEST(allocations_are_counted) {
+    allocations_begin();
     const uint64_t before = allocations;
     void *volatile memory = malloc(10);
     ck_assert_uint_gt(allocations, before);
@@ -156,7 +151,6 @@ START_TEST(allocations_are_counted) {
     ck_assert_uint_gt(allocations, later);
     free(copy);
 }
-END_TEST
 
 /* allocations of three frames of a method, in a scene that has everything */
 static uint64_t taken_by(const struct cs_integrator *method) {
@@ -179,7 +173,8 @@ static uint64_t taken_by(const struct cs_integrator *method) {
 }
 
 /* Every method that is not a foreign library's. */
-START_TEST(frame_takes_nothing_from_the_heap) {
+TEST(frame_takes_nothing_from_the_heap) {
+    allocations_begin();
     struct cs_registry registry = {0};
     struct cs_error error = {0};
     uint32_t tried = 0;
@@ -196,18 +191,4 @@ START_TEST(frame_takes_nothing_from_the_heap) {
     }
     ck_assert_uint_ge(tried, METHODS);
     cs_registry_finish(&registry);
-}
-END_TEST
-
-int main(void) {
-    allocations_begin();
-    const TTest *const tests[] = {bare_scene_makes_no_calls,
-                                  full_scene_makes_its_calls,
-                                  method_gets_what_it_needs_and_no_more,
-                                  run_takes_what_was_planned_and_the_method_its_own,
-                                  mesh_is_planned_with_its_geometry,
-                                  large_explicit_run_takes_little_a_particle,
-                                  allocations_are_counted,
-                                  frame_takes_nothing_from_the_heap};
-    return fixture_run("leave out", tests, sizeof tests / sizeof *tests);
 }

@@ -32,7 +32,7 @@ static void drift(const char *integrator, const char *model, double out[2]) {
 }
 
 /* Forces come in opposite pairs, so that only rounding (or the solver's residual) is left. */
-START_TEST(momentum_is_kept) {
+TEST(momentum_is_kept) {
     static const struct {
         const char *integrator;
         double bound; /* kg m/s */
@@ -48,19 +48,17 @@ START_TEST(momentum_is_kept) {
                           rows[i].integrator, moved[0]);
         }
 }
-END_TEST
 
 /* The thesis's shortcut slows a cloth that drifts as a whole. */
-START_TEST(block_shortcut_loses_momentum) {
+TEST(block_shortcut_loses_momentum) {
     double moved[2];
     drift("implicit-block", "axial", moved);
     ck_assert_double_gt(moved[0], 0.1);
 }
-END_TEST
 
 /* Kicks along the springs and drifts along the velocities keep angular momentum exactly; the
  * other methods lose or gain it with their order. */
-START_TEST(angular_momentum_is_kept) {
+TEST(angular_momentum_is_kept) {
     static const struct {
         const char *integrator;
         double bound; /* kg m2/s */
@@ -75,11 +73,4 @@ START_TEST(angular_momentum_is_kept) {
         ck_assert_msg(moved[1] < rows[i].bound, "%s: angular momentum moved by %.3g",
                       rows[i].integrator, moved[1]);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {momentum_is_kept, block_shortcut_loses_momentum,
-                                  angular_momentum_is_kept};
-    return fixture_run("momentum", tests, sizeof tests / sizeof *tests);
 }

@@ -70,20 +70,13 @@ static const struct {
                {"position-verlet", 1e-3},  {"implicit-linearised:rtol=1e-10", 2.5e-4},
                {"implicit-block", 2.5e-5}};
 
-START_TEST(order_without_damping) {
+TEST(order_without_damping) {
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
         check_order(methods[i].name, methods[i].h, &none);
 }
-END_TEST
 
-START_TEST(order_with_damping) {
+TEST(order_with_damping) {
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
         for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
             check_order(methods[i].name, methods[i].h, kinds + k);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {order_without_damping, order_with_damping};
-    return fixture_run("order", tests, sizeof tests / sizeof *tests);
 }

@@ -71,17 +71,10 @@ static void check_orders(double damping) {
         check_order(methods[i].name, methods[i].h, damping, reference);
 }
 
-START_TEST(order_without_damping) {
+TEST(order_without_damping) {
     check_orders(0);
 }
-END_TEST
 
-START_TEST(order_with_damping) {
+TEST(order_with_damping) {
     check_orders(0.01118);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {order_without_damping, order_with_damping};
-    return fixture_run("order_implicit", tests, sizeof tests / sizeof *tests);
 }

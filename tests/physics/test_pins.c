@@ -15,7 +15,7 @@
 
 enum { PINS = 9 };
 
-START_TEST(pins_are_exact) {
+TEST(pins_are_exact) {
     static const char *const integrators[] = {
         "explicit-euler:dt=1e-3", "symplectic-euler",
         "averaged-euler:dt=1e-3", "velocity-verlet",
@@ -43,10 +43,4 @@ START_TEST(pins_are_exact) {
         ck_assert_uint_gt(cloth.session.run.counts.contacts, 0);
         fixture_close(&cloth);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {pins_are_exact};
-    return fixture_run("pins", tests, sizeof tests / sizeof *tests);
 }

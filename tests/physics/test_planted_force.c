@@ -115,27 +115,24 @@ static void check_all(const char *force, const double *direction, struct motion 
 
 static const double x_axis[3] = {1, 0, 0};
 
-START_TEST(resistance_reaches_every_method) {
+TEST(resistance_reaches_every_method) {
     planted = (struct planted){.resist = 2};
     check_all("resistance", x_axis, (struct motion){(1 - exp(-2)) / 2, exp(-2)});
 }
-END_TEST
 
-START_TEST(trap_reaches_every_method) {
+TEST(trap_reaches_every_method) {
     planted = (struct planted){.trap = 0.4};
     check_all("trap", planted_direction, trapped(1));
 }
-END_TEST
 
-START_TEST(swing_reaches_every_method) {
+TEST(swing_reaches_every_method) {
     planted = (struct planted){.swing = 1};
     check_all("swing", x_axis, (struct motion){1 + (1 - cos(3)) / 9, 1 + sin(3) / 3});
 }
-END_TEST
 
 /* 40 x 40 particles, stiff enough for the multigrid's levels; half of them in a trap that is
  * stiffer still, of which the solver sees 3x3 blocks. */
-START_TEST(solver_takes_blocks) {
+TEST(solver_takes_blocks) {
     for (int trap = 0; trap < 2; trap++) {
         struct fixture cloth;
         struct cs_arena arena = {0};
@@ -198,10 +195,9 @@ START_TEST(solver_takes_blocks) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* the bounds of the trap are those of its block; those of the run leave it out */
-START_TEST(bounds_follow_the_state) {
+TEST(bounds_follow_the_state) {
     struct fixture cloth;
     double work[24], omega, delta;
     planted = (struct planted){.trap = 50, .trap_damping = 3, .resist = 2};
@@ -218,12 +214,4 @@ START_TEST(bounds_follow_the_state) {
     ck_assert_double_lt(rest * rest, springs);
     ck_assert_double_eq_tol(cloth.system->view.delta, 1, 1e-14);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {resistance_reaches_every_method, trap_reaches_every_method,
-                                  swing_reaches_every_method, solver_takes_blocks,
-                                  bounds_follow_the_state};
-    return fixture_run("planted_force", tests, sizeof tests / sizeof *tests);
 }

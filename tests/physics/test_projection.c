@@ -63,7 +63,7 @@ static double drift(const struct fixture *sheet) {
 }
 
 /* tan 20 degrees = 0.36 is below mu: nothing moves by more than 1e-6 m in 10 s */
-START_TEST(block_below_the_angle_of_friction_stays) {
+TEST(block_below_the_angle_of_friction_stays) {
     for (int k = 0; k < STEPPED + ADAPTIVE; k++) {
         struct fixture sheet;
         char method[64];
@@ -77,10 +77,9 @@ START_TEST(block_below_the_angle_of_friction_stays) {
         fixture_close(&sheet);
     }
 }
-END_TEST
 
 /* tan 50 degrees is above it: g (sin - mu cos) t^2 / 2, to the first order in the step */
-START_TEST(block_above_it_slides) {
+TEST(block_above_it_slides) {
     const double a = 50 * DEGREE, t = 0.5, g = 9.81 * (sin(a) - MU * cos(a));
     static const char *const methods[] = {"symplectic-euler", "velocity-verlet", "rk4",
                                           "implicit-linearised"};
@@ -100,9 +99,6 @@ START_TEST(block_above_it_slides) {
         fixture_close(&sheet);
     }
 }
-END_TEST
-
-static bool all;
 
 /* A box of springs that lies on the same slope with its lowest 25 vertices, 7.5 cm deep: its
  * own weight takes it together by 0.3 mm. */
@@ -143,7 +139,7 @@ static double slip(const struct fixture *box, const double *before) {
 
 /* What rests on the vertices that friction holds may swing: they stay at a sixtieth of a
  * second, with iterations that have settled. */
-START_TEST(box_below_the_angle_of_friction_stays) {
+TEST(box_below_the_angle_of_friction_stays) {
     static const char *const methods[] = {"implicit-linearised:",
                                           "backward-euler:",
                                           "bdf2:",
@@ -159,13 +155,12 @@ START_TEST(box_below_the_angle_of_friction_stays) {
         char method[64];
         snprintf(method, sizeof method, "%sdt=0.016666666666666666", methods[k]);
         open_box(&box, method);
-        fixture_frames(&box, all ? 600 : 120);
+        fixture_frames(&box, suite_all ? 600 : 120);
         const double way = slip(&box, box.system->start);
         ck_assert_msg(way <= 1e-6, "%s: %.3g m", method, way);
         fixture_close(&box);
     }
 }
-END_TEST
 
 /* The loads on the vertices of the box, were they all held: largest T / (mu N). */
 static double steepest_load(void) {
@@ -204,7 +199,7 @@ static double steepest_load(void) {
 /* Held vertices of the box have loads outside the cone of friction, also when it has come to
  * rest: by Coulomb's law some must slip until the springs around them give way. With shorter
  * steps the slip converges to 6.9e-5 m, and all families agree on it. */
-START_TEST(first_slip_of_a_box_is_that_of_the_law) {
+TEST(first_slip_of_a_box_is_that_of_the_law) {
     static const char *const methods[] = {"rk4:dt=5e-4", "velocity-verlet:dt=5e-4",
                                           "dopri5:rtol=1e-6", "cvode-bdf:rtol=1e-6"};
     ck_assert_double_gt(steepest_load(), 1.1);
@@ -217,27 +212,25 @@ START_TEST(first_slip_of_a_box_is_that_of_the_law) {
         fixture_close(&box);
     }
 }
-END_TEST
 
-START_TEST(box_does_not_creep) {
+TEST(box_does_not_creep) {
     double before[3 * 512];
-    for (int k = 0; k < (all ? ADAPTIVE : 2); k++) {
+    for (int k = 0; k < (suite_all ? ADAPTIVE : 2); k++) {
         struct fixture box;
         open_box(&box, adaptive[k]);
         ck_assert_uint_le(box.n, 512);
-        fixture_frames(&box, all ? 300 : 180);
+        fixture_frames(&box, suite_all ? 300 : 180);
         memcpy(before, box.x, 3 * box.n * sizeof *before);
-        fixture_frames(&box, all ? 300 : 60);
+        fixture_frames(&box, suite_all ? 300 : 60);
         ck_assert_msg(slip(&box, before) <= 4e-6, "%s: %.3g m", adaptive[k],
                       slip(&box, before));
         fixture_close(&box);
     }
 }
-END_TEST
 
 /* Friction falls from 0.9 to 0.1 in a second. Until it is tan 20 degrees, at t0, nothing moves;
  * then the speed grows as g cos a 0.8 (t - t0)^2 / 2. */
-START_TEST(block_slides_when_friction_lets_go) {
+TEST(block_slides_when_friction_lets_go) {
     static const char *const methods[] = {
         "symplectic-euler", "rk4",       "implicit-linearised", "bdf2",
         "dopri5",           "cvode-bdf", "fast-mass-spring"};
@@ -258,7 +251,6 @@ START_TEST(block_slides_when_friction_lets_go) {
         fixture_close(&sheet);
     }
 }
-END_TEST
 
 /* A ball of 1 kg and 0.3 m, whose centre is 0.6 m above the floor: 5.886 J of gravity. */
 #define BALL                                                                                   \
@@ -285,7 +277,7 @@ static bool look(void *ctx, double t, double dt, double *x, double *v) {
 }
 
 static int detail(void) {
-    return all ? 5 : 3;
+    return suite_all ? 5 : 3;
 }
 
 /* these add energy: their steps are as long as the damping allows */
@@ -296,7 +288,7 @@ static bool is_forward(const char *method) {
 }
 
 static double damping_of(const char *method) {
-    return is_forward(method) && !all ? 0.2 : 0.02;
+    return is_forward(method) && !suite_all ? 0.2 : 0.02;
 }
 
 static struct log drop(const char *method, double absorption, int fps, double seconds) {
@@ -338,52 +330,35 @@ static void check_drop(const char *method, double absorption, int fps) {
                   method, absorption, fps, log.lowest / 9.81);
 }
 
-START_TEST(ball_gets_no_energy_from_the_floor) {
+TEST(ball_gets_no_energy_from_the_floor) {
     static const double absorptions[] = {1, -0.6};
     for (int a = 0; a < 2; a++)
         for (int k = 0; k < STEPPED; k++)
-            for (int rate = 240; rate <= (all ? 960 : 240); rate *= 4) {
+            for (int rate = 240; rate <= (suite_all ? 960 : 240); rate *= 4) {
                 char method[64];
                 const double limit = limit_of(stepped[k]), h = fmin(1.0 / rate, limit);
-                if (all && limit < 1.0 / rate && rate < 960)
+                if (suite_all && limit < 1.0 / rate && rate < 960)
                     continue; // the same as with the next
                 snprintf(method, sizeof method, "%s:dt=%.17g", stepped[k], h);
                 check_drop(method, absorptions[a], 60);
             }
 }
-END_TEST
 
-START_TEST(ball_gets_none_at_a_sixtieth) {
+TEST(ball_gets_none_at_a_sixtieth) {
     static const char *const methods[] = {
         "implicit-linearised", "backward-euler", "tr-bdf2", "sdirk2",           "bdf2",
         "implicit-midpoint",   "newmark",        "xpbd",    "fast-mass-spring", "ros2"};
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
         check_drop(methods[k], 1, 60);
 }
-END_TEST
 
-START_TEST(ball_gets_none_at_a_tolerance) {
+TEST(ball_gets_none_at_a_tolerance) {
     static const double tolerances[] = {1e-3, 1e-5};
     for (int k = 0; k < ADAPTIVE; k++)
-        for (int r = 0; r < (all ? 2 : 1); r++)
+        for (int r = 0; r < (suite_all ? 2 : 1); r++)
             for (int fps = 60; fps >= 5; fps /= 12) {
                 char method[64];
                 snprintf(method, sizeof method, "%s:rtol=%g", adaptive[k], tolerances[r]);
                 check_drop(method, 1, fps);
             }
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    all = argc > 1 && !strcmp(argv[1], "all");
-    const TTest *const tests[] = {block_below_the_angle_of_friction_stays,
-                                  block_above_it_slides,
-                                  box_below_the_angle_of_friction_stays,
-                                  first_slip_of_a_box_is_that_of_the_law,
-                                  box_does_not_creep,
-                                  block_slides_when_friction_lets_go,
-                                  ball_gets_no_energy_from_the_floor,
-                                  ball_gets_none_at_a_sixtieth,
-                                  ball_gets_none_at_a_tolerance};
-    return fixture_run("projection", tests, sizeof tests / sizeof *tests);
 }

@@ -47,7 +47,7 @@ static uint32_t built(const struct cs_plan *plan) {
 }
 
 /* one key at a time on top of a cloth in gravity */
-START_TEST(each_key_builds_its_feature) {
+TEST(each_key_builds_its_feature) {
     const uint32_t least = BIT(SPRINGS) | FORCE(gravity);
     static const char still[] = "\"wind\": {\"direction\": [1, 0, 0], \"strength\": ";
     char wind[200], wind_n[200], calm[200];
@@ -97,9 +97,8 @@ START_TEST(each_key_builds_its_feature) {
     const struct cs_plan drawn = plan_of(rows[0].scene, 0, true);
     ck_assert_uint_eq(built(&drawn), least | BIT(RENDER));
 }
-END_TEST
 
-START_TEST(bytes_are_those_of_the_arrays) {
+TEST(bytes_are_those_of_the_arrays) {
     const struct cs_plan plan = plan_of(CLOTH("") ", \"forces\": {\"wind\": {\"direction\":"
                                                   " [1, 0, 0], \"strength\": 2}}}",
                                         CS_NEED_SPRINGS | CS_NEED_SOLVE, false);
@@ -111,10 +110,9 @@ START_TEST(bytes_are_those_of_the_arrays) {
     ck_assert_uint_eq(plan.rows[CS_FEATURE_AREA].bytes, N * RS);
     ck_assert_uint_eq(plan.rows[CS_FEATURE_SOLVER].bytes, (4 * S + 22 * N) * RS);
 }
-END_TEST
 
 /* what the plan promises of the system's arrays is what the system takes */
-START_TEST(system_takes_what_was_planned) {
+TEST(system_takes_what_was_planned) {
     static const size_t arrays[] = {CS_FEATURE_SPRINGS, CS_FEATURE_AREA, CS_FEATURE_SPRING_LIST,
                                     CS_FEATURE_CLUSTERS};
     static const uint32_t needs[] = {0, CS_NEED_SPRINGS, CS_NEED_CLUSTERS};
@@ -136,9 +134,8 @@ START_TEST(system_takes_what_was_planned) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
-START_TEST(plan_is_printed_a_line_a_feature) {
+TEST(plan_is_printed_a_line_a_feature) {
     const struct cs_plan plan = plan_of(CLOTH("") "}", 0, false);
     struct cs_text text = {0};
     cs_plan_print(&plan, &text);
@@ -149,12 +146,4 @@ START_TEST(plan_is_printed_a_line_a_feature) {
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ncontact        left out "));
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity        built "));
     cs_text_finish(&text);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {each_key_builds_its_feature, bytes_are_those_of_the_arrays,
-                                  system_takes_what_was_planned,
-                                  plan_is_printed_a_line_a_feature};
-    return unit_run("plan", tests, sizeof tests / sizeof *tests);
 }

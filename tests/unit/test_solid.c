@@ -37,7 +37,7 @@ static struct cs_vertex *make(uint32_t k, struct cs_obstacle *of, uint32_t *n) {
 }
 
 /* distance 0 but for the floats, and the normal of the surface there */
-START_TEST(vertices_lie_on_the_surface) {
+TEST(vertices_lie_on_the_surface) {
     for (uint32_t k = 0; k < CURVED; k++) {
         struct cs_obstacle of;
         uint32_t n;
@@ -54,12 +54,11 @@ START_TEST(vertices_lie_on_the_surface) {
         free(vertices);
     }
 }
-END_TEST
 
 /* Six times the volume under each triangle seen from the origin: the sum is that of the whole
  * only if the surface is closed and its triangles all turn outwards. Inscribed, it holds less.
  */
-START_TEST(volume_is_that_of_the_solid) {
+TEST(volume_is_that_of_the_solid) {
     const double pi = acos(-1), h[3] = {0.68, 0.38, 0.48}, r = 0.06;
     const double length = sqrt(0.36 + 0.16 + 0.16);
     const double volumes[CURVED] = {
@@ -88,9 +87,8 @@ START_TEST(volume_is_that_of_the_solid) {
         free(v);
     }
 }
-END_TEST
 
-START_TEST(planes_are_squares) {
+TEST(planes_are_squares) {
     static const uint32_t list[] = {PLANE, FLOOR};
     static const double extents[] = {2, 3};
     for (size_t k = 0; k < 2; k++) {
@@ -111,7 +109,6 @@ START_TEST(planes_are_squares) {
         free(v);
     }
 }
-END_TEST
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -135,7 +132,7 @@ static void area_of(double p[3][3], double area[3]) {
 
 /* From afar the triangles lie side by side within the outline, a regular polygon, all facing
  * the eye: what they cover along the line of sight is its area. */
-START_TEST(a_ball_covers_its_outline) {
+TEST(a_ball_covers_its_outline) {
     static const float light[4] = {0.6f, 0, 0.8f, 0};
     const double to[3] = {(double)light[0], (double)light[1], (double)light[2]};
     struct cs_obstacle of;
@@ -157,11 +154,10 @@ START_TEST(a_ball_covers_its_outline) {
     ck_assert_double_eq_tol(sum, 0.5 * CS_BALL_OUTLINE * sin(turn), 1e-5);
     free(v);
 }
-END_TEST
 
 /* From a place at twice the radius: all points lie on the sphere on this side of the circle
  * where sight touches it, and the outline on that circle: (p - c) . (eye - p) = 0. */
-START_TEST(a_ball_ends_where_sight_touches_it) {
+TEST(a_ball_ends_where_sight_touches_it) {
     static const float eye[4] = {1.2f, 1.6f, 0, 1};
     struct cs_obstacle of;
     struct cs_vertex v[CS_BALL_VERTICES];
@@ -185,10 +181,9 @@ START_TEST(a_ball_ends_where_sight_touches_it) {
     // each chord of the outline has a triangle of its own, each spoke's end one more
     ck_assert_uint_eq(outline, 2 * CS_BALL_OUTLINE + CS_BALL_SPOKES);
 }
-END_TEST
 
 /* From within, the whole of it is there: its volume, as above. */
-START_TEST(a_ball_is_whole_from_within) {
+TEST(a_ball_is_whole_from_within) {
     static const float eye[4] = {0.1f, 0.2f, 0.3f, 1};
     struct cs_obstacle of;
     struct cs_vertex v[CS_BALL_VERTICES];
@@ -204,11 +199,10 @@ START_TEST(a_ball_is_whole_from_within) {
     ck_assert_double_le(six / 6, 4 * acos(-1) / 3);
     ck_assert_double_ge(six / 6, 0.98 * 4 * acos(-1) / 3);
 }
-END_TEST
 
 /* a box of side 1, turned and moved: each triangle where it is met, closed, of volume 1; and
  * what a line meets of it */
-START_TEST(a_mesh_is_as_it_is) {
+TEST(a_mesh_is_as_it_is) {
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     struct cs_trimesh mesh = {0};
@@ -254,23 +248,9 @@ START_TEST(a_mesh_is_as_it_is) {
     free(vertices);
     cs_arena_finish(&arena);
 }
-END_TEST
 
-START_TEST(hidden_ones_have_no_triangles) {
+TEST(hidden_ones_have_no_triangles) {
     struct cs_obstacle of;
     cs_obstacle_at(&rest, HIDDEN, 0, &of);
     ck_assert_uint_eq(cs_solid_count(&of), 0);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {vertices_lie_on_the_surface,
-                                  volume_is_that_of_the_solid,
-                                  planes_are_squares,
-                                  a_ball_covers_its_outline,
-                                  a_ball_ends_where_sight_touches_it,
-                                  a_ball_is_whole_from_within,
-                                  a_mesh_is_as_it_is,
-                                  hidden_ones_have_no_triangles};
-    return unit_run("solid", tests, sizeof tests / sizeof *tests);
 }
