@@ -36,10 +36,12 @@ void fixture_start(struct fixture *fixture) {
 void fixture_frames(struct fixture *fixture, uint32_t frames) {
     struct cs_error error = {0};
     struct cs_run *run = &fixture->session.run;
+    const char *method = fixture->session.method.integrator->name;
     for (uint32_t k = 0; k < frames; k++) {
         cs_run_frame(run, &error);
-        ck_assert_msg(!error.status, "%s", error.message);
-        ck_assert_msg(run->outcome == CS_RUNNING, "%s", cs_outcome_text(run->outcome));
+        ck_assert_msg(!error.status, "%s: %s", method, error.message);
+        ck_assert_msg(run->outcome == CS_RUNNING, "%s: %s", method,
+                      cs_outcome_text(run->outcome));
     }
 }
 

@@ -1,5 +1,6 @@
 /* Events: at their time to the bit, with what they promise, and nothing without them. */
 #include "eventful.h"
+#include "methods.h"
 
 #include "model/event/events.h"
 
@@ -7,13 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const methods[] = {
-    "explicit-euler:dt=1e-3", "symplectic-euler",
-    "averaged-euler:dt=1e-3", "velocity-verlet",
-    "position-verlet",        "position-verlet:loss=0.01",
-    "implicit-linearised",    "implicit-block:dt=0.004",
-    "cvode-bdf:rtol=1e-3",    "implicit-linearised:dt=0.002,hessian=exact"};
-enum { METHODS = sizeof methods / sizeof *methods };
+/* every method there is */
+static struct methods all_methods(void) {
+    static const char *const more[] = {"position-verlet:loss=0.01", "implicit-linearised:dt=0.002,hessian=exact", NULL};
+    return methods_find(&(struct methods_query){.test = "events", .more = more});
+}
 
 /* What the frame loop does about events, by hand on a run without any. */
 static void advance_by_hand(struct fixture *cloth, double from, double to) {
@@ -29,14 +28,16 @@ static void restart(struct fixture *cloth, double t) {
 /* A blow at 0.0375 s and one at 0.05 s, which is frame 3: the same bits as three runs joined.
  * The blow that does not come lets no method pass frames there either. */
 TEST(runs_are_joined_at_events) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth, parts;
-        fixture_open(&cloth, methods[k], CLOTH,
+        fixture_open(&cloth, method, CLOTH,
                      "{\"at\": 0.05, \"impact\": {\"direction\": [0, 3, 4], \"impulse\": 0.1,"
                      " \"particles\": [17]}},"
                      "{\"at\": 0.0375, \"impact\": {\"direction\": [1, 0, 0], \"impulse\": 0.2,"
                      " \"particles\": [\"bottom-right\"]}}");
-        fixture_open(&parts, methods[k], CLOTH,
+        fixture_open(&parts, method, CLOTH,
                      "{\"at\": 100, \"impact\": {\"direction\": [1, 0, 0]}}");
         fixture_start(&cloth);
         fixture_start(&parts);
@@ -53,7 +54,7 @@ TEST(runs_are_joined_at_events) {
         parts.v[2 * n + 17] += 0.8 * (0.1 / 0.01);
         restart(&parts, 3 / 60.0);
         advance_by_hand(&parts, 3 / 60.0, 4 / 60.0);
-        ck_bits(cloth.x, parts.x, 6 * n, methods[k]);
+        ck_bits(cloth.x, parts.x, 6 * n, method);
         fixture_close(&cloth);
         fixture_close(&parts);
     }
@@ -87,9 +88,11 @@ TEST(impact_gives_its_impulse) {
 
 /* Frame by frame the grabbed particles are on their path to the bit, whatever the method. */
 TEST(grab_is_exact) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth;
-        fixture_open(&cloth, methods[k], CLOTH,
+        fixture_open(&cloth, method, CLOTH,
                      "{\"from\": 0.05, \"to\": 0.35, \"grab\": {\"particles\": [29, 28],"
                      " \"path\": [{\"at\": 0.15, \"point\": [0.5, -0.25, 0.5]},"
                      " {\"at\": 0.25, \"point\": [0.5, -0.25, 1.5]}]}},"
@@ -103,7 +106,7 @@ TEST(grab_is_exact) {
         fixture_frames(&cloth, 6); /* 0.15 s: the first point, and half of the cubic */
         ck_assert_msg(cloth.x[28] == 0.5 && cloth.x[n + 28] == -0.25 &&
                           cloth.x[2 * n + 28] == 0.5,
-                      "%s", methods[k]);
+                      "%s", method);
         ck_assert(fabs(cloth.x[29] - (0.5 + apart)) < 1e-15);
         ck_assert(fabs(cloth.x[2 * n] - (corner - 0.5)) < 1e-15);
         fixture_frames(&cloth, 3); /* 0.2 s: half way at 10 m/s */
@@ -139,9 +142,11 @@ TEST(release_keeps_the_velocity) {
 /* Held in flight, a particle stays to the bit; a later holder is not robbed by an earlier one.
  */
 TEST(pins_come_and_go) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth;
-        fixture_open(&cloth, methods[k], CLOTH,
+        fixture_open(&cloth, method, CLOTH,
                      "{\"from\": 0.1, \"to\": 0.2, \"pin\": {\"particles\": [\"bottom\"]}},"
                      "{\"from\": 0.15, \"to\": 0.3, \"pin\": {\"particles\": [27]}},"
                      "{\"at\": 0.1, \"release\": {\"particles\": [\"top\"]}}");
@@ -153,7 +158,7 @@ TEST(pins_come_and_go) {
         ck_assert_uint_eq(cloth.system->n_pinned, 6);
         ck_assert_msg(cloth.x[cloth.n + 27] == held[0] && cloth.x[cloth.n + 28] == held[1] &&
                           cloth.v[cloth.n + 27] == 0,
-                      "%s", methods[k]);
+                      "%s", method);
         ck_assert(cloth.x[cloth.n] < top);
         fixture_frames(&cloth, 3);
         ck_assert(cloth.x[cloth.n + 27] == held[0] && cloth.x[cloth.n + 28] < held[1]);

@@ -1,5 +1,5 @@
 /* Colliders moved by events: on their path to the bit, and what they take along. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/contact/obstacle.h"
 
@@ -18,10 +18,6 @@
     "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"size\": [0.3, 0.3], \"start\": \"flat\"}," \
     " \"mass\": {\"particle\": 0.01}, \"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\":"   \
     " 0}}], \"colliders\": [{\"floor\": {}, \"friction\": 0.5}], \"events\": [%s]}"
-
-static const char *const methods[] = {"symplectic-euler", "velocity-verlet",
-                                      "implicit-linearised", "cvode-bdf:rtol=1e-3"};
-enum { METHODS = sizeof methods / sizeof *methods };
 
 static void check_centre(const struct fixture *fixture, uint32_t k, double t, double x,
                          double y, double z) {
@@ -45,9 +41,11 @@ static void check_centre(const struct fixture *fixture, uint32_t k, double t, do
 
 /* Two legs, then rest; a second move goes on from there, along the cubic s^2 (3 - 2 s). */
 TEST(path_is_exact) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = methods_find(&(struct methods_query){.test = "moves"});
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture far;
-        fixture_open(&far, methods[k], FAR,
+        fixture_open(&far, method, FAR,
                      "{\"from\": 0.05, \"to\": 0.3, \"move\": {\"collider\": 0, \"path\": ["
                      "{\"at\": 0.15, \"point\": [1, 0, 0]},"
                      " {\"at\": 0.25, \"point\": [1, 2, 0]}]}},"
@@ -118,18 +116,20 @@ TEST(later_move_takes_over) {
 
 /* A floor that rises takes what lies on it along: at its height, with its velocity. */
 TEST(floor_lifts_what_lies_on_it) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = methods_find(&(struct methods_query){.test = "lift"});
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture grains;
-        fixture_open(&grains, methods[k], GRAINS,
+        fixture_open(&grains, method, GRAINS,
                      "{\"at\": 0, \"move\": {\"collider\": 0,"
                      " \"path\": [{\"at\": 1, \"point\": [0, 0.5, 0]}]}}");
         fixture_start(&grains);
         fixture_frames(&grains, 30);
         for (size_t i = 0; i < grains.n; i++) {
             ck_assert_msg(fabs(grains.x[grains.n + i] - 0.25) < 1e-12, "%s: height %.17g",
-                          methods[k], grains.x[grains.n + i]);
+                          method, grains.x[grains.n + i]);
             ck_assert_msg(fabs(grains.v[grains.n + i] - 0.5) < 1e-12, "%s: velocity %.17g",
-                          methods[k], grains.v[grains.n + i]);
+                          method, grains.v[grains.n + i]);
         }
         fixture_close(&grains);
     }

@@ -1,5 +1,5 @@
 /* Forces from a viewpoint: their momentum, their times, whom they reach. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
@@ -8,12 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const methods[] = {"explicit-euler:dt=1e-3", "symplectic-euler",
-                                      "averaged-euler:dt=1e-3", "velocity-verlet",
-                                      "position-verlet",        "rk4:dt=2e-3",
-                                      "implicit-linearised",    "implicit-block:dt=0.004",
-                                      "backward-euler:dt=0.01", "cvode-bdf:rtol=1e-3"};
-enum { METHODS = sizeof methods / sizeof *methods };
+/* every method there is */
+static struct methods all_methods(void) {
+    static const char *const more[] = {"rk4:dt=2e-3", "backward-euler:dt=0.01", NULL};
+    return methods_find(&(struct methods_query){.test = "events", .more = more});
+}
 
 /* 16 particles of 0.25 kg in a square of 1 m, in front of a camera at 2 m; %s: stiffness,
  * events
@@ -76,10 +75,12 @@ TEST(same_as_an_impact) {
         "{\"from\": 0.0375, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": "
         "0}}",
         "{\"from\": 0.0375, \"to\": 0.2, \"impact\": {\"direction\": [0, 0, -1]}}"};
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture dust[2];
         for (size_t e = 0; e < 2; e++) {
-            fixture_open(dust + e, methods[k], DUST, "40", events[e]);
+            fixture_open(dust + e, method, DUST, "40", events[e]);
             cs_perturb_smooth(dust[e].system, 0.02, 0.1);
             fixture_start(dust + e);
         }
@@ -89,7 +90,7 @@ TEST(same_as_an_impact) {
         impact->impact.impulse = 8 * (state->end - state->begin);
         for (size_t e = 0; e < 2; e++)
             fixture_frames(dust + e, 15);
-        ck_bits(dust[0].x, dust[1].x, 6 * dust[1].n, methods[k]);
+        ck_bits(dust[0].x, dust[1].x, 6 * dust[1].n, method);
         for (size_t e = 0; e < 2; e++)
             fixture_close(dust + e);
     }
@@ -100,15 +101,17 @@ TEST(looks_that_see_the_same_change_nothing) {
     static const char *const events[] = {
         "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5}}",
         "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": 0}}"};
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture dust[2];
         for (size_t e = 0; e < 2; e++) {
-            fixture_open(dust + e, methods[k], DUST, "40", events[e]);
+            fixture_open(dust + e, method, DUST, "40", events[e]);
             fixture_start(dust + e);
             fixture_frames(dust + e, 15);
         }
         ck_assert(dust[0].system->events->viewpoint_forces->states->looks == 9);
-        ck_bits(dust[0].x, dust[1].x, 6 * dust[0].n, methods[k]);
+        ck_bits(dust[0].x, dust[1].x, 6 * dust[0].n, method);
         for (size_t e = 0; e < 2; e++)
             fixture_close(dust + e);
     }
@@ -117,14 +120,16 @@ TEST(looks_that_see_the_same_change_nothing) {
 /* What the frame loop does about a look that sees others: the same bits as runs joined there.
  */
 TEST(runs_are_joined_at_looks) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture dust, parts;
         /* seen until it has left the rectangle by 0.05 s: at 0.1 s, frame 6, that is found */
         static const char event[] =
             "{\"from\": 0, \"to\": 1, \"viewpoint_force\": {\"force\": 0.25, \"refresh\": 10,"
             " \"rectangle\": [0.4, 0.4, 0.6, 0.6]}}";
-        fixture_open(&dust, methods[k], DUST, "0", event);
-        fixture_open(&parts, methods[k], DUST, "0",
+        fixture_open(&dust, method, DUST, "0", event);
+        fixture_open(&parts, method, DUST, "0",
                      "{\"from\": 0, \"to\": 9, \"impact\": {\"direction\": [0, 0, -1],"
                      " \"impulse\": 2.25, \"particles\": [5]}}");
         const size_t n = dust.n;
@@ -143,7 +148,7 @@ TEST(runs_are_joined_at_looks) {
         struct cs_error error = {0};
         ck_assert_int_eq(cs_run_restart(&parts.session.run, 0.1, &error), CS_OK);
         fixture_frames(&parts, 3);
-        ck_bits(dust.x, parts.x, 6 * n, methods[k]);
+        ck_bits(dust.x, parts.x, 6 * n, method);
         ck_assert_double_eq_tol(dust.v[2 * n + 5], -0.1, 1e-9);
         fixture_close(&dust);
         fixture_close(&parts);

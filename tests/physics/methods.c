@@ -1,0 +1,107 @@
+/* Methods by their traits, and the exceptions of single tests. */
+#include "methods.h"
+
+#include "sim/registry.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Other options than the query's, or none: the method is left out. */
+static const struct {
+    const char *test, *method, *options, *reason;
+} exceptions[] = {
+    {"pins", "averaged-euler", "dt=1e-3", "its own step is not small enough for this contact"},
+    {"pins", "explicit-euler", "dt=1e-3", "its own step is not small enough for this contact"},
+    {"pins", "cvode-bdf", "rtol=1e-2", "loose: it takes long steps over the contacts"},
+    {"lift", "explicit-euler", NULL, "moves before it falls: the floor meets it in the step after"},
+    {"moves", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"moves", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"events", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"events", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+};
+
+void methods_set(char text[120], const char *name, const char *key, double value) {
+    const int length = snprintf(text, 120, "%s%c%s=%.17g", name, strchr(name, ':') ? ',' : ':',
+                                key, value);
+    ck_assert_int_lt(length, 120);
+}
+
+bool methods_is(const char *text, const char *name) {
+    const size_t length = strlen(name);
+    return !strncmp(text, name, length) && (!text[length] || text[length] == ':');
+}
+
+static bool has_option(const struct cs_integrator *integrator, const char *name) {
+    for (uint32_t k = 0; k < integrator->n_options; k++)
+        if (!strcmp(integrator->options[k].name, name))
+            return true;
+    return false;
+}
+
+static void set_where_it_is(struct method_asked *method, const struct cs_integrator *integrator,
+                            const char *key, double value) {
+    char before[120];
+    if (!(value > 0) || !has_option(integrator, key))
+        return;
+    memcpy(before, method->text, sizeof before);
+    methods_set(method->text, before, key, value);
+}
+
+/* false: an exception leaves it out */
+static bool set_options(struct method_asked *method, const struct cs_integrator *integrator,
+                        const struct methods_query *query) {
+    const bool adaptive = integrator->traits & CS_ADAPTIVE;
+    for (size_t k = 0; query->test && k < LENGTH(exceptions); k++)
+        if (!strcmp(exceptions[k].test, query->test) &&
+            !strcmp(exceptions[k].method, integrator->name)) {
+            snprintf(method->text, sizeof method->text, "%s:%s", integrator->name,
+                     exceptions[k].options ? exceptions[k].options : "");
+            return exceptions[k].options != NULL;
+        }
+    snprintf(method->text, sizeof method->text, "%s", integrator->name);
+    set_where_it_is(method, integrator, "dt", adaptive ? 0 : query->dt);
+    set_where_it_is(method, integrator, "rtol", adaptive ? query->rtol : query->residual);
+    return true;
+}
+
+static bool is_asked(const struct cs_integrator *integrator,
+                     const struct methods_query *query) {
+    return integrator && integrator->fidelity != CS_FIDELITY_OTHER &&
+           (integrator->traits & query->with) == query->with &&
+           !(integrator->traits & query->without);
+}
+
+static void add(struct methods *methods, const struct cs_integrator *integrator,
+                const struct method_asked *method) {
+    ck_assert_uint_lt(methods->n, METHODS_MAX);
+    struct method_asked *added = methods->list + methods->n++;
+    *added = *method;
+    added->order = integrator->order;
+    added->order_damped = integrator->order_damped;
+    added->traits = integrator->traits;
+}
+
+struct methods methods_find(const struct methods_query *query) {
+    struct cs_registry registry = {0};
+    struct cs_error error = {0};
+    struct methods methods = {0};
+    cs_registry_open_all(&registry, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    for (uint32_t k = 0; k < registry.n; k++) {
+        const struct cs_integrator *integrator = registry.entries[k].integrator;
+        struct method_asked method;
+        if (is_asked(integrator, query) && set_options(&method, integrator, query))
+            add(&methods, integrator, &method);
+    }
+    for (const char *const *more = query->more; more && *more; more++)
+        for (uint32_t k = 0; k < registry.n; k++) {
+            const struct cs_integrator *integrator = registry.entries[k].integrator;
+            struct method_asked method;
+            snprintf(method.text, sizeof method.text, "%s", *more);
+            if (integrator && methods_is(*more, integrator->name))
+                add(&methods, integrator, &method);
+        }
+    ck_assert_uint_gt(methods.n, 0);
+    cs_registry_finish(&registry);
+    return methods;
+}
