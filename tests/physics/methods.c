@@ -13,11 +13,27 @@ static const struct {
     {"pins", "averaged-euler", "dt=1e-3", "its own step is not small enough for this contact"},
     {"pins", "explicit-euler", "dt=1e-3", "its own step is not small enough for this contact"},
     {"pins", "cvode-bdf", "rtol=1e-2", "loose: it takes long steps over the contacts"},
-    {"lift", "explicit-euler", NULL, "moves before it falls: the floor meets it in the step after"},
+    {"lift", "explicit-euler", NULL,
+     "moves before it falls: the floor meets it in the step after"},
     {"moves", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
     {"moves", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
     {"slide", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
     {"let go", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
+    {"drum", "gauss", "rtol=1e-13", "of order 4: its errors are as small as that"},
+    {"momentum", "cvode-bdf", "linear_rtol=1e-12",
+     "its default lets the solver stop too early"},
+    {"bounce", "averaged-euler", NULL, "gains energy without damping"},
+    {"bounce", "explicit-euler", NULL, "gains energy without damping"},
+    {"crossings", "averaged-euler", "dt=1e-3", "gains energy at longer steps"},
+    {"crossings", "explicit-euler", "dt=1e-3", "gains energy at longer steps"},
+    {"crossings", "fast-mass-spring", NULL, "does not ask whether a step crosses"},
+    {"one solution", "ark-dirk", "rtol=1e-11", "below that its solver finds no solution"},
+    {"one solution", "ark-imex", "rtol=1e-11", "below that its solver finds no solution"},
+    {"one solution", "cvode-bdf", "rtol=1e-12,max_order=5,linear_rtol=1e-8", "must be tight"},
+    {"one solution", "xpbd", NULL,
+     "is not claimed to converge at an order, but for short steps"},
+    {"threads", "averaged-euler", "dt=2e-4", "its own step follows the damping alone"},
+    {"threads", "explicit-euler", "dt=1e-4", "its own step follows the damping alone"},
     {"box", "fast-mass-spring", "iterations=30", "by then its passes have settled"},
     {"box", "xpbd", "iterations=30", "by then its passes have settled"},
     {"events", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
@@ -25,8 +41,8 @@ static const struct {
 };
 
 void methods_set(char text[120], const char *name, const char *key, double value) {
-    const int length = snprintf(text, 120, "%s%c%s=%.17g", name, strchr(name, ':') ? ',' : ':',
-                                key, value);
+    const int length =
+        snprintf(text, 120, "%s%c%s=%.15g", name, strchr(name, ':') ? ',' : ':', key, value);
     ck_assert_int_lt(length, 120);
 }
 
@@ -57,6 +73,7 @@ static void set_option(struct method_asked *method, const struct cs_integrator *
 static bool set_options(struct method_asked *method, const struct cs_integrator *integrator,
                         const struct methods_query *query) {
     const bool adaptive = integrator->traits & CS_ADAPTIVE;
+    const bool given = !adaptive && (integrator->traits & query->dt_for) == query->dt_for;
     snprintf(method->text, sizeof method->text, "%s", integrator->name);
     for (size_t k = 0; query->test && k < LENGTH(exceptions); k++)
         if (!strcmp(exceptions[k].test, query->test) &&
@@ -66,7 +83,7 @@ static bool set_options(struct method_asked *method, const struct cs_integrator 
             snprintf(method->text, sizeof method->text, "%s:%s", integrator->name,
                      exceptions[k].options);
         }
-    set_option(method, integrator, "dt", adaptive ? 0 : query->dt);
+    set_option(method, integrator, "dt", given ? query->dt : 0);
     set_option(method, integrator, "rtol", adaptive ? query->rtol : query->residual);
     return true;
 }

@@ -1,8 +1,8 @@
-/* methods.h - the methods that a physics test runs: those of the registry with the traits that it
- * asks for. A new method is in each test that its traits qualify it for.
+/* methods.h - the methods that a physics test runs: those of the registry with the traits that
+ * it asks for. A new method is in each test that its traits qualify it for.
  *
- * Methods of another model (CS_FIDELITY_OTHER) are in none. methods.c lists the exceptions, each
- * with its reason. */
+ * Methods of another model (CS_FIDELITY_OTHER) are in none. methods.c lists the exceptions,
+ * each with its reason. */
 #ifndef METHODS_H
 #define METHODS_H
 
@@ -13,8 +13,9 @@ struct methods_query {
     const char *test;       /* its name in the list of exceptions; NULL: it has none */
     uint32_t with, without; /* sets of enum cs_trait: has all of these, none of those */
     double dt;              /* s: the step of methods without error control; 0: their own */
+    uint32_t dt_for;        /* enum cs_trait: all others keep their own step; 0: none does */
     double rtol;            /* of methods with error control; 0: their own */
-    double residual;        /* rtol of the solver in methods without error control; 0: their own */
+    double residual; /* rtol of the solver in methods without error control; 0: their own */
     const char *const *more; /* methods with other options, closed by NULL; or NULL */
 };
 

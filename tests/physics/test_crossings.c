@@ -1,6 +1,6 @@
 /* Two sheets that nothing keeps apart, thrown at each other: what is counted, what steps are
  * taken back, and where a run ends. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/cross/crossings.h"
 
@@ -21,21 +21,10 @@
 #define MEET_FIRST 0.019
 #define MEET_LAST  0.04
 
-static const char *const methods[] = {"velocity-verlet:dt=0.002",
-                                      "rk4:dt=0.002",
-                                      "dopri5:rtol=1e-4",
-                                      "implicit-linearised:dt=0.005",
-                                      "ros2:dt=0.005",
-                                      "backward-euler:dt=0.005",
-                                      "tr-bdf2:dt=0.005",
-                                      "xpbd:dt=0.005",
-                                      "bdf2:dt=0.005",
-                                      "cvode-adams",
-                                      "cvode-bdf:rtol=1e-3",
-                                      "ark-erk",
-                                      "ark-dirk",
-                                      "ark-imex"};
-enum { METHODS = sizeof methods / sizeof *methods };
+/* with steps long enough to be cut */
+static struct methods all_methods(void) {
+    return methods_find(&(struct methods_query){.test = "crossings", .dt = 0.005});
+}
 
 /* until the run ends or ten frames are done; the first failure stays in *error */
 static uint64_t run_frames(struct fixture *fixture, const char *method, const char *policy,
@@ -45,7 +34,8 @@ static uint64_t run_frames(struct fixture *fixture, const char *method, const ch
     fixture_open(fixture, method, SHEETS, policy);
     fixture_start(fixture);
     while (run->frame < 10 && !cs_run_frame(run, error)) {
-        ck_assert_int_eq(run->outcome, CS_RUNNING);
+        ck_assert_msg(run->outcome == CS_RUNNING, "%s: %s", method,
+                      cs_outcome_text(run->outcome));
         const uint64_t found = cs_crossings_count(fixture->system, run->t, run->x).n;
         most = found > most ? found : most;
     }
@@ -53,12 +43,14 @@ static uint64_t run_frames(struct fixture *fixture, const char *method, const ch
 }
 
 TEST(counted_sheets_pass_through_each_other) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture fixture;
         struct cs_error error = {0};
-        const uint64_t most = run_frames(&fixture, methods[k], "count", &error);
+        const uint64_t most = run_frames(&fixture, method, "count", &error);
         ck_assert_msg(!error.status, "%s", error.message);
-        ck_assert_msg(most > 5, "%s: %llu", methods[k], (unsigned long long)most);
+        ck_assert_msg(most > 5, "%s: %llu", method, (unsigned long long)most);
         ck_assert_uint_eq(fixture.session.run.counts.cut_steps, 0);
         fixture_close(&fixture);
     }
@@ -67,12 +59,14 @@ TEST(counted_sheets_pass_through_each_other) {
 /* the state is that of the last step that was good: nothing has crossed, and it is not a step
  * too early */
 TEST(limited_sheets_stop_before_they_meet) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture fixture;
         struct cs_error error = {0};
-        const uint64_t most = run_frames(&fixture, methods[k], "limit", &error);
+        const uint64_t most = run_frames(&fixture, method, "limit", &error);
         const struct cs_run *run = &fixture.session.run;
-        ck_assert_msg(error.status == CS_ERR_MODULE, "%s: no end", methods[k]);
+        ck_assert_msg(error.status == CS_ERR_MODULE, "%s: no end", method);
         ck_assert_msg(strstr(error.message, "through a surface") ||
                           strstr(error.message, "the step fell to") ||
                           strstr(error.message, "gave up at t"),
@@ -115,16 +109,17 @@ TEST(stopped_sheets_say_when) {
 
 /* before they come near each other a limit changes nothing, to the bit */
 TEST(limits_cost_no_bit_until_they_act) {
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture free, limited;
-        fixture_open(&free, methods[k], SHEETS, "ignore");
-        fixture_open(&limited, methods[k], SHEETS, "limit");
+        fixture_open(&free, method, SHEETS, "ignore");
+        fixture_open(&limited, method, SHEETS, "limit");
         fixture_start(&free);
         fixture_start(&limited);
         fixture_frames(&free, 1);
         fixture_frames(&limited, 1);
-        ck_assert_msg(!memcmp(free.x, limited.x, 6 * free.n * sizeof *free.x), "%s",
-                      methods[k]);
+        ck_assert_msg(!memcmp(free.x, limited.x, 6 * free.n * sizeof *free.x), "%s", method);
         ck_assert_ptr_null(free.system->crossings);
         ck_assert_ptr_null(free.system->surfaces);
         ck_assert_uint_eq(limited.session.run.counts.cut_steps, 0);
