@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void fixture_open(struct fixture *fixture, const char *integrator, const char *format, ...) {
     char *text;
@@ -67,4 +68,10 @@ double fixture_energy(const struct fixture *fixture) {
     const struct cs_energy energy =
         cs_measure_energy(fixture->system, fixture->session.run.t, fixture->x, fixture->v);
     return cs_energy_whole(&energy);
+}
+
+void ck_bits(const double *a, const double *b, size_t n, const char *what) {
+    for (size_t i = 0; i < n; i++)
+        ck_assert_msg(!memcmp(a + i, b + i, sizeof *a), "%s: value %zu is %.17g and %.17g",
+                      what, i, a[i], b[i]);
 }

@@ -30,4 +30,7 @@ void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]);
 /* Kinetic and potential energy in J. */
 double fixture_energy(const struct fixture *fixture);
 
+/* Fails unless n values are the same to the bit; what: named in the message. */
+void ck_bits(const double *a, const double *b, size_t n, const char *what);
+
 #endif

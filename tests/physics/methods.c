@@ -10,35 +10,42 @@
 static const struct {
     const char *test, *method, *options, *reason;
 } exceptions[] = {
-    {"pins", "averaged-euler", "dt=1e-3", "its own step is not small enough for this contact"},
-    {"pins", "explicit-euler", "dt=1e-3", "its own step is not small enough for this contact"},
-    {"pins", "cvode-bdf", "rtol=1e-2", "loose: it takes long steps over the contacts"},
-    {"lift", "explicit-euler", NULL,
-     "moves before it falls: the floor meets it in the step after"},
-    {"moves", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
-    {"moves", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
-    {"slide", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
-    {"let go", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
-    {"drum", "gauss", "rtol=1e-13", "of order 4: its errors are as small as that"},
-    {"momentum", "cvode-bdf", "linear_rtol=1e-12",
-     "its default lets the solver stop too early"},
     {"bounce", "averaged-euler", NULL, "gains energy without damping"},
     {"bounce", "explicit-euler", NULL, "gains energy without damping"},
+    {"bounce", "midpoint", NULL, "gains energy without damping"},
+    {"box", "fast-mass-spring", "iterations=30", "by then its passes have settled"},
+    {"box", "xpbd", "iterations=30", "by then its passes have settled"},
     {"crossings", "averaged-euler", "dt=1e-3", "gains energy at longer steps"},
     {"crossings", "explicit-euler", "dt=1e-3", "gains energy at longer steps"},
     {"crossings", "fast-mass-spring", NULL, "does not ask whether a step crosses"},
-    {"one solution", "ark-dirk", "rtol=1e-11", "below that its solver finds no solution"},
-    {"one solution", "ark-imex", "rtol=1e-11", "below that its solver finds no solution"},
-    {"one solution", "cvode-bdf", "rtol=1e-12,max_order=5,linear_rtol=1e-8", "must be tight"},
-    {"one solution", "xpbd", NULL,
-     "is not claimed to converge at an order, but for short steps"},
-    {"threads", "averaged-euler", "dt=2e-4", "its own step follows the damping alone"},
-    {"threads", "explicit-euler", "dt=1e-4", "its own step follows the damping alone"},
-    {"box", "fast-mass-spring", "iterations=30", "by then its passes have settled"},
-    {"box", "xpbd", "iterations=30", "by then its passes have settled"},
+    {"crossings", "midpoint", NULL, "does not ask whether a step crosses"},
+    {"drum", "gauss", "rtol=1e-13", "of order 4: its errors are as small as that"},
+    {"drop", "midpoint", NULL, "gains energy at the step that suits the others"},
     {"events", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
     {"events", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"let go", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
+    {"lift", "explicit-euler", NULL, "moves first: the floor meets it in the step after"},
+    {"momentum", "cvode-bdf", "linear_rtol=1e-12", "by default its solver may stop earlier"},
+    {"moves", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"moves", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"one solution", "ark-dirk", "rtol=1e-11", "tighter than that its solver fails"},
+    {"one solution", "ark-imex", "rtol=1e-11", "tighter than that its solver fails"},
+    {"one solution", "cvode-bdf", "rtol=1e-12,max_order=5,linear_rtol=1e-8",
+     "by default its order is lower and its solver looser"},
+    {"one solution", "xpbd", NULL, "comes no nearer than 1e-8 by extrapolation"},
+    {"pairs", "bdf2", NULL, "its slope is 1.8 yet at steps of 1 ms"},
+    {"pairs", "symplectic-euler", NULL, "its slope is 1.3 yet at steps of 0.25 ms"},
+    {"pins", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"pins", "cvode-bdf", "rtol=1e-2", "takes long steps then"},
+    {"pins", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"slide", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
+    {"threads", "averaged-euler", "dt=2e-4", "its own step follows the damping alone"},
+    {"threads", "explicit-euler", "dt=1e-4", "its own step follows the damping alone"},
 };
+
+double methods_step(uint32_t order) {
+    return order == 1 ? 2.5e-4 : order == 2 ? 1e-3 : 4e-3;
+}
 
 void methods_set(char text[120], const char *name, const char *key, double value) {
     const int length =

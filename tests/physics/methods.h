@@ -33,6 +33,10 @@ struct methods {
  * traits of their NAME. Fails the test if there is none. */
 struct methods methods_find(const struct methods_query *query);
 
+/* A step in s at which the soft sheets of these tests show an order: small enough for the
+ * slope, large enough to stay above rounding. */
+double methods_step(uint32_t order);
+
 /* Adds ",key=value" or ":key=value" to a method. */
 void methods_set(char text[120], const char *name, const char *key, double value);
 

@@ -161,7 +161,7 @@ TEST(orders_hold_in_contact) {
     end_state("rk4", 2e-4, reference);
     for (size_t m = 0; m < methods.n; m++) {
         const struct method_asked *method = methods.list + m;
-        const double h = method->order == 1 ? 2.5e-4 : method->order == 2 ? 1e-3 : 4e-3;
+        const double h = methods_step(method->order);
         double state[VALUES], error[2];
         for (int k = 0; k < 2; k++) {
             end_state(method->text, h / (1 + k), state);

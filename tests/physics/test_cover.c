@@ -2,7 +2,7 @@
  * forces are those of points added up one by one, and methods keep order and energy. */
 #include "base/pool.h"
 #include "base/vec3.h"
-#include "fixture.h"
+#include "methods.h"
 #include "model/cover/cover.h"
 #include "model/force/terms.h"
 #include "study/coarse.h"
@@ -103,12 +103,15 @@ TEST(nothing_comes_in_between_particles) {
 
 /* the same for every family, on the curtain */
 TEST(every_family_keeps_it_out) {
-    static const char *const methods[] = {"velocity-verlet",         "rk4",
-                                          "backward-euler:dt=0.004", "bdf2:dt=0.004",
-                                          "xpbd:dt=0.004",           "implicit-block:dt=0.002"};
-    for (size_t m = 0; m < LENGTH(methods); m++) {
-        const double all = least_distance(coarse[1].scene, methods[m], false);
-        ck_assert_msg(all > 0, "%s: %g m", methods[m], all);
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "curtain",
+                                             .without = CS_EXPLICIT_OUTER,
+                                             .dt = 0.004,
+                                             .dt_for = CS_IMPLICIT,
+                                             .rtol = 1e-3});
+    for (size_t m = 0; m < methods.n; m++) {
+        const double all = least_distance(coarse[1].scene, methods.list[m].text, false);
+        ck_assert_msg(all > 0, "%s: %g m", methods.list[m].text, all);
     }
 }
 
@@ -126,48 +129,37 @@ TEST(every_family_keeps_it_out) {
 enum { N = 16, VALUES = 6 * N };
 
 static void open_sheet(struct fixture *sheet, const char *name, double h, double friction) {
-    char integrator[128];
-    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
-             h);
+    char integrator[120];
+    methods_set(integrator, name, "dt", h);
     fixture_open(sheet, integrator, SHEET, friction);
     cs_perturb_smooth(sheet->system, 0.01, 0.2);
     fixture_start(sheet);
 }
 
-/* returns the method's order */
-static uint32_t end_state(const char *name, double h, double state[VALUES]) {
+static void end_state(const char *name, double h, double state[VALUES]) {
     struct fixture sheet;
     open_sheet(&sheet, name, h, 0.3);
     fixture_frames(&sheet, 3);
     memcpy(state, sheet.x, VALUES * sizeof *state);
-    const uint32_t order = sheet.session.method.integrator->order_damped;
     fixture_close(&sheet);
-    return order;
 }
 
 TEST(orders_hold) {
-    static const struct {
-        const char *name;
-        double h;
-    } methods[] = {{"rk4", 4e-3},
-                   {"implicit-linearised:rtol=1e-10", 2.5e-4},
-                   {"backward-euler:rtol=1e-12", 2.5e-4},
-                   {"implicit-midpoint:rtol=1e-12", 2e-3},
-                   {"bdf2:rtol=1e-12", 1e-3},
-                   {"tr-bdf2:rtol=1e-12", 2e-3},
-                   {"xpbd:iterations=30", 2.5e-4}};
+    const struct methods methods = methods_find(&(struct methods_query){
+        .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN, .residual = 1e-12});
     double reference[VALUES];
     end_state("rk4", 2e-4, reference);
-    for (size_t m = 0; m < LENGTH(methods); m++) {
+    for (size_t m = 0; m < methods.n; m++) {
+        const struct method_asked *method = methods.list + m;
         double state[VALUES], error[2];
-        uint32_t order = 0;
         for (int k = 0; k < 2; k++) {
-            order = end_state(methods[m].name, methods[m].h / (1 + k), state);
+            end_state(method->text, methods_step(method->order_damped) / (1 + k), state);
             error[k] = cs_rms_difference(state, reference, VALUES);
         }
-        ck_assert_msg(fabs(log2(error[0] / error[1]) - order) < 0.2,
-                      "%s: order %.3f, stated %u (errors %.3g, %.3g)", methods[m].name,
-                      log2(error[0] / error[1]), order, error[0], error[1]);
+        const double order = log2(error[0] / error[1]);
+        ck_assert_msg(fabs(order - method->order_damped) < 0.2,
+                      "%s: order %.3f, stated %u (errors %.3g, %.3g)", method->text, order,
+                      method->order_damped, error[0], error[1]);
     }
 }
 

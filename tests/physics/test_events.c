@@ -10,7 +10,8 @@
 
 /* every method there is */
 static struct methods all_methods(void) {
-    static const char *const more[] = {"position-verlet:loss=0.01", "implicit-linearised:dt=0.002,hessian=exact", NULL};
+    static const char *const more[] = {"position-verlet:loss=0.01",
+                                       "implicit-linearised:dt=0.002,hessian=exact", NULL};
     return methods_find(&(struct methods_query){.test = "events", .more = more});
 }
 

@@ -60,12 +60,9 @@ static void check_order(const char *name, double h, const struct damping *dampin
     }
 }
 
-/* Steps that are small enough for the slope, and large enough to stay above rounding. The
- * shortcut's drag is h K_ii: it needs smaller ones before it is small at all. */
+/* the shortcut's drag is h K_ii: it needs smaller steps before it is small at all */
 static double step_of(const struct method_asked *method) {
-    if (method->traits & CS_NOT_GALILEAN)
-        return 2.5e-5;
-    return method->order == 1 ? 2.5e-4 : method->order == 2 ? 1e-3 : 4e-3;
+    return method->traits & CS_NOT_GALILEAN ? 2.5e-5 : methods_step(method->order);
 }
 
 static void check_orders(const struct damping *damping) {

@@ -1,6 +1,6 @@
 /* Contact of bodies with themselves and with each other: its order, energy and momentum, and
  * that no list of pairs is ever seen in the bits. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "base/pool.h"
 #include "io/scene_read.h"
@@ -65,9 +65,8 @@ enum { VALUES = 6 * 28 };
 static size_t end_state(enum scene scene, const char *name, double h, uint32_t frames,
                         double *state) {
     struct fixture cloth;
-    char integrator[128];
-    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
-             h);
+    char integrator[120];
+    methods_set(integrator, name, "dt", h);
     open(&cloth, scene, integrator, 0, 0);
     fixture_frames(&cloth, frames);
     const size_t n = 6 * cloth.n;
@@ -77,24 +76,24 @@ static size_t end_state(enum scene scene, const char *name, double h, uint32_t f
 }
 
 TEST(orders_hold_in_contact) {
-    static const struct {
-        const char *name;
-        double h, order;
-    } methods[] = {{"velocity-verlet", 1e-3, 2},
-                   {"rk4", 2e-3, 4},
-                   {"implicit-linearised:rtol=1e-8", 5e-4, 1},
-                   {"implicit-midpoint:rtol=1e-12", 2e-3, 2}};
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "pairs",
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                .residual = 1e-12});
     for (int scene = ON_BODY; scene <= ON_ITSELF; scene++) {
         double reference[VALUES], state[VALUES], error[2];
         const size_t n = end_state(scene, "rk4", 2.5e-4, 3, reference);
-        for (size_t m = 0; m < LENGTH(methods); m++) {
+        for (size_t m = 0; m < methods.n; m++) {
+            const struct method_asked *method = methods.list + m;
+            const double h = fmin(methods_step(method->order), 2e-3);
             for (int k = 0; k < 2; k++) {
-                end_state(scene, methods[m].name, methods[m].h / (1 + k), 3, state);
+                end_state(scene, method->text, h / (1 + k), 3, state);
                 error[k] = cs_rms_difference(state, reference, n);
             }
-            ck_assert_msg(fabs(log2(error[0] / error[1]) - methods[m].order) < 0.2,
-                          "scene %d, %s: order %.3f (errors %.3g, %.3g)", scene,
-                          methods[m].name, log2(error[0] / error[1]), error[0], error[1]);
+            const double order = log2(error[0] / error[1]);
+            ck_assert_msg(fabs(order - method->order) < 0.2,
+                          "scene %d, %s: order %.3f (errors %.3g, %.3g)", scene, method->text,
+                          order, error[0], error[1]);
         }
     }
 }

@@ -18,7 +18,8 @@ enum { PINS = 9 };
 TEST(pins_are_exact) {
     static const char *const more[] = {"position-verlet:loss=0.01",
                                        "implicit-linearised:hessian=exact", NULL};
-    const struct methods methods = methods_find(&(struct methods_query){.test = "pins", .more = more});
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "pins", .more = more});
     for (size_t k = 0; k < methods.n; k++) {
         const char *method = methods.list[k].text;
         struct fixture cloth;

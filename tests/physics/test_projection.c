@@ -13,7 +13,6 @@
 #define MU     0.9
 #define DEGREE (PI / 180)
 
-
 /* a sheet that lies on a slope, as soft as explicit methods want it at 1/60 s */
 #define ON_SLOPE(more)                                                                         \
     "{\"bodies\": [{\"cloth\": {\"grid\": [5, 5], \"start\": \"flat\", \"size\": [0.3, 0.3],"  \
@@ -200,8 +199,7 @@ TEST(box_does_not_creep) {
 /* Friction falls from 0.9 to 0.1 in a second. Until it is tan 20 degrees, at t0, nothing moves;
  * then the speed grows as g cos a 0.8 (t - t0)^2 / 2. */
 TEST(block_slides_when_friction_lets_go) {
-    const struct methods methods =
-        methods_find(&(struct methods_query){.test = "let go"});
+    const struct methods methods = methods_find(&(struct methods_query){.test = "let go"});
     const double a = 20 * DEGREE, t0 = (MU - tan(a)) / 0.8;
     for (size_t k = 0; k < methods.n; k++) {
         const char *method = methods.list[k].text;

@@ -23,12 +23,6 @@ static struct methods all_methods(void) {
     " \"forces\": {\"gravity\": [0, 0, 0]}, \"camera\": {\"eye\": [0, 0, 2]},"                 \
     " \"events\": [%s]}"
 
-static void ck_bits(const double *a, const double *b, size_t n, const char *what) {
-    for (size_t i = 0; i < n; i++)
-        ck_assert_msg(!memcmp(a + i, b + i, sizeof *a), "%s: value %zu is %.17g and %.17g",
-                      what, i, a[i], b[i]);
-}
-
 /* force times time on each of those that are seen, along the view; springs change nothing about
  * it, nor do ends within frames */
 TEST(momentum_is_force_times_time) {
