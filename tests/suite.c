@@ -13,7 +13,7 @@ bool suite_all;
 static Suite *suite;
 static TCase *tcase;
 
-void suite_add(const TTest *test, int n) {
+void suite_add(const TTest *test) {
     if (!suite) {
         const char *slash = strrchr(test->file, '/'), *name = slash ? slash + 1 : test->file;
         suite = suite_create(name);
@@ -21,7 +21,7 @@ void suite_add(const TTest *test, int n) {
         tcase_set_timeout(tcase, 0); // the build has one, longer where a sanitizer is at work
         suite_add_tcase(suite, tcase);
     }
-    tcase_add_loop_test(tcase, test, 0, n);
+    tcase_add_test(tcase, test);
 }
 
 /* Removes a folder with all that is in it; the working directory is then inside it. */

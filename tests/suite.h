@@ -1,7 +1,6 @@
 /* suite.h - the tests of one program. suite.c is its main: it runs them in an empty folder.
  *
- *   TEST(momentum_is_kept) { ... }      one check
- *   TEST_LOOP(rows_agree, 5) { ... }    five, each with its number as _i
+ *   TEST(momentum_is_kept) { ... }
  *
  * A test lists itself by its definition, before main begins. */
 #ifndef SUITE_H
@@ -17,16 +16,15 @@
 extern char **suite_args;
 extern bool suite_all;
 
-/* Adds a test that is run n times; test is borrowed. */
-void suite_add(const TTest *test, int n);
+/* Adds a test to the list; it is borrowed. */
+void suite_add(const TTest *test);
 
-#define TEST_LOOP(name, n)                                                                     \
+#define TEST(name)                                                                             \
     static void name(int);                                                                     \
     __attribute__((constructor)) static void add_##name(void) {                                \
         static const TTest test = {#name, name, __FILE__, __LINE__};                           \
-        suite_add(&test, n);                                                                   \
+        suite_add(&test);                                                                      \
     }                                                                                          \
     static void name(int _i CK_ATTRIBUTE_UNUSED)
-#define TEST(name) TEST_LOOP(name, 1)
 
 #endif
