@@ -41,6 +41,7 @@ static const struct {
     {"slide", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
     {"threads", "averaged-euler", "dt=2e-4", "its own step follows the damping alone"},
     {"threads", "explicit-euler", "dt=1e-4", "its own step follows the damping alone"},
+    {"turning mesh", "gauss", NULL, "its slope is 4.2 yet at steps of 1/600 s"},
 };
 
 double methods_step(uint32_t order) {
