@@ -11,7 +11,7 @@
     " \"time\": {\"fps\": 60}}"
 
 /* Multiples of `every` are stopped at, the last frame is reached whatever it is. */
-START_TEST(stops_are_multiples) {
+TEST(stops_are_multiples) {
     struct fixture cloth;
     struct cs_error error = {0};
     struct cs_run_result result;
@@ -41,10 +41,9 @@ START_TEST(stops_are_multiples) {
     ck_assert(cs_follow_frames(follow.run->system->scene, 0.101) == 7);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* A blow-up and a method that gives up are results; the frame they are in is not stopped at. */
-START_TEST(ends_are_results) {
+TEST(ends_are_results) {
     static const struct {
         const char *integrator;
         enum cs_outcome outcome;
@@ -74,10 +73,9 @@ START_TEST(ends_are_results) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* An interruption is an error, as is the failure of a method that must not fail. */
-START_TEST(interruptions_are_errors) {
+TEST(interruptions_are_errors) {
     struct fixture cloth;
     struct cs_error error = {0};
     struct cs_run_result result;
@@ -94,11 +92,4 @@ START_TEST(interruptions_are_errors) {
     error = (struct cs_error){CS_ERR_MODULE, "it gave up"};
     ck_assert_int_eq(cs_follow_check(follow.run, "", &error), CS_ERR_MODULE);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {stops_are_multiples, ends_are_results,
-                                  interruptions_are_errors};
-    return fixture_run("follow", tests, sizeof tests / sizeof *tests);
 }

@@ -34,7 +34,7 @@ static const struct cs_counts *run(struct fixture *cloth, const char *method, co
     return &cloth->session.run.counts;
 }
 
-START_TEST(bare_scene_makes_no_calls) {
+TEST(bare_scene_makes_no_calls) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         const struct cs_counts *counts = run(&cloth, methods[k], "", "");
@@ -50,11 +50,10 @@ START_TEST(bare_scene_makes_no_calls) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* and where they are needed they are made: once a force with wind, once a particle, collider
  * and step */
-START_TEST(full_scene_makes_its_calls) {
+TEST(full_scene_makes_its_calls) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         const struct cs_counts *counts =
@@ -66,9 +65,8 @@ START_TEST(full_scene_makes_its_calls) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(method_gets_what_it_needs_and_no_more) {
+TEST(method_gets_what_it_needs_and_no_more) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         run(&cloth, methods[k], "", "");
@@ -88,7 +86,6 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* all rows of a run's plan */
 static size_t sum_of(const struct cs_run *run) {
@@ -101,7 +98,7 @@ static size_t sum_of(const struct cs_run *run) {
 }
 
 /* also where the same system is run a second time */
-START_TEST(bytes_of_a_run_are_in_its_plan) {
+TEST(bytes_of_a_run_are_in_its_plan) {
     static const char *const scenes[][2] = {{"", ""},
                                             {", \"strain_limit\": 1.001", WIND COLLIDERS},
                                             {", \"self_contact\": true, \"thickness\": 0.01",
@@ -121,9 +118,8 @@ START_TEST(bytes_of_a_run_are_in_its_plan) {
             fixture_close(&cloth);
         }
 }
-END_TEST
 
-START_TEST(mesh_is_planned_with_its_geometry) {
+TEST(mesh_is_planned_with_its_geometry) {
     struct fixture box;
     fixture_open(&box, "symplectic-euler",
                  "{\"bodies\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3}, \"mass\": "
@@ -141,10 +137,9 @@ START_TEST(mesh_is_planned_with_its_geometry) {
     ck_assert_uint_eq(cs_run_bytes(&box.session.run), sum_of(&box.session.run));
     fixture_close(&box);
 }
-END_TEST
 
 /* counted, not measured */
-START_TEST(large_explicit_run_takes_little_a_particle) {
+TEST(large_explicit_run_takes_little_a_particle) {
     struct fixture sheet;
     fixture_open(
         &sheet, "symplectic-euler",
@@ -154,10 +149,10 @@ START_TEST(large_explicit_run_takes_little_a_particle) {
     ck_assert_uint_le(cs_run_bytes(&sheet.session.run), 250 * (size_t)1000000);
     fixture_close(&sheet);
 }
-END_TEST
 
 /* the counter sees this program and what it loads */
-START_TEST(allocations_are_counted) {
+TEST(allocations_are_counted) {
+    allocations_begin();
     const uint64_t before = allocations;
     void *volatile memory = malloc(10);
     ck_assert_uint_gt(allocations, before);
@@ -167,7 +162,6 @@ START_TEST(allocations_are_counted) {
     ck_assert_uint_gt(allocations, later);
     free(copy);
 }
-END_TEST
 
 /* allocations of three frames of a method, in a scene that has everything */
 static uint64_t taken_by(const struct cs_integrator *method) {
@@ -190,7 +184,8 @@ static uint64_t taken_by(const struct cs_integrator *method) {
 }
 
 /* Every method that is not a foreign library's. */
-START_TEST(frame_takes_nothing_from_the_heap) {
+TEST(frame_takes_nothing_from_the_heap) {
+    allocations_begin();
     struct cs_registry registry = {0};
     struct cs_error error = {0};
     uint32_t tried = 0;
@@ -207,18 +202,4 @@ START_TEST(frame_takes_nothing_from_the_heap) {
     }
     ck_assert_uint_ge(tried, METHODS);
     cs_registry_finish(&registry);
-}
-END_TEST
-
-int main(void) {
-    allocations_begin();
-    const TTest *const tests[] = {bare_scene_makes_no_calls,
-                                  full_scene_makes_its_calls,
-                                  method_gets_what_it_needs_and_no_more,
-                                  bytes_of_a_run_are_in_its_plan,
-                                  mesh_is_planned_with_its_geometry,
-                                  large_explicit_run_takes_little_a_particle,
-                                  allocations_are_counted,
-                                  frame_takes_nothing_from_the_heap};
-    return fixture_run("leave out", tests, sizeof tests / sizeof *tests);
 }

@@ -51,7 +51,7 @@ static const struct options *parse(char *line, struct cs_error *error) {
     return args.options;
 }
 
-START_TEST(fields_are_filled) {
+TEST(fields_are_filled) {
     char line[] = "--off --no-on -t a=b --whole=4294967295 file --choice two --set a.b=1,2 "
                   "--kind one --set=c=d=e --kinds two --real 1e9 --shard 2/3";
     struct cs_error error = {0};
@@ -73,9 +73,8 @@ START_TEST(fields_are_filled) {
     ck_assert(cs_args_is_given(&args, "whole") && !cs_args_is_given(&args, "plugin"));
     cs_args_finish(&args);
 }
-END_TEST
 
-START_TEST(what_is_not_given_stays) {
+TEST(what_is_not_given_stays) {
     char line[] = "file";
     struct cs_error error = {0};
     const struct options *found = parse(line, &error);
@@ -83,10 +82,9 @@ START_TEST(what_is_not_given_stays) {
     ck_assert_mem_eq(found, &defaults, sizeof defaults);
     cs_args_finish(&args);
 }
-END_TEST
 
 /* a list is moved as it grows */
-START_TEST(lists_keep_their_order) {
+TEST(lists_keep_their_order) {
     char line[] = "-p 0 -p 1 -i rk4:dt=1,a=2,newmark -p 2 -p 3 --method cvode -p 4 --plugin 5";
     struct cs_error error = {0};
     const struct options *found = parse(line, &error);
@@ -100,9 +98,8 @@ START_TEST(lists_keep_their_order) {
     ck_assert_str_eq(found->methods[2], "cvode");
     cs_args_finish(&args);
 }
-END_TEST
 
-START_TEST(other_values_are_refused) {
+TEST(other_values_are_refused) {
     static const char *const lines[][2] = {
         {"--whole 2", "--whole: expected a whole number from 3 to 4294967295, found \"2\""},
         {"-w 4294967296", "expected a whole number"},
@@ -128,11 +125,4 @@ START_TEST(other_values_are_refused) {
         UNIT_ASSERT_FAILED(&error, CS_ERR_USAGE, lines[k][1]);
         cs_args_finish(&args);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {fields_are_filled, what_is_not_given_stays,
-                                  lists_keep_their_order, other_values_are_refused};
-    return unit_run("args", tests, sizeof tests / sizeof *tests);
 }

@@ -42,7 +42,7 @@ static void assert_written(const struct diary *diary) {
         ck_assert_int_eq(diary->entries[k], k);
 }
 
-START_TEST(work_is_done_in_order_on_another_thread) {
+TEST(work_is_done_in_order_on_another_thread) {
     struct diary diary = {0};
     struct page pages[20];
     struct cs_hand *hand = cs_hand_create();
@@ -54,9 +54,8 @@ START_TEST(work_is_done_in_order_on_another_thread) {
     ck_assert(diary.blocked);
     cs_hand_destroy(hand);
 }
-END_TEST
 
-START_TEST(without_a_hand_work_is_done_at_once) {
+TEST(without_a_hand_work_is_done_at_once) {
     struct diary diary = {0};
     struct page pages[20];
     give_all(NULL, &diary, pages);
@@ -65,21 +64,12 @@ START_TEST(without_a_hand_work_is_done_at_once) {
     cs_hand_wait(NULL);
     cs_hand_destroy(NULL);
 }
-END_TEST
 
-START_TEST(destroy_waits_for_what_was_given) {
+TEST(destroy_waits_for_what_was_given) {
     struct diary diary = {0};
     struct page pages[20];
     struct cs_hand *hand = cs_hand_create();
     give_all(hand, &diary, pages);
     cs_hand_destroy(hand);
     assert_written(&diary);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {work_is_done_in_order_on_another_thread,
-                                  without_a_hand_work_is_done_at_once,
-                                  destroy_waits_for_what_was_given};
-    return unit_run("hand", tests, sizeof tests / sizeof *tests);
 }

@@ -11,7 +11,7 @@ static void expect(struct cs_text *text, const char *expected) {
     cs_text_finish(text);
 }
 
-START_TEST(each_conversion_is_a_value_of_json) {
+TEST(each_conversion_is_a_value_of_json) {
     const char *volatile none = NULL;
     struct cs_text text = {0};
     cs_json_write(&text, "{'a': %s, 'b': %s, 'c': %g, 'd': %g, 'e': [%d, %d]}", "x\"\\\n", none,
@@ -22,19 +22,17 @@ START_TEST(each_conversion_is_a_value_of_json) {
                   (size_t)7, -3L);
     expect(&text, "[4294967295, 18446744073709551615, 7, -3]");
 }
-END_TEST
 
 /* also where a text ends in a bracket, or holds what templates are made of */
-START_TEST(texts_are_not_templates) {
+TEST(texts_are_not_templates) {
     struct cs_text text = {0};
     cs_json_write(&text, "[%s", "it's 5 %s {");
     cs_json_write(&text, ", %s", "[");
     cs_json_write(&text, ", %s]", "");
     expect(&text, "[\"it's 5 %s {\", \"[\", \"\"]");
 }
-END_TEST
 
-START_TEST(a_leading_comma_stands_between_members_only) {
+TEST(a_leading_comma_stands_between_members_only) {
     struct cs_text text = {0}, part = {0};
     cs_json_write(&text, "{'list': [");
     for (unsigned i = 0; i < 3; i++)
@@ -47,18 +45,16 @@ START_TEST(a_leading_comma_stands_between_members_only) {
     expect(&part, "\n  {\"i\": 0},\n  {\"i\": 1}");
     expect(&text, "{\"list\": [0, 1, 2], \"rows\": [\n  {\"i\": 0},\n  {\"i\": 1}]}");
 }
-END_TEST
 
-START_TEST(lines_are_indented) {
+TEST(lines_are_indented) {
     struct cs_text text = {0};
     cs_json_write(&text, "{");
     cs_json_line(&text, 2, "'a': %u", 1u);
     cs_json_line(&text, 4, "'b': {}}");
     expect(&text, "{\n  \"a\": 1,\n    \"b\": {}}");
 }
-END_TEST
 
-START_TEST(what_is_written_reads_back) {
+TEST(what_is_written_reads_back) {
     static const char hard[] = "\x01 \t\"quoted\" \\ / \xc3\xa9 'single' %d";
     struct cs_text text = {0};
     struct cs_json *root = NULL;
@@ -69,12 +65,4 @@ START_TEST(what_is_written_reads_back) {
     ck_assert(cs_json_number(cs_json_find(root, "number")) == 0.1 + 0.2);
     cs_json_destroy(root);
     cs_text_finish(&text);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {each_conversion_is_a_value_of_json, texts_are_not_templates,
-                                  a_leading_comma_stands_between_members_only,
-                                  lines_are_indented, what_is_written_reads_back};
-    return unit_run("json_writer", tests, sizeof tests / sizeof *tests);
 }

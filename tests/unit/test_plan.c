@@ -47,7 +47,7 @@ static uint32_t built(const struct cs_plan *plan) {
 }
 
 /* one key at a time on top of a cloth in gravity */
-START_TEST(each_key_builds_its_feature) {
+TEST(each_key_builds_its_feature) {
     const uint32_t least = BIT(SPRINGS) | FORCE(gravity);
     static const char still[] = "\"wind\": {\"direction\": [1, 0, 0], \"strength\": ";
     char wind[200], wind_n[200], calm[200];
@@ -97,11 +97,10 @@ START_TEST(each_key_builds_its_feature) {
     const struct cs_plan drawn = plan_of(rows[0].scene, 0, true);
     ck_assert_uint_eq(built(&drawn), least | BIT(RENDER));
 }
-END_TEST
 
 #define WIND ", \"forces\": {\"wind\": {\"direction\": [1, 0, 0], \"strength\": 2}}"
 
-START_TEST(bytes_are_those_of_the_arrays) {
+TEST(bytes_are_those_of_the_arrays) {
     struct sheet sheet;
     sheet_open(&sheet, CS_NEED_SPRINGS, "%s", CLOTH(", \"pins\": [\"top\"]") WIND "}");
     const struct cs_plan *plan = &sheet.system.plan;
@@ -117,7 +116,6 @@ START_TEST(bytes_are_those_of_the_arrays) {
                       S * (3 * sizeof(uint32_t) + 3 * RS + 1));
     sheet_close(&sheet);
 }
-END_TEST
 
 /* of a plan that was built; meshes are the scene's */
 static size_t sum_of(const struct cs_plan *plan) {
@@ -140,7 +138,7 @@ static uint32_t taken(const struct cs_plan *plan) {
 }
 
 /* what the system takes stands in the row of what it is for, contact's too */
-START_TEST(every_byte_is_in_one_row) {
+TEST(every_byte_is_in_one_row) {
 #define MET ", \"self_contact\": true, \"thickness\": 0.01"
 #define LAW ", \"contact\": {\"law\": \"force\"}, \"colliders\": "
     const struct {
@@ -172,9 +170,8 @@ START_TEST(every_byte_is_in_one_row) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
-START_TEST(plan_is_printed_a_line_a_feature) {
+TEST(plan_is_printed_a_line_a_feature) {
     const struct cs_plan plan = plan_of(CLOTH("") "}", 0, false);
     struct cs_text text = {0};
     cs_plan_print(&plan, &text);
@@ -185,11 +182,4 @@ START_TEST(plan_is_printed_a_line_a_feature) {
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ncontact        left out "));
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity        built "));
     cs_text_finish(&text);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {each_key_builds_its_feature, bytes_are_those_of_the_arrays,
-                                  every_byte_is_in_one_row, plan_is_printed_a_line_a_feature};
-    return unit_run("plan", tests, sizeof tests / sizeof *tests);
 }

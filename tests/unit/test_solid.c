@@ -48,7 +48,7 @@ static struct cs_vertex *make(uint32_t k, struct cs_obstacle *of, uint32_t *n) {
 }
 
 /* distance 0 but for the floats, and the normal of the surface there */
-START_TEST(vertices_lie_on_the_surface) {
+TEST(vertices_lie_on_the_surface) {
     for (uint32_t k = 0; k < CURVED; k++) {
         struct cs_obstacle of;
         uint32_t n;
@@ -64,12 +64,11 @@ START_TEST(vertices_lie_on_the_surface) {
         }
     }
 }
-END_TEST
 
 /* Six times the volume under each triangle seen from the origin: the sum is that of the whole
  * only if the surface is closed and its triangles all turn outwards. Inscribed, it holds less.
  */
-START_TEST(volume_is_that_of_the_solid) {
+TEST(volume_is_that_of_the_solid) {
     const double pi = acos(-1), h[3] = {0.68, 0.38, 0.48}, r = 0.06;
     const double length = sqrt(0.36 + 0.16 + 0.16);
     const double volumes[CURVED] = {
@@ -97,9 +96,8 @@ START_TEST(volume_is_that_of_the_solid) {
         ck_assert_double_ge(six / 6, 0.99 * volumes[k]);
     }
 }
-END_TEST
 
-START_TEST(planes_are_squares) {
+TEST(planes_are_squares) {
     static const uint32_t list[] = {PLANE, FLOOR};
     static const double extents[] = {2, 3};
     for (size_t k = 0; k < 2; k++) {
@@ -119,7 +117,6 @@ START_TEST(planes_are_squares) {
         }
     }
 }
-END_TEST
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -143,7 +140,7 @@ static void area_of(double p[3][3], double area[3]) {
 
 /* From afar the triangles lie side by side within the outline, a regular polygon, all facing
  * the eye: what they cover along the line of sight is its area. */
-START_TEST(a_ball_covers_its_outline) {
+TEST(a_ball_covers_its_outline) {
     static const float light[4] = {0.6f, 0, 0.8f, 0};
     const double to[3] = {(double)light[0], (double)light[1], (double)light[2]};
     struct cs_obstacle of;
@@ -162,11 +159,10 @@ START_TEST(a_ball_covers_its_outline) {
     const double turn = 2 * acos(-1) / CS_BALL_OUTLINE;
     ck_assert_double_eq_tol(sum, 0.5 * CS_BALL_OUTLINE * sin(turn), 1e-5);
 }
-END_TEST
 
 /* From a place at twice the radius: all points lie on the sphere on this side of the circle
  * where sight touches it, and the outline on that circle: (p - c) . (eye - p) = 0. */
-START_TEST(a_ball_ends_where_sight_touches_it) {
+TEST(a_ball_ends_where_sight_touches_it) {
     static const float eye[4] = {1.2f, 1.6f, 0, 1};
     struct cs_obstacle of;
     const struct cs_vertex *v;
@@ -191,10 +187,9 @@ START_TEST(a_ball_ends_where_sight_touches_it) {
     // each chord of the outline has a triangle of its own, each spoke's end one more
     ck_assert_uint_eq(outline, 2 * CS_BALL_OUTLINE + CS_BALL_SPOKES);
 }
-END_TEST
 
 /* From within, the whole of it is there: its volume, as above. */
-START_TEST(a_ball_is_whole_from_within) {
+TEST(a_ball_is_whole_from_within) {
     static const float eye[4] = {0.1f, 0.2f, 0.3f, 1};
     struct cs_obstacle of;
     const struct cs_vertex *v;
@@ -211,11 +206,10 @@ START_TEST(a_ball_is_whole_from_within) {
     ck_assert_double_le(six / 6, 4 * acos(-1) / 3);
     ck_assert_double_ge(six / 6, 0.98 * 4 * acos(-1) / 3);
 }
-END_TEST
 
 /* a box of side 1, turned and moved: each triangle where it is met, closed, of volume 1; and
  * what a line meets of it */
-START_TEST(a_mesh_is_as_it_is) {
+TEST(a_mesh_is_as_it_is) {
     struct cs_error error = {0};
     struct cs_trimesh mesh = {0};
     cs_trimesh_make(&mesh, CS_MESH_BOX, 3, &arena, &error);
@@ -256,23 +250,9 @@ START_TEST(a_mesh_is_as_it_is) {
     ck_assert(!cs_obstacle_meets_line(&of, from, way, gap - 1e-6));
     ck_assert(!cs_obstacle_meets_line(&of, beside, way, 1));
 }
-END_TEST
 
-START_TEST(hidden_ones_have_no_triangles) {
+TEST(hidden_ones_have_no_triangles) {
     struct cs_obstacle of;
     cs_obstacle_at(&rest, HIDDEN, 0, &of);
     ck_assert_uint_eq(fill(&of, camera), 0);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {vertices_lie_on_the_surface,
-                                  volume_is_that_of_the_solid,
-                                  planes_are_squares,
-                                  a_ball_covers_its_outline,
-                                  a_ball_ends_where_sight_touches_it,
-                                  a_ball_is_whole_from_within,
-                                  a_mesh_is_as_it_is,
-                                  hidden_ones_have_no_triangles};
-    return unit_run("solid", tests, sizeof tests / sizeof *tests);
 }

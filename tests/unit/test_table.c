@@ -18,7 +18,7 @@ static const struct cs_column columns[] = {
     {"found", NULL, CS_CELL_FLAG, offsetof(struct row, found), sizeof(bool)},
 };
 
-START_TEST(rows_read_back) {
+TEST(rows_read_back) {
     const struct row rows[] = {{"a,\"b\"\nc", 0.1, true}, {"d", (double)NAN, false}};
     struct row back[2];
     struct cs_text text = {0};
@@ -40,9 +40,8 @@ START_TEST(rows_read_back) {
     ck_assert(isnan(back[1].value) && !back[1].found);
     cs_text_finish(&text);
 }
-END_TEST
 
-START_TEST(fields_are_cut) {
+TEST(fields_are_cut) {
     char quoted[] = "\"a\"\"b\",,\"c,d\",e", plain[] = "\"a,\tb", *fields[4];
     ck_assert_uint_eq(cs_csv_cut(quoted, ',', fields, 3), 3);
     ck_assert_str_eq(fields[0], "a\"b");
@@ -52,7 +51,6 @@ START_TEST(fields_are_cut) {
     ck_assert_str_eq(fields[0], "\"a,");
     ck_assert_str_eq(fields[1], "b");
 }
-END_TEST
 
 /* Fails unless the rows of a file, one after the other, are the expected text. */
 static void assert_rows(const char *path, size_t row_bytes, const char *expected) {
@@ -68,7 +66,7 @@ static void assert_rows(const char *path, size_t row_bytes, const char *expected
     cs_text_finish(&found);
 }
 
-START_TEST(cut_off_rows_are_none) {
+TEST(cut_off_rows_are_none) {
     struct cs_error error = {0};
     struct cs_row_table table;
     cs_row_table_open(&table, "a/b", "lines", ".lock", 0, &error);
@@ -86,10 +84,9 @@ START_TEST(cut_off_rows_are_none) {
     ck_assert_int_eq(cs_rows_open(&rows, "a/none", 0, &error), CS_ERR_FILE);
     cs_rows_close(&rows);
 }
-END_TEST
 
 /* Each adds rows of another length; no row is lost, none is in another one. */
-START_TEST(processes_append_whole_rows) {
+TEST(processes_append_whole_rows) {
     enum { PROCESSES = 4, ROWS = 100 };
     struct cs_error error = {0};
     struct cs_row_table table;
@@ -119,9 +116,8 @@ START_TEST(processes_append_whole_rows) {
     for (int p = 0; p < PROCESSES; p++)
         ck_assert_uint_eq(n[p], ROWS);
 }
-END_TEST
 
-START_TEST(lock_is_waited_for) {
+TEST(lock_is_waited_for) {
     struct cs_error error = {0};
     struct cs_row_table table;
     int done[2];
@@ -143,11 +139,4 @@ START_TEST(lock_is_waited_for) {
     waitpid(child, NULL, 0);
     assert_rows(table.path, 0, "parentchild");
     UNIT_ASSERT_OK(&error);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {rows_read_back, fields_are_cut, cut_off_rows_are_none,
-                                  processes_append_whole_rows, lock_is_waited_for};
-    return unit_run("table", tests, sizeof tests / sizeof *tests);
 }
