@@ -7,7 +7,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #if SUNDIALS_VERSION_MAJOR >= 7
@@ -37,17 +36,6 @@ static bool open_context(struct sundials *self) {
     return !SUNContext_Create(NULL, &self->context);
 }
 #endif
-
-enum cs_step sundials_fail(struct sundials *self, int code, double t) {
-    const struct cs_host *host = self->host;
-    if (self->status != CS_STEP_OK)
-        return self->status;
-    char *name = self->library->code_name(code);
-    host->fail(host->ctx, "%s gave up at t = %.9g s: %s%s%s", self->library->name, t,
-               name ? name : "out of memory", self->message[0] ? ": " : "", self->message);
-    free(name);
-    return CS_STEP_FAIL;
-}
 
 /* The way from the state before the step to x carries surfaces through each other. Contact by
  * force is left to error control. */

@@ -14,7 +14,7 @@
 #ifndef CS_SUNDIALS_OVERSTEP_H
 #define CS_SUNDIALS_OVERSTEP_H
 
-#include "sundials_common.h"
+#include "sundials.h"
 
 /* Where steps may pass frames in this run, sets self->shown: the state has memory of its own
  * then. To be called once, in create, by a method whose library can interpolate. */

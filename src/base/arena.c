@@ -47,6 +47,8 @@ void *cs_arena_alloc(struct cs_arena *arena, size_t bytes, struct cs_error *erro
     void *taken = block->bytes + block->used;
     block->used += size;
     arena->used += bytes;
+    if (arena->part)
+        *arena->part += bytes;
     return taken;
 }
 
@@ -97,5 +99,5 @@ void cs_arena_finish(struct cs_arena *arena) {
         free(arena->blocks);
         arena->blocks = next;
     }
-    arena->used = 0;
+    *arena = (struct cs_arena){0};
 }

@@ -12,7 +12,8 @@ struct cs_arena_owned;
 /* A zeroed struct is an empty arena. */
 struct cs_arena {
     struct cs_arena_block *blocks;  /* owned, newest first */
-    size_t used;                    /* bytes handed out, for the plan */
+    size_t used;                    /* bytes handed out */
+    size_t *part;                   /* borrowed: to which takes are added too; NULL: none */
     struct cs_arena_owned *adopted; /* objects that end with it, newest first */
 };
 

@@ -204,6 +204,16 @@ enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
     return write_whole(path, bytes, length, false, error);
 }
 
+enum cs_status cs_file_write_text(const char *path, struct cs_text *text,
+                                  struct cs_error *error) {
+    if (text->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", path);
+    else
+        cs_file_write(path, cs_text_get(text), text->length, error);
+    cs_text_finish(text);
+    return error->status;
+}
+
 enum cs_status cs_file_write_durable(const char *path, const void *bytes, size_t length,
                                      struct cs_error *error) {
     return write_whole(path, bytes, length, true, error);
@@ -238,23 +248,4 @@ enum cs_status cs_folder_create(const char *path, struct cs_error *error) {
                            part, strerror(errno));
     }
     return CS_OK;
-}
-
-/* Where the last whole line ends. */
-static off_t end_of_lines(int file) {
-    off_t end = lseek(file, 0, SEEK_END);
-    for (char last; end > 0 && pread(file, &last, 1, end - 1) == 1 && last != '\n';)
-        end--;
-    return end;
-}
-
-enum cs_status cs_file_append(const char *path, const char *lines, size_t length,
-                              struct cs_error *error) {
-    const int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    const off_t end = file >= 0 ? end_of_lines(file) : -1;
-    if (end < 0 || ftruncate(file, end) || pwrite(file, lines, length, end) != (ssize_t)length)
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", path, strerror(errno));
-    if (file >= 0 && close(file) && !error->status)
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", path, strerror(errno));
-    return error->status;
 }

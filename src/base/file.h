@@ -4,6 +4,7 @@
 #define CS_FILE_H
 
 #include "base/status.h"
+#include "base/text.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,14 +35,15 @@ void cs_file_abandon(struct cs_file_out *out);
 enum cs_status cs_file_write(const char *path, const void *bytes, size_t length,
                              struct cs_error *error);
 
-/* The same, and the disk has it when the call returns. */
+/* Writes a text, whose memory is released. CS_ERR_FILE, CS_ERR_MEMORY where the text has
+ * failed.
+ */
+enum cs_status cs_file_write_text(const char *path, struct cs_text *text,
+                                  struct cs_error *error);
+
+/* The same as cs_file_write, and the disk has it when the call returns. */
 enum cs_status cs_file_write_durable(const char *path, const void *bytes, size_t length,
                                      struct cs_error *error);
-
-/* Adds whole lines to a file, which is made where there is none. A last line without its end,
- * of a process that was killed, is taken away first. Callers hold a lock. */
-enum cs_status cs_file_append(const char *path, const char *lines, size_t length,
-                              struct cs_error *error);
 
 /* Makes a folder and its parents; one that is there already is fine. */
 enum cs_status cs_folder_create(const char *path, struct cs_error *error);

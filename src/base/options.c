@@ -1,6 +1,8 @@
 /* Defaults, checks and printing of any struct by its table of options. */
 #include "base/options.h"
 
+#include "base/value_kind.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -11,120 +13,76 @@ static const void *const_field_of(const struct cs_option *row, const void *objec
     return (const char *)object + row->offset;
 }
 
+/* kinds of one component need not say so */
+static uint32_t components_of(const struct cs_option *row) {
+    return cs_value_kind_of(row)->several ? row->count : 1;
+}
+
 /* default of component i of a row */
 static double default_of(const struct cs_option *row, uint32_t i) {
     return row->defs ? row->defs[i] : row->def;
 }
 
+/* component i of a value, or of the default where there is no object */
+static double value_of(const struct cs_option *row, const void *object, uint32_t i) {
+    return object ? cs_value_kind_of(row)->get(const_field_of(row, object), i)
+                  : default_of(row, i);
+}
+
 void cs_options_default(const struct cs_table *table, void *object) {
     for (uint32_t r = 0; r < table->n; r++) {
         const struct cs_option *row = table->rows + r;
+        const struct cs_value_kind *kind = cs_value_kind_of(row);
         void *field = field_of(row, object);
-        switch (row->type) {
-        case CS_REAL:
-            *(double *)field = row->def;
-            break;
-        case CS_INT:
-            *(int64_t *)field = (int64_t)row->def;
-            break;
-        case CS_BOOL:
-            *(bool *)field = row->def != 0;
-            break;
-        case CS_CHOICE:
-            *(int32_t *)field = (int32_t)row->def;
-            break;
-        case CS_VECTOR:
-            for (uint32_t i = 0; i < row->count; i++)
-                ((double *)field)[i] = default_of(row, i);
-            break;
-        case CS_COUNTS:
-            for (uint32_t i = 0; i < row->count; i++)
-                ((int64_t *)field)[i] = (int64_t)default_of(row, i);
-            break;
-        case CS_TEXT:
-            memset(field, 0, CS_TEXT_MAX);
-            break;
-        case CS_TABLE:
-            /* an optional struct begins with its bool `present` */
-            if (row->table->optional)
-                *(bool *)field = false;
+        if (!kind->set && cs_option_is_optional(row))
+            memset(field, 0, kind->size);
+        if (row->type == CS_TABLE)
             cs_options_default(row->table, field);
-            break;
-        case CS_LIST:
-            *(struct cs_list *)field = (struct cs_list){0};
-            break;
-        }
+        for (uint32_t i = 0; kind->set && i < components_of(row); i++)
+            kind->set(field, i, default_of(row, i));
     }
+}
+
+/* absence is coded in the value: NAN, or a single whole number below the range */
+static bool is_absent(const struct cs_option *row, const void *object) {
+    const struct cs_value_kind *kind = cs_value_kind_of(row);
+    const double value = value_of(row, object, 0);
+    return isnan(value) || (kind->whole && !kind->several && value < row->min);
+}
+
+/* several components without defaults must be given */
+static bool has_default(const struct cs_option *row) {
+    return row->defs || !cs_value_kind_of(row)->several;
 }
 
 bool cs_option_is_optional(const struct cs_option *row) {
-    switch (row->type) {
-    case CS_REAL:
-        return isnan(row->def);
-    case CS_INT:
-        return row->def < row->min;
-    case CS_CHOICE:
-        return row->def < 0;
-    case CS_VECTOR:
-        return row->defs && isnan(row->defs[0]);
-    case CS_TEXT:
-    case CS_LIST:
-        return true;
-    case CS_TABLE:
+    if (row->type == CS_TABLE)
         return row->table->optional;
-    default:
-        return false;
-    }
+    return !cs_value_kind_of(row)->get || (has_default(row) && is_absent(row, NULL));
+}
+
+bool cs_table_needs_row(const struct cs_option *row) {
+    if (row->type != CS_TABLE || row->table->optional)
+        return !has_default(row);
+    bool needs = row->table->one_of;
+    for (uint32_t r = 0; r < row->table->n; r++)
+        needs = needs || cs_table_needs_row(row->table->rows + r);
+    return needs;
 }
 
 bool cs_option_is_set(const struct cs_option *row, const void *object) {
-    const void *field = const_field_of(row, object);
-    /* absence is coded in the value: NaN, below the range, negative or empty */
-    switch (row->type) {
-    case CS_REAL:
-    case CS_VECTOR:
-        return !isnan(*(const double *)field);
-    case CS_INT:
-        return (double)*(const int64_t *)field >= row->min;
-    case CS_CHOICE:
-        return *(const int32_t *)field >= 0;
-    case CS_TEXT:
-        return *(const char *)field;
-    case CS_LIST:
-        return ((const struct cs_list *)field)->n > 0;
-    case CS_TABLE:
-        return !row->table->optional || *(const bool *)field;
-    default:
-        return true;
-    }
+    const struct cs_value_kind *kind = cs_value_kind_of(row);
+    return kind->is_given ? kind->is_given(row, const_field_of(row, object))
+                          : !is_absent(row, object);
 }
 
 bool cs_option_is_default(const struct cs_option *row, const void *object) {
-    const void *field = const_field_of(row, object);
-    /* a vector without defaults must be given, and so is never at its default */
-    bool same = row->defs;
     if (cs_option_is_optional(row))
         return !cs_option_is_set(row, object);
-    switch (row->type) {
-    case CS_REAL:
-        return *(const double *)field == row->def;
-    case CS_INT:
-        return (double)*(const int64_t *)field == row->def;
-    case CS_BOOL:
-        return *(const bool *)field == (row->def != 0);
-    case CS_CHOICE:
-        return *(const int32_t *)field == (int32_t)row->def;
-    case CS_VECTOR:
-        for (uint32_t i = 0; i < row->count && same; i++)
-            same = ((const double *)field)[i] == row->defs[i];
-        return same;
-    case CS_COUNTS:
-        for (uint32_t i = 0; i < row->count && same; i++)
-            same = (double)((const int64_t *)field)[i] == row->defs[i];
-        return same;
-    default:
-        return false;
-    }
+    bool same = cs_value_kind_of(row)->get && has_default(row);
+    for (uint32_t i = 0; same && i < components_of(row); i++)
+        same = value_of(row, object, i) == default_of(row, i);
+    return same;
 }
 
 const struct cs_option *cs_option_find(const struct cs_table *table, const char *name) {
@@ -157,7 +115,7 @@ enum cs_status cs_option_check_range(const struct cs_option *row, double value, 
     if (!isfinite(value) || value < row->min || value > row->max)
         cs_fail(error, status, "%s%s: %.12g is out of range (%s)", where, place, value,
                 cs_text_get(&range));
-    else if ((row->type == CS_INT || row->type == CS_COUNTS) && value != trunc(value))
+    else if (cs_value_kind_of(row)->whole && value != trunc(value))
         cs_fail(error, status, "%s%s: %.12g is not a whole number (%s)", where, place, value,
                 cs_text_get(&range));
     cs_text_finish(&range);
@@ -169,10 +127,7 @@ enum cs_status cs_option_set_number(const struct cs_option *row, void *object, d
                                     struct cs_error *error) {
     if (cs_option_check_range(row, value, -1, where, status, error))
         return error->status;
-    if (row->type == CS_REAL)
-        *(double *)field_of(row, object) = value;
-    else
-        *(int64_t *)field_of(row, object) = (int64_t)value;
+    cs_value_kind_of(row)->set(field_of(row, object), 0, value);
     return CS_OK;
 }
 
@@ -221,66 +176,45 @@ enum cs_status cs_option_set(const struct cs_option *row, void *object, const ch
     return cs_option_set_number(row, object, value, where, status, error);
 }
 
-void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out) {
-    const void *field = const_field_of(row, object);
-    switch (row->type) {
-    case CS_REAL:
-        cs_text_add_real(out, *(const double *)field);
-        break;
-    case CS_INT:
-        cs_text_add(out, "%lld", (long long)*(const int64_t *)field);
-        break;
-    case CS_BOOL:
-        cs_text_add(out, *(const bool *)field ? "true" : "false");
-        break;
-    case CS_CHOICE:
-        if (*(const int32_t *)field < 0)
-            cs_text_add(out, "null");
-        else
-            cs_text_add_json(out, row->choices[*(const int32_t *)field]);
-        break;
-    case CS_VECTOR:
-    case CS_COUNTS:
-        for (uint32_t i = 0; i < row->count; i++) {
-            cs_text_add(out, i ? ", " : "[");
-            cs_text_add_real(out, row->type == CS_VECTOR ? ((const double *)field)[i]
-                                                         : (double)((const int64_t *)field)[i]);
-        }
-        cs_text_add(out, "]");
-        break;
-    case CS_TEXT:
-        cs_text_add_json(out, field);
-        break;
-    /* the caller prints these row by row */
-    case CS_TABLE:
-    case CS_LIST:
-        break;
+/* components, joined by ", " */
+static void print_components(const struct cs_option *row, const void *object,
+                             struct cs_text *out) {
+    for (uint32_t i = 0; i < components_of(row); i++) {
+        cs_text_add(out, i ? ", " : "");
+        cs_value_kind_of(row)->print(row, value_of(row, object, i), out);
     }
 }
 
+void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out) {
+    const struct cs_value_kind *kind = cs_value_kind_of(row);
+    if (row->type == CS_TEXT)
+        cs_text_add_json(out, const_field_of(row, object));
+    if (!kind->get)
+        return;
+    cs_text_add(out, kind->several ? "[" : "");
+    print_components(row, object, out);
+    cs_text_add(out, kind->several ? "]" : "");
+}
+
+void cs_option_print_plain(const struct cs_option *row, const void *object,
+                           struct cs_text *out) {
+    if (row->type == CS_CHOICE)
+        cs_text_add(out, "%s", row->choices[(int32_t)value_of(row, object, 0)]);
+    else
+        print_components(row, object, out);
+}
+
 void cs_option_print_range(const struct cs_option *row, struct cs_text *out) {
-    switch (row->type) {
-    case CS_REAL:
-    case CS_INT:
-    case CS_VECTOR:
-    case CS_COUNTS:
-        cs_text_add_real(out, row->min);
-        cs_text_add(out, "..");
-        cs_text_add_real(out, row->max);
-        if (row->unit && *row->unit)
-            cs_text_add(out, " %s", row->unit);
-        break;
-    case CS_BOOL:
-        cs_text_add(out, "true or false");
-        break;
-    case CS_CHOICE:
-        for (uint32_t i = 0; row->choices[i]; i++)
-            cs_text_add(out, "%s%s", i ? ", " : "", row->choices[i]);
-        break;
-    /* any text; tables and lists have ranges in their own rows */
-    case CS_TEXT:
-    case CS_TABLE:
-    case CS_LIST:
-        break;
-    }
+    if (cs_value_kind_of(row)->print_range)
+        cs_value_kind_of(row)->print_range(row, out);
+}
+
+void cs_option_print_expected(const struct cs_option *row, struct cs_text *out) {
+    const struct cs_value_kind *kind = cs_value_kind_of(row);
+    const bool number = kind->form == CS_FORM_NUMBER;
+    if (kind->several)
+        cs_text_add(out, "a list of %u ", row->count);
+    cs_text_add(out, "%s%s", kind->expected, number ? " (" : "");
+    cs_option_print_range(row, out);
+    cs_text_add(out, number ? ")" : "");
 }

@@ -14,6 +14,10 @@ void cs_options_default(const struct cs_table *table, void *object);
  * default outside the range. */
 bool cs_option_is_optional(const struct cs_option *row);
 
+/* true if the reader insists on the row: no default, or a table that insists on one of its own.
+ */
+bool cs_table_needs_row(const struct cs_option *row);
+
 /* true if the value of an optional row was given. */
 bool cs_option_is_set(const struct cs_option *row, const void *object);
 
@@ -45,10 +49,18 @@ enum cs_status cs_option_check_range(const struct cs_option *row, double value, 
                                      const char *where, enum cs_status status,
                                      struct cs_error *error);
 
-/* Adds the value as JSON (REAL, INT, BOOL, CHOICE, VECTOR, COUNTS, TEXT). */
+/* Adds the value as JSON, but for TABLE and LIST; object NULL: the default. */
 void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out);
+
+/* The same of numbers, switches and choices as a user writes them: without quotes and brackets.
+ */
+void cs_option_print_plain(const struct cs_option *row, const void *object,
+                           struct cs_text *out);
 
 /* Adds "-1e+09..1e+09" or the list of choices: what the row accepts. */
 void cs_option_print_range(const struct cs_option *row, struct cs_text *out);
+
+/* Adds what a row stands for and its range, for messages: "a list of 3 numbers (0..1)". */
+void cs_option_print_expected(const struct cs_option *row, struct cs_text *out);
 
 #endif

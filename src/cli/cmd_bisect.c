@@ -8,39 +8,46 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-    BISECT_A,
-    BISECT_B,
-    BISECT_FRAMES,
-    BISECT_INTEGRATOR,
-    BISECT_SET,
-    BISECT_PLUGIN,
-    BISECT_THREADS,
-    BISECT_TOLERANCE,
-    BISECT_QUIET,
-    BISECT_ROWS
-};
 enum { VALUE_COLUMN = 16 };
 
-static const struct cs_arg rows[BISECT_ROWS] = {
-    [BISECT_A] = {"a", 'a', "KEY=VALUE",
-                  "what is A's own: program=FILE, or an option of run with a value, as "
-                  "threads=4; may be repeated",
-                  true},
-    [BISECT_B] = {"b", 'b', "KEY=VALUE", "what is B's own; may be repeated", true},
-    [BISECT_FRAMES] = {"frames", 'n', "N",
-                       "compare frames 1 to N (default: one second of them)", false},
-    [BISECT_INTEGRATOR] = {"integrator", 'i', "NAME[:KEY=VALUE,...]",
-                           "method of both and its options, instead of the scene's", false},
-    [BISECT_SET] = {"set", 's', "PATH=VALUE",
-                    "another value for a key of the scene, of both; may be repeated", true},
-    [BISECT_PLUGIN] = {"plugin", 'p', "FILE",
-                       "load an integrator module in both; may be repeated", true},
-    [BISECT_THREADS] = {"threads", 0, "N", "threads of both, 1 to 64", false},
-    [BISECT_TOLERANCE] = {"tolerance", 't', "NUMBER",
-                          "what numbers may differ by, in their own unit (default: no bit)",
-                          false},
-    [BISECT_QUIET] = {"quiet", 'q', NULL, "print nothing where both are equal", false},
+/* what one side has of its own */
+struct own {
+    const char *const *items; /* (n), "KEY=VALUE" */
+    uint32_t n;
+};
+
+struct options {
+    struct own own[2];
+    const char *frames, *integrator, *threads; /* of both sides, as run reads them */
+    const char *const *sets, *const *plugins;  /* (n_sets), (n_plugins), likewise */
+    uint32_t n_sets, n_plugins;
+    double tolerance;
+    bool quiet;
+};
+static const struct options defaults = {.tolerance = 0};
+
+static const struct cs_arg rows[] = {
+    {"a", 'a', "KEY=VALUE",
+     "what is A's own: program=FILE, or an option of run with a value, as threads=4; may be "
+     "repeated",
+     CS_ARG_LIST(struct options, own[0].items, own[0].n)},
+    {"b", 'b', "KEY=VALUE", "what is B's own; may be repeated",
+     CS_ARG_LIST(struct options, own[1].items, own[1].n)},
+    {"frames", 'n', "N", "compare frames 1 to N (default: one second of them)",
+     CS_ARG_INTO(struct options, frames)},
+    {"integrator", 'i', "NAME[:KEY=VALUE,...]",
+     "method of both and its options, instead of the scene's",
+     CS_ARG_INTO(struct options, integrator)},
+    {"set", 's', "PATH=VALUE", "another value for a key of the scene, of both; may be repeated",
+     CS_ARG_LIST(struct options, sets, n_sets)},
+    {"plugin", 'p', "FILE", "load an integrator module in both; may be repeated",
+     CS_ARG_LIST(struct options, plugins, n_plugins)},
+    {"threads", 0, "N", "threads of both, 1 to 64", CS_ARG_INTO(struct options, threads)},
+    {"tolerance", 't', "NUMBER",
+     "what numbers may differ by, in their own unit (default: no bit)",
+     CS_ARG_INTO(struct options, tolerance)},
+    {"quiet", 'q', NULL, "print nothing where both are equal",
+     CS_ARG_INTO(struct options, quiet)},
 };
 
 /* a command line that grows; its words live as long as the arguments */
@@ -58,8 +65,7 @@ static enum cs_status add_named(struct line *line, const char *key, size_t lengt
                                 const char *value, struct cs_error *error) {
     char option[32];
     snprintf(option, sizeof option, "--%.*s", (int)length, key);
-    const char *kept = cs_arena_copy_text(&line->args->arena, option, error);
-    add(line, kept);
+    add(line, cs_arena_copy_text(&line->args->arena, option, error));
     add(line, value);
     return error->status;
 }
@@ -82,12 +88,6 @@ static enum cs_status add_own(struct line *line, const char *own, struct cs_erro
                    own);
 }
 
-/* what one side has of its own */
-struct own {
-    const char *const *items; /* (n), "KEY=VALUE" */
-    uint32_t n;
-};
-
 static bool has_own(const struct own *own, const char *key) {
     const size_t length = strlen(key);
     for (uint32_t k = 0; k < own->n; k++)
@@ -96,27 +96,26 @@ static bool has_own(const struct own *own, const char *key) {
     return false;
 }
 
-/* A method or a number of threads of its own stands instead of that of both. */
-static enum cs_status add_common(struct line *line, const struct own *own,
-                                 struct cs_error *error) {
-    static const int options[] = {BISECT_FRAMES, BISECT_INTEGRATOR, BISECT_SET, BISECT_PLUGIN,
-                                  BISECT_THREADS};
-    for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
-        const char *const *values;
-        const struct cs_arg *row = rows + options[k];
-        uint32_t n;
-        if (cs_args_get_all(line->args, (uint32_t)options[k], &values, &n, error))
-            return error->status;
-        for (uint32_t i = 0; i < n && (row->repeatable || !has_own(own, row->name)); i++)
-            add_named(line, row->name, strlen(row->name), values[i], error);
-    }
-    return error->status;
+static void add_each(struct line *line, const char *name, const char *const *values, uint32_t n,
+                     struct cs_error *error) {
+    for (uint32_t k = 0; k < n; k++)
+        add_named(line, name, strlen(name), values[k], error);
 }
 
-static enum cs_status make_line(struct line *line, int row, struct cs_error *error) {
-    struct own own;
-    if (cs_args_get_all(line->args, (uint32_t)row, &own.items, &own.n, error))
-        return error->status;
+/* A method or a number of threads of its own stands instead of that of both. */
+static void add_common(struct line *line, const struct own *own, struct cs_error *error) {
+    const struct options *both = line->args->options;
+    const bool method = both->integrator && !has_own(own, "integrator");
+    const bool threads = both->threads && !has_own(own, "threads");
+    add_each(line, "frames", &both->frames, both->frames != NULL, error);
+    add_each(line, "integrator", &both->integrator, method, error);
+    add_each(line, "set", both->sets, both->n_sets, error);
+    add_each(line, "plugin", both->plugins, both->n_plugins, error);
+    add_each(line, "threads", &both->threads, threads, error);
+}
+
+static enum cs_status make_line(struct line *line, const struct own *own,
+                                struct cs_error *error) {
     line->words = cs_arena_alloc_array(&line->args->arena, 8 + 2 * (size_t)line->args->n_given,
                                        sizeof *line->words, error);
     if (!line->words)
@@ -126,9 +125,9 @@ static enum cs_status make_line(struct line *line, int row, struct cs_error *err
     add(line, line->args->operands[0]);
     add(line, "--no-render");
     add(line, "--quiet");
-    add_common(line, &own, error);
-    for (uint32_t k = 0; k < own.n && !error->status; k++)
-        add_own(line, own.items[k], error);
+    add_common(line, own, error);
+    for (uint32_t k = 0; k < own->n && !error->status; k++)
+        add_own(line, own->items[k], error);
     return error->status;
 }
 
@@ -183,20 +182,19 @@ static enum cs_status report(const struct cs_bisect *bisect, bool quiet,
 
 static enum cs_status bisect(struct cs_args *args, struct cs_error *error) {
     struct line lines[2] = {{.args = args}, {.args = args}};
+    const struct options *options = args->options;
     struct cs_bisect found;
-    double tolerance = 0;
     if (!strcmp(args->operands[0], "-"))
         return cs_fail(error, CS_ERR_USAGE, "the scene is read several times: not from -");
-    if (cs_args_real(args, BISECT_TOLERANCE, &tolerance, error) ||
-        make_line(&lines[0], BISECT_A, error) || make_line(&lines[1], BISECT_B, error))
+    if (make_line(&lines[0], &options->own[0], error) ||
+        make_line(&lines[1], &options->own[1], error))
         return error->status;
     const struct cs_bisect_settings settings = {
         .sides = {{"A", lines[0].words, lines[0].n}, {"B", lines[1].words, lines[1].n}},
-        .tolerance = tolerance,
+        .tolerance = options->tolerance,
         .stop = cs_interrupt_catch()};
-    return cs_bisect_run(&found, &settings, error)
-               ? error->status
-               : report(&found, cs_args_get(args, BISECT_QUIET), error);
+    return cs_bisect_run(&found, &settings, error) ? error->status
+                                                   : report(&found, options->quiet, error);
 }
 
 const struct cs_command cs_command_bisect = {
@@ -205,8 +203,7 @@ const struct cs_command cs_command_bisect = {
     .summary = "find the first number that two runs of a scene compute otherwise",
     .notes = "A and B are this program on SCENE, but for what --a and --b say.\n\n"
              "Example: clothsim bisect scenes/hang.json --b program=../old/build/clothsim\n",
-    .rows = rows,
-    .n_rows = BISECT_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,
     .main = bisect,

@@ -1,5 +1,5 @@
 /* clothsim conform: prints a method's conformance card as text or JSON. */
-#include "base/file.h"
+#include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/external_modules.h"
 #include "cli/line/print.h"
@@ -12,26 +12,33 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CONFORM_JSON, CONFORM_LIST, CONFORM_ONLY, CONFORM_PLUGIN, CONFORM_QUIET, CONFORM_ROWS };
 enum { NOTE_COLUMN = 55, METHODS_MAX = 64, PATIENCE_SECONDS = 60 };
 
-static const struct cs_arg rows[CONFORM_ROWS] = {
-    [CONFORM_JSON] = {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
-                      false},
-    [CONFORM_LIST] = {"list", 0, NULL, "list the checks", false},
-    [CONFORM_ONLY] = {"only", 0, "CHECK", "one check", false},
-    [CONFORM_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
-                        true},
-    [CONFORM_QUIET] = {"quiet", 'q', NULL, "print only claims that failed, and the count",
-                       false},
+struct options {
+    const char *json, *only;
+    bool list, quiet;
+    const char *const *plugins; /* (n_plugins) */
+    uint32_t n_plugins;
+};
+static const struct options defaults = {.json = NULL};
+
+static const struct cs_arg rows[] = {
+    {"json", 0, "FILE", "write the card as JSON too; -: instead of the text",
+     CS_ARG_INTO(struct options, json)},
+    {"list", 0, NULL, "list the checks", CS_ARG_INTO(struct options, list)},
+    {"only", 0, "CHECK", "one check", CS_ARG_INTO(struct options, only)},
+    {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
+     CS_ARG_LIST(struct options, plugins, n_plugins)},
+    {"quiet", 'q', NULL, "print only claims that failed, and the count",
+     CS_ARG_INTO(struct options, quiet)},
 };
 
 /* What is written while the checks run: each is printed as soon as it is done. */
 struct output {
-    const struct cs_args *args;
+    const struct options *options;
     const struct cs_conform *card; /* that is being made */
     const char *settings;          /* what was typed behind its method's name */
-    bool text, quiet, first;       /* first: no row is in the JSON yet */
+    bool text, first;              /* first: no row is in the JSON yet */
     struct cs_text json;
     struct cs_conform_cache cache; /* shared by all cards */
     uint32_t counts[CS_VERDICTS];  /* over all methods */
@@ -58,22 +65,22 @@ static void print_row(const struct cs_conform_row *row, struct cs_error *error) 
     cs_print_out(stdout, &out, error);
 }
 
+/* with all 17 digits */
 static void add_number(struct cs_text *json, const char *key, double value) {
+    cs_json_write(json, ", %s: ", key);
     if (isfinite(value))
-        cs_text_add(json, ", \"%s\": %.17g", key, value);
+        cs_text_add(json, "%.17g", value);
     else
-        cs_text_add(json, ", \"%s\": null", key);
+        cs_text_add(json, "null");
 }
 
 static void add_json(struct output *output, const struct cs_conform_row *row) {
     struct cs_text *json = &output->json;
-    cs_text_add(json, "%s\n    {\"check\": \"%s\", \"verdict\": \"%s\"",
-                output->first ? "" : ",", row->check, cs_verdict_text(row->verdict));
+    cs_json_write(json, ",\n    {'check': %s, 'verdict': %s", row->check,
+                  cs_verdict_text(row->verdict));
     add_number(json, "figure", row->figure);
     add_number(json, "bound", row->bound);
-    cs_text_add(json, ", \"note\": ");
-    cs_text_add_json(json, row->note);
-    cs_text_add(json, "}");
+    cs_json_write(json, ", 'note': %s}", row->note);
     output->first = false;
 }
 
@@ -94,7 +101,7 @@ static void report(void *ctx, const struct cs_conform_row *row) {
     struct output *output = ctx;
     if (output->text && output->first)
         print_head(output);
-    if (output->text && (!output->quiet || is_bad(row)))
+    if (output->text && (!output->options->quiet || is_bad(row)))
         print_row(row, &output->error);
     add_json(output, row);
 }
@@ -112,16 +119,14 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
         .method = method,
         .options = options,
         .implicit_euler = euler ? euler->integrator : NULL,
-        .only_check = cs_args_get(output->args, CONFORM_ONLY),
+        .only_check = output->options->only,
         .cache = &output->cache,
         .report = report,
         .ctx = output,
     };
     output->card = &card;
-    cs_text_add(&output->json, "%s\n  {\"integrator\": \"%s\", \"settings\": ",
-                output->json.length > 1 ? "," : "", method->name);
-    cs_text_add_json(&output->json, output->settings);
-    cs_text_add(&output->json, ", \"checks\": [");
+    cs_json_write(&output->json, ",\n  {'integrator': %s, 'settings': %s, 'checks': [",
+                  method->name, output->settings);
     output->first = true;
     cs_conform_check(&card, error);
     output->card = NULL;
@@ -167,33 +172,17 @@ static enum cs_status print_named(struct output *output, struct cs_registry *reg
     return error->status;
 }
 
-static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *registry,
-                                  struct cs_error *error) {
-    const char *const *files;
-    uint32_t n;
-    if (cs_args_get_all(args, CONFORM_PLUGIN, &files, &n, error))
-        return error->status;
-    for (uint32_t i = 0; i < n; i++)
-        if (cs_registry_add_file(registry, files[i], error))
-            return error->status;
-    return CS_OK;
-}
-
 /* The JSON where it was asked for, and the count. */
 static enum cs_status finish(struct output *output, struct cs_error *error) {
-    const char *file = cs_args_get(output->args, CONFORM_JSON);
+    const char *file = output->options->json;
     cs_text_add(&output->json, "\n]\n");
     if (output->text)
         printf("%u pass, %u fail, %u expected, %u stale, %u not applicable\n",
                output->counts[CS_VERDICT_PASS], output->counts[CS_VERDICT_FAIL],
                output->counts[CS_VERDICT_EXPECTED], output->counts[CS_VERDICT_STALE],
                output->counts[CS_VERDICT_NONE]);
-    if (file && output->json.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the JSON");
-    else if (file && strcmp(file, "-") != 0)
-        cs_file_write(file, cs_text_get(&output->json), output->json.length, error);
-    else if (file)
-        fputs(cs_text_get(&output->json), stdout);
+    if (file)
+        cs_print_file(file, &output->json, error);
     if (output->error.status)
         cs_fail(error, output->error.status, "%s", output->error.message);
     const uint32_t bad = output->counts[CS_VERDICT_FAIL] + output->counts[CS_VERDICT_STALE];
@@ -210,18 +199,16 @@ static enum cs_status print_list(struct cs_error *error) {
 
 static enum cs_status conform_here(void *ctx, struct cs_error *error) {
     struct cs_args *args = ctx;
-    const char *file = cs_args_get(args, CONFORM_JSON);
+    const struct options *options = args->options;
     struct cs_registry registry = {0};
     /* JSON on standard output takes the place of the text */
-    struct output output = {.args = args,
-                            .text = !file || strcmp(file, "-") != 0,
-                            .quiet = cs_args_get(args, CONFORM_QUIET)};
-    if (cs_args_get(args, CONFORM_LIST))
+    struct output output = {.options = options, .text = !cs_print_is_stdout(options->json)};
+    if (options->list)
         return print_list(error);
     if (args->n_operands == 0)
         return cs_fail(error, CS_ERR_USAGE, "expected an integrator or a module file");
     cs_text_add(&output.json, "[");
-    add_plugins(args, &registry, error);
+    cs_registry_add_files(&registry, options->plugins, options->n_plugins, error);
     for (uint32_t k = 0; k < args->n_operands && !error->status; k++) {
         if (is_file(args->operands[k]))
             print_file(&output, &registry, args->operands[k], error);
@@ -239,7 +226,7 @@ static enum cs_status conform_here(void *ctx, struct cs_error *error) {
 static enum cs_status conform(struct cs_args *args, struct cs_error *error) {
     const struct cs_isolate isolate = {
         .seconds = PATIENCE_SECONDS, .task = conform_here, .ctx = args};
-    return cs_external_modules_requested(args, CONFORM_PLUGIN, args->operands, args->n_operands)
+    return cs_external_modules_requested(args, args->operands, args->n_operands)
                ? cs_isolate_run(&isolate, error)
                : conform_here(args, error);
 }
@@ -250,8 +237,7 @@ const struct cs_command cs_command_conform = {
     .summary = "measure what an integrator claims: its conformance card",
     .notes =
         "A claim that fails is expected where the integrator's descriptor names the check.\n",
-    .rows = rows,
-    .n_rows = CONFORM_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 64,
     .main = conform,

@@ -7,11 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIST_PLUGIN, LIST_ROWS };
 enum { NAME_COLUMN = 22, INDENT = 4, DETAIL_COLUMN = 14 };
 
-static const struct cs_arg rows[LIST_ROWS] = {
-    [LIST_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated", true},
+struct options {
+    const char *const *plugins; /* (n_plugins) */
+    uint32_t n_plugins;
+};
+static const struct options initial = {NULL, 0};
+
+static const struct cs_arg rows[] = {
+    {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
+     CS_ARG_LIST(struct options, plugins, n_plugins)},
 };
 
 static const struct {
@@ -93,10 +99,8 @@ static void add_option(const struct cs_option *row, const void *defaults, struct
     const bool given = !cs_option_is_optional(row) || cs_option_is_set(row, defaults);
     if (!given)
         cs_text_add(&value, "not set");
-    else if (row->type == CS_CHOICE)
-        cs_text_add(&value, "%s", row->choices[(int)row->def]);
     else
-        cs_option_print(row, defaults, &value);
+        cs_option_print_plain(row, defaults, &value);
     cs_option_print_range(row, &range);
     cs_text_add(&left, "%-*s%-*s%s", DETAIL_COLUMN, row->name, DETAIL_COLUMN,
                 cs_text_get(&value), cs_text_get(&range));
@@ -166,21 +170,10 @@ static enum cs_status print_one(struct cs_registry *registry, const char *name,
     return error->status;
 }
 
-static enum cs_status add_plugins(struct cs_args *args, struct cs_registry *registry,
-                                  struct cs_error *error) {
-    const char *const *files;
-    uint32_t n;
-    if (cs_args_get_all(args, LIST_PLUGIN, &files, &n, error))
-        return error->status;
-    for (uint32_t i = 0; i < n; i++)
-        if (cs_registry_add_file(registry, files[i], error))
-            return error->status;
-    return CS_OK;
-}
-
 static enum cs_status list(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
     struct cs_registry registry = {0};
-    if (!add_plugins(args, &registry, error)) {
+    if (!cs_registry_add_files(&registry, options->plugins, options->n_plugins, error)) {
         if (args->n_operands)
             print_one(&registry, args->operands[0], error);
         else
@@ -196,8 +189,7 @@ const struct cs_command cs_command_integrators = {
     .summary = "list the integrators, or say all about one and its options",
     .notes = "Modules are looked for beside the program and in the folders of\n"
              "CLOTHSIM_PLUGIN_PATH (absolute, separated by colons).\n",
-    .rows = rows,
-    .n_rows = LIST_ROWS,
+    CS_COMMAND_OPTIONS(rows, initial),
     .operands_min = 0,
     .operands_max = 1,
     .main = list,

@@ -3,41 +3,26 @@
 #include "cli/commands.h"
 #include "study/compare/compare_results.h"
 #include "study/parameter_sweep.h"
+#include "study/stability/stability_journal.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { MERGE_OUT, MERGE_QUIET, MERGE_ROWS };
 enum { FILE_BYTES_MAX = 1 << 30 };
 
-static const struct cs_arg rows[MERGE_ROWS] = {
-    [MERGE_OUT] = {"out", 'o', "DIR", "folder of the whole (default: merged)", false},
-    [MERGE_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
+struct options {
+    const char *out;
+    bool quiet;
 };
+static const struct options defaults = {.out = "merged"};
 
-static bool is_partial(const char *name) {
-    const size_t length = strlen(name);
-    return length > 8 && !strcmp(name + length - 8, ".partial");
-}
-
-/* Records say themselves what they are of: those of two files may stand behind each other. */
-static enum cs_status append_file(const char *from, const char *to, struct cs_error *error) {
-    char *bytes;
-    size_t length;
-    if (cs_file_read(from, FILE_BYTES_MAX, &bytes, &length, error))
-        return error->status;
-    FILE *file = fopen(to, "ae");
-    if (!file || fwrite(bytes, 1, length, file) != length || fflush(file))
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", to, strerror(errno));
-    if (file)
-        fclose(file);
-    free(bytes);
-    return error->status;
-}
+static const struct cs_arg rows[] = {
+    {"out", 'o', "DIR", "folder of the whole (default: merged)",
+     CS_ARG_INTO(struct options, out)},
+    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
+};
 
 /* Any part says which scene a comparison is of. */
 static enum cs_status copy_origin(const char *folder, const char *out, struct cs_error *error) {
@@ -53,44 +38,28 @@ static enum cs_status copy_origin(const char *folder, const char *out, struct cs
     return error->status;
 }
 
-static enum cs_status append_maps(const char *folder, const char *out, uint32_t *n,
-                                  struct cs_error *error) {
-    char from[4096], to[4096];
-    DIR *directory = opendir(folder);
-    if (!directory)
-        return cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", folder, strerror(errno));
-    for (const struct dirent *entry; !error->status && (entry = readdir(directory));)
-        if (is_partial(entry->d_name)) {
-            snprintf(from, sizeof from, "%s/%s", folder, entry->d_name);
-            snprintf(to, sizeof to, "%s/%s", out, entry->d_name);
-            append_file(from, to, error);
-            ++*n;
-        }
-    closedir(directory);
-    return error->status;
-}
-
 static enum cs_status merge(struct cs_args *args, struct cs_error *error) {
-    const char *given = cs_args_get(args, MERGE_OUT), *out = given ? given : "merged";
+    const struct options *options = args->options;
+    const char *out = options->out, *const *folders = args->operands;
+    const uint32_t n = args->n_operands;
     uint32_t cells = 0, rows_of_sweep = 0, maps = 0;
-    for (uint32_t k = 0; k < args->n_operands; k++)
-        if (!strcmp(args->operands[k], out))
+    for (uint32_t k = 0; k < n; k++)
+        if (!strcmp(folders[k], out))
             return cs_fail(error, CS_ERR_USAGE, "%s is both a part and the whole", out);
-    if (cs_folder_create(out, error) ||
-        cs_compare_results_merge(args->operands, args->n_operands, out, &cells, error) ||
-        cs_parameter_sweep_merge(args->operands, args->n_operands, out, &rows_of_sweep, error))
+    if (cs_compare_results_merge(folders, n, out, &cells, error) ||
+        cs_parameter_sweep_merge(folders, n, out, &rows_of_sweep, error))
         return error->status;
     cells += rows_of_sweep;
-    for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
-        if (!copy_origin(args->operands[k], out, error))
-            append_maps(args->operands[k], out, &maps, error);
-    if (!error->status && cells + maps == 0)
+    for (uint32_t k = 0; k < n && !error->status; k++)
+        copy_origin(folders[k], out, error);
+    if (error->status || cs_journal_merge(folders, n, out, &maps, error))
+        return error->status;
+    if (cells + maps == 0)
         return cs_fail(error, CS_ERR_FILE,
                        "no folder holds a compare.csv, a sweep.csv or the .partial of a map");
-    if (!error->status && !cs_args_get(args, MERGE_QUIET))
-        printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps,
-               args->n_operands, out);
-    return error->status;
+    if (!options->quiet)
+        printf("%u cells and %u parts of maps from %u folders in %s\n", cells, maps, n, out);
+    return CS_OK;
 }
 
 const struct cs_command cs_command_merge = {
@@ -101,8 +70,7 @@ const struct cs_command cs_command_merge = {
         "The command of the study, without --shard and with -o DIR, then makes the report\n"
         "or map of the whole.\n\n"
         "Example: clothsim merge part1 part2 -o whole\n",
-    .rows = rows,
-    .n_rows = MERGE_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 10000,
     .main = merge,

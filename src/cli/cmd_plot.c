@@ -1,62 +1,49 @@
 /* clothsim plot: draws two columns of a comparison against each other. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "study/compare/compare_csv.h"
+#include "study/compare/compare_cell.h"
 #include "study/compare/compare_plot.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PLOT_X, PLOT_Y, PLOT_FAMILY, PLOT_OUT, PLOT_TITLE, PLOT_QUIET, PLOT_ROWS };
+struct options {
+    const char *x, *y, *family, *out, *title;
+    bool quiet;
+};
+static const struct options defaults = {.x = "cpu", .y = "error"};
 
-static const struct cs_arg rows[PLOT_ROWS] = {
-    [PLOT_X] = {"x", 'x', "COLUMN", "column of the x axis (default: cpu)", false},
-    [PLOT_Y] = {"y", 'y', "COLUMN", "column of the y axis (default: error)", false},
-    [PLOT_FAMILY] = {"family", 'f', "FAMILY",
-                     "all series of one family, such as \"adaptive implicit\" (default: the "
-                     "twelve that come nearest to the front)",
-                     false},
-    [PLOT_OUT] =
-        {"out", 'o', "NAME",
-         "writes NAME.gp, and NAME.png, .svg and .pdf where gnuplot is found (default: "
-         "Y_X beside FILE)",
-         false},
-    [PLOT_TITLE] = {"title", 0, "TEXT", "title above the diagram (default: FILE)", false},
-    [PLOT_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
+static const struct cs_arg rows[] = {
+    {"x", 'x', "COLUMN", "column of the x axis (default: cpu)", CS_ARG_INTO(struct options, x)},
+    {"y", 'y', "COLUMN", "column of the y axis (default: error)",
+     CS_ARG_INTO(struct options, y)},
+    {"family", 'f', "FAMILY",
+     "all series of one family, such as \"adaptive implicit\" (default: the twelve that come "
+     "nearest to the front)",
+     CS_ARG_INTO(struct options, family)},
+    {"out", 'o', "NAME",
+     "writes NAME.gp, and NAME.png, .svg and .pdf where gnuplot is found (default: Y_X beside "
+     "FILE)",
+     CS_ARG_INTO(struct options, out)},
+    {"title", 0, "TEXT", "title above the diagram (default: FILE)",
+     CS_ARG_INTO(struct options, title)},
+    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
-static enum cs_status read_axis(const struct cs_args *args, uint32_t row, const char *name,
+static enum cs_status read_axis(const char *option, const char *name,
                                 const struct cs_column **column, struct cs_error *error) {
-    const char *const *names = cs_column_axes();
-    const char *given = cs_args_get(args, row);
-    *column = cs_column_find(given ? given : name);
-    if (*column && (*column)->label)
-        return CS_OK;
-    struct cs_text list = {0};
-    for (uint32_t k = 0; names[k]; k++)
-        cs_text_add(&list, "%s%s", k ? ", " : "", names[k]);
-    cs_fail(error, CS_ERR_USAGE, "--%s: expected one of %s, found \"%.60s\"", rows[row].name,
-            cs_text_get(&list), given);
-    cs_text_finish(&list);
-    return error->status;
+    *column = cs_column_find(name);
+    return *column && (*column)->label
+               ? CS_OK
+               : cs_arg_refuse_name(option, cs_column_axes(), name, error);
 }
 
-static enum cs_status read_family(const struct cs_args *args, const char **family,
-                                  struct cs_error *error) {
-    const char *given = cs_args_get(args, PLOT_FAMILY);
-    struct cs_text list = {0};
-    *family = given;
-    for (uint32_t k = 0; given && cs_family_names[k]; k++) {
-        if (!strcmp(given, cs_family_names[k]))
-            given = NULL;
-        cs_text_add(&list, "%s%s", k ? ", " : "", cs_family_names[k]);
-    }
-    if (given)
-        cs_fail(error, CS_ERR_USAGE, "--family: expected one of %s, found \"%.60s\"",
-                cs_text_get(&list), given);
-    cs_text_finish(&list);
-    return error->status;
+static enum cs_status check_family(const char *family, struct cs_error *error) {
+    for (uint32_t k = 0; family && cs_family_names[k]; k++)
+        if (!strcmp(family, cs_family_names[k]))
+            return CS_OK;
+    return family ? cs_arg_refuse_name("family", cs_family_names, family, error) : CS_OK;
 }
 
 /* a name inside a quoted text of the script */
@@ -76,11 +63,8 @@ static void split(const char *path, char folder[4096], const char **name) {
     snprintf(folder, 4096, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
 }
 
-static enum cs_status print_files(const struct cs_args *args, const char *path, bool drawn,
-                                  struct cs_error *error) {
+static enum cs_status print_files(const char *path, bool drawn, struct cs_error *error) {
     struct cs_text text = {0};
-    if (cs_args_get(args, PLOT_QUIET))
-        return CS_OK;
     if (drawn)
         cs_text_add(&text, "%s.gp, %s.png, %s.svg, %s.pdf\n", path, path, path, path);
     else
@@ -90,8 +74,8 @@ static enum cs_status print_files(const struct cs_args *args, const char *path, 
 
 static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settings,
                            struct cs_error *error) {
-    const char *file = args->operands[0], *out = cs_args_get(args, PLOT_OUT),
-               *title = cs_args_get(args, PLOT_TITLE);
+    const struct options *options = args->options;
+    const char *file = args->operands[0], *out = options->out, *title = options->title;
     const char *slash = strrchr(file, '/');
     char folder[4096], path[4096];
     bool drawn;
@@ -113,7 +97,7 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
         return cs_fail(error, CS_ERR_USAGE, "--out: expected a name without its ending");
     if (cs_plot_write(settings, folder, &drawn, error))
         return error->status;
-    return print_files(args, path, drawn, error);
+    return options->quiet ? CS_OK : print_files(path, drawn, error);
 }
 
 /* a diagram of nothing is a mistake in the name of the family */
@@ -129,11 +113,12 @@ static enum cs_status check_cells(const struct cs_plot_settings *settings, const
 }
 
 static enum cs_status plot(struct cs_args *args, struct cs_error *error) {
-    struct cs_plot_settings settings = {0};
+    const struct options *options = args->options;
+    struct cs_plot_settings settings = {.family = options->family};
     struct cs_cell *cells;
-    if (read_axis(args, PLOT_X, "cpu", &settings.x, error) ||
-        read_axis(args, PLOT_Y, "error", &settings.y, error) ||
-        read_family(args, &settings.family, error) ||
+    if (read_axis("x", options->x, &settings.x, error) ||
+        read_axis("y", options->y, &settings.y, error) ||
+        check_family(options->family, error) ||
         cs_csv_read(args->operands[0], &cells, &settings.n, error))
         return error->status;
     settings.cells = cells;
@@ -148,8 +133,7 @@ const struct cs_command cs_command_plot = {
     .operands = "FILE",
     .summary = "draw the compare.csv of a comparison, with any two columns",
     .notes = "Example: clothsim plot compare/compare.csv --x evals --y max_error\n",
-    .rows = rows,
-    .n_rows = PLOT_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,
     .main = plot,

@@ -13,21 +13,24 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { REPRODUCE_FOLDER, REPRODUCE_PLUGIN, REPRODUCE_THREADS, REPRODUCE_QUIET, REPRODUCE_ROWS };
 enum { PATH_BYTES = 4096, VALUE_COLUMN = 16 };
 
-static const struct cs_arg rows[REPRODUCE_ROWS] = {
-    [REPRODUCE_FOLDER] = {"folder", 'f', "DIR",
-                          "where the meshes and textures of the scene are (default: where they "
-                          "were)",
-                          false},
-    [REPRODUCE_PLUGIN] = {"plugin", 'p', "FILE",
-                          "the module file that the method came from, if it came from one; "
-                          "may be repeated",
-                          true},
-    [REPRODUCE_THREADS] = {"threads", 0, "N",
-                           "threads that step the scene, 1 to 64 (default: as run)", false},
-    [REPRODUCE_QUIET] = {"quiet", 'q', NULL, "print only what differs", false},
+struct options {
+    struct cs_reproduction_settings again;
+    bool quiet;
+};
+static const struct options defaults = {.again = {.session = {.threads = CS_THREADS_AUTO}}};
+
+static const struct cs_arg rows[] = {
+    {"folder", 'f', "DIR",
+     "where the meshes and textures of the scene are (default: where they were)",
+     CS_ARG_INTO(struct options, again.folder)},
+    {"plugin", 'p', "FILE",
+     "the module file that the method came from, if it came from one; may be repeated",
+     CS_ARG_LIST(struct options, again.session.plugins, again.session.n_plugins)},
+    {"threads", 0, "N", "threads that step the scene, 1 to 64 (default: as run)",
+     CS_ARG_INTO(struct options, again.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
+    {"quiet", 'q', NULL, "print only what differs", CS_ARG_INTO(struct options, quiet)},
 };
 
 static bool ends_in(const char *text, const char *ending) {
@@ -74,10 +77,6 @@ static enum cs_status reproduce_file(struct cs_reproduction *again,
                                    : cs_reproduction_of_run(again, settings, error);
 }
 
-static void show(void *ctx, uint32_t done, uint32_t total) {
-    cs_progress_show(ctx, done, total);
-}
-
 static void print_notes(char *notes, struct cs_text *out) {
     const char *left = "changed since";
     for (char *line; (line = strsep(&notes, "\n")) && *line; left = "")
@@ -99,22 +98,17 @@ static enum cs_status reproduce(struct cs_args *args, struct cs_error *error) {
     char path[PATH_BYTES];
     struct cs_reproduction again = {0};
     struct cs_progress progress;
-    const bool quiet = cs_args_get(args, REPRODUCE_QUIET);
+    struct options *options = args->options;
+    struct cs_reproduction_settings *settings = &options->again;
     snprintf(path, sizeof path, "%s", args->operands[0]);
-    struct cs_reproduction_settings settings = {.folder = cs_args_get(args, REPRODUCE_FOLDER),
-                                                .session = {.threads = CS_THREADS_AUTO},
-                                                .progress = show,
-                                                .ctx = &progress};
-    settings.session.run.stop = cs_interrupt_catch();
-    if (cs_args_integer(args, REPRODUCE_THREADS, 1, CS_POOL_THREADS_MAX,
-                        &settings.session.threads, error) ||
-        cs_args_get_all(args, REPRODUCE_PLUGIN, &settings.session.plugins,
-                        &settings.session.n_plugins, error))
-        return error->status;
-    cs_progress_begin(&progress, quiet);
-    reproduce_file(&again, &settings, path, error);
+    settings->session.run.stop = cs_interrupt_catch();
+    settings->progress = cs_progress_show;
+    settings->ctx = &progress;
+    cs_progress_begin(&progress, "frame", options->quiet);
+    reproduce_file(&again, settings, path, error);
     cs_progress_end(&progress);
-    if (!error->status && (quiet || !print(&again, error)) && again.first_difference.length)
+    if (!error->status && (options->quiet || !print(&again, error)) &&
+        again.first_difference.length)
         cs_fail(error, CS_ERR_CHECK, "%s: %s", args->operands[0],
                 cs_text_get(&again.first_difference));
     cs_reproduction_finish(&again);
@@ -129,8 +123,7 @@ const struct cs_command cs_command_reproduce = {
         "FILE is the run.json or a picture of a run, the folder of one, or compare.csv:ROW of\n"
         "a comparison, where row 1 is the first behind the names.\n\n"
         "Example: clothsim reproduce out/frame_00060.png\n",
-    .rows = rows,
-    .n_rows = REPRODUCE_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,
     .main = reproduce,

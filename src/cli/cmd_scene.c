@@ -11,32 +11,27 @@
 
 #include <string.h>
 
-enum {
-    SCENE_SET,
-    SCENE_INTEGRATOR,
-    SCENE_PLUGIN,
-    SCENE_PLAN,
-    SCENE_NO_RENDER,
-    SCENE_RESOLVED,
-    SCENE_SCHEMA,
-    SCENE_MANUAL,
-    SCENE_ROWS
+struct options {
+    struct cs_session_settings session;
+    bool plan, resolved, schema, manual;
 };
+static const struct options defaults = {.session = {.render = true}};
 
-static const struct cs_arg rows[SCENE_ROWS] = {
-    [SCENE_SET] = {"set", 's', "PATH=VALUE",
-                   "another value for a key of the scene; may be repeated", true},
-    [SCENE_INTEGRATOR] = {"integrator", 'i', "NAME[:KEY=VALUE,...]",
-                          "method and its options, instead of the scene's", false},
-    [SCENE_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated",
-                      true},
-    [SCENE_PLAN] = {"plan", 0, NULL,
-                    "print what is built, with bytes, and what is left out and why", false},
-    [SCENE_NO_RENDER] = {"no-render", 0, NULL, "plan a run that draws nothing", false},
-    [SCENE_RESOLVED] = {"resolved", 0, NULL, "print the scene with every value", false},
-    [SCENE_SCHEMA] = {"schema", 0, NULL, "print the JSON schema of scene files (takes no FILE)",
-                      false},
-    [SCENE_MANUAL] = {"manual", 0, NULL, NULL, false},
+static const struct cs_arg rows[] = {
+    CS_ARG_SET(struct options, session),
+    {"integrator", 'i', "NAME[:KEY=VALUE,...]",
+     "method and its options, instead of the scene's",
+     CS_ARG_INTO(struct options, session.integrator)},
+    CS_ARG_PLUGIN(struct options, session),
+    {"plan", 0, NULL, "print what is built, with bytes, and what is left out and why",
+     CS_ARG_INTO(struct options, plan)},
+    {"no-render", 0, NULL, "plan a run that draws nothing",
+     CS_ARG_INTO(struct options, session.render)},
+    {"resolved", 0, NULL, "print the scene with every value",
+     CS_ARG_INTO(struct options, resolved)},
+    {"schema", 0, NULL, "print the JSON schema of scene files (takes no FILE)",
+     CS_ARG_INTO(struct options, schema)},
+    {"manual", 0, NULL, NULL, CS_ARG_INTO(struct options, manual)},
 };
 
 static void add_count(struct cs_text *out, const char *before, uint32_t n, const char *what) {
@@ -69,19 +64,19 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
 /* What was decided, and what it came to once the method had taken its own. */
 static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
-    cs_plan_print(&session->system.plan, out);
+    cs_plan_print(&session->run.plan, out);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", "method", "built",
                 session->run.method_bytes, session->method.integrator->name);
     cs_text_add(out, "%-14s %-9s %10zu bytes   %.1f a particle\n", "in all", "", bytes,
                 (double)bytes / session->plan.n);
 }
 
-static enum cs_status print_scene(struct cs_args *args, const struct cs_session *session,
-                                  struct cs_error *error) {
+static enum cs_status print_scene(const struct options *options,
+                                  const struct cs_session *session, struct cs_error *error) {
     struct cs_text out = {0};
-    if (cs_args_get(args, SCENE_PLAN))
+    if (options->plan)
         add_plan(session, &out);
-    else if (cs_args_get(args, SCENE_RESOLVED)) {
+    else if (options->resolved) {
         cs_scene_print(&session->scene, &session->method.table, session->method.options, 0,
                        &out);
         cs_text_add(&out, "\n");
@@ -92,37 +87,29 @@ static enum cs_status print_scene(struct cs_args *args, const struct cs_session 
     return cs_print_out(stdout, &out, error);
 }
 
-static enum cs_status open_scene(struct cs_args *args, struct cs_error *error) {
+static enum cs_status open_scene(struct options *options, struct cs_error *error) {
     struct cs_session session = {0};
-    struct cs_session_settings settings = {
-        .scene = args->operands[0],
-        .integrator = cs_args_get(args, SCENE_INTEGRATOR),
-        .render = !cs_args_get(args, SCENE_NO_RENDER),
-        /* a run has as many, and what they share the work by is in its plan */
-        .threads = cs_args_get(args, SCENE_PLAN) ? CS_THREADS_AUTO : 0,
-    };
-    if (cs_args_overrides(args, SCENE_SET, &settings.overrides, &settings.n_overrides, error) ||
-        cs_args_get_all(args, SCENE_PLUGIN, &settings.plugins, &settings.n_plugins, error))
-        return error->status;
+    /* a run has as many, and what they share the work by is in its plan */
+    options->session.threads = options->plan ? CS_THREADS_AUTO : 0;
     enum cs_status (*const open)(struct cs_session *, const struct cs_session_settings *,
                                  struct cs_error *) =
-        cs_args_get(args, SCENE_PLAN) ? cs_session_open : cs_session_open_plan;
+        options->plan ? cs_session_open : cs_session_open_plan;
     /* what starts inside a collider, or through or inside a body, shows in a system alone */
-    if (!open(&session, &settings, error) &&
+    if (!open(&session, &options->session, error) &&
         ((session.scene.colliders.n == 0 && !cs_scene_has_body_contact(&session.scene)) ||
          session.system.arena.used || !cs_session_build(&session, error)))
-        print_scene(args, &session, error);
+        print_scene(options, &session, error);
     cs_session_close(&session);
     return error->status;
 }
 
-static enum cs_status print_format(struct cs_args *args, struct cs_error *error) {
+static enum cs_status print_format(const struct cs_args *args, bool schema,
+                                   struct cs_error *error) {
     struct cs_text out = {0};
     if (args->n_operands)
         return cs_fail(error, CS_ERR_USAGE, "--%s takes no scene, found \"%.60s\"",
-                       cs_args_get(args, SCENE_SCHEMA) ? "schema" : "manual",
-                       args->operands[0]);
-    if (cs_args_get(args, SCENE_SCHEMA))
+                       schema ? "schema" : "manual", args->operands[0]);
+    if (schema)
         cs_scene_print_schema(&out);
     else
         cs_scene_print_manual(&out);
@@ -130,13 +117,15 @@ static enum cs_status print_format(struct cs_args *args, struct cs_error *error)
 }
 
 static enum cs_status scene(struct cs_args *args, struct cs_error *error) {
-    if (cs_args_get(args, SCENE_SCHEMA) || cs_args_get(args, SCENE_MANUAL))
-        return print_format(args, error);
+    struct options *options = args->options;
+    if (options->schema || options->manual)
+        return print_format(args, options->schema, error);
     if (!args->n_operands)
         return cs_fail(error, CS_ERR_USAGE, "expected FILE (see: clothsim scene --help)");
-    if (cs_args_get(args, SCENE_PLAN) && cs_args_get(args, SCENE_RESOLVED))
+    if (options->plan && options->resolved)
         return cs_fail(error, CS_ERR_USAGE, "--plan and --resolved cannot both be printed");
-    return open_scene(args, error);
+    options->session.scene = args->operands[0];
+    return open_scene(options, error);
 }
 
 const struct cs_command cs_command_scene = {
@@ -145,8 +134,7 @@ const struct cs_command cs_command_scene = {
     .summary = "check a scene, or print its plan, every value, or the schema",
     .notes =
         "Without an option: one line that says that the scene is fine and what is in it.\n",
-    .rows = rows,
-    .n_rows = SCENE_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 1,
     .main = scene,

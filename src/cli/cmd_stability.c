@@ -1,46 +1,130 @@
 /* clothsim stability: maps which steps a method survives, as text, CSV, JSON and a picture. */
+#include "base/json_writer.h"
+#include "base/pool.h"
 #include "cli/commands.h"
+#include "cli/line/interrupt.h"
 #include "cli/line/print.h"
 #include "cli/stability_map.h"
 #include "sim/install_paths.h"
+#include "study/process_pool.h"
 #include "study/stability/extreme.h"
 
 #include <stdio.h>
 #include <string.h>
 
+static const struct cs_stability_options defaults = {
+    .map = {.folder = "stability", .columns = 9, .rows = 15, .seconds = 0.5, .budget = 5},
+    .axis = CS_AXES};
+
+static const struct cs_arg rows[] = {
+    {"integrators", 'i', "LIST",
+     "methods, NAME:KEY=VALUE,...,NAME...; all: every method; may be repeated (default: the "
+     "scene's own)",
+     CS_ARG_LIST(struct cs_stability_options, methods, n_methods), .methods = true},
+    {"axis", 0, "NAME", "stiffness, damping, mass or resolution (default: stiffness)",
+     CS_ARG_INTO(struct cs_stability_options, axis), .names = cs_axis_names},
+    {"stiffness", 0, "LOW..HIGH",
+     "that axis and its values in N/m: the stiffest kind of spring, others in proportion",
+     CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_STIFFNESS])},
+    {"damping", 0, "LOW..HIGH", "that axis, in N s/m",
+     CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_DAMPING])},
+    {"mass", 0, "LOW..HIGH", "that axis, in kg of the first particle",
+     CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_MASS])},
+    {"resolution", 0, "LOW..HIGH", "that axis, in columns of the grid",
+     CS_ARG_INTO(struct cs_stability_options, values[CS_AXIS_RESOLUTION])},
+    {"dt", 0, "LOW..HIGH", "steps in s (default: round the expected border)",
+     CS_ARG_INTO(struct cs_stability_options, dt)},
+    {"columns", 0, "N", "values on the axis (default: 9)",
+     CS_ARG_INTO(struct cs_stability_options, map.columns), .min = 1, .max = CS_MAP_CELLS_MAX},
+    {"rows", 0, "N", "values of dt (default: 15)",
+     CS_ARG_INTO(struct cs_stability_options, map.rows), .min = 1, .max = CS_MAP_CELLS_MAX},
+    {"time", 't', "SECONDS", "simulated by a cell (default: 0.5)",
+     CS_ARG_INTO(struct cs_stability_options, map.seconds)},
+    {"budget", 0, "SECONDS", "processor time that one cell may take (default: 5)",
+     CS_ARG_INTO(struct cs_stability_options, map.budget)},
+    {"jobs", 'j', "N", "cells at a time (default: one a processor)",
+     CS_ARG_INTO(struct cs_stability_options, map.workers), .min = 1,
+     .max = CS_PROCESS_POOL_MAX},
+    CS_ARG_SET(struct cs_stability_options, map.session),
+    CS_ARG_PLUGIN(struct cs_stability_options, map.session),
+    {"out", 'o', "DIR",
+     "folder for NAME.csv, NAME_border.csv, NAME.json, NAME.gp and, with gnuplot, NAME.png "
+     "(default: stability)",
+     CS_ARG_INTO(struct cs_stability_options, map.folder)},
+    {"overwrite", 'y', NULL, "replace the files of an earlier map",
+     CS_ARG_INTO(struct cs_stability_options, overwrite)},
+    {"extreme", 0, NULL,
+     "run the catalogue of extreme scenes instead, with every method; SCENE is then part of a "
+     "name",
+     CS_ARG_INTO(struct cs_stability_options, extreme)},
+    {"folder", 0, "DIR", "the catalogue's folder (default: scenes/extreme)",
+     CS_ARG_INTO(struct cs_stability_options, catalogue)},
+    {"shard", 0, "K/N", "do the K-th of N shares of the columns; see: clothsim merge",
+     CS_ARG_INTO(struct cs_stability_options, map.shard)},
+    {"json", 0, "FILE", "with --extreme: write the rows as JSON too; -: to standard output",
+     CS_ARG_INTO(struct cs_stability_options, json)},
+    {"strict", 0, NULL, "exit with 8 where a cell is unstable or its method failed",
+     CS_ARG_INTO(struct cs_stability_options, strict)},
+    {"quiet", 'q', NULL, "no progress and no tables",
+     CS_ARG_INTO(struct cs_stability_options, quiet)},
+};
+
+static enum cs_status read_range(const char *option, const char *text, struct cs_range *range,
+                                 struct cs_error *error) {
+    const char *dots = text ? strstr(text, "..") : NULL;
+    char low[64] = "";
+    if (!text)
+        return CS_OK;
+    if (dots && dots - text < (ptrdiff_t)sizeof low)
+        memcpy(low, text, (size_t)(dots - text));
+    if (!dots || !cs_parse_real(low, &range->from) || !cs_parse_real(dots + 2, &range->to) ||
+        !(range->from > 0 && range->from <= range->to && range->to <= 1e15))
+        return cs_fail(error, CS_ERR_USAGE,
+                       "--%s: expected LOW..HIGH, both above 0, found \"%.60s\"", option, text);
+    return CS_OK;
+}
+
+/* The axis by its name, or by the option that holds its values and has that name. */
+static enum cs_status read_axis(struct cs_stability_options *options, struct cs_error *error) {
+    enum cs_axis axis = CS_AXES;
+    for (uint32_t k = 0; k < CS_AXES; k++) {
+        if (!options->values[k])
+            continue;
+        if (axis != CS_AXES)
+            return cs_fail(error, CS_ERR_USAGE, "--%s and --%s: a map has one axis",
+                           cs_axis_names[axis], cs_axis_names[k]);
+        axis = (enum cs_axis)k;
+        if (read_range(cs_axis_names[k], options->values[k], &options->map.values, error))
+            return error->status;
+    }
+    /* --axis may repeat what the option of the values says already */
+    if (axis != CS_AXES && options->axis != CS_AXES && axis != options->axis)
+        return cs_fail(error, CS_ERR_USAGE, "--axis %s and --%s: a map has one axis",
+                       cs_axis_names[options->axis], cs_axis_names[axis]);
+    axis = axis != CS_AXES ? axis : options->axis;
+    options->map.axis = axis != CS_AXES ? axis : CS_AXIS_STIFFNESS;
+    return read_range("dt", options->dt, &options->map.dt, error);
+}
+
 /* Where the rows of the catalogue go. */
 struct sink {
-    const struct cs_args *args;
+    const struct cs_stability_options *options;
     struct cs_text json;
 };
 
-static bool takes_stdout(const struct cs_args *args) {
-    const char *json = cs_args_get(args, STABILITY_JSON);
-    return json && !strcmp(json, "-");
-}
-
-static void add_member(struct cs_text *out, const char *key, const char *value) {
-    cs_text_add(out, "\"%s\": ", key);
-    cs_text_add_json(out, value);
-    cs_text_add(out, ", ");
-}
-
 static void add_json(const struct cs_extreme_row *row, struct cs_text *out) {
-    cs_text_add(out, "%s\n    {", out->length ? "," : "");
-    add_member(out, "scene", row->scene);
-    add_member(out, "method", row->method);
-    add_member(out, "expected", row->expected);
-    add_member(out, "verdict", cs_stability_word(row->verdict));
-    add_member(out, "message", row->message);
-    cs_text_add(out, "\"met\": %s, \"seconds\": %.3g}", row->as_expected ? "true" : "false",
-                row->seconds);
+    cs_json_write(out,
+                  ",\n    {'scene': %s, 'method': %s, 'expected': %s, 'verdict': %s, "
+                  "'message': %s, 'met': %d, 'seconds': ",
+                  row->scene, row->method, row->expected, cs_stability_word(row->verdict),
+                  row->message, row->as_expected);
+    cs_text_add(out, "%.3g}", row->seconds);
 }
 
 static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
     struct sink *sink = ctx;
     add_json(row, &sink->json);
-    if ((row->as_expected && cs_args_get(sink->args, STABILITY_QUIET)) ||
-        takes_stdout(sink->args))
+    if ((row->as_expected && sink->options->quiet) || cs_print_is_stdout(sink->options->json))
         return;
     printf("%-6s %-16s %-20s %-18s expected %-24s %6.2f s%s%s\n",
            row->as_expected ? "ok" : "MISSED", row->scene, row->method,
@@ -52,32 +136,33 @@ static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
 /* What was missed is an error of its own, which stays. */
 static void write_json(const struct cs_extreme *extreme, struct sink *sink,
                        struct cs_error *error) {
-    const char *path = cs_args_get(sink->args, STABILITY_JSON);
+    const char *path = sink->options->json;
     struct cs_text out = {0};
     struct cs_error failure = {0};
     if (path) {
-        cs_text_add(&out, "{\n  \"met\": %u, \"missed\": %u,\n  \"rows\": [%s\n  ]\n}\n",
-                    extreme->n_met, extreme->n_missed, cs_text_get(&sink->json));
+        cs_json_write(&out, "{\n  'met': %u, 'missed': %u,\n  'rows': [", extreme->n_met,
+                      extreme->n_missed);
+        cs_text_add(&out, "%s\n  ]\n}\n", cs_text_get(&sink->json));
         out.failed |= sink->json.failed;
         if (cs_print_file(path, &out, &failure))
             *error = failure;
     }
 }
 
-static enum cs_status run_extreme(struct cs_args *args,
-                                  const struct cs_stability_settings *settings,
-                                  const char *const *methods, uint32_t n_methods,
+static enum cs_status run_extreme(const struct cs_stability_options *options,
                                   struct cs_error *error) {
-    const char *folder = cs_args_get(args, STABILITY_FOLDER);
+    const struct cs_stability_settings *settings = &options->map;
     char installed[CS_DATA_PATH_MAX];
-    const bool all = n_methods == 1 && !strcmp(methods[0], "all");
-    struct sink sink = {.args = args};
+    const bool all = options->n_methods == 1 && !strcmp(options->methods[0], "all");
+    struct sink sink = {.options = options};
     struct cs_extreme extreme = {
-        .folder = folder ? folder : cs_data_find("scenes/extreme", installed, sizeof installed),
-        .only_scene = args->n_operands ? args->operands[0] : NULL,
-        .methods = methods,
+        .folder = options->catalogue
+                      ? options->catalogue
+                      : cs_data_find("scenes/extreme", installed, sizeof installed),
+        .only_scene = settings->session.scene,
+        .methods = options->methods,
         /* 0 stands for every method that can be used */
-        .n_methods = all ? 0 : n_methods,
+        .n_methods = all ? 0 : options->n_methods,
         .plugins = settings->session.plugins,
         .n_plugins = settings->session.n_plugins,
         .budget = settings->budget,
@@ -91,7 +176,7 @@ static enum cs_status run_extreme(struct cs_args *args,
     if (!error->status || error->status == CS_ERR_CHECK)
         write_json(&extreme, &sink, error);
     cs_text_finish(&sink.json);
-    if ((!error->status || error->status == CS_ERR_CHECK) && !takes_stdout(args))
+    if ((!error->status || error->status == CS_ERR_CHECK) && !cs_print_is_stdout(options->json))
         printf("%u as expected, %u not\n", extreme.n_met, extreme.n_missed);
     return error->status;
 }
@@ -116,38 +201,38 @@ static enum cs_status check_apart(const char *const *methods, uint32_t n,
 }
 
 /* One map, or those of all methods. */
-static enum cs_status map(const struct cs_args *args, struct cs_stability_settings *settings,
-                          const char *method, const char *folder, struct cs_error *error) {
+static enum cs_status map(struct cs_stability_options *options, const char *method,
+                          struct cs_error *error) {
     char series[CS_SERIES_BYTES];
     if (cs_series_parse_name(&method, series, error))
         return error->status;
-    settings->session.integrator = method;
-    settings->series = series;
-    return strcmp(method, "all") != 0 ? cs_stability_map_one(args, settings, folder, error)
-                                      : cs_stability_map_all(args, settings, folder, error);
+    options->map.session.integrator = method;
+    options->map.series = series;
+    return strcmp(method, "all") != 0 ? cs_stability_map_one(options, error)
+                                      : cs_stability_map_all(options, error);
 }
 
 static enum cs_status stability(struct cs_args *args, struct cs_error *error) {
-    struct cs_stability_settings settings;
-    const char *folder = cs_args_get(args, STABILITY_OUT);
-    const char *const *methods;
-    uint32_t n_methods;
-    if (cs_stability_read(args, &settings, error) ||
-        cs_args_methods(args, STABILITY_INTEGRATORS, &methods, &n_methods, error))
+    struct cs_stability_options *options = args->options;
+    struct cs_stability_settings *settings = &options->map;
+    settings->session.scene = args->n_operands ? args->operands[0] : NULL;
+    settings->session.run.stop = cs_interrupt_catch();
+    if (!settings->workers)
+        settings->workers = cs_pool_processors(CS_PROCESS_POOL_MAX);
+    if (read_axis(options, error))
         return error->status;
     /* before the operand is checked: here it is only part of a name, and may be absent */
-    if (cs_args_get(args, STABILITY_EXTREME))
-        return run_extreme(args, &settings, methods, n_methods, error);
-    if (!settings.session.scene)
+    if (options->extreme)
+        return run_extreme(options, error);
+    if (!settings->session.scene)
         return cs_fail(error, CS_ERR_USAGE,
                        "expected SCENE or --extreme (see: clothsim stability --help)");
-    folder = folder ? folder : "stability";
     /* no method named: the scene's own */
-    if (!n_methods)
-        return cs_stability_map_one(args, &settings, folder, error);
-    check_apart(methods, n_methods, error);
-    for (uint32_t k = 0; k < n_methods && !error->status; k++)
-        map(args, &settings, methods[k], folder, error);
+    if (!options->n_methods)
+        return cs_stability_map_one(options, error);
+    check_apart(options->methods, options->n_methods, error);
+    for (uint32_t k = 0; k < options->n_methods && !error->status; k++)
+        map(options, options->methods[k], error);
     return error->status;
 }
 
@@ -157,8 +242,7 @@ const struct cs_command cs_command_stability = {
     .summary = "map which steps a method survives, beside linear theory",
     .notes = "An unstable cell is a result: the exit code is 0.\n\n"
              "Example: clothsim stability scenes/hang.json -i symplectic-euler\n",
-    .rows = cs_stability_rows,
-    .n_rows = STABILITY_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 0,
     .operands_max = 1,
     .main = stability,

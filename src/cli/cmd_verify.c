@@ -5,10 +5,13 @@
 
 #include <stdio.h>
 
-enum { VERIFY_QUIET, VERIFY_ROWS };
+struct options {
+    bool quiet;
+};
+static const struct options defaults = {false};
 
-static const struct cs_arg rows[VERIFY_ROWS] = {
-    [VERIFY_QUIET] = {"quiet", 'q', NULL, "print only what differs", false},
+static const struct cs_arg rows[] = {
+    {"quiet", 'q', NULL, "print only what differs", CS_ARG_INTO(struct options, quiet)},
 };
 
 static enum cs_status check(const char *folder, bool quiet, uint32_t *bad,
@@ -27,9 +30,10 @@ static enum cs_status check(const char *folder, bool quiet, uint32_t *bad,
 }
 
 static enum cs_status verify(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
     uint32_t bad = 0;
     for (uint32_t k = 0; k < args->n_operands && !error->status; k++)
-        check(args->operands[k], cs_args_get(args, VERIFY_QUIET), &bad, error);
+        check(args->operands[k], options->quiet, &bad, error);
     return error->status || !bad ? error->status
                                  : cs_fail(error, CS_ERR_CHECK, "%u file%s not as written", bad,
                                            bad == 1 ? " is" : "s are");
@@ -40,8 +44,7 @@ const struct cs_command cs_command_verify = {
     .operands = "DIR...",
     .summary = "check that the files of a run are as it left them",
     .notes = "Example: clothsim verify out\n",
-    .rows = rows,
-    .n_rows = VERIFY_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 10000,
     .main = verify,

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool cs_external_modules_requested(const struct cs_args *args, uint32_t plugin_row,
-                                   const char *const *texts, uint32_t n) {
+bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
+                                   uint32_t n) {
     const char *folders = getenv("CLOTHSIM_PLUGIN_PATH");
-    bool named = cs_args_get(args, plugin_row) || (folders && *folders);
+    bool named = cs_args_is_given(args, "plugin") || (folders && *folders);
     for (uint32_t k = 0; k < n; k++)
         named |= texts[k] && (strchr(texts[k], '/') || strstr(texts[k], ".so"));
     return named;

@@ -5,9 +5,9 @@
 
 #include "cli/line/args.h"
 
-/* true where a command may load one: it has an option --plugin (its row) given, one of the
+/* true where a command may load one: its option --plugin is given, one of the
  * texts (n) names a file in the place of a method, or there are folders of them. */
-bool cs_external_modules_requested(const struct cs_args *args, uint32_t plugin_row,
-                                   const char *const *texts, uint32_t n);
+bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
+                                   uint32_t n);
 
 #endif

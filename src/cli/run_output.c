@@ -2,7 +2,7 @@
 #include "cli/run_output.h"
 
 #include "base/file.h"
-#include "cli/line/print.h"
+#include "io/export/export.h"
 #include "io/npy.h"
 
 #include <dirent.h>
@@ -24,20 +24,34 @@ static bool is_numbered(const char *name, const char *prefix, const char *ending
     return digits >= NUMBER_DIGITS && !strcmp(name + start + digits, ending);
 }
 
+/* "bodies" or "colliders", and what follows; NULL: neither */
+static const char *after_skin(const char *name) {
+    return !strncmp(name, "bodies", 6)      ? name + 6
+           : !strncmp(name, "colliders", 9) ? name + 9
+                                            : NULL;
+}
+
+static bool is_exported(const struct cs_export_writer *writer, const char *name) {
+    const char *rest = after_skin(name);
+    char ending[16];
+    for (size_t k = 0; k < sizeof writer->files / sizeof *writer->files; k++)
+        if (writer->files[k] && !strcmp(name, writer->files[k]))
+            return true;
+    snprintf(ending, sizeof ending, ".%s", writer->ending ? writer->ending : "");
+    if (writer->ending && rest && is_numbered(rest, "_", ending))
+        return true;
+    return writer->cache_ending && rest && *rest == '.' &&
+           !strcmp(rest + 1, writer->cache_ending);
+}
+
 bool cs_output_is_result(const char *name) {
-    static const char *const numbered[][2] = {{"frame_", ".png"},     {"bodies_", ".obj"},
-                                              {"bodies_", ".vtp"},    {"colliders_", ".obj"},
-                                              {"colliders_", ".vtp"}, {NULL, NULL}};
-    static const char *const alone[] = {"run.json",      "run.checkpoint", "run.npz",
-                                        "run.npz.part",  "run.pvd",        "bodies.pc2",
-                                        "colliders.pc2", "manifest.txt",   NULL};
-    for (size_t k = 0; numbered[k][0]; k++)
-        if (is_numbered(name, numbered[k][0], numbered[k][1]))
-            return true;
-    for (size_t k = 0; alone[k]; k++)
-        if (!strcmp(name, alone[k]))
-            return true;
-    return false;
+    static const char *const alone[] = {"run.json", "run.checkpoint", "manifest.txt"};
+    bool is_ours = is_numbered(name, "frame_", ".png");
+    for (size_t k = 0; k < sizeof alone / sizeof *alone; k++)
+        is_ours = is_ours || !strcmp(name, alone[k]);
+    for (size_t k = 0; k < CS_N_EXPORT_FORMATS; k++)
+        is_ours = is_ours || is_exported(cs_export_writers[k], name);
+    return is_ours;
 }
 
 bool cs_output_is_state(const char *name) {
@@ -157,15 +171,6 @@ void cs_output_unlock_folders(struct cs_output *output) {
     if (output->folder_lock)
         close(output->folder_lock - 1);
     *output = (struct cs_output){0};
-}
-
-void cs_output_rows(const char *path, struct cs_text *rows, struct cs_error *error) {
-    struct cs_error failure = {0};
-    if (!path || rows->failed)
-        return;
-    cs_print_file(path, rows, &failure);
-    if (!error->status)
-        *error = failure;
 }
 
 enum cs_status cs_output_state(const char *folder, uint32_t number, const double *x,

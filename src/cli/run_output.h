@@ -40,10 +40,6 @@ enum cs_status cs_output_lock_folders(struct cs_output *output, const struct cs_
                                       enum cs_output_earlier earlier, struct cs_error *error);
 void cs_output_unlock_folders(struct cs_output *output);
 
-/* Writes the rows of all frames, whole or failed run, and frees them: the first failure wins.
- * path NULL: none; "-": standard output. */
-void cs_output_rows(const char *path, struct cs_text *rows, struct cs_error *error);
-
 /* Writes x_NUMBER.npy and v_NUMBER.npy of n particles. */
 enum cs_status cs_output_state(const char *folder, uint32_t number, const double *x,
                                const double *v, uint32_t n, struct cs_error *error);

@@ -11,26 +11,14 @@
 
 #include <stdio.h>
 
-struct screen {
-    struct cs_progress progress;
-};
-
-static void show_progress(void *ctx, uint32_t done, uint32_t total) {
-    cs_progress_show(&((struct screen *)ctx)->progress, done, total);
-}
-
 /* Writes one file of a map; frees the text. */
-static enum cs_status write_file(const struct cs_args *args, const char *folder,
-                                 const char *name, const char *ending, struct cs_text *text,
+static enum cs_status write_file(const struct cs_stability_options *options, const char *name,
+                                 const char *ending, struct cs_text *text,
                                  struct cs_error *error) {
-    struct cs_text path = {0};
-    cs_text_add(&path, "%s/%s%s", folder, name, ending);
-    if (text->failed || path.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the files of a map");
-    else if (cs_args_get(args, STABILITY_OVERWRITE) ||
-             !cs_output_check_file(cs_text_get(&path), error))
-        cs_file_write(cs_text_get(&path), text->bytes, text->length, error);
-    cs_text_finish(&path);
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s%s", options->map.folder, name, ending);
+    if (options->overwrite || !cs_output_check_file(path, error))
+        cs_file_write_text(path, text, error);
     cs_text_finish(text);
     return error->status;
 }
@@ -59,8 +47,9 @@ static enum cs_status store_inputs(const struct cs_stability *map, const char *f
     return cs_study_files_check(&map->settings->session, folder, list, error);
 }
 
-static enum cs_status write_files(const struct cs_args *args, const struct cs_stability *map,
-                                  const char *folder, bool *drawn, struct cs_error *error) {
+static enum cs_status write_files(const struct cs_stability_options *options,
+                                  const struct cs_stability *map, bool *drawn,
+                                  struct cs_error *error) {
     char name[CS_SERIES_BYTES];
     struct cs_text cells = {0}, borders = {0}, json = {0}, plot = {0};
     cs_series_file_name(map->series, name);
@@ -68,15 +57,15 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
     cs_stability_print_borders_csv(map, &borders);
     cs_stability_print_json(map, &json);
     cs_stability_print_plot(map, name, &plot);
-    write_file(args, folder, name, ".csv", &cells, error);
+    write_file(options, name, ".csv", &cells, error);
     if (!error->status)
-        write_file(args, folder, name, "_border.csv", &borders, error);
+        write_file(options, name, "_border.csv", &borders, error);
     if (!error->status)
-        write_file(args, folder, name, ".json", &json, error);
+        write_file(options, name, ".json", &json, error);
     if (!error->status)
-        write_file(args, folder, name, ".gp", &plot, error);
+        write_file(options, name, ".gp", &plot, error);
     if (!error->status)
-        *drawn = draw(folder, name);
+        *drawn = draw(options->map.folder, name);
     cs_text_finish(&borders);
     cs_text_finish(&json);
     cs_text_finish(&plot);
@@ -87,7 +76,7 @@ static enum cs_status write_files(const struct cs_args *args, const struct cs_st
 static void print_shard(const struct cs_stability *map, bool quiet) {
     if (!quiet)
         printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,
-               map->settings->shard.index, map->settings->shard.count, map->journal.path);
+               map->settings->shard.index, map->settings->shard.count, map->journal.table.path);
 }
 
 static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
@@ -100,56 +89,50 @@ static enum cs_status check_cells(const struct cs_stability *map, struct cs_erro
                : CS_OK;
 }
 
-enum cs_status cs_stability_map_one(const struct cs_args *args,
-                                    const struct cs_stability_settings *settings,
-                                    const char *folder, struct cs_error *error) {
-    struct screen screen;
+enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
+                                    struct cs_error *error) {
+    struct cs_progress progress;
     struct cs_stability map;
-    struct cs_stability_settings asked = *settings;
-    const bool quiet = cs_args_get(args, STABILITY_QUIET);
+    struct cs_stability_settings asked = options->map;
+    const bool quiet = options->quiet;
     bool drawn = false;
-    asked.progress = show_progress;
-    asked.ctx = &screen;
-    cs_progress_begin(&screen.progress, quiet);
-    screen.progress.label = "cell";
-    asked.folder = folder;
+    asked.progress = cs_progress_show;
+    asked.ctx = &progress;
+    cs_progress_begin(&progress, "cell", quiet);
     cs_stability_run(&map, &asked, error);
-    cs_progress_end(&screen.progress);
+    cs_progress_end(&progress);
     if (error->status == CS_ERR_INTERRUPT) {
         *error = (struct cs_error){0};
         cs_fail(error, CS_ERR_INTERRUPT,
                 "interrupted; what was found is in %s, and the same command goes on from it",
-                map.journal.path);
+                map.journal.table.path);
     }
     if (!error->status && !map.is_complete)
         print_shard(&map, quiet);
-    else if (!error->status && !cs_folder_create(folder, error) &&
-             !store_inputs(&map, folder, error) &&
-             !write_files(args, &map, folder, &drawn, error) && !quiet) {
+    else if (!error->status && !cs_folder_create(options->map.folder, error) &&
+             !store_inputs(&map, options->map.folder, error) &&
+             !write_files(options, &map, &drawn, error) && !quiet) {
         struct cs_text out = {0};
         char name[CS_SERIES_BYTES];
         cs_series_file_name(map.series, name);
         cs_stability_print_table(&map, &out);
         /* gnuplot may be missing: the line then says that there is no picture */
         cs_text_add(&out, "  %.3g s; %s/%s.csv, _border.csv, .json, .gp%s\n\n", map.wall,
-                    folder, name, drawn ? ", .png" : "; no gnuplot: no picture");
+                    options->map.folder, name, drawn ? ", .png" : "; no gnuplot: no picture");
         cs_print_out(stdout, &out, error);
     }
-    if (!error->status && cs_args_get(args, STABILITY_STRICT))
+    if (!error->status && options->strict)
         check_cells(&map, error);
     cs_stability_finish(&map);
     return error->status;
 }
 
-enum cs_status cs_stability_map_all(const struct cs_args *args,
-                                    struct cs_stability_settings *settings, const char *folder,
+enum cs_status cs_stability_map_all(struct cs_stability_options *options,
                                     struct cs_error *error) {
+    struct cs_session_settings *session = &options->map.session;
     struct cs_registry registry = {0};
-    for (uint32_t k = 0; k < settings->session.n_plugins; k++)
-        if (cs_registry_add_file(&registry, settings->session.plugins[k], error))
-            goto done;
-    if (cs_registry_open_all(&registry, error))
-        goto done;
+    if (!cs_registry_add_files(&registry, session->plugins, session->n_plugins, error))
+        cs_registry_open_all(&registry, error);
     for (uint32_t k = 0; k < registry.n && !error->status; k++) {
         const struct cs_integrator *integrator = registry.entries[k].integrator;
         /* a module that was refused */
@@ -158,15 +141,14 @@ enum cs_status cs_stability_map_all(const struct cs_args *args,
         const bool other = integrator->fidelity == CS_FIDELITY_OTHER;
         /* a map varies dt, and its theory is that of the equation of motion */
         if (cs_method_takes_dt(integrator) && !other) {
-            settings->session.integrator = integrator->name;
-            cs_stability_map_one(args, settings, folder, error);
-        } else if (!cs_args_get(args, STABILITY_QUIET))
+            session->integrator = integrator->name;
+            cs_stability_map_one(options, error);
+        } else if (!options->quiet)
             printf("%s: not applicable, it %s\n\n", integrator->name,
                    other                              ? "is of another model"
                    : integrator->traits & CS_ADAPTIVE ? "chooses its own steps"
                                                       : "has no option dt");
     }
-done:
     cs_registry_finish(&registry);
     return error->status;
 }

@@ -1,16 +1,7 @@
-/* Holds the colours of values and of the ink, and converts sRGB to linear RGB. */
+/* Holds the colours of the ink, and converts sRGB to linear RGB. */
 #include "draw/colour.h"
 
-#include "scene/scene.h"
-
-static const uint32_t force_stops[6] = {0x3b1f6b, 0x31578f, 0x1f8a8c,
-                                        0x3db86f, 0xa4d742, 0xfbe84a};
-static const uint32_t strain_stops[6] = {0x1d3f8f, 0x4f8fc9, 0xc3dcea,
-                                         0xf3d3bd, 0xde7a55, 0x8f1626};
-
-// marked triangles are red, all others pale
-static const uint32_t mark_stops[6] = {0xd9dde2, 0xd9dde2, 0xd9dde2,
-                                       0xd9dde2, 0xd9dde2, 0xd0121b};
+#include "draw/look.h"
 
 // a cubic within 0.002 of the sRGB curve: no libm, whose last bit depends on the machine
 void cs_colour_linear(uint32_t hex, float linear[3]) {
@@ -21,11 +12,9 @@ void cs_colour_linear(uint32_t hex, float linear[3]) {
 }
 
 void cs_colour_stops(int32_t look, float stops[6][4]) {
-    const uint32_t *table = look == CS_LOOK_STRAIN      ? strain_stops
-                            : look == CS_LOOK_CROSSINGS ? mark_stops
-                                                        : force_stops;
+    const uint32_t *table = cs_look_kind(look)->stops;
     for (int i = 0; i < 6; i++) {
-        cs_colour_linear(table[i], stops[i]);
+        cs_colour_linear(table ? table[i] : 0, stops[i]);
         stops[i][3] = 1;
     }
 }

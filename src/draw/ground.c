@@ -20,7 +20,7 @@ static double power_of_ten(double length) {
 static const struct cs_posed_collider *floor_of(const struct cs_scene *scene,
                                                 const struct cs_posed_collider *obstacles) {
     for (uint32_t i = 0; i < scene->colliders.n; i++)
-        if (obstacles[i].collider->visible && obstacles[i].kind == CS_COLLIDER_PLANE &&
+        if (obstacles[i].collider->visible && cs_shape_is_endless(obstacles[i].shape) &&
             obstacles[i].axes[1][1] > 0.5)
             return obstacles + i;
     return NULL;

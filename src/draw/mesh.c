@@ -1,6 +1,7 @@
 /* Turns the particles of a body into vertices, normals and texture coordinates. */
 #include "draw/mesh.h"
 
+#include "draw/look.h"
 #include "draw/matrix.h"
 #include "mesh/trimesh.h"
 #include "model/system/faces.h"
@@ -60,7 +61,8 @@ static enum cs_status init_creases(struct cs_mesh *mesh, struct cs_arena *arena,
 enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system, uint32_t body,
                             bool textured, struct cs_arena *arena, struct cs_error *error) {
     const struct cs_body_range *range = system->bodies + body;
-    const bool marked = system->scene->render.look == CS_LOOK_CROSSINGS;
+    const enum cs_look_colours colours = cs_look_kind(system->scene->render.look)->colours;
+    const bool marked = colours == CS_COLOURS_CROSSINGS;
     mesh->range = *range;
     mesh->flat_shading =
         cs_scene_bodies(system->scene)[body].material.shading == CS_SHADING_FLAT;
@@ -68,7 +70,7 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
     mesh->split_vertices = mesh->flat_shading || mesh->has_creases || marked ||
                            (textured && range->mesh && range->mesh->uv);
     mesh->has_curvature =
-        system->scene->render.look == CS_LOOK_LIT && !mesh->flat_shading && !mesh->has_creases;
+        colours == CS_COLOURS_MATERIAL && !mesh->flat_shading && !mesh->has_creases;
     mesh->curvature_radius = reach_of(system, range);
     if (mesh->has_curvature)
         mesh->neighbour_sums =

@@ -1,6 +1,7 @@
 /* Draws everything of a picture that consists of lines. */
 #include "draw/overlay.h"
 
+#include "draw/look.h"
 #include "draw/scene_extent.h"
 #include "draw/surface_style.h"
 #include "draw/viewpoint_forces.h"
@@ -29,22 +30,23 @@ void cs_overlay_aim(struct cs_overlay *overlay, double pixels_per_m) {
 }
 
 bool cs_overlay_hides(const struct cs_scene *scene, uint32_t body) {
-    return scene->render.look == CS_LOOK_SPRINGS &&
+    return cs_look_kind(scene->render.look)->springs &&
            cs_scene_bodies(scene)[body].network.present;
 }
 
 void cs_overlay_draw(const struct cs_overlay *overlay, const struct cs_frame *frame) {
     const struct cs_render *render = &overlay->wireframe.system->scene->render;
+    const struct cs_look_kind *look = cs_look_kind(render->look);
     const struct cs_wireframe *net = &overlay->wireframe;
     struct cs_lines *lines = overlay->lines;
     cs_wireframe_draw_threads(net, lines, frame->x);
-    if (render->look == CS_LOOK_WIREFRAME)
+    if (look->edges)
         cs_wireframe_draw_edges(net, lines, frame->x);
-    if (render->look == CS_LOOK_SPRINGS) {
+    if (look->springs) {
         cs_wireframe_draw_springs(net, lines, frame->x);
         cs_wireframe_draw_pins(net, lines, frame->x, frame->inv_mass);
     }
-    if (render->look == CS_LOOK_GOALS && frame->goals)
+    if (look->goals && frame->goals)
         cs_wireframe_draw_goals(net, lines, frame->x, frame->goals);
     if (render->viewpoint_forces)
         cs_viewpoint_forces_draw(net, lines, frame);

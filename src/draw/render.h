@@ -49,7 +49,7 @@ struct cs_frame {
     const struct cs_posed_collider *colliders; /* (scene->colliders.n) where they are at t */
 };
 
-#define CS_RENDERER_ABI 7u
+#define CS_RENDERER_ABI 8u
 struct cs_renderer {
     unsigned abi;
     const char *name; /* as in the names of enum cs_renderer_kind */

@@ -27,12 +27,10 @@ static void grow_by_mesh(double low[3], double high[3],
                          const struct cs_posed_collider *obstacle) {
     const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
     for (size_t v = 0; v < mesh->n; v++) {
+        const double *own = mesh->positions + v;
         double place[3];
-        for (int i = 0; i < 3; i++) {
-            place[i] = obstacle->centre[i];
-            for (size_t a = 0; a < 3; a++)
-                place[i] += obstacle->axes[a][i] * mesh->positions[a * mesh->n + v];
-        }
+        cs_obstacle_place(obstacle, (double[3]){own[0], own[mesh->n], own[2 * (size_t)mesh->n]},
+                          place);
         grow(low, high, place);
     }
 }
@@ -50,9 +48,9 @@ struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, 
     }
     /* planes are left out: they have no end */
     for (uint32_t i = 0; i < scene->colliders.n; i++) {
-        if (!obstacles[i].collider->visible || obstacles[i].kind == CS_COLLIDER_PLANE)
+        if (!obstacles[i].collider->visible || cs_shape_is_endless(obstacles[i].shape))
             continue;
-        if (obstacles[i].kind == CS_COLLIDER_MESH)
+        if (obstacles[i].shape->bounds == CS_BOUNDS_MESH)
             grow_by_mesh(low, high, obstacles + i);
         else
             grow_by(low, high, obstacles + i);

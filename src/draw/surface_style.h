@@ -23,9 +23,6 @@ struct cs_surface_style {
     double fade_radius;         /* m about the origin where it has melted; 0: none */
 };
 
-/* Looks that colour by a value. */
-bool cs_look_has_values(int32_t look);
-
 /* The style of a body, but for its texture. */
 void cs_style_cloth(struct cs_surface_style *style, const struct cs_material *material,
                     bool textured, int32_t look);

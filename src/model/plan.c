@@ -1,19 +1,12 @@
-/* Decides what a scene and a method need to be built, and prints it with sizes and reasons. */
+/* Decides what a scene and a method need to be built, and prints it with bytes and reasons. */
 #include "model/plan.h"
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
-#include "model/contact/ccd/crossings.h"
-#include "model/contact/surface_points.h"
-#include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
-#include "model/post_step/contact_projection.h"
 #include "model/solver/multigrid.h"
 #include "model/spring/springs.h"
-#include "model/system/shape_clusters.h"
-#include "model/system/system.h"
-#include "model/thread_partition.h"
 #include "scene/body_pairs.h"
 #include "scene/crossing_policy.h"
 #include "scene/event_key.h"
@@ -28,19 +21,18 @@ static const char *const feature_names[CS_FEATURES] = {
 #undef X
 };
 
-static void decide(struct cs_plan *plan, enum cs_feature feature, bool built, size_t bytes,
-                   const char *why, const char *why_not) {
-    plan->rows[feature] = (struct cs_plan_row){
-        .built = built, .bytes = built ? bytes : 0, .reason = built ? why : why_not};
+static void decide(struct cs_plan *plan, enum cs_feature feature, bool built, const char *why,
+                   const char *why_not) {
+    plan->rows[feature] = (struct cs_plan_row){.built = built, .reason = built ? why : why_not};
 }
 
-static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uint32_t *n_runs) {
+static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     plan->n_bodies = scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const uint32_t before = plan->n_springs;
         plan->n += (uint32_t)cs_shape_count(bodies + b);
-        *n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &plan->n_springs);
+        cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &plan->n_springs);
         if (!bodies[b].mesh.present)
             continue;
         const uint32_t inner =
@@ -50,6 +42,7 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene, uin
     }
 }
 
+/* meshes are part of the scene, and there before anything is built */
 static size_t mesh_bytes(const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     size_t bytes = 0;
@@ -79,102 +72,72 @@ static bool has_limit(const struct cs_body *body) {
     return !isnan(body->strain_limit);
 }
 
-static bool has_blocks(const struct cs_plan *plan) {
+static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
+    const struct cs_forces *forces = &scene->forces;
+    const bool springs = plan->n_springs > 0;
+    decide(plan, CS_FEATURE_SPRINGS, springs, "the bodies have springs",
+           cs_scene_first_matched(scene) < plan->n_bodies
+               ? "no stiffness above 0, or shape_matching instead"
+               : "no stiffness above 0");
+    decide(plan, CS_FEATURE_DAMPING,
+           springs && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),
+           "springs.damping is above 0", "springs.damping is 0");
     for (uint32_t k = 0; k < cs_n_terms; k++)
-        if (plan->forces[k].built && cs_terms[k]->add_blocks)
-            return true;
-    return false;
+        plan->forces[k] = cs_terms[k]->plan(scene);
+    decide(plan, CS_FEATURE_AREA, cs_terms_use(scene, plan) & CS_USE_AREA, "a force is by area",
+           "nothing is by area");
+    decide(plan, CS_FEATURE_VELOCITY_LOSS,
+           forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"),
+           "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
+    decide(plan, CS_FEATURE_STRAIN_LIMIT, springs && any_body(scene, has_limit),
+           "a body has strain_limit", "no strain_limit");
+    decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, "the scene has events", "no events");
+    decide(plan, CS_FEATURE_VIEWPOINT_FORCES, cs_viewpoint_forces_any(scene),
+           "an event is a viewpoint_force; it needs a test of what is seen",
+           "no event is a viewpoint_force");
 }
 
-/* each force by its term; the array of normals is counted with the first that uses it */
-static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
-    bool normals = false;
-    for (uint32_t k = 0; k < cs_n_terms; k++) {
-        const struct cs_term *term = cs_terms[k];
-        struct cs_plan_row *row = plan->forces + k;
-        *row = term->plan(scene);
-        if (!row->built || !term->uses || normals)
-            continue;
-        normals = term->uses(scene) & CS_USE_NORMALS;
-        row->bytes += normals ? 3 * plan->n * sizeof(double) : 0;
-    }
+static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, bool render) {
+    decide(plan, CS_FEATURE_CONTACT,
+           scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
+           "the scene has colliders",
+           scene->colliders.n > 0 ? "contact is a force" : "no colliders");
+    const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
+    const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
+    decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
+           cs_scene_crossings_by_pairs(scene) ? "bodies keep off each other or themselves"
+           : wanted                           ? "crossings is not ignore"
+                                              : "they are drawn",
+           "crossings is ignore");
+}
+
+static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs) {
+    const char *idle = "the integrator does not ask for it";
+    const bool matched = cs_scene_first_matched(scene) < plan->n_bodies;
+    decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS, "the integrator asks for it",
+           idle);
+    decide(plan, CS_FEATURE_CLUSTERS, needs & CS_NEED_CLUSTERS && matched,
+           "bodies have shape_matching, and the integrator asks for it",
+           needs & CS_NEED_CLUSTERS ? "no body has shape_matching" : idle);
+    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
+           cs_multigrid_is_used(scene) ? "the integrator asks for it; multigrid for stiff steps"
+                                       : "the integrator asks for it",
+           idle);
 }
 
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
                   bool render) {
     *plan = (struct cs_plan){0};
-    uint32_t n_runs = 0;
-    count_bodies(plan, scene, &n_runs);
-    const size_t n = plan->n, s = plan->n_springs, real = sizeof(double);
-    const struct cs_forces *forces = &scene->forces;
-    /* x and v, the start, mass and its inverse */
-    plan->state_bytes = (6 + 3 + 2) * n * real + scene->bodies.n * sizeof(struct cs_body_range);
-
-    /* springs of meshes have a length and a stiffness of their own */
-    const size_t n_listed = (size_t)plan->n_surface_springs + plan->n_network_springs;
+    count_bodies(plan, scene);
     const bool bodies_are = any_body(scene, is_mesh);
     decide(plan, CS_FEATURE_MESHES, bodies_are || cs_scene_surfaces(scene) > scene->bodies.n,
-           mesh_bytes(scene), bodies_are ? "bodies are meshes" : "colliders are meshes",
-           "every body is a grid");
-    decide(plan, CS_FEATURE_SPRINGS, s > 0,
-           n_runs * sizeof(struct cs_spring_run) + 2 * n_listed * real,
-           "the bodies have springs",
-           cs_scene_first_matched(scene) < plan->n_bodies
-               ? "no stiffness above 0, or shape_matching instead"
-               : "no stiffness above 0");
-    decide(plan, CS_FEATURE_DAMPING,
-           s > 0 && (any_body(scene, has_damping) || cs_event_key_changes(scene, ".damping")),
-           0, "springs.damping is above 0", "springs.damping is 0");
+           bodies_are ? "bodies are meshes" : "colliders are meshes", "every body is a grid");
+    plan->rows[CS_FEATURE_MESHES].bytes = mesh_bytes(scene);
     plan_forces(plan, scene);
-    decide(plan, CS_FEATURE_AREA, cs_terms_use(scene, plan) & CS_USE_AREA, n * real,
-           "a force is by area", "nothing is by area");
-    decide(plan, CS_FEATURE_VELOCITY_LOSS,
-           forces->velocity_loss > 0 || cs_event_key_changes(scene, "forces.velocity_loss"), 0,
-           "forces.velocity_loss is above 0", "forces.velocity_loss is 0");
-    decide(plan, CS_FEATURE_STRAIN_LIMIT, s > 0 && any_body(scene, has_limit), 0,
-           "a body has strain_limit", "no strain_limit");
-    decide(plan, CS_FEATURE_EVENTS, scene->events.n > 0, cs_events_bytes(scene, plan->n),
-           "the scene has events", "no events");
-    decide(plan, CS_FEATURE_VIEWPOINT_FORCES, cs_viewpoint_forces_any(scene),
-           cs_viewpoint_forces_bytes(scene, plan->n),
-           "an event is a viewpoint_force; it needs a test of what is seen",
-           "no event is a viewpoint_force");
-    /* ends and kind; length, stiffness and damping; axial or not */
-    decide(plan, CS_FEATURE_SPRING_LIST, needs & CS_NEED_SPRINGS,
-           s * (3 * sizeof(uint32_t) + 3 * real + sizeof(uint8_t)),
-           "the integrator asks for it", "the integrator does not ask for it");
-    const bool clusters =
-        needs & CS_NEED_CLUSTERS && cs_scene_first_matched(scene) < plan->n_bodies;
-    size_t n_clusters, n_items;
-    cs_shape_clusters_count(scene, &n_clusters, &n_items);
-    decide(plan, CS_FEATURE_CLUSTERS, clusters,
-           (n_clusters + 1 + n_items) * sizeof(uint32_t) + 3 * n_clusters * real,
-           "bodies have shape_matching, and the integrator asks for it",
-           needs & CS_NEED_CLUSTERS ? "no body has shape_matching"
-                                    : "the integrator does not ask for it");
-    /* 3x3 blocks of forces at single particles need room in the solver too */
-    const bool forced = has_blocks(plan);
-    const size_t levels = cs_multigrid_bytes(scene, forced);
-    decide(plan, CS_FEATURE_CONTACT,
-           scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
-           cs_contact_projection_bytes(scene, n, s, forced), "the scene has colliders",
-           scene->colliders.n > 0 ? "contact is a force" : "no colliders");
-    const bool shown = render && scene->render.look == CS_LOOK_CROSSINGS;
-    const bool wanted = cs_scene_crossings(scene) != CS_CROSSINGS_IGNORE;
-    decide(plan, CS_FEATURE_CROSSINGS, wanted || shown,
-           cs_surface_points_bytes(scene) + cs_crossings_bytes(scene),
-           cs_scene_crossings_by_pairs(scene) ? "bodies keep off each other or themselves"
-           : wanted                           ? "crossings is not ignore"
-                                              : "they are drawn",
-           "crossings is ignore");
-    decide(plan, CS_FEATURE_SOLVER, needs & CS_NEED_SOLVE,
-           cs_linear_bytes(scene, n, s, forced) + (forced ? 6 : 3) * n * real,
-           levels ? "the integrator asks for it; multigrid for stiff steps"
-                  : "the integrator asks for it",
-           "the integrator does not ask for it");
-    decide(plan, CS_FEATURE_RENDER, render, 0, "frames are drawn", "no frame is drawn");
-    decide(plan, CS_FEATURE_THREADS, cs_pool_threads() > 1,
-           cs_thread_partition_bytes(scene, cs_pool_threads()), "several share the work",
+    plan_contact(plan, scene, render);
+    plan_needs(plan, scene, needs);
+    decide(plan, CS_FEATURE_RENDER, render, "frames are drawn", "no frame is drawn");
+    decide(plan, CS_FEATURE_THREADS, cs_pool_threads() > 1, "several share the work",
            "one does all the work");
 }
 

@@ -1,4 +1,4 @@
-/* plan.h - what a scene and a method ask for: decided once, printed, and built by it. */
+/* plan.h - what a scene and a method ask for: decided once, built by it, and printed. */
 #ifndef CS_PLAN_H
 #define CS_PLAN_H
 
@@ -19,7 +19,8 @@ void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t n
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
                              struct cs_error *error);
 
-/* Prints it as aligned text, one feature a line. */
+/* Prints it as aligned text, one feature a line, with the bytes that were taken for it so far.
+ */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);
 
 #endif

@@ -12,8 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_built(const struct cs_plan *plan, enum cs_feature feature) {
-    return plan->rows[feature].built;
+/* whether a feature is built; what is taken from now on is counted in its row of the plan */
+static bool begin(struct cs_system *system, enum cs_feature feature) {
+    system->arena.part = &system->plan.rows[feature].bytes;
+    return system->plan.rows[feature].built;
 }
 
 /* doubles from the system's arena; NULL with the error set */
@@ -122,6 +124,7 @@ static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_er
     uint32_t count = 0;
     for (uint32_t i = 0; i < n; i++)
         count += pinned[i];
+    system->arena.part = &system->plan.state_bytes;
     system->pinned = cs_arena_alloc_array(&system->arena, count, sizeof *system->pinned, error);
     if (!system->pinned)
         return;
@@ -132,15 +135,26 @@ static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_er
     }
 }
 
+static void build_term(struct cs_system *system, const struct cs_term *term,
+                       struct cs_error *error) {
+    const uint32_t uses = term->uses ? term->uses(system->scene) : 0;
+    if (uses & CS_USE_NORMALS && !system->normals)
+        system->normals = take(system, 3 * (size_t)system->view.n, error);
+    if (term->build && !error->status)
+        term->build(system, error);
+}
+
 static void choose_terms(struct cs_system *system, struct cs_error *error) {
     for (uint32_t k = 0; k < cs_n_terms && !error->status; k++) {
-        if (!system->plan.forces[k].built)
+        struct cs_plan_row *row = system->plan.forces + k;
+        if (!row->built)
             continue;
-        if (cs_terms[k]->build)
-            cs_terms[k]->build(system, error);
+        system->arena.part = &row->bytes;
+        build_term(system, cs_terms[k], error);
         const char *idle = cs_terms[k]->reason_idle ? cs_terms[k]->reason_idle(system) : NULL;
+        row->built = !idle;
         if (idle)
-            system->plan.forces[k] = (struct cs_plan_row){.reason = idle};
+            row->reason = idle;
         else
             system->terms[system->n_terms++] = cs_terms[k];
     }
@@ -149,6 +163,7 @@ static void choose_terms(struct cs_system *system, struct cs_error *error) {
 static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     const size_t n = system->view.n;
     uint32_t first = 0;
+    system->arena.part = &system->plan.state_bytes;
     system->bodies = cs_arena_alloc_array(&system->arena, system->scene->bodies.n,
                                           sizeof *system->bodies, error);
     system->mass = take(system, n, error);
@@ -156,10 +171,8 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     system->state = take(system, 6 * n, error);
     system->start = take(system, 3 * n, error);
     /* what no force of the scene reads is not taken */
-    if (is_built(&system->plan, CS_FEATURE_AREA))
+    if (begin(system, CS_FEATURE_AREA))
         system->area = take(system, n, error);
-    if (cs_terms_use(system->scene, &system->plan) & CS_USE_NORMALS)
-        system->normals = take(system, 3 * n, error);
     if (error->status)
         return;
     system->view.mass = system->mass;
@@ -176,13 +189,14 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
 
 static void build(struct cs_system *system, void *work, struct cs_error *error) {
     alloc_arrays(system, error);
-    if (!error->status && is_built(&system->plan, CS_FEATURE_SPRINGS))
+    if (!error->status && begin(system, CS_FEATURE_SPRINGS))
         build_springs(system, error);
+    begin(system, CS_FEATURE_THREADS);
     if (!error->status)
         cs_thread_partition_build(system, error);
-    if (!error->status && is_built(&system->plan, CS_FEATURE_SPRING_LIST))
+    if (!error->status && begin(system, CS_FEATURE_SPRING_LIST))
         build_spring_list(system, error);
-    if (!error->status && is_built(&system->plan, CS_FEATURE_CLUSTERS))
+    if (!error->status && begin(system, CS_FEATURE_CLUSTERS))
         cs_shape_clusters_build(system, error);
     if (error->status)
         return;
@@ -198,11 +212,11 @@ static void build(struct cs_system *system, void *work, struct cs_error *error) 
     /* events choose particles by where they start, so before them */
     memcpy(system->start, system->state, 3 * sizeof(double) * system->view.n);
     choose_terms(system, error);
-    if (!error->status && is_built(&system->plan, CS_FEATURE_CROSSINGS))
+    if (!error->status && begin(system, CS_FEATURE_CROSSINGS))
         cs_crossings_build(system, error);
     if (error->status)
         return;
-    if (!is_built(&system->plan, CS_FEATURE_EVENTS))
+    if (!begin(system, CS_FEATURE_EVENTS))
         cs_spectral_bounds_set(system, work);
     else if (!cs_events_build(system, error))
         cs_events_set_bounds(system, work);

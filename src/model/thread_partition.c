@@ -39,23 +39,6 @@ static struct sizes sizes_of(const struct cs_scene *scene, uint32_t threads) {
     return sizes;
 }
 
-static size_t most_chunks(const struct sizes *sizes) {
-    return sizes->listed_springs / CS_SPRING_CHUNK_MAX + sizes->listed_runs;
-}
-
-size_t cs_thread_partition_bytes(const struct cs_scene *scene, uint32_t threads) {
-    if (threads == 1)
-        return 0;
-    const struct sizes sizes = sizes_of(scene, threads);
-    const size_t grids = sizes.blocks * sizeof(struct cs_block) + sizes.runs * sizeof(double);
-    if (!sizes.listed_runs)
-        return grids;
-    return grids + sizes.runs * sizeof(struct cs_spring_slots) +
-           most_chunks(&sizes) * sizeof(struct cs_spring_chunk) +
-           sizes.starts * sizeof(uint32_t) +
-           sizes.listed_springs * (2 * sizeof(uint32_t) + 3 * sizeof(double));
-}
-
 /* end of the block that begins there: of a whole row in a grid */
 static uint32_t end_of_block(const struct cs_system *system, uint32_t begin, uint32_t size) {
     if (system->view.n - begin <= size)
@@ -132,8 +115,9 @@ static void build_chunks(struct cs_system *system, const struct sizes *sizes,
     struct cs_arena *arena = &system->arena;
     struct cs_spring_slots *waits =
         cs_arena_alloc_array(arena, sizes->runs, sizeof *waits, error);
+    const size_t most_lots = sizes->listed_springs / CS_SPRING_CHUNK_MAX + sizes->listed_runs;
     struct cs_spring_chunk *chunks =
-        cs_arena_alloc_array(arena, most_chunks(sizes), sizeof *chunks, error);
+        cs_arena_alloc_array(arena, most_lots, sizeof *chunks, error);
     uint32_t *starts = cs_arena_alloc_array(arena, sizes->starts, sizeof *starts, error);
     uint32_t *around =
         cs_arena_alloc_array(arena, sizes->listed_springs, 2 * sizeof *around, error);

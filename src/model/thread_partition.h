@@ -8,9 +8,6 @@
 
 #include "model/system/system.h"
 
-/* Bytes that sharing a checked scene among that many threads takes; 0 for one. */
-size_t cs_thread_partition_bytes(const struct cs_scene *scene, uint32_t threads);
-
 /* Fills the part of system->springs that is about threads, for those of the pool now; bodies
  * and runs are there. It holds for any number of threads later. CS_ERR_MEMORY. */
 enum cs_status cs_thread_partition_build(struct cs_system *system, struct cs_error *error);

@@ -3,6 +3,7 @@
 #include "scene/event_check.h"
 
 #include "base/options.h"
+#include "scene/check.h"
 #include "scene/event_key.h"
 #include "scene/shape.h"
 #include "scene/viewpoint.h"
@@ -38,13 +39,9 @@ static enum cs_status refuse(const struct look *at, const char *part, const char
 }
 
 static enum cs_status make_unit(const struct look *at, const char *part, double v[3]) {
-    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (length < 1e-12)
-        return refuse(at, part, "the zero vector has no direction");
-    /* one that is unit keeps its bits, as in cs_scene_check */
-    for (int c = 0; c < 3 && fabs(length - 1) > 1e-14; c++)
-        v[c] /= length;
-    return CS_OK;
+    char path[CS_TEXT_MAX];
+    snprintf(path, sizeof path, "events[%u]%s", at->number, part);
+    return cs_check_unit(&(struct cs_check){at->path, at->error}, path, v, 3);
 }
 
 static double begin_of(const struct cs_event *event) {

@@ -3,6 +3,7 @@
 #include "scene/event_key.h"
 
 #include "base/options.h"
+#include "base/value_kind.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -106,10 +107,10 @@ static const struct cs_option *descend(struct walk *walk) {
             if (!next_index(walk, list->n, &index))
                 return NULL;
             walk->object = (char *)list->items + index * row->table->size;
-        } else if (row->type == CS_VECTOR || row->type == CS_COUNTS) {
+        } else if (cs_value_kind_of(row)->several) {
             if (!next_index(walk, row->count, &index))
                 return NULL;
-            walk->object += index * sizeof(double);
+            walk->object += index * cs_value_kind_of(row)->size;
         }
         /* the end of the way down: the path must end here too */
         if (!row->table) {

@@ -26,14 +26,17 @@ struct cs_light {
     double ambient[3], diffuse[3], specular[3]; /* intensities, linear RGB */
 };
 
+/* X(NAME, name): the looks; what each shows is in draw/look.c. */
+#define CS_LOOK_LIST(X)                                                                        \
+    X(LIT, lit)                                                                                \
+    X(WIREFRAME, wireframe)                                                                    \
+    X(SPRINGS, springs)                                                                        \
+    X(FORCE, force) X(STRAIN, strain) X(GOALS, goals) X(CROSSINGS, crossings)
+
 enum cs_look {
-    CS_LOOK_LIT,
-    CS_LOOK_WIREFRAME,
-    CS_LOOK_SPRINGS,
-    CS_LOOK_FORCE,
-    CS_LOOK_STRAIN,
-    CS_LOOK_GOALS,
-    CS_LOOK_CROSSINGS
+#define X(NAME, name) CS_LOOK_##NAME,
+    CS_LOOK_LIST(X)
+#undef X
 };
 enum cs_background_kind { CS_BACKGROUND_GRADIENT, CS_BACKGROUND_FLAT, CS_BACKGROUND_NONE };
 /* what is behind everything; colours are linear RGB */

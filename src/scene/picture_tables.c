@@ -46,8 +46,9 @@ static const struct cs_option light_rows[] = {
 };
 const struct cs_table cs_light_table = {ROWS(light_rows), .size = sizeof(struct cs_light)};
 
-const char *const cs_look_names[] = {"lit",    "wireframe", "springs",   "force",
-                                     "strain", "goals",     "crossings", NULL};
+#define X(NAME, name) #name,
+const char *const cs_look_names[] = {CS_LOOK_LIST(X) NULL};
+#undef X
 static const double vga[2] = {640, 480};
 static const double paper[3] = {0.82, 0.86, 0.91};
 static const char *const background_names[] = {"gradient", "flat", "none", NULL};

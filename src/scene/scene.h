@@ -162,14 +162,23 @@ struct cs_capsule {
     double from[3], to[3]; /* m, centres of the round ends */
     double radius;         /* m */
 };
+/* X(name, keys, text): the shapes of colliders. A shape has here its keys, and all else in its
+ * own file: struct cs_table cs_NAME_keys and struct cs_shape cs_shape_NAME (collider.h). A mesh
+ * has its keys with those of bodies. */
+#define CS_SHAPE_LIST(X)                                                                       \
+    X(sphere, cs_sphere, "a sphere")                                                           \
+    X(plane, cs_plane, "an infinite plane")                                                    \
+    X(floor, cs_floor, "an infinite horizontal plane")                                         \
+    X(box, cs_cuboid, "a box with rounded edges")                                              \
+    X(capsule, cs_capsule, "a rod with round ends")                                            \
+    X(mesh, cs_mesh_source,                                                                    \
+      "triangles, met by points, edges and triangles; for contact.law force")
+
 struct cs_collider {
-    struct cs_sphere sphere;
-    struct cs_plane plane;
-    struct cs_floor floor;
-    struct cs_cuboid box;
-    struct cs_capsule capsule;
-    struct cs_mesh_source mesh; /* without velocity and spin */
-    double friction;            /* Coulomb coefficient */
+#define X(name, keys, text) struct keys name; /* exactly one is present */
+    CS_SHAPE_LIST(X)
+#undef X
+    double friction;   /* Coulomb coefficient */
     double absorption; /* share of the inward normal velocity taken away; < 0: restitution */
     double thickness;  /* m, skin in front of the surface */
     double colour[3];

@@ -1,12 +1,11 @@
 /* The scene's rows: the one place that says which keys a scene has. Parsing, --set, --resolved,
  * the schema and the man page all come from here. A default outside its range (NAN, -1) means:
  * absent unless given. */
-#include "scene/scene.h"
+#include "scene/collider.h"
 #include "scene/table_rows.h"
 
 static const double zero3[3] = {0, 0, 0};
 static const double one2[2] = {1, 1};
-static const double up3[3] = {0, 1, 0};
 static const double no_turn[4] = {0, 0, 0, 1};
 static const double absent9[9] = {ABSENT, ABSENT, ABSENT, ABSENT, ABSENT,
                                   ABSENT, ABSENT, ABSENT, ABSENT};
@@ -65,12 +64,11 @@ static const struct cs_option mesh_rows[] = {
 static const struct cs_table mesh_table = {
     ROWS(mesh_rows), .size = sizeof(struct cs_mesh_source), .optional = true, .one_of = true};
 /* a collider's has the same rows but for the last two: an event moves it */
-static const struct cs_table collider_mesh_table = {.rows = mesh_rows,
-                                                    .n = sizeof mesh_rows / sizeof *mesh_rows -
-                                                         2,
-                                                    .size = sizeof(struct cs_mesh_source),
-                                                    .optional = true,
-                                                    .one_of = true};
+const struct cs_table cs_mesh_keys = {.rows = mesh_rows,
+                                      .n = sizeof mesh_rows / sizeof *mesh_rows - 2,
+                                      .size = sizeof(struct cs_mesh_source),
+                                      .optional = true,
+                                      .one_of = true};
 
 static const char *const placement_names[] = {"random", "opposed-normals", "nearest", NULL};
 static const struct cs_option network_rows[] = {
@@ -186,56 +184,12 @@ static const struct cs_option body_rows[] = {
 };
 static const struct cs_table body_table = {ROWS(body_rows), .size = sizeof(struct cs_body)};
 
-static const struct cs_option sphere_rows[] = {
-    VECTOR(struct cs_sphere, centre, 3, "m", NULL, -BIG, BIG, "centre"),
-    REAL(struct cs_sphere, radius, "m", 0.3, 1e-9, BIG, "radius"),
-};
-static const struct cs_table sphere_table = {
-    ROWS(sphere_rows), .size = sizeof(struct cs_sphere), .optional = true};
-static const struct cs_option plane_rows[] = {
-    VECTOR(struct cs_plane, point, 3, "m", zero3, -BIG, BIG, "a point of the plane"),
-    VECTOR(struct cs_plane, normal, 3, "", up3, -BIG, BIG,
-           "points to the free side; of any length but 0"),
-    REAL(struct cs_plane, extent, "m", 1, 1e-6, 1e6,
-         "half the side of the square that is drawn"),
-};
-static const struct cs_table plane_table = {ROWS(plane_rows), .size = sizeof(struct cs_plane),
-                                            .optional = true};
-static const struct cs_option floor_rows[] = {
-    REAL(struct cs_floor, height, "m", 0, -BIG, BIG, "the plane y = height"),
-    REAL(struct cs_floor, extent, "m", 3, 1e-6, 1e6,
-         "half the side of the square that is drawn"),
-};
-static const struct cs_table floor_table = {ROWS(floor_rows), .size = sizeof(struct cs_floor),
-                                            .optional = true};
-static const struct cs_option cuboid_rows[] = {
-    VECTOR(struct cs_cuboid, centre, 3, "m", NULL, -BIG, BIG, "centre"),
-    VECTOR(struct cs_cuboid, size, 3, "m", NULL, 1e-6, 1e6,
-           "length of its edges along x, y and z, before the rotation"),
-    VECTOR(struct cs_cuboid, rotate, 4, "", no_turn, -BIG, BIG,
-           "rotation about the centre as a quaternion x, y, z, w of any length"),
-    REAL(struct cs_cuboid, radius, "m", ABSENT, 1e-9, BIG,
-         "rounds edges and corners, within size; absent: a twentieth of the shortest edge"),
-};
-static const struct cs_table cuboid_table = {
-    ROWS(cuboid_rows), .size = sizeof(struct cs_cuboid), .optional = true};
-static const struct cs_option capsule_rows[] = {
-    VECTOR(struct cs_capsule, from, 3, "m", NULL, -BIG, BIG, "centre of one round end"),
-    VECTOR(struct cs_capsule, to, 3, "m", NULL, -BIG, BIG, "centre of the other"),
-    REAL(struct cs_capsule, radius, "m", 0.05, 1e-9, BIG, "of the ends and of the rod"),
-};
-static const struct cs_table capsule_table = {
-    ROWS(capsule_rows), .size = sizeof(struct cs_capsule), .optional = true};
 static const double grey[3] = {0.32, 0.36, 0.42};
 static const struct cs_option collider_rows[] = {
-    TABLE(struct cs_collider, sphere, sphere_table, "a sphere"),
-    TABLE(struct cs_collider, plane, plane_table, "an infinite plane"),
-    TABLE(struct cs_collider, floor, floor_table, "an infinite horizontal plane"),
-    TABLE(struct cs_collider, box, cuboid_table, "a box with rounded edges"),
-    TABLE(struct cs_collider, capsule, capsule_table, "a rod with round ends"),
-    TABLE(struct cs_collider, mesh, collider_mesh_table,
-          "triangles, met by points, edges and triangles; for contact.law force"),
-    REAL(struct cs_collider, friction, "", 0, 0, 1000, "Coulomb coefficient"),
+#define X(name, keys, text) TABLE(struct cs_collider, name, cs_##name##_keys, text),
+    CS_SHAPE_LIST(X)
+#undef X
+        REAL(struct cs_collider, friction, "", 0, 0, 1000, "Coulomb coefficient"),
     REAL(struct cs_collider, absorption, "", 1, -1, 1,
          "share of the inward normal velocity that is taken away; -e: it is turned round and "
          "multiplied by e (restitution)"),

@@ -1,6 +1,7 @@
 /* Keeps the account of a run's energy, step by step. */
 #include "sim/energy_ledger.h"
 
+#include "base/table.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/normals.h"
@@ -14,16 +15,34 @@ enum { POINTS = 3 };
 static const double points[POINTS] = {0.11270166537925831, 0.5, 0.88729833462074169};
 static const double weights[POINTS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/* the forces without an energy, by the part that they are */
-static const struct {
-    uint32_t part;
-    enum cs_ledger_work work;
-} forces[] = {{CS_PART_DAMPING, CS_WORK_DAMPERS},
-              {CS_PART_DRAG, CS_WORK_DRAG},
-              {CS_PART_WIND, CS_WORK_WIND},
-              {CS_PART_DISSIPATIVE, CS_WORK_FRICTION},
-              {CS_PART_EXTERNAL, CS_WORK_PUSH}};
-enum { FORCES = sizeof forces / sizeof *forces };
+static const char *const holdings[] = {
+#define X(name, column) column,
+    CS_LEDGER_ENERGY_LIST(X)};
+static const char *const works[] = {CS_LEDGER_WORK_LIST(X)};
+#undef X
+
+/* Columns of energies or of works: those of a list, and behind them one a force. */
+struct columns {
+    const char *const *names;
+    uint32_t n, parts; /* of forces that have one */
+    bool work;
+};
+/* springs have columns by their kinds */
+static const struct columns energies = {holdings, CS_HOLDINGS,
+                                        CS_PART_WITH_ENERGY & ~CS_PART_SPRINGS, false};
+static const struct columns work_done = {works, CS_WORKS, CS_PART_WITHOUT_ENERGY, true};
+
+/* of force k of the list of forces */
+static uint32_t column_of(const struct columns *columns, uint32_t k) {
+    const struct cs_term *term = cs_terms[k];
+    const char *name = columns->work ? term->work_column : term->energy_column;
+    if (!(term->part_bits & columns->parts))
+        return CS_NO_COLUMN;
+    for (uint32_t c = 0; c < columns->n; c++)
+        if (!strcmp(columns->names[c], name ? name : term->name))
+            return c;
+    return columns->n + k;
+}
 
 static size_t length_of(const struct cs_energy_ledger *ledger) {
     return 3 * (size_t)ledger->system->view.n;
@@ -42,21 +61,23 @@ static void move_values(const struct cs_energy_ledger *ledger, double t) {
 }
 
 static void measure(const struct cs_energy_ledger *ledger, double t, const double *x,
-                    const double *v, double holds[CS_HOLDINGS]) {
+                    const double *v, double holds[CS_HOLDINGS_MOST]) {
     const struct cs_system *system = ledger->system;
-    const struct cs_energy energy = cs_diagnostics_energy(system, t, x, v);
+    const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
     const uint32_t n = system->view.n;
-    holds[CS_HOLDING_KINETIC] = energy.kinetic;
+    memset(holds, 0, CS_HOLDINGS_MOST * sizeof *holds);
+    holds[CS_HOLDING_KINETIC] = cs_measure_kinetic(system, v);
     holds[CS_HOLDING_STRETCH] = cs_springs_energy(&system->springs, n, x, CS_PART_STRETCH);
     holds[CS_HOLDING_SHEAR] = cs_springs_energy(&system->springs, n, x, CS_PART_SHEAR);
     holds[CS_HOLDING_BEND] = cs_springs_energy(&system->springs, n, x, CS_PART_BEND);
-    holds[CS_HOLDING_GRAVITY] = energy.gravity;
-    holds[CS_HOLDING_OTHER] = energy.other;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (ledger->holding_of[k] != CS_NO_COLUMN)
+            holds[ledger->holding_of[k]] += cs_terms[k]->energy(system, &at);
 }
 
-static double sum_of(const double holds[CS_HOLDINGS]) {
+static double sum_of(const double holds[CS_HOLDINGS_MOST]) {
     double sum = 0;
-    for (int k = 0; k < CS_HOLDINGS; k++)
+    for (int k = 0; k < CS_HOLDINGS_MOST; k++)
         sum += holds[k];
     return sum;
 }
@@ -67,20 +88,20 @@ double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger) {
 
 /* f = the parts at (t, x, v), on pinned particles too: what they bear is work where they move
  */
-static void find_force(const struct cs_energy_ledger *ledger, double t, const double *x,
+static void find_force(const struct cs_system *system, double t, const double *x,
                        const double *v, uint32_t parts, double *f) {
-    struct cs_system free = *ledger->system;
+    struct cs_system free = *system;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = parts};
     free.n_pinned = 0;
     if (cs_terms_need_normals(&free, parts))
-        cs_normals_update(ledger->system, x);
+        cs_normals_update(&free, x);
     cs_terms_force(&free, &at, f);
 }
 
 static void find_acceleration(const struct cs_energy_ledger *ledger, double t, const double *x,
                               const double *v, double *a) {
     const size_t n = ledger->system->view.n;
-    find_force(ledger, t, x, v, CS_PART_ALL, a);
+    find_force(ledger->system, t, x, v, CS_PART_ALL, a);
     for (size_t k = 0; k < 3 * n; k++)
         a[k] *= ledger->system->inv_mass[k % n];
 }
@@ -89,6 +110,11 @@ enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_
                                      double t, struct cs_error *error) {
     const size_t n3 = 3 * (size_t)system->view.n;
     *ledger = (struct cs_energy_ledger){.system = system};
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const bool built = system->plan.forces[k].built;
+        ledger->holding_of[k] = built ? column_of(&energies, k) : CS_NO_COLUMN;
+        ledger->work_of[k] = built ? column_of(&work_done, k) : CS_NO_COLUMN;
+    }
     double **const arrays[] = {&ledger->state, &ledger->trial_state, &ledger->acceleration,
                                &ledger->force, &ledger->b};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
@@ -102,7 +128,7 @@ enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_
 
 void cs_energy_ledger_resume(struct cs_energy_ledger *ledger, double t) {
     const double *x = ledger->system->state;
-    double work[CS_WORKS];
+    double work[CS_WORKS_MOST];
     memcpy(work, ledger->work, sizeof work);
     cs_energy_ledger_store_state(ledger, t, x, x + length_of(ledger));
     memcpy(ledger->work, work, sizeof work);
@@ -161,7 +187,7 @@ static double find_drift(const struct cs_energy_ledger *ledger, double t, double
     const double away = h / 100, *x = ledger->trial_state, *v = x + n3;
     double ends[2];
     for (int k = 0; k < 2; k++) {
-        double holds[CS_HOLDINGS];
+        double holds[CS_HOLDINGS_MOST];
         const double at = k ? t + away : t - away;
         move_values(ledger, at);
         measure(ledger, at, x, v, holds);
@@ -177,7 +203,7 @@ static double find_pins(const struct cs_energy_ledger *ledger, double t) {
     const struct cs_system *system = ledger->system;
     const size_t n = system->view.n, n3 = 3 * n;
     double power = 0;
-    find_force(ledger, t, ledger->trial_state, ledger->trial_state + n3, CS_PART_ALL,
+    find_force(system, t, ledger->trial_state, ledger->trial_state + n3, CS_PART_ALL,
                ledger->force);
     for (uint32_t p = 0; p < system->n_pinned; p++)
         for (size_t k = system->pinned[p]; k < n3; k += n)
@@ -185,26 +211,34 @@ static double find_pins(const struct cs_energy_ledger *ledger, double t) {
     return power;
 }
 
-static uint32_t parts_of(const struct cs_system *system) {
-    uint32_t parts = 0;
-    for (uint32_t k = 0; k < system->n_terms; k++)
-        parts |= system->terms[k]->part_bits;
-    return parts;
+/* leaves those of a system's forces that have a column */
+static void choose_forces(const struct cs_energy_ledger *ledger, uint32_t column,
+                          struct cs_system *some) {
+    some->n_terms = 0;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        if (ledger->work_of[k] == column)
+            some->terms[some->n_terms++] = cs_terms[k];
+}
+
+/* adds the works of forces at one point of the step, over `time` */
+static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
+    struct cs_system some = *ledger->system;
+    const size_t n3 = length_of(ledger);
+    const double *v = ledger->trial_state + n3;
+    for (uint32_t c = 0; c < CS_WORKS_MOST; c++) {
+        choose_forces(ledger, c, &some);
+        if (!some.n_terms)
+            continue;
+        find_force(&some, t, ledger->trial_state, v, CS_PART_WITHOUT_ENERGY, ledger->force);
+        ledger->work[c] += time * dot(n3, ledger->force, v);
+    }
 }
 
 /* adds the works at one point of the step, over `time` */
 static void add_works(struct cs_energy_ledger *ledger, double t, double time, double h) {
-    const struct cs_system *system = ledger->system;
-    const size_t n3 = length_of(ledger);
-    const double *v = ledger->trial_state + n3;
     move_values(ledger, t);
-    for (int k = 0; k < FORCES; k++) {
-        if (!(forces[k].part & parts_of(system)))
-            continue;
-        find_force(ledger, t, ledger->trial_state, v, forces[k].part, ledger->force);
-        ledger->work[forces[k].work] += time * dot(n3, ledger->force, v);
-    }
-    if (!system->events)
+    add_forces(ledger, t, time);
+    if (!ledger->system->events)
         return;
     ledger->work[CS_WORK_PINS] += time * find_pins(ledger, t);
     ledger->work[CS_WORK_VALUES] += time * find_drift(ledger, t, h);
@@ -212,8 +246,8 @@ static void add_works(struct cs_energy_ledger *ledger, double t, double time, do
 
 static double sum_forces(const struct cs_energy_ledger *ledger) {
     double sum = 0;
-    for (int k = 0; k < CS_WORK_INTEGRATOR; k++)
-        sum += ledger->work[k];
+    for (int k = 0; k < CS_WORKS_MOST; k++)
+        sum += k < CS_WORK_INTEGRATOR || k >= CS_WORKS ? ledger->work[k] : 0;
     return sum;
 }
 
@@ -256,30 +290,46 @@ void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, con
     find_acceleration(ledger, t, x, v, ledger->acceleration);
 }
 
-void cs_energy_ledger_print_head(struct cs_text *out) {
-    cs_text_add(out, "frame,t");
-#define X(name, column) cs_text_add(out, "," column);
-    CS_LEDGER_ENERGY_LIST(X)
-    cs_text_add(out, ",sum");
-    CS_LEDGER_WORK_LIST(X)
-#undef X
-    cs_text_add(out, "\n");
+/* value NULL: the name, as in the head */
+static void add_column(struct cs_text *out, const char *name, const double *value) {
+    if (value) {
+        cs_csv_add_number(out, *value);
+        return;
+    }
+    cs_text_add(out, ",");
+    for (; *name; name++)
+        cs_text_add(out, "%c", *name == ' ' ? '_' : *name);
 }
 
-static void add_real(struct cs_text *out, double value) {
-    cs_text_add(out, ",");
-    if (isfinite(value))
-        cs_text_add_real(out, value);
+/* values NULL: the head */
+static void add_columns(const struct columns *columns, const double *values,
+                        struct cs_text *out) {
+    for (uint32_t c = 0; c < columns->n; c++)
+        add_column(out, columns->names[c], values ? values + c : NULL);
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const uint32_t c = column_of(columns, k);
+        if (c < columns->n || c == CS_NO_COLUMN)
+            continue;
+        add_column(out, cs_terms[k]->name, values ? values + c : NULL);
+        if (!values && columns->work && column_of(&energies, k) != CS_NO_COLUMN)
+            cs_text_add(out, "_work");
+    }
+}
+
+void cs_energy_ledger_print_head(struct cs_text *out) {
+    cs_text_add(out, "frame,t");
+    add_columns(&energies, NULL, out);
+    cs_text_add(out, ",sum");
+    add_columns(&work_done, NULL, out);
+    cs_text_add(out, "\n");
 }
 
 void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
                                 struct cs_text *out) {
     cs_text_add(out, "%u", frame);
-    add_real(out, ledger->t);
-    for (int k = 0; k < CS_HOLDINGS; k++)
-        add_real(out, ledger->energies[k]);
-    add_real(out, cs_energy_ledger_sum(ledger));
-    for (int k = 0; k < CS_WORKS; k++)
-        add_real(out, ledger->work[k]);
+    cs_csv_add_number(out, ledger->t);
+    add_columns(&energies, ledger->energies, out);
+    cs_csv_add_number(out, cs_energy_ledger_sum(ledger));
+    add_columns(&work_done, ledger->work, out);
     cs_text_add(out, "\n");
 }

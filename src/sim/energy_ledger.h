@@ -12,21 +12,24 @@
 
 #include "model/system/system.h"
 
-/* X(name, column): energies in J of a state. */
+/* X(name, column): energies in J of a state. A force of terms.h adds its energy to the column
+ * that its struct cs_term names, else to one of its own after these, in the order of forces. */
 #define CS_LEDGER_ENERGY_LIST(X)                                                               \
     X(KINETIC, "kinetic")                                                                      \
     X(STRETCH, "stretch")                                                                      \
     X(SHEAR, "shear") X(BEND, "bend") X(GRAVITY, "gravity") X(OTHER, "other")
-/* X(name, column): J since the start, what comes in above 0. */
+/* X(name, column): work in J since the start, above 0 if it comes in. Columns of forces stand
+ * before PINS, or after all as those of their energies. */
 #define CS_LEDGER_WORK_LIST(X)                                                                 \
     X(DAMPERS, "dampers")                                                                      \
     X(DRAG, "drag")                                                                            \
     X(WIND, "wind")                                                                            \
     X(FRICTION, "friction")                                                                    \
     X(PUSH, "push")                                                                            \
-    X(PINS, "pins") X(VALUES, "values") X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit")   \
-        X(PROJECTION, "projection") X(ABSORPTION, "absorption") X(LOSS, "velocity_loss")       \
-            X(EVENTS, "events")
+    X(PINS, "pins")                                                                            \
+    X(VALUES, "values")                                                                        \
+    X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit") X(PROJECTION, "projection")           \
+        X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
 
 enum cs_ledger_energy {
 #define X(name, column) CS_HOLDING_##name,
@@ -41,13 +44,21 @@ enum cs_ledger_work {
         CS_WORKS
 };
 
+enum {
+    CS_HOLDINGS_MOST = CS_HOLDINGS + CS_TERMS_MAX,
+    CS_WORKS_MOST = CS_WORKS + CS_TERMS_MAX,
+    CS_NO_COLUMN = CS_WORKS_MOST
+};
+
 /* Zeroed: none. */
 struct cs_energy_ledger {
     struct cs_system *system;        /* borrowed */
     double t;                        /* s, of the state that is kept */
     double *state, *acceleration;    /* (6,n) that state, x then v; (3,n) in m/s2 */
     double *trial_state, *force, *b; /* (6,n), (3,n), (3,n) work */
-    double energies[CS_HOLDINGS], work[CS_WORKS];
+    /* columns of each force in the list of terms.h; CS_NO_COLUMN: none, or it does not act */
+    uint32_t holding_of[CS_TERMS_MAX], work_of[CS_TERMS_MAX];
+    double energies[CS_HOLDINGS_MOST], work[CS_WORKS_MOST];
     struct cs_arena arena;
 };
 
@@ -72,7 +83,8 @@ void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, con
 /* The sum of all that is held, in J. */
 double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger);
 
-/* CSV: a frame's holdings, their sum, and the works. */
+/* CSV: a frame's holdings, their sum, and the works; a column of a force's own has its name,
+ * with _ for spaces, and that of its work _work behind it where it has an energy too. */
 void cs_energy_ledger_print_head(struct cs_text *out);
 void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
                                 struct cs_text *out);

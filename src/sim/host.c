@@ -245,14 +245,23 @@ static void host_blocks(void *ctx, double t, const double *x, const double *v, d
     cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
+/* whether a run has a feature; what is taken from now on is counted in its row of the plan */
+static bool begin(struct cs_run_host *host, enum cs_feature feature) {
+    struct cs_plan_row *row = host->run->plan.rows + feature;
+    host->arena.part = &row->bytes;
+    return row->built;
+}
+
 /* only where it is asked for: methods leave out what is NULL */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
     const bool judged = cs_step_limit_applies(system);
     if (judged)
         host->table.max_step_fraction = host_max_share;
+    begin(host, CS_FEATURE_CROSSINGS);
     if (cs_blocked_step_init(&host->blocked_step, system, &host->arena, error))
         return error->status;
+    host->arena.part = &host->run->plan.state_bytes;
     // who asks for one may ask for the other
     if (!judged && !cs_spectral_bounds_depend_on_state(system))
         return CS_OK;
@@ -280,7 +289,7 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
 
 static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
     struct cs_system *system = host->run->system;
-    if (!system->plan.rows[CS_FEATURE_CONTACT].built)
+    if (!begin(host, CS_FEATURE_CONTACT))
         return CS_OK;
     if (cs_contact_projection_init(&host->contact, system, &host->arena, error))
         return error->status;
@@ -331,7 +340,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     if (add_rate(host, error) || add_contact(host, error))
         return error->status;
     // only methods that solve pay for the solver's memory and the copies of the state
-    if (!system->plan.rows[CS_FEATURE_SOLVER].built)
+    if (!begin(host, CS_FEATURE_SOLVER))
         return CS_OK;
     const size_t n3 = 3 * (size_t)system->view.n;
     host->setup_x = cs_arena_alloc_array(&host->arena, n3, sizeof(double), error);

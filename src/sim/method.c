@@ -208,11 +208,7 @@ void cs_method_describe(const struct cs_method *method, struct cs_text *out) {
         if (cs_option_is_optional(row) && !cs_option_is_set(row, method->options))
             continue;
         cs_text_add(out, "%c%s=", mark, row->name);
-        if (row->type == CS_CHOICE) {
-            const char *field = (const char *)method->options + row->offset;
-            cs_text_add(out, "%s", row->choices[*(const int32_t *)(const void *)field]);
-        } else
-            cs_option_print(row, method->options, out);
+        cs_option_print_plain(row, method->options, out);
         mark = ',';
     }
 }

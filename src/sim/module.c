@@ -1,6 +1,7 @@
 /* Opens an integrator module and checks it against the contract before it is called. */
 #include "sim/module.h"
 
+#include "base/value_kind.h"
 #include "sim/crash.h"
 #include "sim/process_state.h"
 
@@ -22,24 +23,11 @@ static enum cs_status refuse_option(const struct cs_integrator *integrator,
                    integrator->name, option->name ? option->name : "(no name)", why);
 }
 
-static size_t size_of(enum cs_type type) {
-    switch (type) {
-    case CS_REAL:
-        return sizeof(double);
-    case CS_INT:
-        return sizeof(int64_t);
-    case CS_BOOL:
-        return sizeof(bool);
-    case CS_CHOICE:
-        return sizeof(int32_t);
-    default:
-        return 0;
-    }
-}
-
 static enum cs_status check_option(const struct cs_integrator *integrator,
                                    const struct cs_option *option, struct cs_error *error) {
-    const size_t size = size_of(option->type);
+    /* the first four types are for modules; a foreign one may hold any number here */
+    const size_t size =
+        (unsigned)option->type <= CS_CHOICE ? cs_value_kind_of(option)->size : 0;
     if (!is_name(option->name, "abcdefghijklmnopqrstuvwxyz0123456789_"))
         return refuse_option(integrator, option, "its name is not of [a-z0-9_]", error);
     if (size == 0)

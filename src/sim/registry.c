@@ -94,6 +94,13 @@ enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *fi
     return CS_OK;
 }
 
+enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
+                                     uint32_t n, struct cs_error *error) {
+    for (uint32_t k = 0; k < n && !error->status; k++)
+        cs_registry_add_file(registry, files[k], error);
+    return error->status;
+}
+
 /* Whether the file's bytes hold the name as a whole string: a module that could have the
  * integrator is opened, and no other (opening one loads its libraries). */
 static bool may_contain_name(const char *file, const char *name) {
@@ -208,6 +215,20 @@ enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_erro
     return CS_OK;
 }
 
+const char *const *cs_registry_names(struct cs_registry *registry, bool others, uint32_t *n,
+                                     struct cs_error *error) {
+    const char **names = NULL;
+    *n = 0;
+    if (!cs_registry_open_all(registry, error))
+        names = cs_arena_alloc_array(&registry->arena, registry->n + 1, sizeof *names, error);
+    for (uint32_t k = 0; names && k < registry->n; k++) {
+        const struct cs_integrator *integrator = registry->entries[k].integrator;
+        if (integrator && (others || integrator->fidelity != CS_FIDELITY_OTHER))
+            names[(*n)++] = integrator->name;
+    }
+    return names;
+}
+
 /* The library of a method that this build was made without, or NULL. The text is the
  * registry's. */
 static const char *find_left_out(struct cs_registry *registry, const char *name,
@@ -222,14 +243,10 @@ static const char *find_left_out(struct cs_registry *registry, const char *name,
 
 static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
-    if (cs_registry_open_all(registry, error))
+    uint32_t n;
+    const char *const *names = cs_registry_names(registry, true, &n, error);
+    if (!names)
         return error->status;
-    const char *names[257];
-    uint32_t n = 0;
-    for (uint32_t k = 0; k < registry->n && n < 256; k++)
-        if (registry->entries[k].integrator)
-            names[n++] = registry->entries[k].integrator->name;
-    names[n] = NULL;
     const char *nearest = cs_nearest_word(name, names);
     const char *library = find_left_out(registry, name, error);
     if (library)

@@ -26,6 +26,10 @@ struct cs_registry {
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error);
 
+/* Adds n module files, until one is refused. */
+enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
+                                     uint32_t n, struct cs_error *error);
+
 /* Finds an integrator by name: files that were added first, then the modules in the folders
  * (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute folders only) by their
  * names. First comes the module that the build's own list, modules.txt, names. Else only a
@@ -43,6 +47,10 @@ enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *fil
 
 /* Opens every module of the folders, for the list. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
+/* Does so and lists the names of the integrators, (*n) and a NULL. others: also of those that
+ * do not follow the scene's equation of motion. The list is the registry's; NULL: it failed. */
+const char *const *cs_registry_names(struct cs_registry *registry, bool others, uint32_t *n,
+                                     struct cs_error *error);
 
 void cs_registry_finish(struct cs_registry *registry);
 

@@ -84,15 +84,14 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
 
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
-    const size_t before = host->arena.used;
     host->process_state = cs_process_state_save();
     cs_crash_begin(CS_CRASH_METHOD);
     host->creating = true;
+    host->arena.part = &run->method_bytes;
     watch(run, "in create");
     const enum cs_step step = run->integrator->create(&host->table, options, &host->self);
     cs_crash_forget(CS_CRASH_METHOD);
     host->creating = false;
-    run->method_bytes = host->arena.used - before;
     return judge(run, step, error) ? error->status : cs_run_restart(run, 0, error);
 }
 
@@ -133,7 +132,7 @@ static enum cs_step advance_frame(struct cs_run *run, double end) {
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
                             const struct cs_run_settings *settings, struct cs_error *error) {
-    *run = (struct cs_run){.system = system, .integrator = integrator};
+    *run = (struct cs_run){.system = system, .integrator = integrator, .plan = system->plan};
     run->host = calloc(1, sizeof *run->host);
     if (!run->host)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");

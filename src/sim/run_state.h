@@ -8,18 +8,24 @@
 #include <clothsim/integrator.h>
 #include <signal.h>
 
-/* How a run stands. All but the first end it; none of them is an error. */
+/* How a run stands. All but the first end it; none of them is an error. CS_FAILED stands in
+ * results only: a run says by an error that its method gave up. */
 #define CS_OUTCOME_LIST(X)                                                                     \
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
     X(CS_UNBOUNDED, "blew up: energy beyond all bound")                                        \
     X(CS_INTERRUPTED, "interrupted")                                                           \
-    X(CS_OVER_BUDGET, "over budget")
+    X(CS_OVER_BUDGET, "over budget")                                                           \
+    X(CS_FAILED, "failed")
 enum cs_outcome {
 #define X(name, text) name,
     CS_OUTCOME_LIST(X)
 #undef X
 };
+
+static inline bool cs_outcome_is_blow_up(enum cs_outcome outcome) {
+    return outcome == CS_NOT_FINITE || outcome == CS_UNBOUNDED;
+}
 
 /* Stages that the host times, when asked to. */
 enum cs_stage {
@@ -67,6 +73,7 @@ struct cs_run {
     struct cs_counts counts;
     double stage_seconds[CS_STAGES]; /* all 0 unless timed */
     double advance_seconds;          /* wall time inside the method */
+    struct cs_plan plan;             /* the system's, with the bytes of the run's own arrays */
     size_t method_bytes;             /* of arrays that the method took from the host */
     char notes[CS_NOTES_MAX][160];   /* remarks of the method */
     uint32_t n_notes;

@@ -48,10 +48,7 @@ void cs_method_add_options(const struct cs_method *method, const char *except,
         if (!kept || !strcmp(row->name, except))
             continue;
         cs_text_add(out, "%s%s=", any ? "," : "", row->name);
-        if (row->type == CS_CHOICE)
-            cs_text_add(out, "%s", row->choices[cs_method_choice(method, row)]);
-        else
-            cs_option_print(row, options, out);
+        cs_option_print_plain(row, options, out);
         any = true;
     }
 }

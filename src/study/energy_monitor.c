@@ -1,6 +1,7 @@
 /* Judges by its energy alone whether a run is still sound. */
 #include "study/energy_monitor.h"
 
+#include "base/table.h"
 #include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
 #include "model/force/terms.h"
@@ -49,24 +50,6 @@ static enum cs_status spring_speed(const struct cs_run *run, double *speed,
     return CS_OK;
 }
 
-/* largest speed; count: particles above limit */
-static double fastest(const struct cs_run *run, double limit, uint32_t *particle,
-                      uint32_t *count) {
-    const size_t n = run->system->view.n;
-    double largest = -1;
-    *particle = *count = 0;
-    for (size_t i = 0; i < n; i++) {
-        const double v[3] = {run->v[i], run->v[n + i], run->v[2 * n + i]};
-        const double speed = length_of(v);
-        *count += !(speed <= limit);
-        if (!(speed <= largest)) {
-            largest = speed;
-            *particle = (uint32_t)i;
-        }
-    }
-    return largest;
-}
-
 /* largest acceleration in m/s2 of a particle by forces with an energy, or by the others */
 static double force_acceleration(const struct cs_system *system, size_t i, bool with_energy) {
     double push = 0;
@@ -96,8 +79,8 @@ static void start(struct cs_energy_monitor *monitor, const struct cs_run *run) {
     monitor->start_energy = cs_energy_without_gravity(&energy);
     monitor->gravity = energy.gravity;
     monitor->gravity_released = 0;
-    monitor->start_speed =
-        fmax(monitor->start_speed, fastest(run, HUGE_VAL, &particle, &count));
+    monitor->start_speed = fmax(monitor->start_speed,
+                                cs_measure_speed(system, run->v, HUGE_VAL, &particle, &count));
     monitor->gravity_acceleration = monitor->force_acceleration = monitor->mass =
         monitor->wind_mass = 0;
     for (size_t i = 0; i < system->view.n; i++) {
@@ -160,7 +143,8 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
              SPEED_SPREAD * mean);
     row->energy_limit = ENERGY_FACTOR * energy;
     row->speed_limit = SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
-    row->speed = fastest(run, row->speed_limit, &row->particle, &row->particles);
+    row->speed =
+        cs_measure_speed(system, run->v, row->speed_limit, &row->particle, &row->particles);
     const double held = cs_energy_without_gravity(&row->energy);
     /* first, because no comparison with NAN is true */
     if (!isfinite(held + row->speed + row->strain))
@@ -209,11 +193,8 @@ void cs_energy_monitor_print_row(const struct cs_energy_monitor_row *row, uint32
                              energy->gravity, cs_energy_total(energy), row->strain,
                              row->speed};
     cs_text_add(out, "%u", frame);
-    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
-        cs_text_add(out, ",");
-        if (isfinite(values[k]))
-            cs_text_add_real(out, values[k]);
-    }
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++)
+        cs_csv_add_number(out, values[k]);
     cs_text_add(out, ",%u,%u,%s\n", row->particle, row->particles,
                 cs_stability_word(row->verdict));
 }

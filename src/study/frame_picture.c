@@ -12,11 +12,7 @@
 #include <string.h>
 
 bool cs_picture_is_coloured(const struct cs_scene *scene) {
-    return scene->render.look == CS_LOOK_FORCE || scene->render.look == CS_LOOK_STRAIN;
-}
-
-const char *cs_picture_unit(const struct cs_scene *scene) {
-    return scene->render.look == CS_LOOK_FORCE ? "N" : "";
+    return cs_look_kind(scene->render.look)->title;
 }
 
 static enum cs_status read_texture(const struct cs_scene *scene, const char *name,
@@ -46,7 +42,7 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
 
 /* false: out of memory */
 static bool take_marks(struct cs_picture *picture) {
-    if (picture->scene->render.look != CS_LOOK_CROSSINGS)
+    if (cs_look_kind(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
         return true;
     picture->triangle_marks = calloc((size_t)picture->system->surfaces->n_triangles + 1, 1);
     return picture->triangle_marks;
@@ -55,7 +51,7 @@ static bool take_marks(struct cs_picture *picture) {
 static enum cs_status alloc_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
     const bool coloured = cs_picture_is_coloured(picture->scene);
-    const bool drawn_to = picture->scene->render.look == CS_LOOK_GOALS;
+    const bool drawn_to = cs_look_kind(picture->scene->render.look)->goals;
     picture->x = calloc(n, 3 * sizeof(double));
     picture->colliders = calloc(picture->scene->colliders.n + 1, sizeof *picture->colliders);
     picture->inv_mass = calloc(n, sizeof(double));
@@ -142,14 +138,14 @@ enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_syste
 
 void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
                        double *work) {
-    if (system->scene->render.look == CS_LOOK_FORCE)
+    if (cs_look_kind(system->scene->render.look)->colours == CS_COLOURS_FORCE)
         cs_diagnostics_particle_force(system, run->t, run->x, run->v, scalar, work);
     else
         cs_diagnostics_particle_strain(system, run->x, scalar);
 }
 
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]) {
-    range[0] = scene->render.look == CS_LOOK_STRAIN ? -most : 0;
+    range[0] = cs_look_kind(scene->render.look)->has_sign ? -most : 0;
     range[1] = most;
 }
 
@@ -164,24 +160,16 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
                          picture->range);
 }
 
-const char *cs_picture_title(int32_t look) {
-    return look == CS_LOOK_FORCE ? "force N" : look == CS_LOOK_STRAIN ? "strain %" : NULL;
-}
-
-double cs_picture_factor(int32_t look) {
-    return look == CS_LOOK_STRAIN ? 100 : 1;
-}
-
 static void paint(void *object) {
     struct cs_picture *picture = object;
-    const int32_t look = picture->scene->render.look;
+    const struct cs_look_kind *look = cs_look_kind(picture->scene->render.look);
     const double start = cs_clock_wall();
     const struct cs_frame frame = {.t = picture->t,
                                    .x = picture->x,
                                    .scalar = picture->scalar,
                                    .range = {picture->range[0], picture->range[1]},
-                                   .title = cs_picture_title(look),
-                                   .factor = cs_picture_factor(look),
+                                   .title = look->title,
+                                   .factor = look->factor,
                                    .inv_mass = picture->inv_mass,
                                    .goals = picture->goals,
                                    .triangle_marks = picture->triangle_marks,
@@ -241,4 +229,23 @@ void cs_picture_close(struct cs_picture *picture) {
     free(picture->triangle_marks);
     free(picture->colliders);
     *picture = (struct cs_picture){0};
+}
+
+enum cs_status cs_snapshot_draw(const struct cs_run *run, enum cs_renderer_kind kind,
+                                struct cs_image *image, struct cs_text *renderer,
+                                struct cs_error *error) {
+    const struct cs_render *render = &run->system->scene->render;
+    struct cs_picture picture;
+    image->width = (uint32_t)render->size[0];
+    image->height = (uint32_t)render->size[1];
+    image->rgb = malloc(cs_image_bytes(image));
+    if (!image->rgb)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
+    if (cs_picture_open(&picture, run->system, kind, false, false, error))
+        return error->status;
+    cs_picture_begin(&picture, run, image);
+    cs_picture_end(&picture, error);
+    cs_text_add(renderer, "%s", cs_picture_renderer(&picture));
+    cs_picture_close(&picture);
+    return error->status;
 }

@@ -7,6 +7,7 @@
 #define CS_FRAME_PICTURE_H
 
 #include "base/worker_thread.h"
+#include "draw/look.h"
 #include "draw/render.h"
 #include "sim/install_paths.h"
 #include "sim/run.h"
@@ -56,17 +57,18 @@ void cs_picture_values(const struct cs_system *system, const struct cs_run *run,
 /* Its range, up to a magnitude: about 0 where the value has a sign, else from 0. */
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]);
 
-/* true if the colours show a value, so that picture->range has a meaning; its unit. */
+/* true if the colours show a value, so that picture->range has a meaning. */
 bool cs_picture_is_coloured(const struct cs_scene *scene);
-const char *cs_picture_unit(const struct cs_scene *scene);
-
-/* Of a look's colour bar: quantity and unit, NULL without; and the factor of its figures. */
-const char *cs_picture_title(int32_t look);
-double cs_picture_factor(int32_t look);
 
 /* What drew the pictures. */
 const char *cs_picture_renderer(const struct cs_picture *picture);
 
 void cs_picture_close(struct cs_picture *picture);
+
+/* Draws the state of a run once, at the size that its scene says. The caller frees image->rgb,
+ * also on failure; image->alpha is the caller's. Adds the renderer's description. */
+enum cs_status cs_snapshot_draw(const struct cs_run *run, enum cs_renderer_kind kind,
+                                struct cs_image *image, struct cs_text *renderer,
+                                struct cs_error *error);
 
 #endif

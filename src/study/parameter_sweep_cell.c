@@ -1,14 +1,12 @@
 /* One cell of a sweep: reads the scene with its values, names it by what it means, runs it. */
 #include "study/parameter_sweep_cell.h"
 
-#include "base/clock.h"
-#include "base/csv.h"
+#include "base/table.h"
 #include "model/force/diagnostics.h"
 #include "scene/file/scene_hash.h"
 #include "sim/module.h"
+#include "study/follow.h"
 #include "study/machine.h"
-
-#include <math.h>
 
 static bool is_own_fault(const struct cs_error *failure) {
     return failure->status == CS_ERR_SCENE || failure->status == CS_ERR_MODULE;
@@ -81,24 +79,13 @@ void cs_parameter_sweep_cell_close(struct cs_parameter_sweep_cell *cell) {
     cs_session_close(&cell->session);
 }
 
-static void add_real(struct cs_text *out, double value) {
-    cs_text_add(out, ",");
-    if (isfinite(value))
-        cs_text_add_real(out, value);
-}
-
-static void add_text(struct cs_text *out, const char *text) {
-    cs_text_add(out, ",");
-    cs_csv_add_field(out, text);
-}
-
 void cs_parameter_sweep_add_head(const struct cs_parameter_sweep *product,
                                  struct cs_text *out) {
     cs_text_add(out, "cell");
     for (uint32_t k = 0; k < product->n_keys; k++)
-        add_text(out, product->keys[k].path);
+        cs_csv_add_text(out, product->keys[k].path);
     cs_text_add(out, ",integrator,outcome,frames,time,steps,evals,iterations,kinetic,elastic,"
-                     "energy,strain,hash,cpu,machine,version,note,key\n");
+                     "energy,strain,hash,cpu,machine,version,note,key");
 }
 
 /* What came of it, for the columns behind the method's. */
@@ -108,18 +95,18 @@ static void add_result(const struct cs_session *session, const char *outcome, do
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
     char hash[CS_HASH_DIGITS];
     cs_hash_doubles(run->x, 6 * (size_t)session->system.view.n, hash);
-    add_text(out, outcome);
+    cs_csv_add_text(out, outcome);
     cs_text_add(out, ",%u", run->frame);
-    add_real(out, run->t);
+    cs_csv_add_number(out, run->t);
     cs_text_add(out, ",%llu,%llu,%llu", (unsigned long long)run->counts.steps,
                 (unsigned long long)run->counts.forces,
                 (unsigned long long)run->counts.solve_iterations);
-    add_real(out, energy.kinetic);
-    add_real(out, energy.elastic);
-    add_real(out, cs_energy_total(&energy));
-    add_real(out, cs_diagnostics_strain(run->system, run->x));
-    add_text(out, hash);
-    add_real(out, cpu);
+    cs_csv_add_number(out, energy.kinetic);
+    cs_csv_add_number(out, energy.elastic);
+    cs_csv_add_number(out, cs_energy_total(&energy));
+    cs_csv_add_number(out, cs_diagnostics_strain(run->system, run->x));
+    cs_csv_add_text(out, hash);
+    cs_csv_add_number(out, cpu);
 }
 
 /* A scene or a method that refuses is a row; what the command line has wrong is none. */
@@ -130,23 +117,20 @@ static enum cs_status add_failure(struct cs_parameter_sweep *product,
         return cs_fail(error, failure->status, "%s", failure->message);
     if (!product->n_refused++)
         product->first_refusal = *failure;
-    add_text(out, failure->status == CS_ERR_SCENE ? "refused" : "failed");
+    cs_csv_add_text(out, failure->status == CS_ERR_SCENE ? "refused" : "failed");
     cs_text_add(out, ",,,,,,,,,,,");
     return CS_OK;
 }
 
-/* From the plan to the last frame; *cpu: s that the frames took. */
-static void run_frames(struct cs_parameter_sweep_cell *cell, uint32_t frames, double *cpu) {
+/* From the plan to the last frame. Returns the s that the frames took. */
+static double run_frames(struct cs_parameter_sweep_cell *cell, uint32_t frames) {
     struct cs_session *session = &cell->session;
     struct cs_error *failure = &cell->refusal;
-    if (failure->status || cs_session_build(session, failure) ||
-        cs_session_begin(session, NULL, failure))
-        return;
-    const double begin = cs_clock_cpu();
-    while (session->run.frame < frames && session->run.outcome == CS_RUNNING &&
-           !cs_run_frame(&session->run, failure))
-        ;
-    *cpu = cs_clock_cpu() - begin;
+    struct cs_follow follow = {.run = &session->run, .last = frames};
+    if (!failure->status && !cs_session_build(session, failure) &&
+        !cs_session_begin(session, NULL, failure))
+        cs_follow_next(&follow, failure);
+    return follow.cpu;
 }
 
 enum cs_status cs_parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
@@ -155,23 +139,22 @@ enum cs_status cs_parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
     const struct cs_session *session = &cell->session;
     const struct cs_integrator *integrator = session->method.integrator;
     char machine[CS_MACHINE_NAME];
-    double cpu = 0;
     cs_text_add(out, "%u", cell->number);
     for (uint32_t k = 0; k < product->n_keys; k++)
-        add_text(out, cell->overrides[k].value);
-    run_frames(cell, product->frames, &cpu);
-    add_text(out, cell->method ? cell->method : integrator ? integrator->name : "");
-    if (session->run.outcome == CS_INTERRUPTED)
-        cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
-    else if (cell->refusal.status)
+        cs_csv_add_text(out, cell->overrides[k].value);
+    const double cpu = run_frames(cell, product->frames);
+    cs_csv_add_text(out, cell->method ? cell->method : integrator ? integrator->name : "");
+    cs_follow_check(&session->run, "; finished rows were kept", error);
+    if (!error->status && cell->refusal.status)
         add_failure(product, &cell->refusal, out, error);
-    else
+    else if (!error->status)
         add_result(session, cs_outcome_text(session->run.outcome), cpu, out);
     cs_machine_name(machine);
-    add_text(out, machine);
-    add_text(out, CS_VERSION);
-    add_text(out, cell->refusal.message);
-    cs_text_add(out, ",%s\n", cell->key);
+    cs_csv_add_text(out, machine);
+    cs_csv_add_text(out, CS_VERSION);
+    cs_csv_add_text(out, cell->refusal.message);
+    cs_csv_add_text(out, cell->key);
+    cs_text_add(out, "\n");
     if (out->failed && !error->status)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
     return error->status;

@@ -30,7 +30,7 @@ enum cs_status cs_parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
                                            struct cs_parameter_sweep *product,
                                            struct cs_text *out, struct cs_error *error);
 
-/* Adds the first line of the table. */
+/* Adds the names of the columns, without the end of the line. */
 void cs_parameter_sweep_add_head(const struct cs_parameter_sweep *product, struct cs_text *out);
 
 #endif

@@ -2,8 +2,8 @@
 #ifndef CS_PARAMETER_SWEEP_STATE_H
 #define CS_PARAMETER_SWEEP_STATE_H
 
+#include "base/table.h"
 #include "study/session.h"
-#include "study/shard.h"
 
 enum { CS_PARAMETER_AXES_MAX = 16, CS_PARAMETER_SWEEP_CELLS_MAX = 10000000 };
 

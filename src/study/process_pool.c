@@ -21,6 +21,7 @@
 /* In memory that all workers see. */
 struct shared {
     atomic_uint next;
+    uint32_t ticks;
     struct cs_error errors[CS_PROCESS_POOL_MAX]; /* one a worker */
     struct cs_crash_log logs[CS_PROCESS_POOL_MAX];
     atomic_bool done[CS_PROCESS_POOL_MAX]; /* it came to its end itself */
@@ -149,6 +150,7 @@ enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_er
     uint32_t n = 0;
     if (!shared)
         return error->status;
+    workers->ticks = &shared->ticks;
     /* what waits in the buffers is not to be written twice */
     fflush(NULL);
     while (n < workers->n_workers && n < workers->n_tasks && n < CS_PROCESS_POOL_MAX) {

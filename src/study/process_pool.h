@@ -28,7 +28,7 @@ struct cs_process_pool {
     /* in the calling process, about ten times a second; may be NULL */
     void (*progress)(void *ctx, uint32_t ticks);
     void *progress_ctx;
-    uint32_t *ticks;         /* in memory that all workers see */
+    uint32_t *ticks;         /* of the pool: in memory that all workers see while it runs */
     double task_seconds_max; /* of processor time for a task, which is then left as it is; 0:
                                 any */
     const volatile sig_atomic_t *stop; /* set: the workers are told; may be NULL */

@@ -12,14 +12,13 @@
 #include <string.h>
 
 const char *cs_provenance_text(const struct cs_json *object, const char *key) {
-    const struct cs_json *found = object ? cs_json_find(object, key) : NULL;
-    return found && cs_json_kind_of(found) == CS_JSON_TEXT ? cs_json_text(found) : "";
+    const struct cs_json *found = cs_json_find_kind(object, key, CS_JSON_TEXT);
+    return found ? cs_json_text(found) : "";
 }
 
 double cs_provenance_number(const struct cs_json *object, const char *key) {
-    const struct cs_json *found = object ? cs_json_find(object, key) : NULL;
-    return found && cs_json_kind_of(found) == CS_JSON_NUMBER ? cs_json_number(found)
-                                                             : (double)NAN;
+    const struct cs_json *found = cs_json_find_kind(object, key, CS_JSON_NUMBER);
+    return found ? cs_json_number(found) : (double)NAN;
 }
 
 /* behind the object that begins at a place of a text that was checked */
@@ -34,9 +33,9 @@ static size_t end_of_object(const char *text, size_t at) {
 }
 
 static enum cs_status take_scene(struct cs_provenance *provenance, struct cs_error *error) {
-    const struct cs_json *scene = cs_json_find(provenance->json, "scene");
+    const struct cs_json *scene = cs_json_find_kind(provenance->json, "scene", CS_JSON_OBJECT);
     size_t begin;
-    if (!scene || cs_json_kind_of(scene) != CS_JSON_OBJECT || !*provenance->scene_file ||
+    if (!scene || !*provenance->scene_file ||
         !cs_json_position(scene, provenance->text, false, &begin))
         return cs_fail(error, CS_ERR_FILE,
                        "%s: expected \"scene\" and \"scene_file\", as clothsim writes them",
@@ -48,7 +47,8 @@ static enum cs_status take_scene(struct cs_provenance *provenance, struct cs_err
 }
 
 static void take_members(struct cs_provenance *provenance) {
-    const struct cs_json *root = provenance->json, *fast = cs_json_find(root, "fast_render");
+    const struct cs_json *root = provenance->json;
+    const struct cs_json *fast = cs_json_find_kind(root, "fast_render", CS_JSON_BOOL);
     const struct cs_json *module = cs_json_find(root, "module");
     const double restarts = cs_provenance_number(root, "restarted_every");
     provenance->version = cs_provenance_text(cs_json_find(root, "versions"), "clothsim");
@@ -61,8 +61,7 @@ static void take_members(struct cs_provenance *provenance) {
     provenance->module_hash = cs_provenance_text(module, "hash");
     provenance->library = cs_provenance_text(module, "library");
     provenance->restarts = restarts >= 1 && restarts < 1e9 ? (uint32_t)restarts : 0;
-    provenance->fast_render =
-        fast && cs_json_kind_of(fast) == CS_JSON_BOOL && cs_json_is_true(fast);
+    provenance->fast_render = fast && cs_json_is_true(fast);
 }
 
 static enum cs_status parse(struct cs_provenance *provenance, size_t length,

@@ -2,6 +2,7 @@
 #include "study/provenance_write.h"
 
 #include "base/hash.h"
+#include "base/json_writer.h"
 #include "sim/module.h"
 
 #include <stdio.h>
@@ -52,9 +53,7 @@ static void add_file(void *ctx, const char *path, const char *what) {
     if (list->error->status || access(path, F_OK) ||
         cs_hash_file(path, &bytes, hash, list->error))
         return;
-    cs_text_add(list->out, "%s\n    {\"path\": ", list->any ? "," : "");
-    cs_text_add_json(list->out, path);
-    cs_text_add(list->out, ", \"hash\": \"%s\"}", hash);
+    cs_json_write(list->out, ",\n    {'path': %s, 'hash': %s}", path, hash);
     list->any = true;
 }
 
@@ -80,16 +79,10 @@ void cs_provenance_out_find_module(struct cs_session *session,
              is_own(found->file) ? strrchr(found->file, '/') + 1 : found->file);
 }
 
-static void add_text(struct cs_text *out, const char *before, const char *value) {
-    cs_text_add(out, "%s", before);
-    cs_text_add_json(out, value);
-}
-
 enum cs_status cs_provenance_out_print_scene(const struct cs_scene *scene, struct cs_text *out,
                                              struct cs_error *error) {
     struct list list = {.out = out, .error = error};
-    add_text(out, "  \"scene_file\": ", scene->path);
-    cs_text_add(out, ",\n  \"files\": [");
+    cs_json_write(out, "  'scene_file': %s,\n  'files': [", scene->path);
     cs_scene_each_file(scene, add_file, &list);
     cs_text_add(out, "%s]", list.any ? "\n  " : "");
     if (!error->status && out->failed)
@@ -104,12 +97,9 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
     if (cs_provenance_out_print_scene(&session->scene, out, error))
         return error->status;
     cs_provenance_out_find_module(session, &module);
-    cs_text_add(out, ",\n  \"scene_hash\": \"%s\"", hash);
-    add_text(out, ",\n  \"method\": ", method);
-    add_text(out, ",\n  \"module\": {\"file\": ", module.file);
-    cs_text_add(out, ", \"hash\": \"%s\"", module.hash);
-    add_text(out, ", \"library\": ", module.library);
-    cs_text_add(out, "}");
+    cs_json_write(out, ",\n  'scene_hash': %s,\n  'method': %s,\n", hash, method);
+    cs_json_write(out, "  'module': {'file': %s, 'hash': %s, 'library': %s}", module.file,
+                  module.hash, module.library);
     return out->failed
                ? cs_fail(error, CS_ERR_MEMORY, "out of memory for what a result hangs on")
                : CS_OK;
@@ -117,7 +107,7 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
 
 void cs_provenance_out_add_restarts(uint32_t frames, struct cs_text *out) {
     if (frames)
-        cs_text_add(out, "  \"restarted_every\": %u,\n", frames);
+        cs_json_write(out, "  'restarted_every': %u,\n", frames);
 }
 
 /* JSON's texts hold no line break of their own: those that there are stand between values. */
@@ -133,10 +123,11 @@ static void add_compact(const char *json, struct cs_text *out) {
 void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
                                     struct cs_text *out) {
     struct cs_text whole = {0};
-    cs_text_add(&whole, "{\"versions\": {\"clothsim\": \"%s\"},\n", CS_VERSION);
-    add_text(&whole, "\"renderer\": ", recipe->renderer_description);
-    add_text(&whole, ",\n\"renderer_name\": ", recipe->renderer);
-    cs_text_add(&whole, ",\n\"fast_render\": %s,\n", recipe->fast_render ? "true" : "false");
+    cs_json_write(&whole,
+                  "{'versions': {'clothsim': %s},\n'renderer': %s,\n'renderer_name': %s,\n"
+                  "'fast_render': %d,\n",
+                  CS_VERSION, recipe->renderer_description, recipe->renderer,
+                  recipe->fast_render);
     cs_provenance_out_add_restarts(recipe->restarts, &whole);
     cs_text_add(&whole, "%s,\n\"scene\": %s}", recipe->provenance, recipe->scene);
     add_compact(cs_text_get(&whole), out);

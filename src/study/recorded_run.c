@@ -1,8 +1,6 @@
 /* Runs a method on the smooth form of a scene, and records its trajectory. */
 #include "study/recorded_run.h"
 
-#include "base/clock.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +32,7 @@ enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *set
     asked.integrator = "velocity-verlet";
     if (cs_session_open_plan(&session, &asked, error))
         return error->status;
-    const double frames = ceil(seconds * session.scene.time.fps * (1 - 1e-9));
+    const double frames = cs_follow_frames(&session.scene, seconds);
     if (!(frames <= 1e6))
         cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than 1000000 frames", seconds);
     settings->frames = (uint32_t)frames;
@@ -76,30 +74,19 @@ static void store_state(struct cs_trajectory *track, const struct cs_run *run,
     track->n_recorded = run->frame;
 }
 
-/* One frame, or all that are left, between two looks at the clocks. */
-static enum cs_status step_timed(struct cs_recorded_run *recording, uint32_t last,
-                                 struct cs_recorded_run_result *end, struct cs_error *error) {
-    struct cs_run *run = &recording->session.run;
-    const double cpu = cs_clock_cpu(), wall = cs_clock_wall();
-    while (run->frame < last && run->outcome == CS_RUNNING && !error->status)
-        cs_run_frame(run, error);
-    end->cpu += cs_clock_cpu() - cpu;
-    end->wall += cs_clock_wall() - wall;
-    return error->status;
-}
-
 /* Copies and counts are not timed; where there are none, the clocks are read twice in all. */
-static enum cs_status step_frames(struct cs_recorded_run *recording,
-                                  struct cs_trajectory *track,
-                                  struct cs_recorded_run_result *end, struct cs_error *error) {
+static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory *track,
+                        struct cs_recorded_run_result *end, struct cs_error *error) {
     struct cs_run *run = &recording->session.run;
-    store_state(track, run, &end->crossings);
-    while (run->frame < recording->frames && run->outcome == CS_RUNNING) {
-        if (step_timed(recording, track ? run->frame + 1 : recording->frames, end, error))
-            return error->status;
+    struct cs_follow follow = {.run = run, .last = recording->frames, .every = track ? 1 : 0};
+    do
         store_state(track, run, &end->crossings);
-    }
-    return CS_OK;
+    while (cs_follow_next(&follow, error));
+    // a state between two frames, at which the run ended, counts as well
+    if (run->outcome != CS_RUNNING && !error->status)
+        store_state(track, run, &end->crossings);
+    end->cpu = follow.cpu;
+    end->wall = follow.wall;
 }
 
 /* A run with events leaves pins, values and times as they were at its end: the next one, and
@@ -117,42 +104,24 @@ static void store_notes(struct cs_recorded_run_result *end, const struct cs_run 
     }
 }
 
-/* Two ways to fail: the method's own, which is a row, and the world's. */
-static enum cs_status judge(struct cs_recorded_run_result *end, const struct cs_error *failure,
-                            struct cs_error *error) {
-    if (failure->status == CS_ERR_MODULE) {
-        end->failed = true;
-        snprintf(end->note, sizeof end->note, "%.239s", failure->message);
-        return CS_OK;
-    }
-    if (failure->status)
-        return cs_fail(error, failure->status, "%s", failure->message);
-    if (end->outcome == CS_INTERRUPTED)
-        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted; finished rows were kept");
-    return CS_OK;
-}
-
 enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double budget,
                                        struct cs_trajectory *track,
                                        struct cs_recorded_run_result *end,
                                        struct cs_error *error) {
     struct cs_session *session = &recording->session;
-    struct cs_error failure = {0};
     *end = (struct cs_recorded_run_result){0};
     session->settings.run.budget = budget;
-    if (!cs_session_begin(session, recording->initial_state, &failure)) {
-        step_frames(recording, track, end, &failure);
-        end->outcome = session->run.outcome;
-        const bool blew_up = end->outcome == CS_NOT_FINITE || end->outcome == CS_UNBOUNDED;
-        end->time = blew_up ? session->run.blow_up.time : session->run.t;
+    if (!cs_session_begin(session, recording->initial_state, error)) {
+        step_frames(recording, track, end, error);
         end->counts = session->run.counts;
         store_notes(end, &session->run);
         cs_hash_doubles(session->run.x, 6 * (size_t)session->system.view.n, end->hash);
-        cs_run_finish(&session->run);
     }
-    if (renew(recording, error))
-        return error->status;
-    return judge(end, &failure, error);
+    cs_follow_result(&session->run, "; finished rows were kept", &end->result, error);
+    if (end->result.outcome == CS_FAILED)
+        snprintf(end->note, sizeof end->note, "%.239s", end->result.message);
+    cs_run_finish(&session->run);
+    return error->status ? error->status : renew(recording, error);
 }
 
 void cs_recorded_run_close(struct cs_recorded_run *recording) {

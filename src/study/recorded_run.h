@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "study/crossing_stats.h"
+#include "study/follow.h"
 #include "study/session.h"
 
 /* The scene and how long; what every run of a comparison shares. */
@@ -34,9 +35,7 @@ struct cs_trajectory {
 
 /* What one run came to, beside its states. */
 struct cs_recorded_run_result {
-    enum cs_outcome outcome;
-    bool failed;      /* the method gave up: outcome does not say so */
-    double time;      /* reached, s */
+    struct cs_run_result result;
     double cpu, wall; /* s, of stepping only */
     struct cs_counts counts;
     struct cs_crossing_stats

@@ -5,7 +5,8 @@
 #include "draw/image_diff.h"
 #include "io/png.h"
 #include "sim/run_record.h"
-#include "study/snapshot.h"
+#include "study/follow.h"
+#include "study/frame_picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,18 +59,19 @@ static enum cs_status restart(struct work *work, struct cs_error *error) {
 static bool step(struct work *work, uint32_t total, struct cs_error *error) {
     const struct cs_reproduction_settings *settings = work->settings;
     struct cs_run *run = &work->session.run;
-    if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
+    struct cs_follow follow = {.run = run, .last = run->frame + 1.0, .every = 1};
+    if (!cs_follow_next(&follow, error))
         return false;
     if (settings->progress)
         settings->progress(settings->ctx, run->frame, total);
     return true;
 }
 
-static enum cs_status check_interrupt(const struct work *work, struct cs_error *error) {
-    return work->session.run.outcome == CS_INTERRUPTED
-               ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted in frame %u",
-                         work->session.run.frame + 1)
-               : error->status;
+static enum cs_status take_end(const struct work *work, struct cs_run_result *result,
+                               struct cs_error *error) {
+    char where[32];
+    snprintf(where, sizeof where, " in frame %u", work->session.run.frame + 1);
+    return cs_follow_result(&work->session.run, where, result, error);
 }
 
 static void compare_state(struct work *work, const char *then) {
@@ -81,45 +83,35 @@ static void compare_state(struct work *work, const char *then) {
         differ(work, what, then, now);
 }
 
-/* "finished", "blew up ...", "failed" */
-static const char *outcome_of(const struct work *work, const struct cs_error *failure) {
-    return failure->status == CS_ERR_MODULE ? "failed"
-                                            : cs_outcome_text(work->session.run.outcome);
-}
-
 /* A run that ended of itself ends in the frame behind its last, and in the same way; what was
  * interrupted says nothing. */
 static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_error *error) {
     const struct cs_json *root = work->carried.json;
     const char *then = cs_provenance_text(root, "outcome");
-    const bool ended = strcmp(then, cs_outcome_text(CS_RUNNING)) != 0;
-    struct cs_error failure = {0};
+    const char *detail = cs_provenance_text(root, "outcome_detail");
+    struct cs_run_result now;
     if (!strcmp(then, cs_outcome_text(CS_INTERRUPTED)))
         return CS_OK;
-    if (ended)
-        step(work, total, &failure);
-    if (failure.status && failure.status != CS_ERR_MODULE)
-        return cs_fail(error, failure.status, "%s", failure.message);
-    if (strcmp(then, outcome_of(work, &failure)) != 0)
-        differ(work, "the outcome", then, outcome_of(work, &failure));
-    else if (failure.status &&
-             strcmp(cs_provenance_text(root, "outcome_detail"), failure.message))
-        differ(work, "the reason", cs_provenance_text(root, "outcome_detail"), failure.message);
+    if (strcmp(then, cs_outcome_text(CS_RUNNING)) != 0)
+        step(work, total, error);
+    if (take_end(work, &now, error))
+        return error->status;
+    if (strcmp(then, cs_outcome_text(now.outcome)) != 0)
+        differ(work, "the outcome", then, cs_outcome_text(now.outcome));
+    else if (now.outcome == CS_FAILED && strcmp(detail, now.message) != 0)
+        differ(work, "the reason", detail, now.message);
     else
         cs_text_add(&work->again->equal_items, " and the outcome");
-    return check_interrupt(work, error);
+    return CS_OK;
 }
 
-static void describe_early_end(struct work *work, struct cs_error *error) {
-    struct cs_text what = {0};
-    struct cs_error failure = *error;
-    if (failure.status && failure.status != CS_ERR_MODULE)
-        return;
-    *error = (struct cs_error){0};
-    cs_text_add(&what, "the end of frame %u", work->session.run.frame + 1);
-    differ(work, cs_text_get(&what), "a state",
-           failure.status ? failure.message : outcome_of(work, &failure));
-    cs_text_finish(&what);
+static enum cs_status describe_early_end(struct work *work, struct cs_error *error) {
+    char what[48];
+    struct cs_run_result now;
+    snprintf(what, sizeof what, "the end of frame %u", work->session.run.frame + 1);
+    if (!take_end(work, &now, error))
+        differ(work, what, "a state", now.message);
+    return error->status;
 }
 
 static enum cs_status compare_frames(struct work *work, struct cs_error *error) {
@@ -129,8 +121,7 @@ static enum cs_status compare_frames(struct work *work, struct cs_error *error) 
     uint32_t equal = 0;
     for (; frame && !has_differed(work) && !error->status; frame = cs_json_next(frame)) {
         if (!step(work, total, error)) {
-            if (!check_interrupt(work, error) || error->status == CS_ERR_MODULE)
-                describe_early_end(work, error);
+            describe_early_end(work, error);
             break;
         }
         compare_state(work, cs_provenance_text(frame, "hash"));
@@ -214,7 +205,7 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     if (render->background.kind == CS_BACKGROUND_NONE &&
         !(now.alpha = malloc((size_t)render->size[0] * (size_t)render->size[1])))
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a picture");
-    else if (!cs_snapshot_draw(&work->session, renderer_of(&work->carried), &now, &drawn_by,
+    else if (!cs_snapshot_draw(&work->session.run, renderer_of(&work->carried), &now, &drawn_by,
                                error))
         compare_pixels(work, then, &now, cs_text_get(&drawn_by));
     free(now.rgb);
@@ -226,11 +217,8 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
 static enum cs_status compare_picture(struct work *work, uint32_t frame, char **texts,
                                       const struct cs_image *image, struct cs_error *error) {
     while (work->session.run.frame < frame && !error->status) {
-        if (!step(work, frame, error)) {
-            if (!check_interrupt(work, error) || error->status == CS_ERR_MODULE)
-                describe_early_end(work, error);
-            return error->status;
-        }
+        if (!step(work, frame, error))
+            return describe_early_end(work, error);
         if (work->session.run.frame < frame)
             restart(work, error);
     }

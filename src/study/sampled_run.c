@@ -2,38 +2,15 @@
 #include "study/sampled_run.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-/* particles above the speed limit; *fastest the fastest of all */
-static uint32_t count_fast(const struct cs_run *run, double limit, uint32_t *fastest,
-                           double *speed) {
-    const size_t n = run->system->view.n;
-    const double *v = run->v;
-    uint32_t count = 0;
-    double largest = -1;
-    for (size_t i = 0; i < n; i++) {
-        const double squared = v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i];
-        count += !(squared <= limit * limit);
-        if (!(squared <= largest)) {
-            largest = squared;
-            *fastest = (uint32_t)i;
-        }
-    }
-    *speed = sqrt(largest > 0 ? largest : 0);
-    return count;
-}
 
 static void note_excess(struct cs_sampled_run *trial, const struct cs_run *run, double limit) {
     struct cs_speed_excess *excess = &trial->speed_excess;
-    uint32_t fastest = 0;
-    double speed;
-    const uint32_t count = count_fast(run, limit, &fastest, &speed);
+    uint32_t fastest, count;
+    const double speed = cs_measure_speed(run->system, run->v, limit, &fastest, &count);
     trial->speed_max = fmax(trial->speed_max, speed);
     if (count && !excess->exists) {
         excess->exists = true;
         excess->time = run->t;
-        excess->particle = fastest;
     }
     excess->particles = count > excess->particles ? count : excess->particles;
 }
@@ -47,7 +24,6 @@ static void take_sample(struct cs_sampled_run *trial,
         trial->start_energy = whole;
     trial->end_energy = whole;
     trial->kinetic = fmax(trial->kinetic, energy.kinetic);
-    trial->elastic = fmax(trial->elastic, energy.elastic);
     trial->energy_max = fmax(trial->energy_max, cs_energy_without_gravity(&energy));
     /* energy that keeps growing from one half to the next marks an instability */
     double *half = run->t < settings->seconds / 2 ? &trial->energy_max_first_half
@@ -55,7 +31,6 @@ static void take_sample(struct cs_sampled_run *trial,
     *half = fmax(*half, cs_energy_without_gravity(&energy));
     trial->energy_gain_max = fmax(trial->energy_gain_max, whole - trial->start_energy);
     trial->mean_kinetic += energy.kinetic;
-    trial->strain_max = fmax(trial->strain_max, cs_diagnostics_strain(run->system, run->x));
     note_excess(trial, run, settings->limits.speed);
     cs_crossing_stats_add(&trial->crossings, run);
     /* only the first crossing counts: its time is reported */
@@ -80,34 +55,17 @@ static double choose_fps(const struct cs_sampled_run_settings *settings) {
 static void run_samples(struct cs_sampled_run *trial,
                         const struct cs_sampled_run_settings *settings, struct cs_run *run,
                         struct cs_error *error) {
-    const double frames = ceil(settings->seconds * run->system->scene->time.fps * (1 - 1e-9));
-    take_sample(trial, settings, run);
-    while (run->frame < frames && run->outcome == CS_RUNNING && !error->status &&
-           !(settings->stop_early && trial->exceeded_limit)) {
-        cs_run_frame(run, error);
-        if (!error->status && run->outcome == CS_RUNNING)
-            take_sample(trial, settings, run);
-    }
-    trial->outcome = run->outcome;
-    trial->blow_up = run->blow_up;
-    trial->end_time = run->t;
+    struct cs_follow follow = {.run = run,
+                               .last = cs_follow_frames(run->system->scene, settings->seconds),
+                               .every = 1};
+    do
+        take_sample(trial, settings, run);
+    while (cs_follow_next(&follow, error));
     trial->steps = run->counts.steps;
     trial->mean_step =
         run->t > 0 && trial->steps ? run->t / (double)trial->steps : settings->session.dt;
     trial->seconds = run->advance_seconds;
     trial->mean_kinetic /= run->frame + 1;
-}
-
-/* a method that gives up is a result */
-static enum cs_status judge(struct cs_sampled_run *trial, struct cs_error *error) {
-    if (error->status == CS_ERR_MODULE) {
-        trial->failed = true;
-        snprintf(trial->message, sizeof trial->message, "%.300s", error->message);
-        *error = (struct cs_error){0};
-    }
-    if (trial->outcome == CS_INTERRUPTED)
-        return cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
-    return error->status;
 }
 
 enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
@@ -122,7 +80,7 @@ enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
         return error->status;
     if (!cs_session_begin(&session, NULL, error))
         run_samples(trial, settings, &session.run, error);
-    judge(trial, error);
+    cs_follow_result(&session.run, "", &trial->result, error);
     cs_session_close(&session);
     return error->status;
 }

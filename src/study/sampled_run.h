@@ -7,6 +7,7 @@
 #define CS_SAMPLED_RUN_H
 
 #include "study/crossing_stats.h"
+#include "study/follow.h"
 #include "study/session.h"
 
 /* What a particle or the whole may reach before a run counts as unstable; HUGE_VAL: no limit.
@@ -22,7 +23,6 @@ struct cs_sampled_run_settings {
     double seconds;                     /* to simulate */
     uint32_t samples;                   /* about so many; at least 1 */
     struct cs_sampled_run_limits limits;
-    bool stop_early; /* once the energy is beyond its limit */
     /* called at the start and at each sample; may be NULL */
     void (*on_sample)(void *ctx, const struct cs_run *run, const struct cs_energy *energy);
     void *ctx;
@@ -32,29 +32,24 @@ struct cs_sampled_run_settings {
 struct cs_speed_excess {
     bool exists;
     double time;        /* s, of the first sample that shows it */
-    uint32_t particle;  /* the fastest there */
     uint32_t particles; /* most at one time */
 };
 
 struct cs_sampled_run {
-    enum cs_outcome outcome;
-    bool failed; /* the method gave up: message says why */
-    char message[320];
-    struct cs_blow_up blow_up; /* where outcome says so */
-    double end_time;           /* s simulated */
+    struct cs_run_result result;
     uint64_t steps;
     double mean_step;                /* s, mean length of a step */
     double start_energy, end_energy; /* J, whole */
     double energy_max_first_half,
-        energy_max_second_half;   /* J, largest kinetic + elastic of each half of the time */
-    double kinetic, elastic;      /* J, largest */
-    double energy_max;            /* J, largest kinetic + elastic */
-    double energy_gain_max;       /* J, largest energy above the start's */
-    double mean_kinetic;          /* J, over the samples */
-    double speed_max, strain_max; /* largest */
-    double seconds;               /* wall time in the method */
-    bool exceeded_limit;          /* held or gained passed its limit */
-    double exceeded_time;         /* s */
+        energy_max_second_half; /* J, largest kinetic + elastic of each half of the time */
+    double kinetic;             /* J, largest */
+    double energy_max;          /* J, largest kinetic + elastic */
+    double energy_gain_max;     /* J, largest energy above the start's */
+    double mean_kinetic;        /* J, over the samples */
+    double speed_max;           /* m/s, largest */
+    double seconds;             /* wall time in the method */
+    bool exceeded_limit;        /* held or gained passed its limit */
+    double exceeded_time;       /* s */
     struct cs_speed_excess speed_excess;
     struct cs_crossing_stats crossings; /* of the samples, where the scene counts them */
 };

@@ -70,9 +70,9 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
 
 static enum cs_status choose_method(struct cs_session *session, struct cs_error *error) {
     const struct cs_session_settings *settings = &session->settings;
-    for (uint32_t k = 0; k < settings->n_plugins; k++)
-        if (cs_registry_add_file(&session->registry, settings->plugins[k], error))
-            return error->status;
+    if (cs_registry_add_files(&session->registry, settings->plugins, settings->n_plugins,
+                              error))
+        return error->status;
     if (settings->method)
         cs_method_init(&session->method, settings->method, settings->options, error);
     else

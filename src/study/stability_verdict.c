@@ -46,16 +46,16 @@ static bool is_growing(const struct cs_sampled_run *trial,
 enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
                                              const struct cs_sampled_run *reference,
                                              bool whole) {
-    if (trial->outcome == CS_NOT_FINITE)
+    if (trial->result.outcome == CS_NOT_FINITE)
         return CS_STABILITY_NOT_FINITE;
-    if (trial->outcome == CS_UNBOUNDED ||
+    if (trial->result.outcome == CS_UNBOUNDED ||
         (trial->exceeded_limit && is_growing(trial, reference)))
         return CS_STABILITY_GLOBAL;
-    if (trial->failed)
+    if (trial->result.outcome == CS_FAILED)
         return CS_STABILITY_FAILED;
     if (trial->speed_excess.exists)
         return CS_STABILITY_LOCAL;
-    if (trial->outcome == CS_OVER_BUDGET)
+    if (trial->result.outcome == CS_OVER_BUDGET)
         return CS_STABILITY_OVER_BUDGET;
     if (!whole)
         return CS_STABILITY_SHORT;

@@ -2,9 +2,9 @@
 #ifndef COMPARE_SCENE_H
 #define COMPARE_SCENE_H
 
+#include "../suite.h"
 #include "study/compare/compare.h"
 
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@
     " \"time\": {\"fps\": 20}}"
 
 static inline void scene_write(char path[64], const char *format, const char *value) {
-    snprintf(path, 64, "/tmp/clothsim-compare-XXXXXX");
+    snprintf(path, 64, "scene-XXXXXX");
     const int descriptor = mkstemp(path);
     ck_assert_int_ge(descriptor, 0);
     FILE *file = fdopen(descriptor, "w");
@@ -27,20 +27,6 @@ static inline void scene_write(char path[64], const char *format, const char *va
     fprintf(file, format, value);
 #pragma GCC diagnostic pop
     ck_assert_int_eq(fclose(file), 0);
-}
-
-static inline int scene_tests(const char *name, const TTest *const *tests, size_t n) {
-    Suite *suite = suite_create(name);
-    TCase *tcase = tcase_create(name);
-    for (size_t i = 0; i < n; i++)
-        tcase_add_test(tcase, tests[i]);
-    tcase_set_timeout(tcase, 0); // the build has one, longer where a sanitizer is at work
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
 #endif

@@ -44,7 +44,7 @@ static bool is_beaten(const struct cs_plot_settings *settings, uint32_t k) {
 }
 
 /* against the definition: no other cell is both cheaper and more accurate */
-START_TEST(front_is_what_nothing_beats) {
+TEST(front_is_what_nothing_beats) {
     const struct cs_plot_settings settings = make();
     struct cs_curves curves;
     bool on[CELLS] = {false};
@@ -58,9 +58,8 @@ START_TEST(front_is_what_nothing_beats) {
         ck_assert_msg(!cs_cell_is_finished(cells + k) || on[k] == !is_beaten(&settings, k),
                       "cell %u: on the front %d", k, on[k]);
 }
-END_TEST
 
-START_TEST(no_front_over_what_costs_nothing) {
+TEST(no_front_over_what_costs_nothing) {
     struct cs_plot_settings settings = make();
     struct cs_curves curves;
     uint32_t k = UINT32_MAX;
@@ -70,9 +69,8 @@ START_TEST(no_front_over_what_costs_nothing) {
     cs_curves_make(&curves, &settings);
     ck_assert(!cs_curves_front(&curves, &k));
 }
-END_TEST
 
-START_TEST(twelve_curves_with_what_is_on_the_front) {
+TEST(twelve_curves_with_what_is_on_the_front) {
     const struct cs_plot_settings settings = make();
     struct cs_curves curves;
     uint32_t drawn = 0, least = CELLS, most_left = 0;
@@ -95,9 +93,8 @@ START_TEST(twelve_curves_with_what_is_on_the_front) {
     ck_assert_uint_le(most_left, least);
     ck_assert_uint_eq(cs_curves_left_out(&curves), SERIES - CS_CURVES_DRAWN);
 }
-END_TEST
 
-START_TEST(a_family_is_drawn_whole_and_alone) {
+TEST(a_family_is_drawn_whole_and_alone) {
     struct cs_plot_settings settings = make();
     struct cs_curves curves;
     settings.family = "implicit";
@@ -109,7 +106,6 @@ START_TEST(a_family_is_drawn_whole_and_alone) {
     }
     ck_assert_uint_eq(cs_curves_left_out(&curves), 0);
 }
-END_TEST
 
 static double least_of(double a, double b) {
     return a < b ? a : b;
@@ -117,7 +113,7 @@ static double least_of(double a, double b) {
 
 /* Points, quartiles and crosses are within the ranges, and no range is more than a tenth wider
  * than what is in it. */
-START_TEST(axes_are_on_the_data) {
+TEST(axes_are_on_the_data) {
     const struct cs_plot_settings settings = make();
     struct cs_curves curves;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, cross;
@@ -143,11 +139,10 @@ START_TEST(axes_are_on_the_data) {
     // crosses stand above all points
     ck_assert_double_gt(log10(cs_curves_edge(&curves)), high[1]);
 }
-END_TEST
 
 /* One cell, or many of one value: an axis has two labels at least, and never more than twenty.
  */
-START_TEST(no_axis_is_without_labels) {
+TEST(no_axis_is_without_labels) {
     for (int k = 0; k < 4000; k++) {
         const double start = -12 + 20 * noise((unsigned)k);
         const double span = log10(4) + 25 * noise((unsigned)k + 5000) * noise((unsigned)k);
@@ -169,15 +164,4 @@ START_TEST(no_axis_is_without_labels) {
     settings.n = 1;
     cs_curves_make(&curves, &settings);
     ck_assert_double_ge(curves.x[1] - curves.x[0], log10(4) - 1e-12);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {front_is_what_nothing_beats,
-                                  no_front_over_what_costs_nothing,
-                                  twelve_curves_with_what_is_on_the_front,
-                                  a_family_is_drawn_whole_and_alone,
-                                  axes_are_on_the_data,
-                                  no_axis_is_without_labels};
-    return scene_tests("curves", tests, sizeof tests / sizeof *tests);
 }

@@ -1,6 +1,6 @@
 /* The folder of a comparison: what an interrupt leaves, and what another run adds. */
 #include "place.h"
-#include "study/compare/compare_csv.h"
+#include "study/compare/compare_cell.h"
 #include "study/compare/ranking.h"
 
 #include <sys/wait.h>
@@ -9,7 +9,7 @@ static const char *const METHODS =
     "symplectic-euler:dt=2.5e-4..2e-3,velocity-verlet:dt=2.5e-4..2e-3,rk4:dt=1e-3..8e-3,"
     "explicit-euler:dt=0.05,dopri5:rtol=1e-8..1e-4";
 
-START_TEST(interrupted_comparison_goes_on) {
+TEST(interrupted_comparison_goes_on) {
     struct place place;
     struct watch watch = {.stop_after = 5}, again = {0};
     struct cs_compare compare;
@@ -30,11 +30,9 @@ START_TEST(interrupted_comparison_goes_on) {
     ck_assert_uint_eq(again.taken, 5);
     ck_assert_uint_eq(again.rows, compare.cells.n);
     cs_compare_finish(&compare);
-    place_remove(&place);
 }
-END_TEST
 
-START_TEST(other_methods_are_added) {
+TEST(other_methods_are_added) {
     struct place place;
     struct watch first = {0}, second = {0}, third = {0};
     struct cs_compare compare;
@@ -68,11 +66,9 @@ START_TEST(other_methods_are_added) {
     ck_assert(!cs_csv_read(path, &cells, &n, &error));
     ck_assert_uint_eq(n, 7);
     free(cells);
-    place_remove(&place);
 }
-END_TEST
 
-START_TEST(over_budget_runs_again_with_more) {
+TEST(over_budget_runs_again_with_more) {
     struct place place;
     struct watch first = {0}, second = {0}, third = {0};
     struct cs_compare compare;
@@ -89,9 +85,7 @@ START_TEST(over_budget_runs_again_with_more) {
     ck_assert_uint_eq(third.taken, 0);
     ck_assert_double_eq(compare.budget, CS_COMPARE_RUN_SECONDS_MAX);
     cs_compare_finish(&compare);
-    place_remove(&place);
 }
-END_TEST
 
 /* The number of rows of a series in the file of a comparison. */
 static uint32_t rows_of(const struct place *place, const char *series) {
@@ -107,7 +101,7 @@ static uint32_t rows_of(const struct place *place, const char *series) {
     return found;
 }
 
-START_TEST(two_processes_fill_one_folder) {
+TEST(two_processes_fill_one_folder) {
     static const char *const lists[] = {"a=rk4:dt=5e-4..8e-3", "b=rk4:dt=5e-4..8e-3",
                                         "c=rk4:dt=5e-4..8e-3", "d=rk4:dt=5e-4..8e-3"};
     struct place place;
@@ -129,11 +123,9 @@ START_TEST(two_processes_fill_one_folder) {
     }
     for (int k = 0; k < 4; k++)
         ck_assert_uint_eq(rows_of(&place, (char[]){(char)('a' + k), 0}), 5);
-    place_remove(&place);
 }
-END_TEST
 
-START_TEST(other_machines_are_told_apart) {
+TEST(other_machines_are_told_apart) {
     struct place place;
     struct watch first = {0}, second = {0};
     struct cs_compare compare;
@@ -162,13 +154,4 @@ START_TEST(other_machines_are_told_apart) {
                   !ranking.ranks[k].runner_up);
     cs_ranking_finish(&ranking);
     cs_compare_finish(&compare);
-    place_remove(&place);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {interrupted_comparison_goes_on, other_methods_are_added,
-                                  over_budget_runs_again_with_more,
-                                  two_processes_fill_one_folder, other_machines_are_told_apart};
-    return scene_tests("ledger", tests, sizeof tests / sizeof *tests);
 }

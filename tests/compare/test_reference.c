@@ -21,11 +21,10 @@ static void get(struct cs_compare_reference *reference, const char *first, const
     const struct cs_compare_reference_settings settings = {
         .run = &recording, .methods = {first, second}, .accuracy = 1e-6, .cache = cache};
     cs_compare_reference_get(reference, &settings, &error);
-    unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
 }
 
-START_TEST(two_families_agree) {
+TEST(two_families_agree) {
     struct cs_compare_reference reference;
     get(&reference, "rk4:dt=2e-4", "dopri5:rtol=1e-12,atol=1e-12", NULL);
     ck_assert_msg(reference.families_agree, "%s", reference.reason);
@@ -34,9 +33,8 @@ START_TEST(two_families_agree) {
     ck_assert_double_gt(reference.error_bar, 0);
     cs_compare_reference_finish(&reference);
 }
-END_TEST
 
-START_TEST(planted_bug_is_found) {
+TEST(planted_bug_is_found) {
     struct cs_compare_reference reference;
     for (int side = 0; side < 2; side++) {
         const char *good = "dopri5:rtol=1e-12,atol=1e-12", *bad = "biased-rk4:dt=2e-4";
@@ -49,7 +47,6 @@ START_TEST(planted_bug_is_found) {
         cs_compare_reference_finish(&reference);
     }
 }
-END_TEST
 
 /* Of a small scene: largest distance of the reference's states from those of a far tighter run.
  */
@@ -66,20 +63,19 @@ static double true_error(const struct cs_compare_reference *reference, const cha
     ck_assert(!cs_recorded_run_open(&recording, &asked, integrator, &error));
     ck_assert(!cs_trajectory_init(&track, &recording, &error));
     ck_assert(!cs_recorded_run_execute(&recording, 0, &track, &end, &error));
-    ck_assert(end.outcome == CS_RUNNING && !end.failed);
+    ck_assert(end.result.outcome == CS_RUNNING);
     for (uint32_t k = 1; k <= FRAMES; k++)
         found = fmax(found, cs_distance_rms(&recording.session.system,
                                             cs_trajectory_state(&reference->trajectory, k),
                                             cs_trajectory_state(&track, k)));
     cs_trajectory_finish(&track);
     cs_recorded_run_close(&recording);
-    unlink(path);
     return found;
 }
 
 /* The bar is neither below the true error nor 30 times above it, also where the second family
  * is the far better or the far worse one. */
-START_TEST(bar_is_near_the_true_error) {
+TEST(bar_is_near_the_true_error) {
     static const struct {
         const char *first, *second;
     } pairs[] = {
@@ -100,10 +96,9 @@ START_TEST(bar_is_near_the_true_error) {
         cs_compare_reference_finish(&reference);
     }
 }
-END_TEST
 
 /* By default the second family is collocation, with a step of the scene's own. */
-START_TEST(defaults_are_two_families_of_high_order) {
+TEST(defaults_are_two_families_of_high_order) {
     struct cs_compare_reference reference;
     get(&reference, NULL, NULL, NULL);
     ck_assert_msg(strncmp(reference.methods[2], "gauss:order=8,", 14) == 0, "%s",
@@ -112,7 +107,6 @@ START_TEST(defaults_are_two_families_of_high_order) {
     ck_assert_double_lt(reference.error_bar, 1e-12 * reference.motion_scale);
     cs_compare_reference_finish(&reference);
 }
-END_TEST
 
 /* Slow friction bends forces within a thousandth of a metre a second: fixed steps lose their
  * order there, and their place to a method that chooses its own. */
@@ -126,7 +120,7 @@ END_TEST
     "\"thickness\": 0.1}], \"contact\": {\"law\": \"force\", \"friction_speed\": %s}, "        \
     "\"time\": {\"fps\": 20}}"
 
-START_TEST(rough_scenes_take_adaptive_steps) {
+TEST(rough_scenes_take_adaptive_steps) {
     char path[64];
     struct cs_error error = {0};
     struct cs_compare_reference reference;
@@ -135,7 +129,6 @@ START_TEST(rough_scenes_take_adaptive_steps) {
                                                        .frames = FRAMES};
     const struct cs_compare_reference_settings settings = {.run = &recording, .accuracy = 1e-6};
     cs_compare_reference_get(&reference, &settings, &error);
-    unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
     ck_assert_msg(reference.families_agree, "%s", reference.reason);
     // where a build has both of the library
@@ -146,9 +139,8 @@ START_TEST(rough_scenes_take_adaptive_steps) {
     }
     cs_compare_reference_finish(&reference);
 }
-END_TEST
 
-START_TEST(twin_is_tighter) {
+TEST(twin_is_tighter) {
     char twin[256];
     struct cs_error error = {0};
     cs_compare_reference_tighten("a:order=8,rtol=1e-12,atol=1e-10", twin, sizeof twin, &error);
@@ -158,10 +150,9 @@ START_TEST(twin_is_tighter) {
     cs_compare_reference_tighten("c", twin, sizeof twin, &error);
     ck_assert_str_eq(twin, "c");
 }
-END_TEST
 
-START_TEST(cache_gives_the_same_states) {
-    char folder[] = "/tmp/clothsim-cache-XXXXXX";
+TEST(cache_gives_the_same_states) {
+    char folder[] = "cache-XXXXXX";
     struct cs_compare_reference first, second;
     ck_assert_ptr_nonnull(mkdtemp(folder));
     get(&first, "rk4:dt=1e-3", "dopri5:rtol=1e-10,atol=1e-10", folder);
@@ -177,11 +168,7 @@ START_TEST(cache_gives_the_same_states) {
     get(&second, "rk4:dt=2e-3", "dopri5:rtol=1e-10,atol=1e-10", folder);
     ck_assert(!second.cached);
     cs_compare_reference_finish(&second);
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    ck_assert_int_eq(system(command), 0);
 }
-END_TEST
 
 /* A sheet let go 10 degrees from the upright, held by two corners, 20 s. Without damping twins
  * 1e-13 m apart in one particle part a hundred- to a thousandfold in 2 s, until the difference
@@ -201,23 +188,20 @@ static struct cs_horizon drape(const char *damping, double accuracy) {
     const struct cs_recorded_run_settings recording = {.session = {.scene = path},
                                                        .frames = 200};
     cs_horizon_measure(&horizon, &recording, accuracy, NULL, &error);
-    unlink(path);
     ck_assert_msg(!error.status, "%s", error.message);
     return horizon;
 }
 
-START_TEST(horizon_of_an_undamped_drape) {
+TEST(horizon_of_an_undamped_drape) {
     const struct cs_horizon horizon = drape("0", 0.02);
     ck_assert_msg(horizon.time >= 8 && horizon.time <= 12, "horizon at %g s", horizon.time);
 }
-END_TEST
 
-START_TEST(horizon_of_a_damped_drape) {
+TEST(horizon_of_a_damped_drape) {
     const struct cs_horizon horizon = drape("0.5", 1e-6);
     ck_assert_msg(horizon.time == HUGE_VAL, "horizon at %g s", horizon.time);
     ck_assert_double_lt(horizon.separation, 1e-9);
 }
-END_TEST
 
 /* A run with events begins as the one before it did: a gust, a corner dragged and let go. */
 #define EVENTS                                                                                 \
@@ -230,7 +214,7 @@ END_TEST
     " {\"at\": 0.17, \"release\": {\"particles\": [\"top-right\"]}}], \"time\": {\"fps\": "    \
     "20}}"
 
-START_TEST(events_are_hit_again_in_every_run) {
+TEST(events_are_hit_again_in_every_run) {
     char path[64];
     struct cs_error error = {0};
     struct cs_compare_reference reference;
@@ -262,20 +246,4 @@ START_TEST(events_are_hit_again_in_every_run) {
         cs_trajectory_finish(tracks + k);
     cs_recorded_run_close(&recording);
     cs_compare_reference_finish(&reference);
-    unlink(path);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {events_are_hit_again_in_every_run,
-                                  two_families_agree,
-                                  planted_bug_is_found,
-                                  bar_is_near_the_true_error,
-                                  defaults_are_two_families_of_high_order,
-                                  rough_scenes_take_adaptive_steps,
-                                  twin_is_tighter,
-                                  cache_gives_the_same_states,
-                                  horizon_of_an_undamped_drape,
-                                  horizon_of_a_damped_drape};
-    return scene_tests("reference", tests, sizeof tests / sizeof *tests);
 }

@@ -1,7 +1,7 @@
 /* The rows of soft-bench: growth and rates of rows whose law is known, and what is written. */
+#include "../suite.h"
 #include "study/soft/soft_report.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,22 +19,20 @@ static struct cs_soft power_law(void) {
     return soft;
 }
 
-START_TEST(growth_is_the_exponent) {
+TEST(growth_is_the_exponent) {
     const struct cs_soft soft = power_law();
     ck_assert_double_eq_tol(cs_soft_growth(&soft, CS_SOFT_LARGE), 1.5, 1e-12);
     ck_assert_double_nan(cs_soft_growth(&soft, CS_SOFT_SMALL));
 }
-END_TEST
 
-START_TEST(rates_count_steps_and_pictures) {
+TEST(rates_count_steps_and_pictures) {
     const struct cs_soft soft = power_law();
     const struct cs_soft_row *row = soft.rows + 2; /* 2 ms a step */
     ck_assert_double_eq_tol(cs_soft_rate_one_step(row), 1 / 0.012, 1e-9);
     ck_assert_double_eq_tol(cs_soft_rate(row), 1 / 0.026, 1e-9);
 }
-END_TEST
 
-START_TEST(csv_says_what_blew_up) {
+TEST(csv_says_what_blew_up) {
     const struct cs_soft soft = power_law();
     struct cs_text out = {0};
     cs_soft_print_csv(&soft, &out);
@@ -42,19 +40,4 @@ START_TEST(csv_says_what_blew_up) {
     ck_assert_ptr_nonnull(last);
     ck_assert_str_eq(last, "springs-large,50,7,,,,,,,blew up: not finite\n");
     cs_text_finish(&out);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("soft");
-    TCase *tests = tcase_create("rows");
-    tcase_add_test(tests, growth_is_the_exponent);
-    tcase_add_test(tests, rates_count_steps_and_pictures);
-    tcase_add_test(tests, csv_says_what_blew_up);
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -197,7 +197,7 @@ static void check_lines(char *text) {
     ck_assert(frame && (least > pow(10, expected)));
 }
 
-START_TEST(sentences_hold_for_every_subset) {
+TEST(sentences_hold_for_every_subset) {
     for (unsigned bits = 0; bits < 1u << CELLS; bits++) {
         struct cs_ranking ranking;
         struct cs_error error = {0};
@@ -211,9 +211,8 @@ START_TEST(sentences_hold_for_every_subset) {
         cs_rounds_finish(&compare.rounds);
     }
 }
-END_TEST
 
-START_TEST(winner_by_another_error_is_named) {
+TEST(winner_by_another_error_is_named) {
     struct cs_ranking ranking;
     struct cs_error error = {0};
     take_rows((1u << CELLS) - 1);
@@ -231,7 +230,6 @@ START_TEST(winner_by_another_error_is_named) {
     cs_ranking_finish(&ranking);
     cs_rounds_finish(&compare.rounds);
 }
-END_TEST
 
 /* Pairs that a common factor of each round moves, and own noise of 2 % behind it. */
 static void make_times(struct cs_rounds *rounds, double factor, uint64_t *state) {
@@ -251,7 +249,7 @@ static double drift(uint64_t *state) {
     return exp(0.035 * (cs_rounds_draw(state, 2001) / 1000.0 - 1));
 }
 
-START_TEST(intervals_cover_the_ratio) {
+TEST(intervals_cover_the_ratio) {
     enum { REPEATS = 400 };
     struct cs_error error = {0};
     uint64_t state = 12345;
@@ -273,9 +271,8 @@ START_TEST(intervals_cover_the_ratio) {
         cs_rounds_finish(&rounds);
     }
 }
-END_TEST
 
-START_TEST(few_pairs_give_no_interval) {
+TEST(few_pairs_give_no_interval) {
     struct cs_error error = {0};
     struct cs_rounds rounds;
     struct cs_ratio ratio;
@@ -287,12 +284,4 @@ START_TEST(few_pairs_give_no_interval) {
     rounds.seconds[3] = (double)NAN;
     ck_assert(!cs_rounds_ratio(&rounds, 1, 0, &ratio));
     cs_rounds_finish(&rounds);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {sentences_hold_for_every_subset,
-                                  winner_by_another_error_is_named, intervals_cover_the_ratio,
-                                  few_pairs_give_no_interval};
-    return scene_tests("verdict", tests, sizeof tests / sizeof *tests);
 }

@@ -1,12 +1,12 @@
 /* The scenes in which conform lets forces act: each force of the program's list has one to
  * itself, each value that a ramp may change has a ramp, and the reference that methods are held
  * against is the closed form where there is one. */
+#include "../suite.h"
 #include "model/force/terms.h"
 #include "study/conform/conform_probe.h"
 #include "study/conform/conform_reference.h"
 #include "study/conform/conform_scenes.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static void open_scene(struct cs_probe *probe, const struct cs_force_scene *scen
 
 /* A new force needs a line in conform_scenes.c, of a check force-NAME, in which no other force
  * acts. */
-START_TEST(every_force_has_a_scene_to_itself) {
+TEST(every_force_has_a_scene_to_itself) {
     for (uint32_t t = 0; t < cs_n_terms; t++) {
         bool found = false;
         for (uint32_t k = 0; k < cs_n_force_scenes && !found; k++) {
@@ -38,7 +38,6 @@ START_TEST(every_force_has_a_scene_to_itself) {
                       cs_terms[t]->name);
     }
 }
-END_TEST
 
 /* whether a scene has a ramp of the key: "bodies.springs.bend" for bodies[0].springs.bend */
 static bool has_ramp(const struct cs_scene *scene, const char *key) {
@@ -60,7 +59,7 @@ static bool has_ramp(const struct cs_scene *scene, const char *key) {
     return false;
 }
 
-START_TEST(every_ramp_has_a_scene) {
+TEST(every_ramp_has_a_scene) {
     for (uint32_t t = 0; t < cs_n_terms; t++)
         for (const char *const *key = cs_terms[t]->rampable_keys; key && *key; key++) {
             bool found = false;
@@ -75,7 +74,6 @@ START_TEST(every_ramp_has_a_scene) {
             ck_assert_msg(found, "no scene of time-dependence has a ramp of %s", *key);
         }
 }
-END_TEST
 
 /* The scene of that name, run by the reference, and where it began. */
 static void run_scene(struct cs_probe *probe, const char *what, double *start) {
@@ -93,7 +91,7 @@ static void run_scene(struct cs_probe *probe, const char *what, double *start) {
 static const double T = CS_FORCE_FRAMES * CS_FORCE_FRAME;
 
 /* v0 T + g T^2 / 2 */
-START_TEST(gravity_is_the_closed_form) {
+TEST(gravity_is_the_closed_form) {
     static const double g[3] = {1, -9, 4};
     double start[2 * CS_FORCE_VALUES];
     struct cs_probe probe;
@@ -105,10 +103,9 @@ START_TEST(gravity_is_the_closed_form) {
     }
     cs_probe_close(&probe);
 }
-END_TEST
 
 /* v0 exp(-w T), by 0.4 N s/m on 0.1 kg; by area a quarter of a square metre has 1.6 Pa s/m */
-START_TEST(drag_is_the_closed_form) {
+TEST(drag_is_the_closed_form) {
     static const char *const scenes[] = {"drag of each particle", "drag by area"};
     const double w = 0.4 / 0.1;
     for (size_t k = 0; k < 2; k++) {
@@ -123,11 +120,10 @@ START_TEST(drag_is_the_closed_form) {
         cs_probe_close(&probe);
     }
 }
-END_TEST
 
 /* The first sheet lies in the xy plane: f = s w |w_z| with w = (1, 2, 3) / |(1, 2, 3)|; 2 Pa on
  * a quarter of a square metre are 0.5 N. */
-START_TEST(wind_is_the_closed_form) {
+TEST(wind_is_the_closed_form) {
     static const char *const scenes[] = {"wind on each particle", "wind by area"};
     static const double w[3] = {1, 2, 3};
     for (size_t k = 0; k < 2; k++) {
@@ -143,11 +139,10 @@ START_TEST(wind_is_the_closed_form) {
         cs_probe_close(&probe);
     }
 }
-END_TEST
 
 /* An impulse of 1 kg m/s on one of two sheets of 0.4 kg: 2.5 m/s along its direction in the
  * end, at a constant acceleration over the time s, or at once at the time s. */
-START_TEST(impacts_are_the_closed_form) {
+TEST(impacts_are_the_closed_form) {
     static const double d[3] = {1, -2, 1};
     for (size_t k = 0; k < 2; k++) {
         const bool steady = k == 0;
@@ -166,10 +161,9 @@ START_TEST(impacts_are_the_closed_form) {
         cs_probe_close(&probe);
     }
 }
-END_TEST
 
 /* Both sheets are seen whole: 0.8 N on 0.1 kg along -z, for 0.35 s, or for 0.2 s at once. */
-START_TEST(viewpoint_forces_are_the_closed_form) {
+TEST(viewpoint_forces_are_the_closed_form) {
     for (size_t k = 0; k < 2; k++) {
         const bool steady = k == 0;
         const double gain = -8 * (steady ? 0.35 : 0.2);
@@ -187,10 +181,9 @@ START_TEST(viewpoint_forces_are_the_closed_form) {
         cs_probe_close(&probe);
     }
 }
-END_TEST
 
 /* From -2 to -9 m/s2 between 0.05 and 0.45 s: three parts, one after the other. */
-START_TEST(ramp_of_gravity_is_the_closed_form) {
+TEST(ramp_of_gravity_is_the_closed_form) {
     const double g0 = -2, g1 = -9, s = 0.05, length = 0.4, rest = T - s - length;
     double start[2 * CS_FORCE_VALUES];
     struct cs_probe probe;
@@ -207,27 +200,4 @@ START_TEST(ramp_of_gravity_is_the_closed_form) {
         ck_assert_double_eq_tol(probe.v[i], v, 1e-11);
     }
     cs_probe_close(&probe);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {every_force_has_a_scene_to_itself,
-                                  every_ramp_has_a_scene,
-                                  gravity_is_the_closed_form,
-                                  drag_is_the_closed_form,
-                                  wind_is_the_closed_form,
-                                  impacts_are_the_closed_form,
-                                  viewpoint_forces_are_the_closed_form,
-                                  ramp_of_gravity_is_the_closed_form};
-    TCase *group = tcase_create("conform scenes");
-    Suite *suite = suite_create("conform scenes");
-    tcase_set_timeout(group, 0);
-    for (size_t k = 0; k < sizeof tests / sizeof *tests; k++)
-        tcase_add_test(group, tests[k]);
-    suite_add_tcase(suite, group);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -3,7 +3,6 @@
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/run/run_checkpoint.h"
-#include "cli/stability_args.h"
 #include "sim/method.h"
 
 #include <stdint.h>
@@ -30,29 +29,6 @@ static void expect(enum cs_status status, struct cs_error *error) {
     *error = (struct cs_error){0};
 }
 
-static void read_row(struct cs_args *args, uint32_t row) {
-    static const char *const names[] = {"cpu", "auto", "a,b", NULL};
-    struct cs_error error = {0};
-    struct cs_shard shard = {0};
-    struct cs_checkpoint_interval pace;
-    const struct cs_override *overrides;
-    uint32_t whole = 7, set = 0, n;
-    double real = 1;
-    int index = 0;
-    expect(cs_args_integer(args, row, 3, 1000, &whole, &error), &error);
-    CS_ASSERT(whole >= 3 && whole <= 1000);
-    expect(cs_args_real(args, row, &real, &error), &error);
-    CS_ASSERT(real > 0 && real <= 1e9);
-    expect(cs_args_shard(args, row, &shard, &error), &error);
-    CS_ASSERT(shard.index <= shard.count);
-    expect(cs_args_choice(args, row, names, &index, &error), &error);
-    CS_ASSERT(index >= 0 && index < 3);
-    expect(cs_args_choices(args, row, names, &set, &error), &error);
-    expect(cs_args_overrides(args, row, &overrides, &n, &error), &error);
-    if (cs_args_get(args, row))
-        expect(cs_checkpointer_read_interval(cs_args_get(args, row), &pace, &error), &error);
-}
-
 /* NAME:key=value,... as far as it goes without opening a module */
 static void read_method(const char *text) {
     struct cs_error error = {0};
@@ -70,6 +46,21 @@ static void read_method(const char *text) {
     cs_method_finish(&method);
 }
 
+/* numbers that were read are in their bounds */
+static void check_value(const struct cs_args *args, const struct cs_arg_value *given) {
+    const struct cs_arg *row = given->row;
+    const void *field = (const char *)args->options + row->offset;
+    struct cs_error error = {0};
+    struct cs_checkpoint_interval pace;
+    if (row->kind == CS_ARG_REAL)
+        CS_ASSERT(*(const double *)field >= 0 && *(const double *)field <= 1e9);
+    if (row->kind == CS_ARG_SHARD)
+        CS_ASSERT(((const struct cs_shard *)field)->index <=
+                  ((const struct cs_shard *)field)->count);
+    if (!strcmp(row->name, "checkpoint"))
+        expect(cs_checkpointer_read_interval(given->value, &pace, &error), &error);
+}
+
 static void read_as(const struct cs_command *command, int argc, char **argv) {
     struct cs_args args = {0};
     struct cs_error error = {0};
@@ -77,13 +68,9 @@ static void read_as(const struct cs_command *command, int argc, char **argv) {
     expect(cs_args_parse(&args, command, argc, argv, &error), &error);
     if (args.help)
         cs_command_print_help(command, &help);
-    /* what was read before a mistake may be asked for as well */
-    for (uint32_t row = 0; row < command->n_rows && args.given; row++)
-        read_row(&args, row);
-    if (command == &cs_command_stability && args.given) {
-        struct cs_stability_settings settings = {0};
-        expect(cs_stability_read(&args, &settings, &error), &error);
-    }
+    /* what was read before a mistake, too */
+    for (uint32_t k = 0; k < args.n_given; k++)
+        check_value(&args, args.given + k);
     cs_text_finish(&help);
     cs_args_finish(&args);
 }

@@ -3,7 +3,7 @@
 
 #include "model/contact/ccd/crossings.h"
 
-#include <check.h>
+#include "../suite.h"
 #include <stdio.h>
 
 /* What opens a session, as far as is asked for. */
@@ -13,11 +13,11 @@ typedef enum cs_status open_call(struct cs_session *session,
 
 static void open_by(open_call *call, struct cs_session *session, const struct meeting *params) {
     struct cs_error error = {0};
-    char path[64];
+    char path[512];
     uint32_t n = 0;
     while (n < MEETING_OVERRIDES && params->overrides[n].path)
         n++;
-    snprintf(path, sizeof path, "scenes/%s.json", params->scene);
+    snprintf(path, sizeof path, SCENES "/%s.json", params->scene);
     const struct cs_session_settings settings = {.scene = path,
                                                  .overrides = params->overrides,
                                                  .n_overrides = n,

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void fixture_open(struct fixture *fixture, const char *integrator, const char *format, ...) {
     char *text;
@@ -36,10 +37,12 @@ void fixture_start(struct fixture *fixture) {
 void fixture_frames(struct fixture *fixture, uint32_t frames) {
     struct cs_error error = {0};
     struct cs_run *run = &fixture->session.run;
+    const char *method = fixture->session.method.integrator->name;
     for (uint32_t k = 0; k < frames; k++) {
         cs_run_frame(run, &error);
-        ck_assert_msg(!error.status, "%s", error.message);
-        ck_assert_msg(run->outcome == CS_RUNNING, "%s", cs_outcome_text(run->outcome));
+        ck_assert_msg(!error.status, "%s: %s", method, error.message);
+        ck_assert_msg(run->outcome == CS_RUNNING, "%s: %s", method,
+                      cs_outcome_text(run->outcome));
     }
 }
 
@@ -67,16 +70,8 @@ double fixture_energy(const struct fixture *fixture) {
     return cs_energy_total(&energy);
 }
 
-int fixture_run(const char *name, const TTest *const *tests, size_t n_tests) {
-    Suite *suite = suite_create(name);
-    TCase *tcase = tcase_create(name);
-    for (size_t i = 0; i < n_tests; i++)
-        tcase_add_test(tcase, tests[i]);
-    tcase_set_timeout(tcase, 0); // the build has one, longer where a sanitizer is at work
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+void ck_bits(const double *a, const double *b, size_t n, const char *what) {
+    for (size_t i = 0; i < n; i++)
+        ck_assert_msg(!memcmp(a + i, b + i, sizeof *a), "%s: value %zu is %.17g and %.17g",
+                      what, i, a[i], b[i]);
 }

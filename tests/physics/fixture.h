@@ -2,11 +2,10 @@
 #ifndef FIXTURE_H
 #define FIXTURE_H
 
+#include "../suite.h"
 #include "study/perturb.h"
 #include "study/session.h"
 #include "study/trajectory_error.h"
-
-#include <check.h>
 
 struct fixture {
     struct cs_session session;
@@ -31,7 +30,7 @@ void fixture_momentum(const struct fixture *fixture, double p[3], double l[3]);
 /* Kinetic and potential energy in J. */
 double fixture_energy(const struct fixture *fixture);
 
-/* Runs the tests and returns the program's exit code. */
-int fixture_run(const char *name, const TTest *const *tests, size_t n_tests);
+/* Fails unless n values are the same to the bit; what: named in the message. */
+void ck_bits(const double *a, const double *b, size_t n, const char *what);
 
 #endif

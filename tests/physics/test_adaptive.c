@@ -53,7 +53,7 @@ static struct error error_of(const char *integrator) {
 
 /* Tolerances are those of a step, so that an error may be some times larger; and 10^4 in the
  * tolerance must be 300 in the error at least. */
-START_TEST(errors_follow_the_tolerance) {
+TEST(errors_follow_the_tolerance) {
     static const char *const methods[] = {
         "dopri5:",           "cvode-adams:",      "cvode-bdf:",        "ark-erk:order=2,",
         "ark-erk:order=3,",  "ark-erk:order=4,",  "ark-erk:order=5,",  "ark-erk:order=6,",
@@ -77,12 +77,11 @@ START_TEST(errors_follow_the_tolerance) {
                       methods[k], errors[0].place, errors[2].place);
     }
 }
-END_TEST
 
 /* Steps of h, h/2, whole parts of a frame: small enough for the slope, large enough to stay
  * above rounding. Order 7 is
  * in no table of SUNDIALS 6. */
-START_TEST(tables_have_their_order) {
+TEST(tables_have_their_order) {
     static const struct {
         const char *method;
         double order, h;
@@ -118,11 +117,10 @@ START_TEST(tables_have_their_order) {
             place, speed, errors[1].place, errors[1].speed, rows[k].order);
     }
 }
-END_TEST
 
 /* An explicit one-step method, two multistep ones and a pair of our own share nothing but the
  * force: on a cloth that swings and wrinkles they meet to 1e-8 m. */
-START_TEST(families_agree) {
+TEST(families_agree) {
     static const char *const methods[] = {"cvode-bdf:rtol=1e-11,max_order=5",
                                           "cvode-adams:rtol=1e-11", "dopri5:rtol=1e-10",
                                           "ark-dirk:order=5,rtol=1e-9,linear_rtol=1e-6"};
@@ -136,11 +134,10 @@ START_TEST(families_agree) {
                       place, speed);
     }
 }
-END_TEST
 
 /* A step cut at every frame is no step thrown away, and the frames' number changes the end by
  * no more than the tolerance. */
-START_TEST(frames_do_not_disturb) {
+TEST(frames_do_not_disturb) {
     static const char *const fps[] = {"20", "200"};
     double state[2][6];
     for (int k = 0; k < 2; k++) {
@@ -158,11 +155,4 @@ START_TEST(frames_do_not_disturb) {
         fixture_close(&cloth);
     }
     ck_assert_double_lt(cs_rms_difference(state[0], state[1], 6), 1e-7);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {errors_follow_the_tolerance, tables_have_their_order,
-                                  families_agree, frames_do_not_disturb};
-    return fixture_run("adaptive", tests, sizeof tests / sizeof *tests);
 }

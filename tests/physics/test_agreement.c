@@ -26,17 +26,11 @@ static void end_state(const char *integrator, double state[VALUES]) {
     fixture_close(&cloth);
 }
 
-START_TEST(verlet_and_cvode_agree) {
+TEST(verlet_and_cvode_agree) {
     static double verlet[VALUES], cvode[VALUES];
     end_state("velocity-verlet:dt=1e-5", verlet);
     end_state("cvode-bdf:rtol=1e-11,max_order=5,linear_rtol=1e-4", cvode);
     ck_assert_double_lt(cs_rms_difference(verlet, cvode, VALUES / 2), 1e-8);
     ck_assert_double_lt(cs_rms_difference(verlet + VALUES / 2, cvode + VALUES / 2, VALUES / 2),
                         1e-6);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {verlet_and_cvode_agree};
-    return fixture_run("agreement", tests, sizeof tests / sizeof *tests);
 }

@@ -35,7 +35,7 @@ static double error_of(const struct outcome *found, const struct outcome *refere
 }
 
 /* both better than order 2, and the cheaper one */
-START_TEST(short_steps_take_order_5) {
+TEST(short_steps_take_order_5) {
     static struct outcome reference, low, found;
     run("dopri5:rtol=1e-12", 1, "0", 3, &reference);
     run("cvode-bdf:rtol=1e-6,atol=1e-9,max_order=2", 1, "0", 3, &low);
@@ -46,10 +46,9 @@ START_TEST(short_steps_take_order_5) {
                   "errors %.3g m, %.3g m of order 2", error_of(&found, &reference),
                   error_of(&low, &reference));
 }
-END_TEST
 
 /* The sheet's damping outweighs what order 5 makes grow: steps of h omega = 0.3 may try it. */
-START_TEST(damping_lets_longer_steps_take_order_5) {
+TEST(damping_lets_longer_steps_take_order_5) {
     static struct outcome reference, low, found;
     run("dopri5:rtol=1e-12", 1, "0", 10, &reference);
     run("cvode-bdf:rtol=1e-4,atol=1e-7,max_order=2", 1, "0", 10, &low);
@@ -60,31 +59,21 @@ START_TEST(damping_lets_longer_steps_take_order_5) {
                   "errors %.3g m, %.3g m of order 2", error_of(&found, &reference),
                   error_of(&low, &reference));
 }
-END_TEST
 
 /* order 5 alone takes hundreds of times the steps there */
-START_TEST(a_stiff_sheet_keeps_order_2) {
+TEST(a_stiff_sheet_keeps_order_2) {
     static struct outcome low, found;
     run("cvode-bdf:rtol=1e-3,max_order=2", 1000, "0", 4, &low);
     run("cvode-bdf:rtol=1e-3", 1000, "0", 4, &found);
     ck_assert_msg(found.steps < 2 * low.steps, "%llu steps, %llu of order 2",
                   (unsigned long long)found.steps, (unsigned long long)low.steps);
 }
-END_TEST
 
 /* the motion dies in the drag: held by stability, order 5 takes twice the steps */
-START_TEST(slow_motion_goes_back_to_order_2) {
+TEST(slow_motion_goes_back_to_order_2) {
     static struct outcome high, found;
     run("cvode-bdf:rtol=1e-6,max_order=5", 1, "0.02", 60, &high);
     run("cvode-bdf:rtol=1e-6", 1, "0.02", 60, &found);
     ck_assert_msg(3 * found.steps < 2 * high.steps, "%llu steps, %llu of order 5",
                   (unsigned long long)found.steps, (unsigned long long)high.steps);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        short_steps_take_order_5, damping_lets_longer_steps_take_order_5,
-        a_stiff_sheet_keeps_order_2, slow_motion_goes_back_to_order_2};
-    return fixture_run("bdf_order", tests, sizeof tests / sizeof *tests);
 }

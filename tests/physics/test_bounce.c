@@ -61,7 +61,7 @@ static double apex(struct fixture *body) {
 
 /* It comes up to e^2 of the height; what the step that meets the floor leaves out of the way
  * down, or adds to the speed, is of first order in h. */
-START_TEST(bounce_is_e_squared_of_the_drop) {
+TEST(bounce_is_e_squared_of_the_drop) {
     for (int k = 0; k < BODIES; k++)
         for (double h = 1e-3; h > 1e-5; h /= 10) {
             struct fixture body;
@@ -74,11 +74,10 @@ START_TEST(bounce_is_e_squared_of_the_drop) {
             fixture_close(&body);
         }
 }
-END_TEST
 
 /* Coulomb: the tangential speed loses friction times the change of the normal speed, (1 + e)
  * times that of the impact; all of it where that is more. */
-START_TEST(tangential_speed_is_lost_by_the_impact) {
+TEST(tangential_speed_is_lost_by_the_impact) {
     static const struct {
         double speed, absorption, friction;
     } rows[] = {{2, -E, 0.1}, {2, -E, 0}, {2, 1, 0.2}, {-3, -1, 0.1}, {0.5, -E, 0.2}};
@@ -97,11 +96,4 @@ START_TEST(tangential_speed_is_lost_by_the_impact) {
             }
             fixture_close(&body);
         }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {bounce_is_e_squared_of_the_drop,
-                                  tangential_speed_is_lost_by_the_impact};
-    return fixture_run("bounce", tests, sizeof tests / sizeof *tests);
 }

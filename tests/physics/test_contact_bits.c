@@ -11,10 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
-
-static bool all;
-
 /* each until surfaces press on each other */
 static const struct meeting scenes[] = {
     {.scene = "self_compare", .frames = 60},
@@ -111,18 +107,11 @@ static void check(const struct meeting *params) {
     free(right);
 }
 
-START_TEST(one_state) {
-    for (size_t s = 0; s < (all ? LENGTH(scenes) : 1); s++)
+TEST(one_state) {
+    for (size_t s = 0; s < (suite_all ? LENGTH(scenes) : 1); s++)
         for (size_t m = 0; m < LENGTH(methods); m++) {
             struct meeting params = scenes[s];
             params.method = methods[m];
             check(&params);
         }
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    all = argc > 1 && !strcmp(argv[1], "all");
-    const TTest *const tests[] = {one_state};
-    return fixture_run("contact bits", tests, LENGTH(tests));
 }

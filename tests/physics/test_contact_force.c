@@ -1,7 +1,7 @@
 /* Contact as a force: against closed forms of the law, of the incline and of the belt, and by
  * what holds for every method: its order, and that nothing gains energy at an obstacle. */
 #include "base/vec3.h"
-#include "fixture.h"
+#include "methods.h"
 #include "model/contact/barrier_law.h"
 #include "model/contact/ccd/accd.h"
 #include "model/contact/collider_params.h"
@@ -13,10 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define G         9.81
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
+#define G 9.81
 
-START_TEST(law_is_one_function) {
+TEST(law_is_one_function) {
     const double range = 0.02, k = 700, e = 1e-7;
     for (double d = -0.01; d < 1.2 * range; d += 1.7e-4) {
         const struct cs_barrier law = cs_barrier_at(d, range, k);
@@ -44,7 +43,6 @@ START_TEST(law_is_one_function) {
                                 (k * range * range),
                             1.36, 0.005);
 }
-END_TEST
 
 /* the distance at which the law carries a force, by bisection */
 static double distance_of(double force, double range, double k) {
@@ -82,33 +80,20 @@ static double sliding(const struct fixture *block, double tangent) {
     return sum / (double)block->n;
 }
 
-static const char *const all_able[] = {"symplectic-euler",
-                                       "velocity-verlet",
-                                       "rk4",
-                                       "dopri5:rtol=1e-6",
-                                       "implicit-linearised:dt=0.004",
-                                       "backward-euler:dt=0.004",
-                                       "implicit-midpoint:dt=0.004",
-                                       "bdf2:dt=0.004",
-                                       "tr-bdf2:dt=0.004",
-                                       "sdirk2:dt=0.004",
-                                       "ros2:dt=0.001",
-                                       "newmark:dt=0.004",
-                                       "cvode-bdf:rtol=1e-6",
-                                       "cvode-adams:rtol=1e-6",
-                                       "ark-erk:rtol=1e-6",
-                                       "ark-dirk:rtol=1e-6",
-                                       "ark-imex:rtol=1e-6",
-                                       "xpbd:dt=0.004"};
-
-START_TEST(blocks_slide_and_creep_as_the_law_says) {
+TEST(blocks_slide_and_creep_as_the_law_says) {
     const double ev = 1e-3, mu = 0.3;
-    for (size_t m = 0; m < LENGTH(all_able); m++)
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "slope by force",
+                                             .without = CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                             .dt = 0.004,
+                                             .dt_for = CS_IMPLICIT,
+                                             .rtol = 1e-6});
+    for (size_t m = 0; m < methods.n; m++)
         for (double tangent = 0.1; tangent < 0.55; tangent += 0.1) {
             if (fabs(tangent - mu) < 0.01)
                 continue;
             struct fixture block;
-            open_slope(&block, all_able[m], tangent, "");
+            open_slope(&block, methods.list[m].text, tangent, "");
             fixture_frames(&block, 15);
             const double before = sliding(&block, tangent);
             fixture_frames(&block, 15);
@@ -117,19 +102,18 @@ START_TEST(blocks_slide_and_creep_as_the_law_says) {
             if (tangent > mu)
                 ck_assert_msg(fabs((v - before) / 0.25 - G * cosine * (tangent - mu)) <
                                   0.02 * G * mu,
-                              "%s: slope %.1f, acceleration %.4f", all_able[m], tangent,
-                              (v - before) / 0.25);
+                              "%s: slope %.1f, acceleration %.4f", methods.list[m].text,
+                              tangent, (v - before) / 0.25);
             else
-                ck_assert_msg(fabs(v / (ev * tangent / sqrt(mu * mu - tangent * tangent)) - 1) <
-                                  0.05,
-                              "%s: slope %.1f, creep %.3g m/s", all_able[m], tangent, v);
+                ck_assert_msg(
+                    fabs(v / (ev * tangent / sqrt(mu * mu - tangent * tangent)) - 1) < 0.05,
+                    "%s: slope %.1f, creep %.3g m/s", methods.list[m].text, tangent, v);
             fixture_close(&block);
         }
 }
-END_TEST
 
 /* also those that move particles place by place see how fast the belt is */
-START_TEST(belts_carry_what_lies_on_them) {
+TEST(belts_carry_what_lies_on_them) {
     static const char *const methods[] = {"rk4", "implicit-linearised:dt=0.004",
                                           "backward-euler:dt=0.004", "xpbd:dt=0.004"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
@@ -149,7 +133,6 @@ START_TEST(belts_carry_what_lies_on_them) {
         fixture_close(&block);
     }
 }
-END_TEST
 
 /* a sheet in the range of a plane, soft enough for a smooth motion over a step */
 #define SHEET                                                                                  \
@@ -161,55 +144,43 @@ END_TEST
 
 enum { VALUES = 6 * 16 };
 
-static uint32_t end_state(const char *name, double h, double state[VALUES]) {
+static void end_state(const char *name, double h, double state[VALUES]) {
     struct fixture sheet;
-    char integrator[128];
-    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
-             h);
+    char integrator[120];
+    methods_set(integrator, name, "dt", h);
     fixture_open(&sheet, integrator, SHEET);
     cs_perturb_smooth(sheet.system, 0.01, 0.2);
     fixture_start(&sheet);
     fixture_frames(&sheet, 3);
     memcpy(state, sheet.x, VALUES * sizeof *state);
-    const uint32_t order = sheet.session.method.integrator->order;
     fixture_close(&sheet);
-    return order;
 }
 
-START_TEST(orders_hold_in_contact) {
-    static const struct {
-        const char *name;
-        double h;
-    } methods[] = {{"symplectic-euler", 2.5e-4},
-                   {"velocity-verlet", 1e-3},
-                   {"rk4", 4e-3},
-                   {"implicit-linearised:rtol=1e-10", 2.5e-4},
-                   {"backward-euler:rtol=1e-12", 2.5e-4},
-                   {"implicit-midpoint:rtol=1e-12", 2e-3},
-                   {"bdf2:rtol=1e-12", 1e-3},
-                   {"tr-bdf2:rtol=1e-12", 2e-3},
-                   {"sdirk2:rtol=1e-12", 2e-3},
-                   {"newmark:rtol=1e-12", 2e-3},
-                   {"xpbd:iterations=30", 2.5e-4}};
+TEST(orders_hold_in_contact) {
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "order in contact",
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                .residual = 1e-12});
     double reference[VALUES];
     end_state("rk4", 2e-4, reference);
-    for (size_t m = 0; m < LENGTH(methods); m++) {
+    for (size_t m = 0; m < methods.n; m++) {
+        const struct method_asked *method = methods.list + m;
+        const double h = methods_step(method->order);
         double state[VALUES], error[2];
-        uint32_t order = 0;
         for (int k = 0; k < 2; k++) {
-            order = end_state(methods[m].name, methods[m].h / (1 + k), state);
+            end_state(method->text, h / (1 + k), state);
             error[k] = cs_rms_difference(state, reference, VALUES);
         }
-        ck_assert_msg(fabs(log2(error[0] / error[1]) - order) < 0.2,
-                      "%s: order %.3f in contact, stated %u (errors %.3g, %.3g)",
-                      methods[m].name, log2(error[0] / error[1]), order, error[0], error[1]);
+        const double order = log2(error[0] / error[1]);
+        ck_assert_msg(fabs(order - method->order) < 0.2,
+                      "%s: order %.3f in contact, stated %u (errors %.3g, %.3g)", method->text,
+                      order, method->order, error[0], error[1]);
     }
 }
-END_TEST
 
 /* The passes of a position-level method settle with contact among them, beside implicit Euler:
  * the distance to it is one of second order in a step. */
-START_TEST(passes_settle_beside_implicit_euler) {
+TEST(passes_settle_beside_implicit_euler) {
     double apart[2];
     for (int k = 0; k < 2; k++) {
         const double h = 2e-3 / (1 + k);
@@ -222,7 +193,6 @@ START_TEST(passes_settle_beside_implicit_euler) {
     }
     ck_assert_double_ge(log2(apart[0] / apart[1]), 0.8);
 }
-END_TEST
 
 /* the energy that a straight move of one particle does not see, as step_check.h has it */
 static bool move_is_seen(const struct cs_system *system, double h, const double from[3],
@@ -250,7 +220,7 @@ static bool move_is_seen(const struct cs_system *system, double h, const double 
 }
 
 /* whatever is told from a whole row of particles at once */
-START_TEST(steps_are_judged_as_stated) {
+TEST(steps_are_judged_as_stated) {
     static const char *const shapes[] = {
         "{\"floor\": {\"height\": 0}",
         "{\"sphere\": {\"centre\": [0, -0.3, 0], \"radius\": 0.3}",
@@ -283,7 +253,6 @@ START_TEST(steps_are_judged_as_stated) {
         fixture_close(&one);
     }
 }
-END_TEST
 
 /* a soft ball that falls 0.6 m on a floor, friction and damping 0 */
 #define BALL                                                                                   \
@@ -293,58 +262,59 @@ END_TEST
     "\"bend\": 0, \"damping\": 0}}], \"colliders\": [{\"floor\": {\"height\": 0}, "            \
     "\"thickness\": 0.02}], \"contact\": \"force\"}"
 
-START_TEST(bounces_make_no_energy) {
-    static const struct {
-        const char *name;
-        double most; // 1.01, and 1.05 for methods without damping of their own
-    } methods[] = {{"symplectic-euler", 1.05},
-                   {"velocity-verlet", 1.05},
-                   {"rk4", 1.05},
-                   {"dopri5:rtol=1e-3", 1.05},
-                   {"implicit-linearised:dt=0.016666666666666666", 1.01},
-                   {"implicit-linearised:dt=0.004166666666666667", 1.01},
-                   {"implicit-block:dt=0.004166666666666667", 1.01},
-                   {"backward-euler:dt=0.004166666666666667", 1.01},
-                   {"implicit-midpoint:dt=0.004166666666666667", 1.05},
-                   {"bdf2:dt=0.004166666666666667", 1.01},
-                   {"tr-bdf2:dt=0.004166666666666667", 1.01},
-                   {"sdirk2:dt=0.004166666666666667", 1.01},
-                   {"ros2:dt=0.004166666666666667", 1.05},
-                   {"newmark:dt=0.004166666666666667", 1.05},
-                   {"cvode-bdf:rtol=1e-3", 1.01},
-                   {"cvode-adams:rtol=1e-3", 1.05},
-                   {"ark-erk:rtol=1e-3", 1.05},
-                   {"ark-dirk:rtol=1e-3", 1.05},
-                   {"ark-imex:rtol=1e-3", 1.05},
-                   {"xpbd:dt=0.016666666666666666", 1.01},
-                   {"xpbd:dt=0.004166666666666667", 1.01}};
-    for (size_t m = 0; m < LENGTH(methods); m++) {
+/* these damp by themselves */
+static bool is_damped(const char *method) {
+    static const char *const names[] = {"implicit-linearised",
+                                        "implicit-block",
+                                        "backward-euler",
+                                        "bdf2",
+                                        "tr-bdf2",
+                                        "sdirk2",
+                                        "cvode-bdf",
+                                        "xpbd"};
+    for (size_t k = 0; k < LENGTH(names); k++)
+        if (methods_is(method, names[k]))
+            return true;
+    return false;
+}
+
+TEST(bounces_make_no_energy) {
+    static const char *const more[] = {"implicit-linearised:dt=0.016666666666666666",
+                                       "xpbd:dt=0.016666666666666666", NULL};
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "bounce",
+                                             .without = CS_EXPLICIT_OUTER,
+                                             .dt = 1 / 240.0,
+                                             .dt_for = CS_IMPLICIT,
+                                             .rtol = 1e-3,
+                                             .more = more});
+    for (size_t m = 0; m < methods.n; m++) {
+        const char *method = methods.list[m].text;
         struct fixture ball;
-        fixture_open(&ball, methods[m].name, BALL);
+        fixture_open(&ball, method, BALL);
         fixture_start(&ball);
-        const double start = fixture_energy(&ball);
+        const double start = fixture_energy(&ball), most = is_damped(method) ? 1.01 : 1.05;
         double largest = start;
         for (int frame = 0; frame < 32; frame++) {
             fixture_frames(&ball, 1);
             largest = fmax(largest, fixture_energy(&ball));
         }
-        ck_assert_msg(largest <= methods[m].most * start, "%s: %.4f of the start's energy",
-                      methods[m].name, largest / start);
+        ck_assert_msg(largest <= most * start, "%s: %.4f of the start's energy", method,
+                      largest / start);
         // it touched the floor and came back up
         double up = 0;
         for (size_t i = 0; i < ball.n; i++)
             up += ball.v[ball.n + i];
         // implicit-block falls too slowly to be there yet
-        ck_assert_msg(up > 0 || strstr(methods[m].name, "block"), "%s: it still falls",
-                      methods[m].name);
+        ck_assert_msg(up > 0 || methods.list[m].traits & CS_NOT_GALILEAN, "%s: it still falls",
+                      method);
         fixture_close(&ball);
     }
 }
-END_TEST
 
 /* Stiff springs at a long step: the stage of a Rosenbrock method lands on loads that are never
  * there. Friction under them made 7000 times the energy of the start. */
-START_TEST(friction_in_a_stage_makes_no_energy) {
+TEST(friction_in_a_stage_makes_no_energy) {
     struct fixture ball;
     fixture_open(
         &ball, "ros2:dt=0.016666666666666666",
@@ -362,9 +332,8 @@ START_TEST(friction_in_a_stage_makes_no_energy) {
     }
     fixture_close(&ball);
 }
-END_TEST
 
-START_TEST(methods_with_explicit_outer_forces_are_refused) {
+TEST(methods_with_explicit_outer_forces_are_refused) {
     struct fixture ball;
     struct cs_error error = {0};
     fixture_open(&ball, "velocity-verlet", BALL);
@@ -375,7 +344,6 @@ START_TEST(methods_with_explicit_outer_forces_are_refused) {
     ck_assert_ptr_nonnull(strstr(error.message, "contact.law"));
     fixture_close(&ball);
 }
-END_TEST
 
 /* the distance of the nearest triangle of a grid of 13 x 13 from the origin */
 static double nearest_triangle(const double *x) {
@@ -409,7 +377,7 @@ static double nearest_triangle(const double *x) {
 /* A coarse cloth on a ball of 0.35 m, the range left to the mesh: what hangs between the
  * particles sinks by s^2/8R at most, which is below a quarter of the range, and needs no points
  * of its own. */
-START_TEST(no_triangle_comes_into_a_ball) {
+TEST(no_triangle_comes_into_a_ball) {
     struct fixture cloth;
     double least = HUGE_VAL;
     fixture_open(&cloth, "implicit-linearised:dt=0.004166666666666667", BALLED);
@@ -421,19 +389,4 @@ START_TEST(no_triangle_comes_into_a_ball) {
     }
     ck_assert_double_gt(least, 0.35 + 0.01);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {law_is_one_function,
-                                  blocks_slide_and_creep_as_the_law_says,
-                                  belts_carry_what_lies_on_them,
-                                  orders_hold_in_contact,
-                                  bounces_make_no_energy,
-                                  friction_in_a_stage_makes_no_energy,
-                                  passes_settle_beside_implicit_euler,
-                                  steps_are_judged_as_stated,
-                                  no_triangle_comes_into_a_ball,
-                                  methods_with_explicit_outer_forces_are_refused};
-    return fixture_run("contact force", tests, LENGTH(tests));
 }

@@ -12,8 +12,6 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
-
 /* the first with steps of one length, short where contact is stiff: on scenes that leave these
  * long enough alone, unless others are asked for */
 static const char *const methods[] = {
@@ -39,9 +37,6 @@ static const struct meeting scenes[] = {
     {.scene = "funnel", .frames = 180}, // coarser ones jam: the tip comes to lie on an edge
     {.scene = "reef_knot", .frames = 120},
 };
-
-static const char *asked_method;
-static char **asked_scenes;
 
 static double processor_seconds(void) {
     struct rusage used;
@@ -86,6 +81,8 @@ static bool run(const struct meeting *params) {
 }
 
 static bool is_asked(size_t scene, size_t method) {
+    const char *asked_method = *suite_args ? *suite_args : "all";
+    char **asked_scenes = suite_args + (*suite_args != NULL);
     const size_t length = strlen(asked_method);
     bool asked = !*asked_scenes && (method != SHORT_STEPS || scene < MILD);
     for (char **name = asked_scenes; *name; name++)
@@ -94,7 +91,7 @@ static bool is_asked(size_t scene, size_t method) {
            (!strcmp(asked_method, "all") || !strncmp(asked_method, methods[method], length));
 }
 
-START_TEST(nothing_goes_through) {
+TEST(nothing_goes_through) {
     uint32_t failed = 0, done = 0;
     for (size_t s = 0; s < LENGTH(scenes); s++)
         for (size_t m = 0; m < LENGTH(methods); m++)
@@ -106,12 +103,4 @@ START_TEST(nothing_goes_through) {
             }
     ck_assert_uint_gt(done, 0);
     ck_assert_msg(!failed, "%u of %u runs failed, see their rows", failed, done);
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    const TTest *const tests[] = {nothing_goes_through};
-    asked_method = argc > 1 ? argv[1] : "all";
-    asked_scenes = argv + (argc > 2 ? 2 : argc);
-    return fixture_run("contact methods", tests, LENGTH(tests));
 }

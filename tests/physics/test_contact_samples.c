@@ -2,7 +2,7 @@
  * forces are those of points added up one by one, and methods keep order and energy. */
 #include "base/pool.h"
 #include "base/vec3.h"
-#include "fixture.h"
+#include "methods.h"
 #include "model/contact/contact_samples.h"
 #include "model/force/terms.h"
 #include "study/sampling_warning.h"
@@ -10,8 +10,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
 
 /* --- nothing comes in --- */
 
@@ -91,7 +89,7 @@ static double least_distance(const char *scene, const char *integrator, bool alo
     return least;
 }
 
-START_TEST(nothing_comes_in_between_particles) {
+TEST(nothing_comes_in_between_particles) {
     for (size_t k = 0; k < LENGTH(coarse); k++) {
         const double alone =
             least_distance(coarse[k].scene, "implicit-linearised:dt=0.004", true);
@@ -102,19 +100,20 @@ START_TEST(nothing_comes_in_between_particles) {
         ck_assert_msg(all > 0, "%s: %g m", coarse[k].name, all);
     }
 }
-END_TEST
 
 /* the same for every family, on the curtain */
-START_TEST(every_family_keeps_it_out) {
-    static const char *const methods[] = {"velocity-verlet",         "rk4",
-                                          "backward-euler:dt=0.004", "bdf2:dt=0.004",
-                                          "xpbd:dt=0.004",           "implicit-block:dt=0.002"};
-    for (size_t m = 0; m < LENGTH(methods); m++) {
-        const double all = least_distance(coarse[1].scene, methods[m], false);
-        ck_assert_msg(all > 0, "%s: %g m", methods[m], all);
+TEST(every_family_keeps_it_out) {
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "curtain",
+                                             .without = CS_EXPLICIT_OUTER,
+                                             .dt = 0.004,
+                                             .dt_for = CS_IMPLICIT,
+                                             .rtol = 1e-3});
+    for (size_t m = 0; m < methods.n; m++) {
+        const double all = least_distance(coarse[1].scene, methods.list[m].text, false);
+        ck_assert_msg(all > 0, "%s: %g m", methods.list[m].text, all);
     }
 }
-END_TEST
 
 /* --- what is kept --- */
 
@@ -130,54 +129,42 @@ END_TEST
 enum { N = 16, VALUES = 6 * N };
 
 static void open_sheet(struct fixture *sheet, const char *name, double h, double friction) {
-    char integrator[128];
-    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
-             h);
+    char integrator[120];
+    methods_set(integrator, name, "dt", h);
     fixture_open(sheet, integrator, SHEET, friction);
     cs_perturb_smooth(sheet->system, 0.01, 0.2);
     fixture_start(sheet);
 }
 
-/* returns the method's order */
-static uint32_t end_state(const char *name, double h, double state[VALUES]) {
+static void end_state(const char *name, double h, double state[VALUES]) {
     struct fixture sheet;
     open_sheet(&sheet, name, h, 0.3);
     fixture_frames(&sheet, 3);
     memcpy(state, sheet.x, VALUES * sizeof *state);
-    const uint32_t order = sheet.session.method.integrator->order_damped;
     fixture_close(&sheet);
-    return order;
 }
 
-START_TEST(orders_hold) {
-    static const struct {
-        const char *name;
-        double h;
-    } methods[] = {{"rk4", 4e-3},
-                   {"implicit-linearised:rtol=1e-10", 2.5e-4},
-                   {"backward-euler:rtol=1e-12", 2.5e-4},
-                   {"implicit-midpoint:rtol=1e-12", 2e-3},
-                   {"bdf2:rtol=1e-12", 1e-3},
-                   {"tr-bdf2:rtol=1e-12", 2e-3},
-                   {"xpbd:iterations=30", 2.5e-4}};
+TEST(orders_hold) {
+    const struct methods methods = methods_find(&(struct methods_query){
+        .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN, .residual = 1e-12});
     double reference[VALUES];
     end_state("rk4", 2e-4, reference);
-    for (size_t m = 0; m < LENGTH(methods); m++) {
+    for (size_t m = 0; m < methods.n; m++) {
+        const struct method_asked *method = methods.list + m;
         double state[VALUES], error[2];
-        uint32_t order = 0;
         for (int k = 0; k < 2; k++) {
-            order = end_state(methods[m].name, methods[m].h / (1 + k), state);
+            end_state(method->text, methods_step(method->order_damped) / (1 + k), state);
             error[k] = cs_rms_difference(state, reference, VALUES);
         }
-        ck_assert_msg(fabs(log2(error[0] / error[1]) - order) < 0.2,
-                      "%s: order %.3f, stated %u (errors %.3g, %.3g)", methods[m].name,
-                      log2(error[0] / error[1]), order, error[0], error[1]);
+        const double order = log2(error[0] / error[1]);
+        ck_assert_msg(fabs(order - method->order_damped) < 0.2,
+                      "%s: order %.3f, stated %u (errors %.3g, %.3g)", method->text, order,
+                      method->order_damped, error[0], error[1]);
     }
 }
-END_TEST
 
 /* without friction nothing but the method's own error takes energy: of fifth order in a step */
-START_TEST(energy_is_kept) {
+TEST(energy_is_kept) {
     double lost[2];
     for (int k = 0; k < 2; k++) {
         struct fixture sheet;
@@ -190,7 +177,6 @@ START_TEST(energy_is_kept) {
     ck_assert_double_lt(lost[0], 1e-4);
     ck_assert_double_gt(lost[0] / lost[1], 16);
 }
-END_TEST
 
 /* --- point by point --- */
 
@@ -216,7 +202,7 @@ static uint32_t add_point(const struct fixture *sheet, const struct cs_posed_col
 /* Force and moment of all particles, of the points at thirds of all edges and of the middles of
  * all triangles: the longest edges are 0.471 m, parts may have 0.224 m, and the sides 0.333 m,
  * which are cut at their middles. */
-START_TEST(force_is_that_of_points) {
+TEST(force_is_that_of_points) {
     struct fixture sheet;
     struct cs_posed_collider_law near;
     double f[3 * N], sum[6] = {0}, one[6] = {0};
@@ -257,11 +243,10 @@ START_TEST(force_is_that_of_points) {
     ck_assert_double_gt(one[1], 0.1);
     fixture_close(&sheet);
 }
-END_TEST
 
 /* --- bits, and what is left out --- */
 
-START_TEST(bits_are_those_of_one_thread) {
+TEST(bits_are_those_of_one_thread) {
     static const char *const methods[] = {"velocity-verlet:dt=5e-4",
                                           "implicit-linearised:dt=0.004"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
@@ -282,7 +267,6 @@ START_TEST(bits_are_those_of_one_thread) {
         }
     }
 }
-END_TEST
 
 static const struct cs_plan_row *row_of(const struct cs_system *system) {
     uint32_t k = 0;
@@ -298,7 +282,7 @@ static const struct cs_plan_row *row_of(const struct cs_system *system) {
 
 /* No array and no call where edges are short enough, or nothing is round; a part of an edge may
  * have sqrt(D (2R + 3/4 D)). */
-START_TEST(what_is_not_needed_is_left_out) {
+TEST(what_is_not_needed_is_left_out) {
     static const struct {
         const char *scene, *why;
         size_t points;
@@ -327,10 +311,9 @@ START_TEST(what_is_not_needed_is_left_out) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* a needle is finer than the points there may be */
-START_TEST(what_is_too_fine_is_told) {
+TEST(what_is_too_fine_is_told) {
     struct fixture cloth;
     struct cs_text warning = {0};
     fixture_open(&cloth, "velocity-verlet", "%s",
@@ -342,10 +325,9 @@ START_TEST(what_is_too_fine_is_told) {
     cs_text_finish(&warning);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* a ball in the middle of a cell, where no particle is */
-START_TEST(what_starts_inside_is_refused) {
+TEST(what_starts_inside_is_refused) {
     struct cs_session session = {0};
     struct cs_error error = {0};
     const struct cs_session_settings settings = {
@@ -356,18 +338,4 @@ START_TEST(what_starts_inside_is_refused) {
     ck_assert_msg(strstr(error.message, "starts 0.03 m inside colliders[0]") != NULL, "%s",
                   error.message);
     cs_session_close(&session);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {nothing_comes_in_between_particles,
-                                  every_family_keeps_it_out,
-                                  orders_hold,
-                                  energy_is_kept,
-                                  force_is_that_of_points,
-                                  bits_are_those_of_one_thread,
-                                  what_is_not_needed_is_left_out,
-                                  what_is_too_fine_is_told,
-                                  what_starts_inside_is_refused};
-    return fixture_run("cover", tests, LENGTH(tests));
 }

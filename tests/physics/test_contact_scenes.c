@@ -12,10 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
-
-static bool all;
-
 /* --- nothing goes through anything --- */
 
 /* one of the small ones, or of the rest */
@@ -60,18 +56,17 @@ static void check_apart(const struct meeting *of) {
     cs_session_close(&session);
 }
 
-START_TEST(nothing_goes_through) {
+TEST(nothing_goes_through) {
     for (size_t k = 0; k < LENGTH(kept_apart); k++)
-        if (all == kept_apart[k].slow)
+        if (suite_all == kept_apart[k].slow)
             check_apart(&kept_apart[k].meeting);
 }
-END_TEST
 
 /* --- what scenes are about --- */
 
 /* A sheet that is pulled off needles is not torn by them: found is a strain of 0.2. */
-START_TEST(needles_do_not_tear) {
-    const struct meeting of = {"needles", NULL, {MEETING_GRID(13, 13)}, all ? 125 : 1};
+TEST(needles_do_not_tear) {
+    const struct meeting of = {"needles", NULL, {MEETING_GRID(13, 13)}, suite_all ? 125 : 1};
     struct cs_session session;
     meeting_open(&session, &of);
     for (uint32_t frame = 0; frame < of.frames; frame++) {
@@ -81,7 +76,6 @@ START_TEST(needles_do_not_tear) {
     }
     cs_session_close(&session);
 }
-END_TEST
 
 enum { RIBBON = 363, HELD = 6, FRAMES_OF_MEAN = 6 };
 
@@ -124,24 +118,23 @@ static double tie(const char *method, uint32_t frames, double *odds) {
 /* A knot that was pulled tight for 1.5 s and is held pulls back with 0.19 N, thirty times what
  * it took to draw the loose one together, whatever the step and by Newton's iteration too. The
  * small case is at the start, where ribbons are drawn along. */
-START_TEST(knot_is_tight) {
+TEST(knot_is_tight) {
     static const char *const quick[] = {"implicit-linearised:dt=0.004",
                                         "implicit-linearised:dt=0.002"};
     static const char *const slow[] = {"implicit-linearised:dt=0.001",
                                        "implicit-linearised:dt=0.002",
                                        "backward-euler:dt=0.004,iterations=100"};
     double odds;
-    const uint32_t frames = all ? 105 : 8;
-    const double first = tie(all ? slow[0] : quick[0], frames, &odds);
-    ck_assert_msg(first > (all ? 0.1 : 0.001), "%.4g N", first);
-    for (int k = 1; k < (all ? 3 : 2); k++) {
-        const double pull = tie(all ? slow[k] : quick[k], frames, &odds);
-        ck_assert_msg(fabs(pull - first) < (all ? 0.02 : 0.05) * first, "%.4g, %.4g N", first,
-                      pull);
+    const uint32_t frames = suite_all ? 105 : 8;
+    const double first = tie(suite_all ? slow[0] : quick[0], frames, &odds);
+    ck_assert_msg(first > (suite_all ? 0.1 : 0.001), "%.4g N", first);
+    for (int k = 1; k < (suite_all ? 3 : 2); k++) {
+        const double pull = tie(suite_all ? slow[k] : quick[k], frames, &odds);
+        ck_assert_msg(fabs(pull - first) < (suite_all ? 0.02 : 0.05) * first, "%.4g, %.4g N",
+                      first, pull);
         ck_assert_msg(fabs(odds) < 1e-3 * pull, "%.4g of %.4g N", odds, pull);
     }
 }
-END_TEST
 
 /* rad, by which the middle of the sheet has been turned about y */
 static double turn_of(const struct cs_session *session) {
@@ -169,31 +162,30 @@ static double wind_up(const struct meeting *of) {
 
 /* The ball takes the sheet along, by an angle that the step does not decide: in three seconds
  * by more than a whole turn. The small case begins to. */
-START_TEST(ball_winds_up_the_sheet) {
+TEST(ball_winds_up_the_sheet) {
     static const char *const methods[] = {"implicit-linearised:dt=0.004",
                                           "implicit-linearised:dt=0.002",
                                           "implicit-linearised:dt=0.001"};
-    const int n = all ? 3 : 2;
+    const int n = suite_all ? 3 : 2;
     double turn[3];
     for (int k = 0; k < n; k++) {
         const struct meeting whole = {"winding", methods[k], {MEETING_GRID(7, 7)}, 240};
         const struct meeting part = {
             "winding", methods[k], {MEETING_GRID(7, 7), {"events[0].from", "0.2"}}, 18};
-        turn[k] = wind_up(all ? &whole : &part);
+        turn[k] = wind_up(suite_all ? &whole : &part);
     }
-    ck_assert_msg(turn[0] > (all ? 6.3 : 0.02), "turned by %.3g", turn[0]);
+    ck_assert_msg(turn[0] > (suite_all ? 6.3 : 0.02), "turned by %.3g", turn[0]);
     for (int k = 1; k < n; k++)
-        ck_assert_msg(fabs(turn[k] - turn[k - 1]) < (all ? 0.02 : 0.08) * turn[k], "%.5g, %.5g",
-                      turn[k - 1], turn[k]);
+        ck_assert_msg(fabs(turn[k] - turn[k - 1]) < (suite_all ? 0.02 : 0.08) * turn[k],
+                      "%.5g, %.5g", turn[k - 1], turn[k]);
 }
-END_TEST
 
 /* --- a funnel --- */
 
 /* The tetrahedron pushes all three sheets through, none through another. The small case begins
  * to. */
-START_TEST(sheets_go_through_the_funnel) {
-    const struct meeting of = {"funnel", NULL, {{NULL, NULL}}, all ? 180 : 1};
+TEST(sheets_go_through_the_funnel) {
+    const struct meeting of = {"funnel", NULL, {{NULL, NULL}}, suite_all ? 180 : 1};
     struct cs_session session;
     double highest = -HUGE_VAL;
     meeting_open(&session, &of);
@@ -205,10 +197,9 @@ START_TEST(sheets_go_through_the_funnel) {
     for (size_t i = 0; i < n; i++)
         highest = fmax(highest, session.run.x[n + i]);
     // its end is at -0.3 m
-    ck_assert_msg(!all || highest < -0.3, "%g m", highest);
+    ck_assert_msg(!suite_all || highest < -0.3, "%g m", highest);
     cs_session_close(&session);
 }
-END_TEST
 
 /* --- curtain and ball --- */
 
@@ -252,29 +243,20 @@ static double provenance(const char *method, uint32_t grid, double mu, uint32_t 
 
 /* After two seconds 0.4 of the curtain is in front of the ball, at any step where friction
  * holds it there; without friction it slips by and by. */
-START_TEST(ball_goes_into_the_curtain) {
+TEST(ball_goes_into_the_curtain) {
     static const char *const steps[] = {"implicit-linearised:dt=0.004",
                                         "implicit-linearised:dt=0.002",
                                         "implicit-linearised:dt=0.001"};
-    const uint32_t grid = all ? 17 : 7, frames = all ? 120 : 24;
-    for (int rub = all ? 0 : 1; rub < 2; rub++) {
-        const double mu = rub ? 0.6 : 0, most = !all ? 0.01 : rub ? 0.002 : 0.03;
+    const uint32_t grid = suite_all ? 17 : 7, frames = suite_all ? 120 : 24;
+    for (int rub = suite_all ? 0 : 1; rub < 2; rub++) {
+        const double mu = rub ? 0.6 : 0, most = !suite_all ? 0.01 : rub ? 0.002 : 0.03;
         double share[2];
-        const double coarse = provenance(steps[all], grid, mu, frames, share);
-        const double fine = provenance(steps[1 + all], grid, mu, frames, share + 1);
+        const double coarse = provenance(steps[suite_all], grid, mu, frames, share);
+        const double fine = provenance(steps[1 + suite_all], grid, mu, frames, share + 1);
         ck_assert_msg(fabs(coarse - fine) < most, "rub %d: %.4g, %.4g m", rub, coarse, fine);
         ck_assert_msg(fabs(share[0] - share[1]) < 2 * most, "rub %d: %.4g, %.4g in front", rub,
                       share[0], share[1]);
-        ck_assert_msg(!all || fabs(share[1] - 0.4) < 0.1, "rub %d: %.4g in front", rub,
+        ck_assert_msg(!suite_all || fabs(share[1] - 0.4) < 0.1, "rub %d: %.4g in front", rub,
                       share[1]);
     }
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    all = argc > 1 && !strcmp(argv[1], "all");
-    const TTest *const tests[] = {
-        nothing_goes_through,    needles_do_not_tear,          knot_is_tight,
-        ball_winds_up_the_sheet, sheets_go_through_the_funnel, ball_goes_into_the_curtain};
-    return fixture_run("contact scenes", tests, LENGTH(tests));
 }

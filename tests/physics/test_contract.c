@@ -76,7 +76,7 @@ static void leave_alone(struct fixture *cloth, const struct cs_term *term) {
         cloth->system->springs.n_runs = cloth->system->springs.n = 0;
 }
 
-START_TEST(bits_and_calls_agree) {
+TEST(bits_and_calls_agree) {
     uint32_t own_bits = 0;
     const uint32_t shared = CS_PART_POTENTIAL | CS_PART_DISSIPATIVE | CS_PART_EXTERNAL;
     for (uint32_t k = 0; k < cs_n_terms; k++) {
@@ -100,9 +100,8 @@ START_TEST(bits_and_calls_agree) {
             ck_assert_str_ne(term->name, cs_terms[j]->name);
     }
 }
-END_TEST
 
-START_TEST(every_force_acts_here) {
+TEST(every_force_acts_here) {
     struct fixture cloth;
     open(&cloth);
     for (uint32_t k = 0; k < cs_n_terms; k++) {
@@ -114,9 +113,8 @@ START_TEST(every_force_acts_here) {
     }
     fixture_close(&cloth);
 }
-END_TEST
 
-START_TEST(events_can_change_the_keys) {
+TEST(events_can_change_the_keys) {
     struct fixture cloth;
     open(&cloth);
     for (uint32_t k = 0; k < cs_n_terms; k++)
@@ -138,7 +136,6 @@ START_TEST(events_can_change_the_keys) {
         }
     fixture_close(&cloth);
 }
-END_TEST
 
 static void force(const struct fixture *cloth, struct cs_eval at, double f[VALUES]) {
     cs_normals_update(cloth->system, at.x);
@@ -193,7 +190,7 @@ static void check_jvp(const struct fixture *cloth, const char *name, uint32_t pa
                   error, size);
 }
 
-START_TEST(jvp_is_the_derivative) {
+TEST(jvp_is_the_derivative) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         struct fixture cloth;
         open(&cloth);
@@ -204,10 +201,9 @@ START_TEST(jvp_is_the_derivative) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* without the force that an energy has, the energy is level: f = -dE/dx of those bits */
-START_TEST(force_is_the_slope_of_its_energy) {
+TEST(force_is_the_slope_of_its_energy) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         struct fixture cloth;
         double f[VALUES];
@@ -230,7 +226,6 @@ START_TEST(force_is_the_slope_of_its_energy) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* A p - M p of a force's share of the matrix with cm = 1 */
 static void share_of(const struct fixture *cloth, struct cs_matrix matrix, const double *p,
@@ -251,7 +246,7 @@ static void share_of(const struct fixture *cloth, struct cs_matrix matrix, const
 
 /* Derivatives of damping by places are left out, so that the share is symmetric: at rest they
  * are 0. The same of the particles' own blocks, by which it must agree with the diagonal. */
-START_TEST(share_of_the_matrix_is_that_of_jvp) {
+TEST(share_of_the_matrix_is_that_of_jvp) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         struct fixture cloth;
         double p[VALUES], found[VALUES], dk[VALUES], dd[VALUES], kxx[6 * N], dvv[6 * N];
@@ -285,10 +280,9 @@ START_TEST(share_of_the_matrix_is_that_of_jvp) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* p.A p >= 0 where the matrix is asked to be so, in any state */
-START_TEST(share_is_positive_on_demand) {
+TEST(share_is_positive_on_demand) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         struct fixture cloth;
         open(&cloth);
@@ -307,7 +301,6 @@ START_TEST(share_is_positive_on_demand) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* largest eigenvalue in size of M^-1 df/dx or M^-1 df/dv, by power iteration */
 static double largest_value(const struct fixture *cloth, bool velocity) {
@@ -330,7 +323,7 @@ static double largest_value(const struct fixture *cloth, bool velocity) {
     return value;
 }
 
-START_TEST(bounds_are_above_the_truth) {
+TEST(bounds_are_above_the_truth) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         struct fixture cloth;
         double work[2 * N], omega, delta;
@@ -347,9 +340,8 @@ START_TEST(bounds_are_above_the_truth) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(no_force_is_above_its_greatest) {
+TEST(no_force_is_above_its_greatest) {
     for (uint32_t k = 0; k < cs_n_terms; k++) {
         struct fixture cloth;
         double f[VALUES];
@@ -369,18 +361,4 @@ START_TEST(no_force_is_above_its_greatest) {
         }
         fixture_close(&cloth);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {bits_and_calls_agree,
-                                  every_force_acts_here,
-                                  events_can_change_the_keys,
-                                  jvp_is_the_derivative,
-                                  force_is_the_slope_of_its_energy,
-                                  share_of_the_matrix_is_that_of_jvp,
-                                  share_is_positive_on_demand,
-                                  bounds_are_above_the_truth,
-                                  no_force_is_above_its_greatest};
-    return fixture_run("contract", tests, sizeof tests / sizeof *tests);
 }

@@ -6,7 +6,7 @@
  * is a row of the table.
  */
 #include "drum.h"
-#include "fixture.h"
+#include "methods.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,9 +32,8 @@ static void limit_state(const char *name, double h, int levels, double state[VAL
     static double rows[LEVELS_MAX][VALUES];
     uint32_t order = 0;
     for (int k = 0; k < levels; k++) {
-        char integrator[160];
-        snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name,
-                 strchr(name, ':') ? ',' : ':', ldexp(h, -k));
+        char integrator[120];
+        methods_set(integrator, name, "dt", ldexp(h, -k));
         order = end_state(integrator, rows[k]);
     }
     for (int column = 1; column < levels; column++)
@@ -46,44 +45,24 @@ static void limit_state(const char *name, double h, int levels, double state[VAL
     memcpy(state, rows[levels - 1], VALUES * sizeof *state);
 }
 
-static const struct {
-    const char *name;
-    double h; /* longest step; 0: adaptive */
-    int levels;
-} methods[] = {
-    {"explicit-euler", 1e-3, 8},
-    {"symplectic-euler", 1e-3, 8},
-    {"averaged-euler", 1e-3, 8},
-    {"velocity-verlet", 1e-3, 6},
-    {"position-verlet", 1e-3, 8},
-    {"rk4", 1e-3, 4},
-    {"dopri5:rtol=1e-12", 0, 1},
-    {"implicit-linearised:rtol=1e-13", 1e-3, 8},
-    {"backward-euler:rtol=1e-13", 1e-3, 8},
-    {"implicit-midpoint:rtol=1e-13", 1e-3, 6},
-    {"bdf2:rtol=1e-13", 5e-4, 6},
-    {"bdf2:rtol=1e-13,solve=linear", 5e-4, 6},
-    {"tr-bdf2:rtol=1e-13", 1e-3, 6},
-    {"sdirk2:rtol=1e-13", 1e-3, 6},
-    {"ros2:rtol=1e-13", 1e-3, 6},
-    {"newmark:rtol=1e-13", 1e-3, 6},
-    {"newmark:rtol=1e-13,set=hht", 1e-3, 6},
-    {"newmark:rtol=1e-13,set=generalised-alpha,rho_inf=0.5", 1e-3, 6},
-    {"gauss:rtol=1e-13", 1e-3, 3},
-    {"gauss:rtol=1e-13,order=6", 5e-4, 1},
-    {"gauss:rtol=1e-13,order=8", 2e-3, 1},
-    {"cvode-bdf:rtol=1e-12,max_order=5,linear_rtol=1e-8", 0, 1},
-    {"cvode-adams:rtol=1e-12", 0, 1},
-    {"ark-erk:rtol=1e-12", 0, 1},
-    {"ark-dirk:rtol=1e-11", 0, 1},
-    {"ark-imex:rtol=1e-11", 0, 1},
-};
-
 static double distance(const double *a, const double *b) {
     return cs_rms_difference(a, b, VALUES / 2);
 }
 
-START_TEST(all_converge_to_one_solution) {
+/* Runs with steps of 1 ms, half of it, ...: as many as its order needs, and its start */
+static int levels_of(const struct method_asked *method) {
+    return method->order_damped == 1 ? 8 : method->order_damped == 2 ? 7 : 4;
+}
+
+TEST(all_converge_to_one_solution) {
+    static const char *const more[] = {"bdf2:rtol=1e-13,solve=linear",
+                                       "newmark:rtol=1e-13,set=hht",
+                                       "gauss:rtol=1e-13,order=6",
+                                       "gauss:rtol=1e-13,order=8",
+                                       "newmark:rtol=1e-13,set=generalised-alpha,rho_inf=0.5",
+                                       NULL};
+    const struct methods methods = methods_find(&(struct methods_query){
+        .test = "one solution", .rtol = 1e-12, .residual = 1e-13, .more = more});
     double start[VALUES], reference[VALUES], state[VALUES];
     struct fixture drum;
     fixture_open(&drum, "velocity-verlet", DRUM, SIDE, SIDE, DAMPING, 10);
@@ -93,23 +72,19 @@ START_TEST(all_converge_to_one_solution) {
     const double motion = distance(start, reference);
     const double speed = distance(reference + VALUES / 2, start + VALUES / 2);
 
-    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        if (methods[i].h > 0)
-            limit_state(methods[i].name, methods[i].h, methods[i].levels, state);
+    for (size_t i = 0; i < methods.n; i++) {
+        const struct method_asked *method = methods.list + i;
+        const bool adaptive = method->traits & CS_ADAPTIVE;
+        if (adaptive)
+            end_state(method->text, state);
         else
-            end_state(methods[i].name, state);
+            limit_state(method->text, 1e-3, levels_of(method), state);
         const double place = distance(state, reference) / motion;
         const double velocity = distance(state + VALUES / 2, reference + VALUES / 2) / speed;
         // an adaptive method may lose a few digits of its tolerance
-        const double bound = methods[i].h > 0 ? 1e-10 : 1e-8;
+        const double bound = adaptive ? 1e-8 : 1e-10;
         ck_assert_msg(place < bound && velocity < bound,
-                      "%s: off by %.3g of the motion, %.3g of the speed", methods[i].name,
-                      place, velocity);
+                      "%s: off by %.3g of the motion, %.3g of the speed", method->text, place,
+                      velocity);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {all_converge_to_one_solution};
-    return fixture_run("convergence", tests, sizeof tests / sizeof *tests);
 }

@@ -1,6 +1,6 @@
 /* Two sheets that nothing keeps apart, thrown at each other: what is counted, what steps are
  * taken back, and where a run ends. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/contact/ccd/crossings.h"
 
@@ -21,21 +21,10 @@
 #define MEET_FIRST 0.019
 #define MEET_LAST  0.04
 
-static const char *const methods[] = {"velocity-verlet:dt=0.002",
-                                      "rk4:dt=0.002",
-                                      "dopri5:rtol=1e-4",
-                                      "implicit-linearised:dt=0.005",
-                                      "ros2:dt=0.005",
-                                      "backward-euler:dt=0.005",
-                                      "tr-bdf2:dt=0.005",
-                                      "xpbd:dt=0.005",
-                                      "bdf2:dt=0.005",
-                                      "cvode-adams",
-                                      "cvode-bdf:rtol=1e-3",
-                                      "ark-erk",
-                                      "ark-dirk",
-                                      "ark-imex"};
-enum { METHODS = sizeof methods / sizeof *methods };
+/* with steps long enough to be cut */
+static struct methods all_methods(void) {
+    return methods_find(&(struct methods_query){.test = "crossings", .dt = 0.005});
+}
 
 /* until the run ends or ten frames are done; the first failure stays in *error */
 static uint64_t run_frames(struct fixture *fixture, const char *method, const char *policy,
@@ -45,35 +34,39 @@ static uint64_t run_frames(struct fixture *fixture, const char *method, const ch
     fixture_open(fixture, method, SHEETS, policy);
     fixture_start(fixture);
     while (run->frame < 10 && !cs_run_frame(run, error)) {
-        ck_assert_int_eq(run->outcome, CS_RUNNING);
+        ck_assert_msg(run->outcome == CS_RUNNING, "%s: %s", method,
+                      cs_outcome_text(run->outcome));
         const uint64_t found = cs_crossings_count(fixture->system, run->t, run->x).n;
         most = found > most ? found : most;
     }
     return most;
 }
 
-START_TEST(counted_sheets_pass_through_each_other) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(counted_sheets_pass_through_each_other) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture fixture;
         struct cs_error error = {0};
-        const uint64_t most = run_frames(&fixture, methods[k], "count", &error);
+        const uint64_t most = run_frames(&fixture, method, "count", &error);
         ck_assert_msg(!error.status, "%s", error.message);
-        ck_assert_msg(most > 5, "%s: %llu", methods[k], (unsigned long long)most);
+        ck_assert_msg(most > 5, "%s: %llu", method, (unsigned long long)most);
         ck_assert_uint_eq(fixture.session.run.counts.subdivided_steps, 0);
         fixture_close(&fixture);
     }
 }
-END_TEST
 
 /* the state is that of the last step that was good: nothing has crossed, and it is not a step
  * too early */
-START_TEST(limited_sheets_stop_before_they_meet) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(limited_sheets_stop_before_they_meet) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture fixture;
         struct cs_error error = {0};
-        const uint64_t most = run_frames(&fixture, methods[k], "limit", &error);
+        const uint64_t most = run_frames(&fixture, method, "limit", &error);
         const struct cs_run *run = &fixture.session.run;
-        ck_assert_msg(error.status == CS_ERR_MODULE, "%s: no end", methods[k]);
+        ck_assert_msg(error.status == CS_ERR_MODULE, "%s: no end", method);
         ck_assert_msg(strstr(error.message, "through a surface") ||
                           strstr(error.message, "the step fell to") ||
                           strstr(error.message, "gave up at t"),
@@ -90,7 +83,6 @@ START_TEST(limited_sheets_stop_before_they_meet) {
         fixture_close(&fixture);
     }
 }
-END_TEST
 
 static double time_in(const char *message) {
     const char *place = strstr(message, "step to t = ");
@@ -98,7 +90,7 @@ static double time_in(const char *message) {
     return strtod(place + strlen("step to t = "), NULL);
 }
 
-START_TEST(stopped_sheets_say_when) {
+TEST(stopped_sheets_say_when) {
     static const char *const asked[] = {"velocity-verlet:dt=0.0001", "xpbd:dt=0.001",
                                         "fast-mass-spring:dt=0.001",
                                         "implicit-linearised:dt=0.001"};
@@ -114,20 +106,20 @@ START_TEST(stopped_sheets_say_when) {
         fixture_close(&fixture);
     }
 }
-END_TEST
 
 /* before they come near each other a limit changes nothing, to the bit */
-START_TEST(limits_cost_no_bit_until_they_act) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(limits_cost_no_bit_until_they_act) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture free, limited;
-        fixture_open(&free, methods[k], SHEETS, "ignore");
-        fixture_open(&limited, methods[k], SHEETS, "limit");
+        fixture_open(&free, method, SHEETS, "ignore");
+        fixture_open(&limited, method, SHEETS, "limit");
         fixture_start(&free);
         fixture_start(&limited);
         fixture_frames(&free, 1);
         fixture_frames(&limited, 1);
-        ck_assert_msg(!memcmp(free.x, limited.x, 6 * free.n * sizeof *free.x), "%s",
-                      methods[k]);
+        ck_assert_msg(!memcmp(free.x, limited.x, 6 * free.n * sizeof *free.x), "%s", method);
         ck_assert_ptr_null(free.system->crossings);
         ck_assert_ptr_null(free.system->surfaces);
         ck_assert_uint_eq(limited.session.run.counts.subdivided_steps, 0);
@@ -135,7 +127,6 @@ START_TEST(limits_cost_no_bit_until_they_act) {
         fixture_close(&limited);
     }
 }
-END_TEST
 
 #define BODY(x, y, speed)                                                                      \
     "{\"cloth\": {\"grid\": [5, 5], \"size\": [0.4, 0.4], \"start\": \"flat\", \"velocity\": " \
@@ -164,7 +155,7 @@ static uint64_t run_meeting(struct fixture *fixture, const char *method, const c
 
 /* of three families; steps are limited where bodies keep off each other, and only these bodies
  */
-START_TEST(contact_is_limited_by_itself) {
+TEST(contact_is_limited_by_itself) {
     static const char *const asked[] = {"velocity-verlet:dt=0.001",
                                         "implicit-linearised:dt=0.01", "cvode-bdf:rtol=1e-2"};
     for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
@@ -176,13 +167,4 @@ START_TEST(contact_is_limited_by_itself) {
         ck_assert_msg(most > 0, "%s", asked[k]);
         fixture_close(&fixture);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {counted_sheets_pass_through_each_other,
-                                  limited_sheets_stop_before_they_meet, stopped_sheets_say_when,
-                                  limits_cost_no_bit_until_they_act,
-                                  contact_is_limited_by_itself};
-    return fixture_run("crossings", tests, sizeof tests / sizeof *tests);
 }

@@ -55,7 +55,7 @@ static double imbalance(const char *integrator, double damping, const char *mode
 }
 
 /* Second order: the balance closes four times better at half the step. */
-START_TEST(balance_closes_with_the_step) {
+TEST(balance_closes_with_the_step) {
     static const struct {
         double damping;
         const char *model;
@@ -77,11 +77,10 @@ START_TEST(balance_closes_with_the_step) {
                       left[0], left[1], work);
     }
 }
-END_TEST
 
 /* Without damping the energy stays: symplectic methods keep it near, explicit Euler gains and
  * implicit Euler loses it. */
-START_TEST(undamped_energy_goes_the_methods_way) {
+TEST(undamped_energy_goes_the_methods_way) {
     double work;
     const double verlet = imbalance("velocity-verlet", 0, "axial", 0, "", 500, &work);
     const double symplectic = imbalance("symplectic-euler", 0, "axial", 0, "", 500, &work);
@@ -91,11 +90,4 @@ START_TEST(undamped_energy_goes_the_methods_way) {
     ck_assert_double_lt(fabs(symplectic), 0.05);
     ck_assert_double_gt(gained, 0.1);
     ck_assert_double_lt(lost, -0.1);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {balance_closes_with_the_step,
-                                  undamped_energy_goes_the_methods_way};
-    return fixture_run("energy", tests, sizeof tests / sizeof *tests);
 }

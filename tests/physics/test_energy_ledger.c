@@ -2,13 +2,14 @@
  * tight reference nothing is left to the method. */
 #include "fixture.h"
 
+#include "model/force/terms.h"
 #include "sim/energy_ledger.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
-#define TIGHT         "dopri5:rtol=1e-12,atol=1e-13"
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
+#define TIGHT "dopri5:rtol=1e-12,atol=1e-13"
 
 struct kept {
     struct fixture fixture;
@@ -72,7 +73,7 @@ static const struct {
      CS_WORK_FRICTION, 1e-7},
 };
 
-START_TEST(nothing_is_left_to_a_tight_method) {
+TEST(nothing_is_left_to_a_tight_method) {
     for (size_t k = 0; k < LENGTH(terms); k++) {
         struct kept kept;
         char scene[2048];
@@ -87,11 +88,10 @@ START_TEST(nothing_is_left_to_a_tight_method) {
         close_kept(&kept);
     }
 }
-END_TEST
 
 /* Free fall with drag c from rest: v = g m/c (1 - e), x = g m/c (t - m/c (1 - e)), e = exp(-c
  * t/m); drag has taken m g x - m v^2/2. */
-START_TEST(drag_takes_what_a_fall_lacks) {
+TEST(drag_takes_what_a_fall_lacks) {
     struct kept kept;
     const double m = 0.05, c = 0.1, g = 9.81, t = 0.25, e = exp(-c * t / m);
     const double v = g * m / c * (1 - e), x = g * m / c * (t - m / c * (1 - e));
@@ -105,12 +105,11 @@ START_TEST(drag_takes_what_a_fall_lacks) {
     ck_assert_double_eq_tol(kept.account.energies[CS_HOLDING_KINETIC], 4 * m * v * v / 2, 1e-9);
     close_kept(&kept);
 }
-END_TEST
 
 /* A floor that absorbs all takes what a fall from h has gained, a velocity loss its share of
  * each step, a strain limit what it pulls in: put down apart, and together they are the
  * balance. */
-START_TEST(corrections_are_put_down_apart) {
+TEST(corrections_are_put_down_apart) {
     struct kept kept;
     run_kept(
         &kept, "symplectic-euler:dt=0.001",
@@ -134,10 +133,9 @@ START_TEST(corrections_are_put_down_apart) {
     ck_assert_double_eq(work[CS_WORK_EVENTS], 0);
     close_kept(&kept);
 }
-END_TEST
 
 /* Of methods that lose energy it says how much, and an order more precisely each halving */
-START_TEST(the_rest_is_the_methods_error) {
+TEST(the_rest_is_the_methods_error) {
     double left[2];
     char scene[2048];
     snprintf(scene, sizeof scene, SHEET, "\"top-left\"", "\"forces\": {}");
@@ -150,11 +148,35 @@ START_TEST(the_rest_is_the_methods_error) {
     ck_assert_msg(left[0] < 0 && fabs(left[0] / left[1] - 2) < 0.2, "%g and %g J", left[0],
                   left[1]);
 }
-END_TEST
 
-int main(void) {
-    const TTest *const tests[] = {nothing_is_left_to_a_tight_method,
-                                  drag_takes_what_a_fall_lacks, corrections_are_put_down_apart,
-                                  the_rest_is_the_methods_error};
-    return fixture_run("account", tests, sizeof tests / sizeof *tests);
+/* how often a name stands in a part of the head, which begins and ends with a comma */
+static uint32_t times_in(const char *part, const char *end, const char *name) {
+    char field[80];
+    uint32_t n = 0;
+    snprintf(field, sizeof field, ",%s,", name);
+    for (; (part = strstr(part, field)) && part < end; part++)
+        n++;
+    return n;
+}
+
+/* the list of forces: what has an energy is among what is held, what does work without one
+ * behind the sum, and no column is there twice */
+TEST(every_force_has_its_column) {
+    struct cs_text head = {0};
+    cs_energy_ledger_print_head(&head);
+    head.bytes[head.length - 1] = ',';
+    const char *all = cs_text_get(&head), *end = all + head.length;
+    const char *sum = strstr(all, ",sum,");
+    for (uint32_t k = 0; k < cs_n_terms; k++) {
+        const struct cs_term *term = cs_terms[k];
+        const char *held = term->energy_column, *work = term->work_column;
+        ck_assert(term->part_bits & CS_PART_SPRINGS || !term->energy ||
+                  times_in(all, sum, held ? held : term->name) == 1);
+        ck_assert(!(term->part_bits & CS_PART_WITHOUT_ENERGY) ||
+                  times_in(sum, end, work ? work : term->name) == 1);
+    }
+    ck_assert_uint_eq(times_in(all, sum, "stretch"), 1);
+    ck_assert_uint_eq(times_in(all, sum, "gravity"), 1);
+    ck_assert_uint_eq(times_in(sum, end, "dampers"), 1);
+    cs_text_finish(&head);
 }

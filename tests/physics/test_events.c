@@ -1,5 +1,6 @@
 /* Events: at their time to the bit, with what they promise, and nothing without them. */
 #include "eventful.h"
+#include "methods.h"
 
 #include "model/event/events.h"
 
@@ -7,13 +8,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const methods[] = {
-    "explicit-euler:dt=1e-3", "symplectic-euler",
-    "averaged-euler:dt=1e-3", "velocity-verlet",
-    "position-verlet",        "position-verlet:loss=0.01",
-    "implicit-linearised",    "implicit-block:dt=0.004",
-    "cvode-bdf:rtol=1e-3",    "implicit-linearised:dt=0.002,hessian=exact"};
-enum { METHODS = sizeof methods / sizeof *methods };
+/* every method there is */
+static struct methods all_methods(void) {
+    static const char *const more[] = {"position-verlet:loss=0.01",
+                                       "implicit-linearised:dt=0.002,hessian=exact", NULL};
+    return methods_find(&(struct methods_query){.test = "events", .more = more});
+}
 
 /* What the frame loop does about events, by hand on a run without any. */
 static void advance_by_hand(struct fixture *cloth, double from, double to) {
@@ -28,15 +28,17 @@ static void restart(struct fixture *cloth, double t) {
 
 /* A blow at 0.0375 s and one at 0.05 s, which is frame 3: the same bits as three runs joined.
  * The blow that does not come lets no method pass frames there either. */
-START_TEST(runs_are_joined_at_events) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(runs_are_joined_at_events) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth, parts;
-        fixture_open(&cloth, methods[k], CLOTH,
+        fixture_open(&cloth, method, CLOTH,
                      "{\"at\": 0.05, \"impact\": {\"direction\": [0, 3, 4], \"impulse\": 0.1,"
                      " \"particles\": [17]}},"
                      "{\"at\": 0.0375, \"impact\": {\"direction\": [1, 0, 0], \"impulse\": 0.2,"
                      " \"particles\": [\"bottom-right\"]}}");
-        fixture_open(&parts, methods[k], CLOTH,
+        fixture_open(&parts, method, CLOTH,
                      "{\"at\": 100, \"impact\": {\"direction\": [1, 0, 0]}}");
         fixture_start(&cloth);
         fixture_start(&parts);
@@ -53,16 +55,15 @@ START_TEST(runs_are_joined_at_events) {
         parts.v[2 * n + 17] += 0.8 * (0.1 / 0.01);
         restart(&parts, 3 / 60.0);
         advance_by_hand(&parts, 3 / 60.0, 4 / 60.0);
-        ck_bits(cloth.x, parts.x, 6 * n, methods[k]);
+        ck_bits(cloth.x, parts.x, 6 * n, method);
         fixture_close(&cloth);
         fixture_close(&parts);
     }
 }
-END_TEST
 
 /* At once, and over an interval that begins and ends within frames: momentum changes by the
  * impulse, and springs in between change nothing about it. */
-START_TEST(impact_gives_its_impulse) {
+TEST(impact_gives_its_impulse) {
     static const char *const times[] = {"\"at\": 0.03", "\"from\": 0.02, \"to\": 0.07"};
     static const char *const by_methods[] = {"symplectic-euler", "velocity-verlet",
                                              "implicit-linearised:dt=0.005,rtol=1e-13"};
@@ -85,13 +86,14 @@ START_TEST(impact_gives_its_impulse) {
             fixture_close(&dust);
         }
 }
-END_TEST
 
 /* Frame by frame the grabbed particles are on their path to the bit, whatever the method. */
-START_TEST(grab_is_exact) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(grab_is_exact) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth;
-        fixture_open(&cloth, methods[k], CLOTH,
+        fixture_open(&cloth, method, CLOTH,
                      "{\"from\": 0.05, \"to\": 0.35, \"grab\": {\"particles\": [29, 28],"
                      " \"path\": [{\"at\": 0.15, \"point\": [0.5, -0.25, 0.5]},"
                      " {\"at\": 0.25, \"point\": [0.5, -0.25, 1.5]}]}},"
@@ -105,7 +107,7 @@ START_TEST(grab_is_exact) {
         fixture_frames(&cloth, 6); /* 0.15 s: the first point, and half of the cubic */
         ck_assert_msg(cloth.x[28] == 0.5 && cloth.x[n + 28] == -0.25 &&
                           cloth.x[2 * n + 28] == 0.5,
-                      "%s", methods[k]);
+                      "%s", method);
         ck_assert(fabs(cloth.x[29] - (0.5 + apart)) < 1e-15);
         ck_assert(fabs(cloth.x[2 * n] - (corner - 0.5)) < 1e-15);
         fixture_frames(&cloth, 3); /* 0.2 s: half way at 10 m/s */
@@ -122,10 +124,9 @@ START_TEST(grab_is_exact) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* Let go on the way, a particle flies on as it went. */
-START_TEST(release_keeps_the_velocity) {
+TEST(release_keeps_the_velocity) {
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet", DUST, "0",
                  "{\"at\": 0, \"grab\": {\"particles\": [5], \"relative\": true,"
@@ -138,14 +139,15 @@ START_TEST(release_keeps_the_velocity) {
     ck_assert_double_eq_tol(dust.x[5], start + 1, 1e-12);
     fixture_close(&dust);
 }
-END_TEST
 
 /* Held in flight, a particle stays to the bit; a later holder is not robbed by an earlier one.
  */
-START_TEST(pins_come_and_go) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(pins_come_and_go) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth;
-        fixture_open(&cloth, methods[k], CLOTH,
+        fixture_open(&cloth, method, CLOTH,
                      "{\"from\": 0.1, \"to\": 0.2, \"pin\": {\"particles\": [\"bottom\"]}},"
                      "{\"from\": 0.15, \"to\": 0.3, \"pin\": {\"particles\": [27]}},"
                      "{\"at\": 0.1, \"release\": {\"particles\": [\"top\"]}}");
@@ -157,7 +159,7 @@ START_TEST(pins_come_and_go) {
         ck_assert_uint_eq(cloth.system->n_pinned, 6);
         ck_assert_msg(cloth.x[cloth.n + 27] == held[0] && cloth.x[cloth.n + 28] == held[1] &&
                           cloth.v[cloth.n + 27] == 0,
-                      "%s", methods[k]);
+                      "%s", method);
         ck_assert(cloth.x[cloth.n] < top);
         fixture_frames(&cloth, 3);
         ck_assert(cloth.x[cloth.n + 27] == held[0] && cloth.x[cloth.n + 28] < held[1]);
@@ -166,10 +168,9 @@ START_TEST(pins_come_and_go) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* From none to 3 Pa along x, over to 4 Pa along y, and off. */
-START_TEST(wind_rises_and_turns) {
+TEST(wind_rises_and_turns) {
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet:dt=0.001", DUST, "0",
                  "{\"from\": 0, \"to\": 0.1, \"wind\": {\"direction\": [9, 0, 0],"
@@ -191,11 +192,10 @@ START_TEST(wind_rises_and_turns) {
     ck_assert(wind->strength == 0 && wind->direction[1] == 1);
     fixture_close(&dust);
 }
-END_TEST
 
 /* A ramp, a path, a push and a wind at once: two methods that have nothing in common agree, and
  * the coarser comes near four times as fast when its step is halved. */
-START_TEST(methods_agree) {
+TEST(methods_agree) {
     static const char *const by[] = {"cvode-bdf:rtol=1e-9,linear_rtol=1e-9,max_order=5",
                                      "velocity-verlet:dt=0.0005", "velocity-verlet:dt=0.001"};
     struct fixture cloths[3];
@@ -221,10 +221,9 @@ START_TEST(methods_agree) {
     for (size_t k = 0; k < 3; k++)
         fixture_close(cloths + k);
 }
-END_TEST
 
 /* The plan says what they take, and without any there is nothing. */
-START_TEST(bytes_are_planned) {
+TEST(bytes_are_planned) {
     struct fixture with, without;
     fixture_open(&with, "velocity-verlet", CLOTH,
                  "{\"from\": 0.1, \"to\": 0.2, \"impact\": {\"direction\": [0, 0, 1]}},"
@@ -232,25 +231,23 @@ START_TEST(bytes_are_planned) {
                  " \"path\": [{\"at\": 0.5, \"point\": [0, 0, 1]}]}}");
     fixture_open(&without, "velocity-verlet", CLOTH, "");
     const size_t more = with.system->arena.used - without.system->arena.used;
-    ck_assert_uint_eq(more, with.session.plan.rows[CS_FEATURE_EVENTS].bytes);
+    ck_assert_uint_eq(more, with.system->plan.rows[CS_FEATURE_EVENTS].bytes);
     fixture_close(&with);
     fixture_close(&without);
 }
-END_TEST
 
-START_TEST(nothing_without_events) {
+TEST(nothing_without_events) {
     struct fixture cloth;
     fixture_open(&cloth, "velocity-verlet", CLOTH, "");
     ck_assert_ptr_null(cloth.system->events);
     ck_assert_ptr_eq(cloth.system->scene, &cloth.session.scene);
     ck_assert(!cloth.session.plan.rows[CS_FEATURE_EVENTS].built);
-    ck_assert_uint_eq(cloth.session.plan.rows[CS_FEATURE_EVENTS].bytes, 0);
+    ck_assert_uint_eq(cloth.system->plan.rows[CS_FEATURE_EVENTS].bytes, 0);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* A spin is a rotation about the centre: no momentum, and w for every particle. */
-START_TEST(cloth_starts_with_a_spin) {
+TEST(cloth_starts_with_a_spin) {
     struct fixture cloth;
     double p[3], l[3];
     fixture_open(&cloth, "velocity-verlet",
@@ -265,19 +262,4 @@ START_TEST(cloth_starts_with_a_spin) {
         ck_assert_double_eq_tol(cloth.v[cloth.n + i], 2 * (cloth.x[i] - 3), 1e-14);
     }
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {runs_are_joined_at_events,
-                                  impact_gives_its_impulse,
-                                  grab_is_exact,
-                                  release_keeps_the_velocity,
-                                  pins_come_and_go,
-                                  wind_rises_and_turns,
-                                  methods_agree,
-                                  bytes_are_planned,
-                                  nothing_without_events,
-                                  cloth_starts_with_a_spin};
-    return fixture_run("events", tests, sizeof tests / sizeof *tests);
 }

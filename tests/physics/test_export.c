@@ -58,7 +58,7 @@ static void assert_same(const char *one, const char *other, const char *name) {
     free(bytes[1]);
 }
 
-START_TEST(parts_make_the_whole) {
+TEST(parts_make_the_whole) {
     struct fixture bodies;
     ck_assert(!mkdir("whole", 0777) && !mkdir("parts", 0777));
     fixture_open(&bodies, "symplectic-euler", SCENE);
@@ -80,10 +80,9 @@ START_TEST(parts_make_the_whole) {
             assert_same("whole", "parts", entry->d_name);
     closedir(entries);
 }
-END_TEST
 
 /* A file that holds less than its run says is not gone on with. */
-START_TEST(what_is_short_is_refused) {
+TEST(what_is_short_is_refused) {
     static const char *const files[] = {"bodies.pc2", "colliders.pc2", "run.npz.part"};
     struct fixture bodies;
     ck_assert(!mkdir("short", 0777));
@@ -110,9 +109,8 @@ START_TEST(what_is_short_is_refused) {
     }
     fixture_close(&bodies);
 }
-END_TEST
 
-START_TEST(nothing_asked_for_takes_nothing) {
+TEST(nothing_asked_for_takes_nothing) {
     struct fixture bodies;
     struct cs_export export = {0};
     struct cs_error error = {0};
@@ -130,11 +128,4 @@ START_TEST(nothing_asked_for_takes_nothing) {
     cs_export_close(&export);
     fixture_close(&bodies);
     ck_assert_int_eq(unit_count_files("none"), 0);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {parts_make_the_whole, what_is_short_is_refused,
-                                  nothing_asked_for_takes_nothing};
-    return unit_run("export", tests, sizeof tests / sizeof *tests);
 }

@@ -89,7 +89,7 @@ static void check_part(const struct fixture *cloth, uint32_t part, const char *n
     ck_assert_msg(error <= 1e-7 * size + 1e-9, "%s: off by %g of %g", name, error, size);
 }
 
-START_TEST(jvp_is_the_derivative_of_each_force) {
+TEST(jvp_is_the_derivative_of_each_force) {
     static const struct {
         uint32_t part;
         const char *name;
@@ -106,10 +106,9 @@ START_TEST(jvp_is_the_derivative_of_each_force) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* Both directions at once are the sum of each alone. */
-START_TEST(jvp_is_linear) {
+TEST(jvp_is_linear) {
     struct fixture cloth;
     double dx[VALUES], dv[VALUES], both[VALUES], one[VALUES], other[VALUES];
     open(&cloth, true);
@@ -130,7 +129,6 @@ START_TEST(jvp_is_linear) {
         ck_assert_double_eq_tol(both[i], one[i] + other[i], 1e-11);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* The blocks and the solver's matrix leave out the position derivative of axial damping: at
  * equal velocities it is 0, and both must agree with jvp. */
@@ -139,7 +137,7 @@ static void open_at_rest(struct fixture *cloth, bool axial) {
     memset(cloth->v, 0, VALUES * sizeof *cloth->v);
 }
 
-START_TEST(diagonal_is_that_of_jvp) {
+TEST(diagonal_is_that_of_jvp) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int axial = 0; axial < 2; axial++) {
         struct fixture cloth;
@@ -168,9 +166,8 @@ START_TEST(diagonal_is_that_of_jvp) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(solver_matrix_is_that_of_jvp) {
+TEST(solver_matrix_is_that_of_jvp) {
     const double cm = 1, cd = -0.02, ck = -4e-4;
     for (int axial = 0; axial < 2; axial++) {
         struct fixture cloth;
@@ -202,10 +199,9 @@ START_TEST(solver_matrix_is_that_of_jvp) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* The force of springs and gravity is the downward slope of the energy. */
-START_TEST(force_is_the_slope_of_the_energy) {
+TEST(force_is_the_slope_of_the_energy) {
     struct fixture cloth;
     double f[VALUES];
     open(&cloth, true);
@@ -222,12 +218,4 @@ START_TEST(force_is_the_slope_of_the_energy) {
         ck_assert_double_eq_tol(f[i], (below - above) / (2 * STEP), 1e-7);
     }
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {jvp_is_the_derivative_of_each_force, jvp_is_linear,
-                                  diagonal_is_that_of_jvp, solver_matrix_is_that_of_jvp,
-                                  force_is_the_slope_of_the_energy};
-    return fixture_run("jacobian", tests, sizeof tests / sizeof *tests);
 }

@@ -34,7 +34,7 @@ static const struct cs_counts *run(struct fixture *cloth, const char *method, co
     return &cloth->session.run.counts;
 }
 
-START_TEST(bare_scene_makes_no_calls) {
+TEST(bare_scene_makes_no_calls) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         const struct cs_counts *counts = run(&cloth, methods[k], "", "");
@@ -50,11 +50,10 @@ START_TEST(bare_scene_makes_no_calls) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* and where they are needed they are made: once a force with wind, once a particle, collider
  * and step */
-START_TEST(full_scene_makes_its_calls) {
+TEST(full_scene_makes_its_calls) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         const struct cs_counts *counts =
@@ -66,9 +65,8 @@ START_TEST(full_scene_makes_its_calls) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(method_gets_what_it_needs_and_no_more) {
+TEST(method_gets_what_it_needs_and_no_more) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         run(&cloth, methods[k], "", "");
@@ -79,39 +77,49 @@ START_TEST(method_gets_what_it_needs_and_no_more) {
                                                : !!host->linear.factors);
         ck_assert((needs & CS_NEED_SOLVE) == 0 ? !host->setup_x : !!host->setup_x);
         ck_assert(rows[CS_FEATURE_SOLVER].built == !!(needs & CS_NEED_SOLVE));
+        /* the solver's vectors, its four numbers a spring, and the positions it was made for */
+        const size_t numbers = 4 * (size_t)cloth.system->springs.n + (19 + 3) * cloth.n;
+        ck_assert_uint_eq(cloth.session.run.plan.rows[CS_FEATURE_SOLVER].bytes,
+                          needs & CS_NEED_SOLVE ? numbers * sizeof(double) : 0);
         ck_assert(rows[CS_FEATURE_SPRING_LIST].built == !!(needs & CS_NEED_SPRINGS));
         ck_assert(!cloth.system->view.ends == !(needs & CS_NEED_SPRINGS));
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-/* all that the plan promises of a run, with the list of pins, which only the system knows */
-static size_t promised(const struct fixture *cloth) {
-    const struct cs_system *system = cloth->system;
-    size_t bytes = system->plan.state_bytes + system->n_pinned * sizeof *system->pinned;
+/* all rows of a run's plan */
+static size_t sum_of(const struct cs_run *run) {
+    size_t bytes = run->plan.state_bytes + run->method_bytes;
     for (uint32_t f = 0; f < CS_FEATURES; f++)
-        bytes += system->plan.rows[f].bytes;
+        bytes += run->plan.rows[f].bytes;
     for (uint32_t k = 0; k < CS_TERMS_MAX; k++)
-        bytes += system->plan.forces[k].bytes;
+        bytes += run->plan.forces[k].bytes;
     return bytes;
 }
 
-START_TEST(run_takes_what_was_planned_and_the_method_its_own) {
+/* also where the same system is run a second time */
+TEST(bytes_of_a_run_are_in_its_plan) {
+    static const char *const scenes[][2] = {{"", ""},
+                                            {", \"strain_limit\": 1.001", WIND COLLIDERS},
+                                            {", \"self_contact\": true, \"thickness\": 0.01",
+                                             ", \"contact\": {\"law\": \"force\"}"}};
     for (size_t k = 0; k < METHODS; k++)
-        for (int full = 0; full < 2; full++) {
+        for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++) {
             struct fixture cloth;
-            run(&cloth, methods[k], full ? ", \"strain_limit\": 1.001" : "",
-                full ? WIND COLLIDERS : "");
+            struct cs_error error = {0};
+            run(&cloth, methods[k], scenes[s][0], scenes[s][1]);
             const struct cs_run *done = &cloth.session.run;
+            const size_t bytes = cs_run_bytes(done);
             ck_assert_uint_gt(done->method_bytes, 0);
-            ck_assert_uint_eq(cs_run_bytes(done), promised(&cloth) + done->method_bytes);
+            ck_assert_uint_eq(sum_of(done), bytes);
+            ck_assert_int_eq(done->plan.rows[CS_FEATURE_CONTACT].bytes > 0, s == 1);
+            ck_assert_int_eq(cs_session_begin(&cloth.session, NULL, &error), CS_OK);
+            ck_assert_uint_eq(sum_of(done), bytes);
             fixture_close(&cloth);
         }
 }
-END_TEST
 
-START_TEST(mesh_is_planned_with_its_geometry) {
+TEST(mesh_is_planned_with_its_geometry) {
     struct fixture box;
     fixture_open(&box, "symplectic-euler",
                  "{\"bodies\": [{\"mesh\": {\"shape\": \"box\", \"detail\": 3}, \"mass\": "
@@ -126,14 +134,12 @@ START_TEST(mesh_is_planned_with_its_geometry) {
                       sizeof *mesh + mesh->n * (4 * sizeof(double) + sizeof(uint32_t)) +
                           2 * corners * sizeof(uint32_t) +
                           link * ((size_t)2 * mesh->n_edges + mesh->n_network_springs));
-    ck_assert_uint_eq(cs_run_bytes(&box.session.run),
-                      promised(&box) + box.session.run.method_bytes);
+    ck_assert_uint_eq(cs_run_bytes(&box.session.run), sum_of(&box.session.run));
     fixture_close(&box);
 }
-END_TEST
 
 /* counted, not measured */
-START_TEST(large_explicit_run_takes_little_a_particle) {
+TEST(large_explicit_run_takes_little_a_particle) {
     struct fixture sheet;
     fixture_open(
         &sheet, "symplectic-euler",
@@ -143,10 +149,10 @@ START_TEST(large_explicit_run_takes_little_a_particle) {
     ck_assert_uint_le(cs_run_bytes(&sheet.session.run), 250 * (size_t)1000000);
     fixture_close(&sheet);
 }
-END_TEST
 
 /* the counter sees this program and what it loads */
-START_TEST(allocations_are_counted) {
+TEST(allocations_are_counted) {
+    allocations_begin();
     const uint64_t before = allocations;
     void *volatile memory = malloc(10);
     ck_assert_uint_gt(allocations, before);
@@ -156,7 +162,6 @@ START_TEST(allocations_are_counted) {
     ck_assert_uint_gt(allocations, later);
     free(copy);
 }
-END_TEST
 
 /* allocations of three frames of a method, in a scene that has everything */
 static uint64_t taken_by(const struct cs_integrator *method) {
@@ -179,7 +184,8 @@ static uint64_t taken_by(const struct cs_integrator *method) {
 }
 
 /* Every method that is not a foreign library's. */
-START_TEST(frame_takes_nothing_from_the_heap) {
+TEST(frame_takes_nothing_from_the_heap) {
+    allocations_begin();
     struct cs_registry registry = {0};
     struct cs_error error = {0};
     uint32_t tried = 0;
@@ -196,18 +202,4 @@ START_TEST(frame_takes_nothing_from_the_heap) {
     }
     ck_assert_uint_ge(tried, METHODS);
     cs_registry_finish(&registry);
-}
-END_TEST
-
-int main(void) {
-    allocations_begin();
-    const TTest *const tests[] = {bare_scene_makes_no_calls,
-                                  full_scene_makes_its_calls,
-                                  method_gets_what_it_needs_and_no_more,
-                                  run_takes_what_was_planned_and_the_method_its_own,
-                                  mesh_is_planned_with_its_geometry,
-                                  large_explicit_run_takes_little_a_particle,
-                                  allocations_are_counted,
-                                  frame_takes_nothing_from_the_heap};
-    return fixture_run("leave out", tests, sizeof tests / sizeof *tests);
 }

@@ -73,7 +73,7 @@ static double add_springs(const struct fixture *body, const uint32_t *ends, uint
     return energy;
 }
 
-START_TEST(springs_are_those_of_the_geometry) {
+TEST(springs_are_those_of_the_geometry) {
     for (int axial = 0; axial < 2; axial++) {
         struct fixture body;
         double found[VALUES], expected[VALUES] = {0}, energy = 0;
@@ -101,7 +101,6 @@ START_TEST(springs_are_those_of_the_geometry) {
         fixture_close(&body);
     }
 }
-END_TEST
 
 /* (f(x + e dx, v + e dv) - f(x - e dx, v - e dv)) / 2 e */
 static void difference(const struct fixture *body, uint32_t parts, const double *dx,
@@ -145,7 +144,7 @@ static void check_part(const struct fixture *body, uint32_t part, double least) 
     ck_assert_msg(error <= 1e-7 * size + 1e-9, "part %u: off by %g of %g", part, error, size);
 }
 
-START_TEST(jvp_is_the_derivative) {
+TEST(jvp_is_the_derivative) {
     for (int axial = 0; axial < 2; axial++) {
         struct fixture body;
         open(&body, axial);
@@ -158,9 +157,8 @@ START_TEST(jvp_is_the_derivative) {
         fixture_close(&body);
     }
 }
-END_TEST
 
-START_TEST(solver_matrix_and_diagonal_are_those_of_jvp) {
+TEST(solver_matrix_and_diagonal_are_those_of_jvp) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double cm = 1, cd = -0.02, ck = -4e-4;
     for (int axial = 0; axial < 2; axial++) {
@@ -206,10 +204,9 @@ START_TEST(solver_matrix_and_diagonal_are_those_of_jvp) {
         fixture_close(&body);
     }
 }
-END_TEST
 
 /* Wind on a closed body: normals look outwards, and the still body has the area of its mesh. */
-START_TEST(normals_and_masses_fit_the_body) {
+TEST(normals_and_masses_fit_the_body) {
     struct fixture ball;
     double area = 0, mass = 0;
     fixture_open(&ball, "implicit-linearised",
@@ -234,9 +231,8 @@ START_TEST(normals_and_masses_fit_the_body) {
     ck_assert_double_eq(ball.v[2 * n + 1], 3);
     fixture_close(&ball);
 }
-END_TEST
 
-START_TEST(strain_is_limited) {
+TEST(strain_is_limited) {
     struct fixture ball;
     fixture_open(
         &ball, "implicit-linearised",
@@ -254,11 +250,10 @@ START_TEST(strain_is_limited) {
         ck_assert_double_le(strain[i], 0.0501);
     fixture_close(&ball);
 }
-END_TEST
 
 /* A body that is thrown and turns keeps both momenta, and its energy within the method's error.
  */
-START_TEST(free_body_keeps_its_momentum) {
+TEST(free_body_keeps_its_momentum) {
     struct fixture body;
     double p[3], l[3], p0[3], l0[3];
     fixture_open(&body, "velocity-verlet",
@@ -280,15 +275,4 @@ START_TEST(free_body_keeps_its_momentum) {
     }
     ck_assert_double_eq_tol(fixture_energy(&body), energy, 0.02 * energy);
     fixture_close(&body);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {springs_are_those_of_the_geometry,
-                                  jvp_is_the_derivative,
-                                  solver_matrix_and_diagonal_are_those_of_jvp,
-                                  normals_and_masses_fit_the_body,
-                                  strain_is_limited,
-                                  free_body_keeps_its_momentum};
-    return fixture_run("mesh", tests, sizeof tests / sizeof *tests);
 }

@@ -1,6 +1,6 @@
 /* Colliders that are meshes: against a pinned body of the same triangles, in a frame that moves
  * with them, on their paths, by order, derivative and count. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/contact/ccd/accd_candidates.h"
 #include "model/contact/ccd/crossings.h"
@@ -14,8 +14,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
 
 /* a sheet above a ring; %s: its velocity, and what the ring is */
 #define SHEET                                                                                  \
@@ -43,7 +41,7 @@ enum { SHEET_N = 42, FRAMES = 10 };
 
 /* --- against what there was before --- */
 
-START_TEST(it_is_a_pinned_body) {
+TEST(it_is_a_pinned_body) {
     static const char *const methods[] = {"velocity-verlet:dt=1e-3", "rk4:dt=2e-3",
                                           "implicit-linearised:dt=4e-3", "xpbd:dt=2e-3"};
     for (size_t m = 0; m < LENGTH(methods); m++) {
@@ -66,13 +64,12 @@ START_TEST(it_is_a_pinned_body) {
         fixture_close(&other);
     }
 }
-END_TEST
 
 /* --- on the move --- */
 
 /* Friction and damping depend on velocities against each other alone: a ring that comes at u is
  * a sheet that goes at -u. */
-START_TEST(only_relative_motion_counts) {
+TEST(only_relative_motion_counts) {
     struct fixture still, moved;
     const char *method = "rk4:dt=1e-3";
     fixture_open(&still, method, ON_COLLIDER, "0.3, -1, 0", "");
@@ -94,10 +91,9 @@ START_TEST(only_relative_motion_counts) {
     fixture_close(&still);
     fixture_close(&moved);
 }
-END_TEST
 
 /* Rodrigues' formula with libm's sine, and differences for the velocity */
-START_TEST(points_turn_with_it) {
+TEST(points_turn_with_it) {
     struct fixture cloth;
     static double before[3 * 400], after[3 * 400], v[3 * 400];
     const double w[3] = {0.3, 1.1, -0.4}, t = 0.7, h = 1e-6;
@@ -140,7 +136,6 @@ START_TEST(points_turn_with_it) {
     }
     fixture_close(&cloth);
 }
-END_TEST
 
 #define SPIN "{\"at\": 0, \"move\": {\"collider\": %d, \"spin\": [0, 3, 0.5]}}"
 
@@ -157,9 +152,8 @@ END_TEST
 
 static void end_state(const char *name, double h, double state[6 * SHEET_N]) {
     struct fixture cloth;
-    char integrator[96];
-    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
-             h);
+    char integrator[120];
+    methods_set(integrator, name, "dt", h);
     fixture_open(&cloth, integrator, BALL, 0);
     fixture_start(&cloth);
     fixture_frames(&cloth, 6);
@@ -169,27 +163,26 @@ static void end_state(const char *name, double h, double state[6 * SHEET_N]) {
 }
 
 /* each its own order, to the fourth */
-START_TEST(orders_hold_on_a_turning_mesh) {
-    static const struct {
-        const char *name;
-        double h, order;
-    } methods[] = {{"rk4", 1.0 / 600, 4},
-                   {"implicit-midpoint:rtol=1e-12", 1.0 / 600, 2},
-                   {"implicit-linearised:rtol=1e-8", 1.0 / 1200, 1}};
+TEST(orders_hold_on_a_turning_mesh) {
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "turning mesh",
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                .residual = 1e-12});
     static double reference[6 * SHEET_N], state[6 * SHEET_N];
     end_state("rk4", 1.0 / 2400, reference);
-    for (size_t m = 0; m < LENGTH(methods); m++) {
+    for (size_t m = 0; m < methods.n; m++) {
+        const struct method_asked *method = methods.list + m;
+        const double h = method->order_damped == 1 ? 1.0 / 2400 : 1.0 / 600;
         double error[2];
         for (int k = 0; k < 2; k++) {
-            end_state(methods[m].name, methods[m].h / (1 + k), state);
+            end_state(method->text, h / (1 + k), state);
             error[k] = cs_rms_difference(state, reference, 6 * SHEET_N);
         }
         const double order = log2(error[0] / error[1]);
-        ck_assert_msg(fabs(order - methods[m].order) < 0.2, "%s: order %.3f (%.3g, %.3g)",
-                      methods[m].name, order, error[0], error[1]);
+        ck_assert_msg(fabs(order - method->order_damped) < 0.2, "%s: order %.3f (%.3g, %.3g)",
+                      method->text, order, error[0], error[1]);
     }
 }
-END_TEST
 
 /* --- a slope of triangles --- */
 
@@ -222,7 +215,7 @@ static double slide(double mu, double tangent) {
 
 /* g cos a (tan a - mu): edges and corners of the mesh take less than 0.001 g without friction,
  * and give nothing */
-START_TEST(slope_of_triangles_is_a_slope) {
+TEST(slope_of_triangles_is_a_slope) {
     const double g = 9.81;
     double expected = g * (0.5 - 0.3) / sqrt(1 + 0.25), found = slide(0.3, 0.5);
     ck_assert_msg(fabs(found - expected) < 0.002 * g, "%.5g, not %.5g", found, expected);
@@ -231,11 +224,10 @@ START_TEST(slope_of_triangles_is_a_slope) {
     ck_assert_msg(expected - found < 0.001 * g && found - expected < 0.001 * g,
                   "%.5g, not %.5g", found, expected);
 }
-END_TEST
 
 /* --- the derivative --- */
 
-START_TEST(derivative_knows_the_moving_mesh) {
+TEST(derivative_knows_the_moving_mesh) {
     struct fixture cloth;
     enum { N = 3 * SHEET_N };
     static double d[2 * N], f[2][N], df[N], x[2][N], v[2][N];
@@ -271,7 +263,6 @@ START_TEST(derivative_knows_the_moving_mesh) {
     ck_assert_msg(most > 1 && wrong < 1e-6 * most, "%.3g of %.3g", wrong, most);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* --- the count, and what is not there --- */
 
@@ -289,7 +280,7 @@ END_TEST
     "\"events\": [{\"at\": 0, \"move\": {\"collider\": 0, \"path\": [{\"at\": 1, \"point\": "  \
     "[0, 0.6, 0]}]}}]}"
 
-START_TEST(crossings_are_counted_and_foreseen) {
+TEST(crossings_are_counted_and_foreseen) {
     static const char *const policies[] = {"count", "limit"};
     for (size_t p = 0; p < LENGTH(policies); p++) {
         struct fixture net;
@@ -318,10 +309,9 @@ START_TEST(crossings_are_counted_and_foreseen) {
         fixture_close(&net);
     }
 }
-END_TEST
 
 /* the sheet stays where it is, and the needle comes: at t = 1 it is 0.6 m higher */
-START_TEST(what_comes_is_foreseen) {
+TEST(what_comes_is_foreseen) {
     struct fixture net;
     fixture_open(&net, "rk4:dt=0.01", NEEDLE, "limit");
     fixture_start(&net);
@@ -355,9 +345,8 @@ START_TEST(what_comes_is_foreseen) {
     system->pairs = pairs;
     fixture_close(&net);
 }
-END_TEST
 
-START_TEST(others_pay_nothing) {
+TEST(others_pay_nothing) {
     struct fixture cloth;
     fixture_open(&cloth, "rk4:dt=0.01",
                  SHEET "], \"colliders\": [{\"floor\": {\"height\": -9}}], " REST "}",
@@ -374,18 +363,4 @@ START_TEST(others_pay_nothing) {
     ck_assert_uint_eq(cloth.system->surfaces->n_points, cloth.n);
     fixture_start(&cloth);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {it_is_a_pinned_body,
-                                  only_relative_motion_counts,
-                                  points_turn_with_it,
-                                  orders_hold_on_a_turning_mesh,
-                                  slope_of_triangles_is_a_slope,
-                                  derivative_knows_the_moving_mesh,
-                                  crossings_are_counted_and_foreseen,
-                                  what_comes_is_foreseen,
-                                  others_pay_nothing};
-    return fixture_run("mesh_colliders", tests, LENGTH(tests));
 }

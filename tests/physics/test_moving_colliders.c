@@ -1,5 +1,5 @@
 /* Colliders moved by events: on their path to the bit, and what they take along. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/contact/posed_collider.h"
 
@@ -18,10 +18,6 @@
     "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"size\": [0.3, 0.3], \"start\": \"flat\"}," \
     " \"mass\": {\"particle\": 0.01}, \"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\":"   \
     " 0}}], \"colliders\": [{\"floor\": {}, \"friction\": 0.5}], \"events\": [%s]}"
-
-static const char *const methods[] = {"symplectic-euler", "velocity-verlet",
-                                      "implicit-linearised", "cvode-bdf:rtol=1e-3"};
-enum { METHODS = sizeof methods / sizeof *methods };
 
 static void check_centre(const struct fixture *fixture, uint32_t k, double t, double x,
                          double y, double z) {
@@ -44,10 +40,12 @@ static void check_centre(const struct fixture *fixture, uint32_t k, double t, do
 }
 
 /* Two legs, then rest; a second move goes on from there, along the cubic s^2 (3 - 2 s). */
-START_TEST(path_is_exact) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(path_is_exact) {
+    const struct methods methods = methods_find(&(struct methods_query){.test = "moves"});
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture far;
-        fixture_open(&far, methods[k], FAR,
+        fixture_open(&far, method, FAR,
                      "{\"from\": 0.05, \"to\": 0.3, \"move\": {\"collider\": 0, \"path\": ["
                      "{\"at\": 0.15, \"point\": [1, 0, 0]},"
                      " {\"at\": 0.25, \"point\": [1, 2, 0]}]}},"
@@ -69,10 +67,9 @@ START_TEST(path_is_exact) {
         fixture_close(&far);
     }
 }
-END_TEST
 
 /* A quarter turn about y in 0.5 s, from the way that the scene has turned the box. */
-START_TEST(turn_is_exact) {
+TEST(turn_is_exact) {
     struct fixture far;
     struct cs_posed_collider before, after;
     fixture_open(&far, "velocity-verlet", FAR,
@@ -97,11 +94,10 @@ START_TEST(turn_is_exact) {
     check_centre(&far, 1, 0.75, 0, -6, 0);
     fixture_close(&far);
 }
-END_TEST
 
 /* The second move begins while the first is under way: it goes on from where the collider is,
  * and the end of the first changes nothing. */
-START_TEST(later_move_takes_over) {
+TEST(later_move_takes_over) {
     struct fixture far;
     fixture_open(&far, "velocity-verlet", FAR,
                  "{\"from\": 0, \"to\": 0.4, \"move\": {\"collider\": 0,"
@@ -117,30 +113,30 @@ START_TEST(later_move_takes_over) {
     check_centre(&far, 0, 0.7, 11, 5, 2);
     fixture_close(&far);
 }
-END_TEST
 
 /* A floor that rises takes what lies on it along: at its height, with its velocity. */
-START_TEST(floor_lifts_what_lies_on_it) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(floor_lifts_what_lies_on_it) {
+    const struct methods methods = methods_find(&(struct methods_query){.test = "lift"});
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture grains;
-        fixture_open(&grains, methods[k], GRAINS,
+        fixture_open(&grains, method, GRAINS,
                      "{\"at\": 0, \"move\": {\"collider\": 0,"
                      " \"path\": [{\"at\": 1, \"point\": [0, 0.5, 0]}]}}");
         fixture_start(&grains);
         fixture_frames(&grains, 30);
         for (size_t i = 0; i < grains.n; i++) {
             ck_assert_msg(fabs(grains.x[grains.n + i] - 0.25) < 1e-12, "%s: height %.17g",
-                          methods[k], grains.x[grains.n + i]);
+                          method, grains.x[grains.n + i]);
             ck_assert_msg(fabs(grains.v[grains.n + i] - 0.5) < 1e-12, "%s: velocity %.17g",
-                          methods[k], grains.v[grains.n + i]);
+                          method, grains.v[grains.n + i]);
         }
         fixture_close(&grains);
     }
 }
-END_TEST
 
 /* A floor that slides at 0.6 m/s drags what lies on it by mu g until it is as fast. */
-START_TEST(friction_is_against_the_moving_floor) {
+TEST(friction_is_against_the_moving_floor) {
     const double mu = 0.5, g = 9.81, step = 1e-4;
     struct fixture grains;
     fixture_open(&grains, "velocity-verlet:dt=1e-4", GRAINS,
@@ -155,10 +151,9 @@ START_TEST(friction_is_against_the_moving_floor) {
         ck_assert_double_eq_tol(grains.v[i], 0.6, 1e-9);
     fixture_close(&grains);
 }
-END_TEST
 
 /* On a turning floor friction leads to the velocity of the floor where a particle lies. */
-START_TEST(friction_is_against_the_turning_floor) {
+TEST(friction_is_against_the_turning_floor) {
     struct fixture grains;
     fixture_open(&grains, "velocity-verlet:dt=1e-3", GRAINS,
                  "{\"at\": 0, \"move\": {\"collider\": 0, \"spin\": [0, 2, 0]}}");
@@ -174,16 +169,15 @@ START_TEST(friction_is_against_the_turning_floor) {
     }
     fixture_close(&grains);
 }
-END_TEST
 
-START_TEST(bytes_are_planned) {
+TEST(bytes_are_planned) {
     struct fixture with, without;
     fixture_open(&with, "velocity-verlet", FAR,
                  "{\"at\": 0.1, \"move\": {\"collider\": 1, \"motion\": \"smooth\","
                  " \"path\": [{\"at\": 0.5, \"point\": [0, 0, 1]}]}}");
     fixture_open(&without, "velocity-verlet", FAR, "");
     const size_t more = with.system->arena.used - without.system->arena.used;
-    ck_assert_uint_eq(more, with.session.plan.rows[CS_FEATURE_EVENTS].bytes);
+    ck_assert_uint_eq(more, with.system->plan.rows[CS_FEATURE_EVENTS].bytes);
     ck_assert_ptr_nonnull(with.system->motions);
     ck_assert_ptr_null(without.system->motions);
     ck_assert_uint_eq(with.system->view.n_colliders, 2);
@@ -191,27 +185,13 @@ START_TEST(bytes_are_planned) {
     fixture_close(&with);
     fixture_close(&without);
 }
-END_TEST
 
 /* Other events leave colliders where they are, and have no motions. */
-START_TEST(nothing_without_moves) {
+TEST(nothing_without_moves) {
     struct fixture far;
     fixture_open(&far, "velocity-verlet", FAR,
                  "{\"at\": 0, \"grab\": {\"particles\": [15],"
                  " \"path\": [{\"at\": 0.5, \"point\": [0, 0, 1]}]}}");
     ck_assert_ptr_null(far.system->motions);
     fixture_close(&far);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {path_is_exact,
-                                  turn_is_exact,
-                                  later_move_takes_over,
-                                  floor_lifts_what_lies_on_it,
-                                  friction_is_against_the_moving_floor,
-                                  friction_is_against_the_turning_floor,
-                                  bytes_are_planned,
-                                  nothing_without_moves};
-    return fixture_run("moves", tests, sizeof tests / sizeof *tests);
 }

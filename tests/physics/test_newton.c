@@ -128,7 +128,7 @@ static double swing(const char *integrator, const char *model) {
 /* Along the spring all is linear, and a step is a rational function of h A. Average
  * acceleration is the trapezoidal rule there, which is the midpoint rule of a linear equation.
  */
-START_TEST(steps_have_their_closed_form) {
+TEST(steps_have_their_closed_form) {
     static const char *const models[] = {"relative", "axial"};
     for (size_t i = 0; i < sizeof closed / sizeof *closed; i++) {
         struct pair y = {0.1, 0}, last = {(double)NAN, 0};
@@ -144,11 +144,10 @@ START_TEST(steps_have_their_closed_form) {
         }
     }
 }
-END_TEST
 
 /* Generalised-alpha damps the fastest mode by rho_inf a step, average acceleration not at all:
  * a stiff pair far beyond its resolution, after 20 steps. */
-START_TEST(newmark_keeps_rho_inf_of_the_fastest_mode) {
+TEST(newmark_keeps_rho_inf_of_the_fastest_mode) {
     static const double shares[] = {0.5, 0.8, 1};
     for (size_t i = 0; i < 3; i++) {
         char integrator[96];
@@ -175,11 +174,10 @@ START_TEST(newmark_keeps_rho_inf_of_the_fastest_mode) {
                       "rho_inf %g: a step keeps %g", shares[i], found);
     }
 }
-END_TEST
 
 /* One iteration is not enough for a whirling chain: the step is halved eight times, each
  * counted, and then the run fails with the residual. */
-START_TEST(failure_is_told) {
+TEST(failure_is_told) {
     static const char *const methods[] = {
         "backward-euler", "implicit-midpoint", "bdf2", "tr-bdf2", "sdirk2", "newmark"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
@@ -203,11 +201,10 @@ START_TEST(failure_is_told) {
         fixture_close(&chain);
     }
 }
-END_TEST
 
 /* A pair that turns by three radians a frame: linear methods halve the step and lose some
  * energy, instead of throwing the pair apart. */
-START_TEST(rotation_halves_linear_steps) {
+TEST(rotation_halves_linear_steps) {
     static const char *const methods[] = {"ros2", "bdf2:solve=linear"};
     for (size_t i = 0; i < 2; i++) {
         struct fixture pair;
@@ -223,7 +220,6 @@ START_TEST(rotation_halves_linear_steps) {
         fixture_close(&pair);
     }
 }
-END_TEST
 
 /* Runs 60 frames of a shipped scene with one step a frame; the energy in the end. */
 static double frame_steps(const char *scene, const char *integrator, const char *grid) {
@@ -252,7 +248,7 @@ static double frame_steps(const char *scene, const char *integrator, const char 
  * hundredfold: implicit-midpoint and newmark, whose fast modes are not damped and feed on
  * contact and wind at such steps (on finer grids while hanging, too), and tr-bdf2 in contact,
  * whose first stage is half explicit. On these grids they pass with dt = 4 ms. */
-START_TEST(a_step_may_be_a_frame) {
+TEST(a_step_may_be_a_frame) {
     static const char *const methods[] = {"backward-euler",
                                           "bdf2",
                                           "sdirk2",
@@ -262,24 +258,16 @@ START_TEST(a_step_may_be_a_frame) {
                                           "implicit-midpoint",
                                           "newmark"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        const double hang = frame_steps("scenes/hang.json", methods[i], "[16, 16]");
+        const double hang = frame_steps(SCENES "/hang.json", methods[i], "[16, 16]");
         const double most = strcmp(methods[i], "ros2") ? 0 : 0.8;
         ck_assert_msg(hang < most, "%s, hang: %g J", methods[i], hang);
         if (i < 5) {
-            const double fall = frame_steps("scenes/sphere_fall.json", methods[i], "[16, 16]");
+            const double fall = frame_steps(SCENES "/sphere_fall.json", methods[i], "[16, 16]");
             ck_assert_msg(fall < 2.3, "%s, sphere_fall: %g J", methods[i], fall);
         }
         if (i < 6) {
-            const double flag = frame_steps("scenes/flag_wind.json", methods[i], "[18, 12]");
+            const double flag = frame_steps(SCENES "/flag_wind.json", methods[i], "[18, 12]");
             ck_assert_msg(flag < 0.5, "%s, flag_wind: %g J", methods[i], flag);
         }
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {steps_have_their_closed_form,
-                                  newmark_keeps_rho_inf_of_the_fastest_mode, failure_is_told,
-                                  rotation_halves_linear_steps, a_step_may_be_a_frame};
-    return fixture_run("newton", tests, sizeof tests / sizeof *tests);
 }

@@ -35,7 +35,7 @@ static double swing(const char *integrator, const char *model, double k, double 
 
 /* Underdamped: w = 10/s, d = 1.2/s. The bounds are each method's own error, a few times over:
  * h w^2/4 of the amplitude for order 1, (h w)^2 w/24 for order 2. */
-START_TEST(axial_motion_follows_the_closed_form) {
+TEST(axial_motion_follows_the_closed_form) {
     static const struct {
         const char *integrator;
         double bound; /* m */
@@ -57,10 +57,9 @@ START_TEST(axial_motion_follows_the_closed_form) {
                           fabs(found - expected));
         }
 }
-END_TEST
 
 /* Overdamped: both roots real, the faster one within the explicit limit. */
-START_TEST(overdamped_motion_follows_the_closed_form) {
+TEST(overdamped_motion_follows_the_closed_form) {
     const double k = 25, c = 10, d = c / MASS, root = sqrt(d * d - 2 * k / MASS);
     const double slow = -d + root, fast = -d - root;
     const double expected = 0.1 * (slow * exp(fast) - fast * exp(slow)) / (slow - fast);
@@ -71,13 +70,12 @@ START_TEST(overdamped_motion_follows_the_closed_form) {
                                 1e-4);
     }
 }
-END_TEST
 
 /* Along the spring all is linear, so that the implicit steps have a closed form of their own:
  * with w' = w + dw, s' = s + h w' and mu = 2/m,
  *   whole system  (1 + h mu c + h^2 mu k) dw = h (-mu k s - mu c w - h mu k w)
  *   own blocks    the same with mu/2 but in the force: each sees the other stand still */
-START_TEST(implicit_steps_have_their_closed_form) {
+TEST(implicit_steps_have_their_closed_form) {
     static const char *const integrators[] = {"implicit-linearised:rtol=1e-14",
                                               "implicit-block"};
     const double k = 25, c = 0.6, h = 1 / 20.0, mu = 2 / MASS;
@@ -93,7 +91,6 @@ START_TEST(implicit_steps_have_their_closed_form) {
             ck_assert_double_eq_tol(swing(integrators[own], models[m], k, c), s, 1e-13);
     }
 }
-END_TEST
 
 /* Relative speed across the spring after one second, from 1 m/s, without stiffness. */
 static double slide(const char *model) {
@@ -110,15 +107,14 @@ static double slide(const char *model) {
 
 /* Across the spring the relative model damps at rate 2 c/m, the axial model next to nothing:
  * the pair has turned by 0.01 rad, so that along / across is 1e-2 and the loss below 1e-4. */
-START_TEST(only_relative_damping_acts_across) {
+TEST(only_relative_damping_acts_across) {
     ck_assert_double_eq_tol(slide("relative"), 0.01 * exp(-2 * 0.3 / MASS), 1e-8);
     ck_assert_double_eq_tol(slide("axial"), 0.01, 1e-6);
 }
-END_TEST
 
 /* A pair that turns about its centre with the spring pulled out just so: axial damping does not
  * slow it, relative damping does. */
-START_TEST(axial_damping_leaves_rotation_alone) {
+TEST(axial_damping_leaves_rotation_alone) {
     for (size_t m = 0; m < 2; m++) {
         struct fixture pair;
         fixture_open(&pair, "velocity-verlet:dt=1e-4", SCENE, 25.0, 0.3, models[m]);
@@ -136,13 +132,4 @@ START_TEST(axial_damping_leaves_rotation_alone) {
             ck_assert_double_lt(fabs(lost), 1e-7);
         fixture_close(&pair);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        axial_motion_follows_the_closed_form, overdamped_motion_follows_the_closed_form,
-        implicit_steps_have_their_closed_form, only_relative_damping_acts_across,
-        axial_damping_leaves_rotation_alone};
-    return fixture_run("oscillator", tests, sizeof tests / sizeof *tests);
 }

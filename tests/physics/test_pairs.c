@@ -1,6 +1,6 @@
 /* Contact of bodies with themselves and with each other: its order, energy and momentum, and
  * that no list of pairs is ever seen in the bits. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "base/pool.h"
 #include "model/contact/ccd/accd_candidates.h"
@@ -13,8 +13,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
 
 /* a sheet over a sheet, turned, or a strip to be bent into a U; %s: mass and springs' damping
  */
@@ -67,9 +65,8 @@ enum { VALUES = 6 * 28 };
 static size_t end_state(enum scene scene, const char *name, double h, uint32_t frames,
                         double *state) {
     struct fixture cloth;
-    char integrator[128];
-    snprintf(integrator, sizeof integrator, "%s%cdt=%.17g", name, strchr(name, ':') ? ',' : ':',
-             h);
+    char integrator[120];
+    methods_set(integrator, name, "dt", h);
     open(&cloth, scene, integrator, 0, 0);
     fixture_frames(&cloth, frames);
     const size_t n = 6 * cloth.n;
@@ -78,33 +75,32 @@ static size_t end_state(enum scene scene, const char *name, double h, uint32_t f
     return n;
 }
 
-START_TEST(orders_hold_in_contact) {
-    static const struct {
-        const char *name;
-        double h, order;
-    } methods[] = {{"velocity-verlet", 1e-3, 2},
-                   {"rk4", 2e-3, 4},
-                   {"implicit-linearised:rtol=1e-8", 5e-4, 1},
-                   {"implicit-midpoint:rtol=1e-12", 2e-3, 2}};
+TEST(orders_hold_in_contact) {
+    const struct methods methods = methods_find(
+        &(struct methods_query){.test = "pairs",
+                                .without = CS_ADAPTIVE | CS_EXPLICIT_OUTER | CS_NOT_GALILEAN,
+                                .residual = 1e-12});
     for (int scene = ON_BODY; scene <= ON_ITSELF; scene++) {
         double reference[VALUES], state[VALUES], error[2];
         const size_t n = end_state(scene, "rk4", 2.5e-4, 3, reference);
-        for (size_t m = 0; m < LENGTH(methods); m++) {
+        for (size_t m = 0; m < methods.n; m++) {
+            const struct method_asked *method = methods.list + m;
+            const double h = fmin(methods_step(method->order), 2e-3);
             for (int k = 0; k < 2; k++) {
-                end_state(scene, methods[m].name, methods[m].h / (1 + k), 3, state);
+                end_state(scene, method->text, h / (1 + k), 3, state);
                 error[k] = cs_rms_difference(state, reference, n);
             }
-            ck_assert_msg(fabs(log2(error[0] / error[1]) - methods[m].order) < 0.2,
-                          "scene %d, %s: order %.3f (errors %.3g, %.3g)", scene,
-                          methods[m].name, log2(error[0] / error[1]), error[0], error[1]);
+            const double order = log2(error[0] / error[1]);
+            ck_assert_msg(fabs(order - method->order) < 0.2,
+                          "scene %d, %s: order %.3f (errors %.3g, %.3g)", scene, method->text,
+                          order, error[0], error[1]);
         }
     }
 }
-END_TEST
 
 /* what rk4 loses of the energy over a run, which falls by 2^4 or so with each halving of the
  * step */
-START_TEST(energy_is_kept) {
+TEST(energy_is_kept) {
     for (int scene = ON_BODY; scene <= ON_ITSELF; scene++) {
         double lost[2];
         for (int k = 0; k < 2; k++) {
@@ -119,10 +115,9 @@ START_TEST(energy_is_kept) {
                       scene, lost[0], lost[1]);
     }
 }
-END_TEST
 
 /* free in space: momentum whatever acts, angular momentum but for friction */
-START_TEST(momentum_is_kept) {
+TEST(momentum_is_kept) {
     for (int rub = 0; rub < 2; rub++) {
         struct fixture strip;
         double p[2][3] = {{0}}, l[2][3] = {{0}};
@@ -137,7 +132,6 @@ START_TEST(momentum_is_kept) {
         fixture_close(&strip);
     }
 }
-END_TEST
 
 /* --- lists --- */
 
@@ -183,7 +177,7 @@ static size_t end_of_crumple(const char *method, struct how how, double state[6 
     return n;
 }
 
-START_TEST(lists_are_not_seen_in_the_bits) {
+TEST(lists_are_not_seen_in_the_bits) {
     static const struct how runs[] = {
         {1, 0.5, 1, 60}, {1, 2, 1, 60}, {2, 1, 1, 60}, {3, 0.7, 1, 60}, {8, 1, 1, 60}};
     static const char *const methods[] = {"velocity-verlet:dt=5e-4",
@@ -198,17 +192,15 @@ START_TEST(lists_are_not_seen_in_the_bits) {
         }
     }
 }
-END_TEST
 
 /* what the test before would find: lists that are kept too long */
-START_TEST(lists_kept_too_long_are_seen) {
+TEST(lists_kept_too_long_are_seen) {
     static double right[6 * 600], wrong[6 * 600];
     static const char method[] = "velocity-verlet:dt=5e-4";
     const size_t n = end_of_crumple(method, (struct how){1, 1, 1, 960}, right);
     end_of_crumple(method, (struct how){1, 1, 1.5, 960}, wrong);
     ck_assert(memcmp(right, wrong, n * sizeof *right));
 }
-END_TEST
 
 /* moves of all particles at random, up to so many ranges a component, from where they are */
 static void shake(const struct fixture *cloth, double ranges, uint64_t *seed, double *x) {
@@ -220,7 +212,7 @@ static void shake(const struct fixture *cloth, double ranges, uint64_t *seed, do
 }
 
 /* the list has the same share of a move as a tree over all parts, long moves too */
-START_TEST(list_limits_as_the_tree_does) {
+TEST(list_limits_as_the_tree_does) {
     struct fixture cloth;
     static double x[3 * 600];
     uint64_t seed = 1;
@@ -244,7 +236,6 @@ START_TEST(list_limits_as_the_tree_does) {
     ck_assert_uint_lt(cut, 60);
     fixture_close(&cloth);
 }
-END_TEST
 
 static size_t count_listed(const struct cs_candidates *search) {
     size_t n = 0;
@@ -273,15 +264,14 @@ static size_t listed_when_bent(bool trusted) {
     return n;
 }
 
-START_TEST(what_was_flat_is_looked_at_again) {
+TEST(what_was_flat_is_looked_at_again) {
     ck_assert_uint_gt(listed_when_bent(false), 20);
     // a fault that is to be found
     ck_assert_uint_eq(listed_when_bent(true), 0);
 }
-END_TEST
 
 /* a little bent, it is found to be flat still, and the list is kept */
-START_TEST(what_stays_flat_makes_no_list) {
+TEST(what_stays_flat_makes_no_list) {
     struct fixture strip;
     fixture_open(&strip, "velocity-verlet:dt=1e-3", STRIP, 0.0, 0.0);
     struct cs_candidates *search = &strip.system->pairs->candidates;
@@ -299,7 +289,6 @@ START_TEST(what_stays_flat_makes_no_list) {
     ck_assert_uint_eq(search->n_builds, builds);
     fixture_close(&strip);
 }
-END_TEST
 
 static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix,
                           const double *x) {
@@ -317,7 +306,7 @@ static void ask_elsewhere(struct cs_pairs *pairs, const struct cs_matrix *matrix
 
 /* the kept matrix is that of its state, whatever is asked at others, and what is asked twice is
  * the same to the bit */
-START_TEST(questions_do_not_disturb_each_other) {
+TEST(questions_do_not_disturb_each_other) {
     struct fixture cloth;
     static double x[3 * 600], y[4][3 * 600], f[4][3 * 600];
     uint64_t seed = 4;
@@ -346,10 +335,9 @@ START_TEST(questions_do_not_disturb_each_other) {
     ck_assert(memcmp(y[0], y[2], sizeof y[0]));
     fixture_close(&cloth);
 }
-END_TEST
 
 /* a cloth whose layers have no room for its thickness is told so */
-START_TEST(too_thick_is_refused) {
+TEST(too_thick_is_refused) {
     struct cs_error error = {0};
     struct cs_scene scene;
     struct cs_system system;
@@ -364,19 +352,4 @@ START_TEST(too_thick_is_refused) {
     ck_assert_msg(strstr(error.message, "bodies[0].self_contact: parts of it start 0.177 m"),
                   "%s", error.message);
     cs_scene_finish(&scene);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {orders_hold_in_contact,
-                                  energy_is_kept,
-                                  momentum_is_kept,
-                                  lists_are_not_seen_in_the_bits,
-                                  lists_kept_too_long_are_seen,
-                                  list_limits_as_the_tree_does,
-                                  what_was_flat_is_looked_at_again,
-                                  what_stays_flat_makes_no_list,
-                                  questions_do_not_disturb_each_other,
-                                  too_thick_is_refused};
-    return fixture_run("pairs", tests, sizeof tests / sizeof *tests);
 }

@@ -44,7 +44,7 @@ static uint8_t *draw_frames(const char *look, bool beside) {
 }
 
 /* the same, drawn at once: nothing can have moved under the painter */
-START_TEST(pictures_beside_the_run_are_those_at_once) {
+TEST(pictures_beside_the_run_are_those_at_once) {
     static const char *const looks[] = {"lit", "springs", "force"};
     for (size_t l = 0; l < sizeof looks / sizeof *looks; l++) {
         const size_t bytes = (size_t)WIDTH * HEIGHT * 3;
@@ -57,7 +57,6 @@ START_TEST(pictures_beside_the_run_are_those_at_once) {
         free(at_once);
     }
 }
-END_TEST
 
 /* a cloth at rest between two balls, which bound the scene; %s: a collider, %s: the events */
 #define STILL                                                                                  \
@@ -88,7 +87,7 @@ static uint8_t *draw_moved(const char *collider, const char *events) {
 
 /* A collider on its way by (1/4, 1/2, -1/4) looks as one that stands there, shadow and all, and
  * not as one that stands where it was. The numbers have no rounding. */
-START_TEST(moved_colliders_are_drawn_where_they_are) {
+TEST(moved_colliders_are_drawn_where_they_are) {
     static const char *const colliders[][2] = {
         {"{\"sphere\": {\"centre\": [0, -0.25, 0.75], \"radius\": 0.125}}",
          "{\"sphere\": {\"centre\": [0.25, 0.25, 0.5], \"radius\": 0.125}}"},
@@ -113,10 +112,9 @@ START_TEST(moved_colliders_are_drawn_where_they_are) {
         free(before);
     }
 }
-END_TEST
 
 /* their rectangles and marks come from the events, which a step changes */
-START_TEST(what_viewpoint_forces_see_is_drawn_at_once) {
+TEST(what_viewpoint_forces_see_is_drawn_at_once) {
     struct fixture cloth;
     struct cs_picture picture;
     struct cs_error error = {0};
@@ -133,7 +131,6 @@ START_TEST(what_viewpoint_forces_see_is_drawn_at_once) {
     cs_picture_close(&picture);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* a cloth before a box, so that one covers the other; %s: the background */
 #define BACKED                                                                                 \
@@ -172,7 +169,7 @@ static double on_white(double byte, double alpha) {
 
 /* What has no background is, on white, what was drawn before white, but for roundings; an image
  * without alpha has it there already. */
-START_TEST(nothing_behind_is_white_on_white) {
+TEST(nothing_behind_is_white_on_white) {
     static uint8_t rgb[3][3 * WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
     struct cs_image white = {WIDTH, HEIGHT, rgb[0], NULL};
     struct cs_image clear = {WIDTH, HEIGHT, rgb[1], alpha};
@@ -193,10 +190,9 @@ START_TEST(nothing_behind_is_white_on_white) {
     ck_assert_uint_gt(edges, 100);
     ck_assert_uint_eq(alpha[0], 0);
 }
-END_TEST
 
 /* from one colour above to the other below, and nothing in between but light */
-START_TEST(a_gradient_runs_from_edge_to_edge) {
+TEST(a_gradient_runs_from_edge_to_edge) {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
     struct cs_image image = {WIDTH, HEIGHT, rgb, NULL};
     draw_backed("{\"colour\": [1, 0, 0.5], \"below\": [0, 1, 0.5]}", &image);
@@ -208,7 +204,6 @@ START_TEST(a_gradient_runs_from_edge_to_edge) {
         ck_assert_int_eq(pixel[2], 188);
     }
 }
-END_TEST
 
 /* a cloth that hangs or falls, without a background; %s: pins, collider, keys of the picture */
 #define GROUNDED                                                                               \
@@ -227,7 +222,7 @@ static void draw_grounded(const char *pins, const char *collider, const char *ke
 /* Where a cloth hangs and there is no floor, its shadow lies below it in every frame: beside
  * the cloth, which looks as it does without. It is asked for where a cloth falls, and not
  * wanted where there is a floor. */
-START_TEST(shadows_lie_below_what_has_no_floor) {
+TEST(shadows_lie_below_what_has_no_floor) {
     static const char *const scenes[][3] = {
         {"\"top-left\", \"top-right\"", "", ""},
         {"\"top\"", "", ""},
@@ -253,7 +248,6 @@ START_TEST(shadows_lie_below_what_has_no_floor) {
                           "scene %zu, frame %u: %zu pixels", k, frames, shaded);
         }
 }
-END_TEST
 
 /* two balls, one in front; %s: the camera */
 #define SEEN                                                                                   \
@@ -280,7 +274,7 @@ static void count_covered(const uint8_t *alpha, double covered[2]) {
 
 /* A ball of radius r covers pi r^2 of an orthographic picture, however far it is: there 2 m are
  * 120 pixels. In a perspective the nearer one is larger, by the square of the distances. */
-START_TEST(an_orthographic_picture_has_no_distance) {
+TEST(an_orthographic_picture_has_no_distance) {
     static uint8_t rgb[3 * WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
     struct cs_image image = {WIDTH, HEIGHT, rgb, alpha};
     const double expected = 3.14159265358979 * 15 * 15;
@@ -294,10 +288,9 @@ START_TEST(an_orthographic_picture_has_no_distance) {
     count_covered(alpha, covered);
     ck_assert_double_eq_tol(covered[0] / covered[1], 3.1813, 0.2);
 }
-END_TEST
 
 /* at its keys and between them a camera on a path draws what one draws that stands there */
-START_TEST(a_camera_follows_its_path) {
+TEST(a_camera_follows_its_path) {
     static const char *const there[] = {"{\"eye\": [1, 0.5, 2], \"target\": [0, 0, 0]}",
                                         "{\"eye\": [0, 0.5, 2], \"target\": [0.25, 0, 0]}",
                                         "{\"eye\": [-1, 0.5, 2], \"target\": [0.5, 0, 0]}"};
@@ -317,10 +310,9 @@ START_TEST(a_camera_follows_its_path) {
             ck_assert_int_le(abs(rgb[0][i] - rgb[1][i]) * (alpha[1][i / 3] > 127), 3);
     }
 }
-END_TEST
 
 /* A side of a box that is seen straight on has one colour from edge to edge; a ball has not. */
-START_TEST(sides_of_a_box_are_flat) {
+TEST(sides_of_a_box_are_flat) {
     static uint8_t rgb[3 * WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
     static const char *const shapes[] = {"box", "sphere"};
     for (size_t k = 0; k < 2; k++) {
@@ -354,7 +346,6 @@ START_TEST(sides_of_a_box_are_flat) {
         ck_assert_msg(k == 0 ? others == 0 : others > 500, "%zu of %zu", others, covered);
     }
 }
-END_TEST
 
 static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_frame *frame,
                                     struct cs_image *image, struct cs_error *error) {
@@ -363,7 +354,7 @@ static enum cs_status fail_to_paint(struct cs_canvas *canvas, const struct cs_fr
 }
 
 /* told by the end of that picture and of all later ones, and closed without a wait for more */
-START_TEST(a_renderer_that_fails_is_told) {
+TEST(a_renderer_that_fails_is_told) {
     static uint8_t pixels[(size_t)WIDTH * HEIGHT * 3];
     struct cs_image image = {WIDTH, HEIGHT, pixels, NULL};
     for (int beside = 0; beside < 2; beside++) {
@@ -389,19 +380,4 @@ START_TEST(a_renderer_that_fails_is_told) {
         cs_picture_close(&picture);
         fixture_close(&cloth);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {pictures_beside_the_run_are_those_at_once,
-                                  moved_colliders_are_drawn_where_they_are,
-                                  what_viewpoint_forces_see_is_drawn_at_once,
-                                  nothing_behind_is_white_on_white,
-                                  shadows_lie_below_what_has_no_floor,
-                                  an_orthographic_picture_has_no_distance,
-                                  a_camera_follows_its_path,
-                                  sides_of_a_box_are_flat,
-                                  a_gradient_runs_from_edge_to_edge,
-                                  a_renderer_that_fails_is_told};
-    return fixture_run("pictures", tests, sizeof tests / sizeof *tests);
 }

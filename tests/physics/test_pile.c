@@ -14,8 +14,6 @@
 enum { SHEETS = 10, GRID = 9, SHEET = GRID * GRID };
 
 static const double friction = 0.1, friction_speed = 0.01;
-static bool all;
-
 static void write_pile(char *text, size_t capacity) {
     size_t n = (size_t)snprintf(text, capacity, "{\"bodies\": [");
     for (int k = 0; k < SHEETS; k++)
@@ -136,25 +134,18 @@ static void check_rest(const struct fixture *pile) {
     ck_assert_msg(drift < 0.03 * friction_speed, "drift %.3g m/s", drift);
 }
 
-START_TEST(ten_sheets_come_to_rest) {
+TEST(ten_sheets_come_to_rest) {
     static char text[1 << 13];
     struct fixture pile;
     write_pile(text, sizeof text);
     // longer steps may chatter: linearised_friction_chatters_above_a_limit in test_quiet.c
     fixture_open(&pile, "implicit-linearised:dt=1e-3", "%s", text);
     fixture_start(&pile);
-    for (uint32_t frame = 0; frame < (all ? 180 : 1); frame++) {
+    for (uint32_t frame = 0; frame < (suite_all ? 180 : 1); frame++) {
         fixture_frames(&pile, 1);
         ck_assert_uint_eq(cs_crossings_count(pile.system, pile.session.run.t, pile.x).n, 0);
     }
-    if (all)
+    if (suite_all)
         check_rest(&pile);
     fixture_close(&pile);
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    all = argc > 1 && strcmp(argv[1], "all") == 0;
-    const TTest *const tests[] = {ten_sheets_come_to_rest};
-    return fixture_run("pile", tests, sizeof tests / sizeof *tests);
 }

@@ -1,5 +1,5 @@
 /* Pinned particles keep their place to the bit and have no velocity, with every method. */
-#include "fixture.h"
+#include "methods.h"
 
 #include <string.h>
 
@@ -15,16 +15,15 @@
 
 enum { PINS = 9 };
 
-START_TEST(pins_are_exact) {
-    static const char *const integrators[] = {
-        "explicit-euler:dt=1e-3", "symplectic-euler",
-        "averaged-euler:dt=1e-3", "velocity-verlet",
-        "position-verlet",        "position-verlet:loss=0.01",
-        "implicit-linearised",    "implicit-linearised:hessian=exact",
-        "implicit-block",         "cvode-bdf:rtol=1e-2"};
-    for (size_t k = 0; k < sizeof integrators / sizeof *integrators; k++) {
+TEST(pins_are_exact) {
+    static const char *const more[] = {"position-verlet:loss=0.01",
+                                       "implicit-linearised:hessian=exact", NULL};
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "pins", .more = more});
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture cloth;
-        fixture_open(&cloth, integrators[k], SCENE);
+        fixture_open(&cloth, method, SCENE);
         double start[3 * 56];
         memcpy(start, cloth.x, sizeof start);
         fixture_start(&cloth);
@@ -35,7 +34,7 @@ START_TEST(pins_are_exact) {
                 pinned++;
                 ck_assert_msg(cloth.x[i] == start[i] && cloth.v[i] == 0,
                               "%s: pinned value %zu is %.17g (started at %.17g), speed %g",
-                              integrators[k], i, cloth.x[i], start[i], cloth.v[i]);
+                              method, i, cloth.x[i], start[i], cloth.v[i]);
             } else
                 moved += cloth.x[i] != start[i];
         ck_assert_uint_eq(pinned, 3 * PINS);
@@ -43,10 +42,4 @@ START_TEST(pins_are_exact) {
         ck_assert_uint_gt(cloth.session.run.counts.projected_particles, 0);
         fixture_close(&cloth);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {pins_are_exact};
-    return fixture_run("pins", tests, sizeof tests / sizeof *tests);
 }

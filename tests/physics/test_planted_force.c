@@ -6,12 +6,13 @@
  *   trap        q'' = -k q^3/m                 Runge-Kutta in steps of 1e-4
  *   swing       v' = cos(3 t)                  v(1) = sin(3)/3, x(1) = (1 - cos 3)/9
  * Methods with a step are run at two and must fall by their order; those with error control
- * must meet 1e-4. Methods of another model are left out. */
-#include "fixture.h"
+ * must meet 1e-5. Methods of another model are left out. */
+#include "methods.h"
 #include "model/force/spectral_bounds.h"
 #include "model/force/terms.h"
 #include "model/solver/linear.h"
 #include "planted_terms.h"
+#include "sim/energy_ledger.h"
 #include "sim/registry.h"
 
 #include <math.h>
@@ -57,23 +58,10 @@ static struct motion trapped(double v) {
     return (struct motion){q, v};
 }
 
-static bool has_step(const struct cs_integrator *integrator) {
-    for (uint32_t k = 0; k < integrator->n_options; k++)
-        if (!strcmp(integrator->options[k].name, "dt"))
-            return true;
-    return false;
-}
-
 /* largest error of place and velocity after a second */
-static double error_of(const struct cs_integrator *integrator, double dt,
-                       const double *direction, struct motion expected) {
+static double error_of(const char *method, const double *direction, struct motion expected) {
     struct fixture cloth;
-    char name[80];
-    if (has_step(integrator))
-        snprintf(name, sizeof name, "%s:dt=%.17g", integrator->name, dt);
-    else
-        snprintf(name, sizeof name, "%s:rtol=1e-7", integrator->name);
-    fixture_open(&cloth, name, SHEET);
+    fixture_open(&cloth, method, SHEET);
     fixture_start(&cloth);
     fixture_frames(&cloth, 60);
     const struct motion end = end_of(&cloth, direction);
@@ -81,61 +69,55 @@ static double error_of(const struct cs_integrator *integrator, double dt,
     return fmax(fabs(end.q - expected.q), fabs(end.v - expected.v));
 }
 
-static void check_method(const struct cs_integrator *integrator, const char *force,
-                         const double *direction, struct motion expected) {
-    const double h = 1 / 240.0;
-    const double coarse = error_of(integrator, h, direction, expected);
-    if (!has_step(integrator)) {
-        ck_assert_msg(coarse < 1e-4, "%s, %s: off by %g", integrator->name, force, coarse);
-        return;
+static void check_order(const struct method_asked *method, const char *force,
+                        const double *direction, struct motion expected) {
+    double errors[2];
+    for (int k = 0; k < 2; k++) {
+        char text[120];
+        methods_set(text, method->text, "dt", 1 / (240.0 * (1 + k)));
+        errors[k] = error_of(text, direction, expected);
     }
-    const double fine = error_of(integrator, h / 2, direction, expected);
-    const double order = log2(coarse / fine), least = integrator->order_damped - 0.25;
+    const double order = log2(errors[0] / errors[1]), least = method->order_damped - 0.25;
     // below the first, rounding and the tolerances of solvers are all there is
-    ck_assert_msg(fine < 1e-6 || (order > least && fine < 0.05),
-                  "%s, %s: off by %g, at half the step %g: order %.2f", integrator->name, force,
-                  coarse, fine, order);
+    ck_assert_msg(errors[1] < 1e-6 || (order > least && errors[1] < 0.05),
+                  "%s, %s: off by %g, at half the step %g: order %.2f", method->text, force,
+                  errors[0], errors[1], order);
 }
 
 static void check_all(const char *force, const double *direction, struct motion expected) {
-    struct cs_registry registry = {0};
-    struct cs_error error = {0};
-    uint32_t methods = 0;
-    cs_registry_open_all(&registry, &error);
-    for (uint32_t k = 0; k < registry.n; k++) {
-        const struct cs_integrator *integrator = registry.entries[k].integrator;
-        if (!integrator || integrator->fidelity == CS_FIDELITY_OTHER)
+    const struct methods methods = methods_find(&(struct methods_query){.rtol = 1e-7});
+    ck_assert_uint_ge(methods.n, 15);
+    for (size_t k = 0; k < methods.n; k++) {
+        const struct method_asked *method = methods.list + k;
+        if (!(method->traits & CS_ADAPTIVE)) {
+            check_order(method, force, direction, expected);
             continue;
-        check_method(integrator, force, direction, expected);
-        methods++;
+        }
+        const double error = error_of(method->text, direction, expected);
+        ck_assert_msg(error < 1e-5, "%s, %s: off by %g", method->text, force, error);
     }
-    ck_assert_uint_ge(methods, 15);
-    cs_registry_finish(&registry);
 }
 
 static const double x_axis[3] = {1, 0, 0};
 
-START_TEST(resistance_reaches_every_method) {
+TEST(resistance_reaches_every_method) {
     planted = (struct planted){.resist = 2};
     check_all("resistance", x_axis, (struct motion){(1 - exp(-2)) / 2, exp(-2)});
 }
-END_TEST
 
-START_TEST(trap_reaches_every_method) {
+TEST(trap_reaches_every_method) {
     planted = (struct planted){.trap = 0.4};
     check_all("trap", planted_direction, trapped(1));
 }
-END_TEST
 
-START_TEST(swing_reaches_every_method) {
+TEST(swing_reaches_every_method) {
     planted = (struct planted){.swing = 1};
     check_all("swing", x_axis, (struct motion){1 + (1 - cos(3)) / 9, 1 + sin(3) / 3});
 }
-END_TEST
 
 /* 40 x 40 particles, stiff enough for the multigrid's levels; half of them in a trap that is
  * stiffer still, of which the solver sees 3x3 blocks. */
-START_TEST(solver_takes_blocks) {
+TEST(solver_takes_blocks) {
     for (int trap = 0; trap < 2; trap++) {
         struct fixture cloth;
         struct cs_arena arena = {0};
@@ -198,10 +180,9 @@ START_TEST(solver_takes_blocks) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* the bounds of the trap are those of its block; those of the run leave it out */
-START_TEST(bounds_follow_the_state) {
+TEST(bounds_follow_the_state) {
     struct fixture cloth;
     double work[24], omega, delta;
     planted = (struct planted){.trap = 50, .trap_damping = 3, .resist = 2};
@@ -219,11 +200,71 @@ START_TEST(bounds_follow_the_state) {
     ck_assert_double_eq_tol(cloth.system->view.delta, 1, 1e-14);
     fixture_close(&cloth);
 }
-END_TEST
 
-int main(void) {
-    const TTest *const tests[] = {resistance_reaches_every_method, trap_reaches_every_method,
-                                  swing_reaches_every_method, solver_takes_blocks,
-                                  bounds_follow_the_state};
-    return fixture_run("planted_force", tests, sizeof tests / sizeof *tests);
+/* what the column of a name has in the account's row */
+static double entry(const struct cs_energy_ledger *account, const char *name) {
+    struct cs_text text = {0};
+    char *head_at, *row_at, *head, *row;
+    double value = (double)NAN;
+    cs_energy_ledger_print_head(&text);
+    cs_energy_ledger_print_row(account, 0, &text);
+    head = strtok_r(text.bytes, "\n", &head_at);
+    row = strtok_r(NULL, "\n", &head_at);
+    head = strtok_r(head, ",", &head_at);
+    row = strtok_r(row, ",", &row_at);
+    for (; head && row;
+         head = strtok_r(NULL, ",", &head_at), row = strtok_r(NULL, ",", &row_at))
+        if (!strcmp(head, name))
+            value = strtod(row, NULL);
+    cs_text_finish(&text);
+    return value;
+}
+
+/* the account of a second of the sheet, which stands where it is until close */
+static void run_account(struct fixture *cloth, struct cs_energy_ledger *account) {
+    struct cs_error error = {0};
+    fixture_open(cloth, "dopri5:rtol=1e-12,atol=1e-13", SHEET);
+    cloth->session.settings.run.ledger = account;
+    cs_energy_ledger_open(account, cloth->system, 0, &error);
+    ck_assert_int_eq(error.status, CS_OK);
+    fixture_start(cloth);
+    fixture_frames(cloth, 60);
+}
+
+static void close_account(struct fixture *cloth, struct cs_energy_ledger *account) {
+    cs_energy_ledger_close(account);
+    fixture_close(cloth);
+}
+
+/* by its name alone, and none is friction or a push; nothing is left to a tight method */
+TEST(energy_ledger_has_a_column_for_each) {
+    const double kinetic = 0.5 * MASS * 12 * 1.25;
+    struct fixture cloth;
+    struct cs_energy_ledger account;
+    planted = (struct planted){.resist = 2};
+    run_account(&cloth, &account);
+    ck_assert_double_eq_tol(entry(&account, "planted_resistance"), (exp(-4) - 1) * kinetic,
+                            1e-9);
+    ck_assert_double_eq(entry(&account, "friction"), 0);
+    ck_assert_double_eq_tol(entry(&account, "integrator"), 0, 1e-9);
+    close_account(&cloth, &account);
+
+    planted = (struct planted){.trap = 3, .trap_damping = 0.5};
+    run_account(&cloth, &account);
+    ck_assert_double_gt(entry(&account, "planted_trap"), 1e-3);
+    ck_assert_double_lt(entry(&account, "planted_trap_work"), -1e-3);
+    ck_assert_double_eq(entry(&account, "other"), 0);
+    ck_assert_double_eq(entry(&account, "friction"), 0);
+    ck_assert_double_eq_tol(entry(&account, "integrator"), 0, 1e-9);
+    ck_assert_double_eq_tol(entry(&account, "sum"),
+                            kinetic + entry(&account, "planted_trap_work"), 1e-9);
+    close_account(&cloth, &account);
+
+    planted = (struct planted){.swing = 1};
+    run_account(&cloth, &account);
+    ck_assert_double_eq_tol(entry(&account, "planted_swing"),
+                            entry(&account, "kinetic") - kinetic, 1e-9);
+    ck_assert_double_eq(entry(&account, "push"), 0);
+    close_account(&cloth, &account);
+    planted = (struct planted){0};
 }

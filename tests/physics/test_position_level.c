@@ -144,7 +144,7 @@ static double after(const char *method, int iterations, const struct start *from
 }
 
 /* Every kind of damping is part of the step, and none spoils the limit. */
-START_TEST(local_global_comes_to_implicit_euler) {
+TEST(local_global_comes_to_implicit_euler) {
     static const struct {
         struct start start;
         double ten; /* m, bound after ten iterations */
@@ -163,11 +163,10 @@ START_TEST(local_global_comes_to_implicit_euler) {
                       one, ten, many);
     }
 }
-END_TEST
 
 /* A hundred iterations and a thousand give one place, and it lies the nearer to implicit Euler
  * the smaller the step. */
-START_TEST(xpbd_settles_beside_implicit_euler) {
+TEST(xpbd_settles_beside_implicit_euler) {
     static const double steps[] = {1 / 8.0, 1 / 20.0, 1 / 60.0, 1 / 200.0};
     double last = 1;
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
@@ -180,10 +179,9 @@ START_TEST(xpbd_settles_beside_implicit_euler) {
         last = many;
     }
 }
-END_TEST
 
 /* Forgetting the multipliers makes springs the stiffer the more iterations. */
-START_TEST(pbd_does_not_settle) {
+TEST(pbd_does_not_settle) {
     const struct start from = {"", "0", 1 / 20.0, 1};
     double last = after("xpbd:mode=pbd", 1, &from);
     ck_assert_double_eq(last, after("xpbd", 1, &from));
@@ -193,7 +191,6 @@ START_TEST(pbd_does_not_settle) {
         last = found;
     }
 }
-END_TEST
 
 static const char *const methods[] = {"xpbd", "xpbd:mode=pbd", "xpbd:substeps=4,iterations=1",
                                       LOCAL_GLOBAL};
@@ -210,7 +207,7 @@ static bool is_missing(const char *method) {
     " \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": {\"fps\": 20}}"
 
 /* Along one spring all is linear, and both methods take the implicit Euler step itself. */
-START_TEST(pair_swings_by_the_closed_form) {
+TEST(pair_swings_by_the_closed_form) {
     static const char *const rows[][2] = {{"xpbd:iterations=1", "axial"},
                                           {"xpbd:iterations=200", "relative"},
                                           {LOCAL_GLOBAL ":iterations=1", "relative"},
@@ -232,10 +229,9 @@ START_TEST(pair_swings_by_the_closed_form) {
         fixture_close(&pair);
     }
 }
-END_TEST
 
 /* N steps of h fall g h^2 N (N + 1) / 2, with springs at rest and velocity kept to the bit. */
-START_TEST(cloth_falls_freely) {
+TEST(cloth_falls_freely) {
     for (size_t m = 0; m < METHODS; m++) {
         if (is_missing(methods[m]))
             continue;
@@ -257,9 +253,8 @@ START_TEST(cloth_falls_freely) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(momentum_is_kept) {
+TEST(momentum_is_kept) {
     static const char *const models[] = {"relative", "axial"};
     for (size_t m = 0; m < METHODS; m++)
         for (size_t k = 0; k < 2 && !is_missing(methods[m]); k++) {
@@ -283,7 +278,6 @@ START_TEST(momentum_is_kept) {
             fixture_close(&cloth);
         }
 }
-END_TEST
 
 #define FULL                                                                                   \
     "{\"bodies\": [{\"cloth\": {\"grid\": [8, 8]}, \"mass\": {\"total\": 0.2}, \"springs\": "  \
@@ -292,7 +286,8 @@ END_TEST
 
 /* Pinned particles keep every bit of their place; what is kept of a step's work is taken in the
  * first one. */
-START_TEST(pins_hold_and_steps_take_no_memory) {
+TEST(pins_hold_and_steps_take_no_memory) {
+    allocations_begin();
     for (size_t m = 0; m < METHODS; m++) {
         if (is_missing(methods[m]))
             continue;
@@ -319,10 +314,9 @@ START_TEST(pins_hold_and_steps_take_no_memory) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* substeps=S of dt is dt/S, to the bit */
-START_TEST(substeps_are_steps) {
+TEST(substeps_are_steps) {
     struct fixture parts, small;
     fixture_open(&parts, "xpbd:substeps=5,iterations=2,dt=0.01", FULL);
     fixture_open(&small, "xpbd:iterations=2,dt=0.002", FULL);
@@ -345,18 +339,4 @@ START_TEST(substeps_are_steps) {
     ck_assert_int_eq(memcmp(parts.x, small.x, 6 * 64 * sizeof(double)), 0);
     fixture_close(&parts);
     fixture_close(&small);
-}
-END_TEST
-
-int main(void) {
-    allocations_begin();
-    const TTest *const tests[] = {local_global_comes_to_implicit_euler,
-                                  xpbd_settles_beside_implicit_euler,
-                                  pbd_does_not_settle,
-                                  pair_swings_by_the_closed_form,
-                                  cloth_falls_freely,
-                                  momentum_is_kept,
-                                  pins_hold_and_steps_take_no_memory,
-                                  substeps_are_steps};
-    return fixture_run("position level", tests, sizeof tests / sizeof *tests);
 }

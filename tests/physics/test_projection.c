@@ -1,7 +1,7 @@
 /* Contact by projection: what friction holds stays where it is, and no commit makes energy,
  * with any method. With the argument "all" the ball has more particles and is dropped at more
  * steps and tolerances. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/force/terms.h"
 
@@ -12,29 +12,6 @@
 #define PI     3.14159265358979323846
 #define MU     0.9
 #define DEGREE (PI / 180)
-
-/* those that follow the equation of motion; with equal steps of h each */
-static const char *const stepped[] = {"symplectic-euler",
-                                      "averaged-euler",
-                                      "position-verlet",
-                                      "velocity-verlet",
-                                      "rk4",
-                                      "explicit-euler",
-                                      "implicit-block",
-                                      "implicit-linearised",
-                                      "backward-euler",
-                                      "bdf2",
-                                      "tr-bdf2",
-                                      "sdirk2",
-                                      "implicit-midpoint",
-                                      "newmark",
-                                      "ros2",
-                                      "xpbd",
-                                      "fast-mass-spring"};
-enum { STEPPED = sizeof stepped / sizeof *stepped };
-static const char *const adaptive[] = {"dopri5",  "cvode-bdf", "cvode-adams",
-                                       "ark-erk", "ark-dirk",  "ark-imex"};
-enum { ADAPTIVE = sizeof adaptive / sizeof *adaptive };
 
 /* a sheet that lies on a slope, as soft as explicit methods want it at 1/60 s */
 #define ON_SLOPE(more)                                                                         \
@@ -63,12 +40,12 @@ static double drift(const struct fixture *sheet) {
 }
 
 /* tan 20 degrees = 0.36 is below mu: nothing moves by more than 1e-6 m in 10 s */
-START_TEST(block_below_the_angle_of_friction_stays) {
-    for (int k = 0; k < STEPPED + ADAPTIVE; k++) {
+TEST(block_below_the_angle_of_friction_stays) {
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "slope", .dt = 1 / 60.0});
+    for (size_t k = 0; k < methods.n; k++) {
         struct fixture sheet;
-        char method[64];
-        snprintf(method, sizeof method, k < STEPPED ? "%s:dt=0.016666666666666666" : "%s",
-                 k < STEPPED ? stepped[k] : adaptive[k - STEPPED]);
+        const char *method = methods.list[k].text;
         open_slope(&sheet, method, 20);
         fixture_frames(&sheet, 600);
         ck_assert_msg(drift(&sheet) <= 1e-6, "%s: %.3g m", method, drift(&sheet));
@@ -77,17 +54,15 @@ START_TEST(block_below_the_angle_of_friction_stays) {
         fixture_close(&sheet);
     }
 }
-END_TEST
 
 /* tan 50 degrees is above it: g (sin - mu cos) t^2 / 2, to the first order in the step */
-START_TEST(block_above_it_slides) {
+TEST(block_above_it_slides) {
     const double a = 50 * DEGREE, t = 0.5, g = 9.81 * (sin(a) - MU * cos(a));
-    static const char *const methods[] = {"symplectic-euler", "velocity-verlet", "rk4",
-                                          "implicit-linearised"};
-    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "slide", .dt = 1 / 480.0});
+    for (size_t k = 0; k < methods.n; k++) {
         struct fixture sheet;
-        char method[64];
-        snprintf(method, sizeof method, "%s:dt=0.002083333333333333", methods[k]);
+        const char *method = methods.list[k].text;
         open_slope(&sheet, method, 50);
         fixture_frames(&sheet, 30);
         for (size_t i = 0; i < sheet.n; i++) {
@@ -100,9 +75,6 @@ START_TEST(block_above_it_slides) {
         fixture_close(&sheet);
     }
 }
-END_TEST
-
-static bool all;
 
 /* A box of springs that lies on the same slope with its lowest 25 vertices, 7.5 cm deep: its
  * own weight takes it together by 0.3 mm. */
@@ -143,29 +115,19 @@ static double slip(const struct fixture *box, const double *before) {
 
 /* What rests on the vertices that friction holds may swing: they stay at a sixtieth of a
  * second, with iterations that have settled. */
-START_TEST(box_below_the_angle_of_friction_stays) {
-    static const char *const methods[] = {"implicit-linearised:",
-                                          "backward-euler:",
-                                          "bdf2:",
-                                          "tr-bdf2:",
-                                          "sdirk2:",
-                                          "ros2:",
-                                          "newmark:",
-                                          "implicit-midpoint:",
-                                          "xpbd:iterations=30,",
-                                          "fast-mass-spring:iterations=30,"};
-    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+TEST(box_below_the_angle_of_friction_stays) {
+    const struct methods methods = methods_find(&(struct methods_query){
+        .test = "box", .with = CS_IMPLICIT, .without = CS_ADAPTIVE, .dt = 1 / 60.0});
+    for (size_t k = 0; k < methods.n; k++) {
         struct fixture box;
-        char method[64];
-        snprintf(method, sizeof method, "%sdt=0.016666666666666666", methods[k]);
+        const char *method = methods.list[k].text;
         open_box(&box, method);
-        fixture_frames(&box, all ? 600 : 120);
+        fixture_frames(&box, suite_all ? 600 : 120);
         const double way = slip(&box, box.system->start);
         ck_assert_msg(way <= 1e-6, "%s: %.3g m", method, way);
         fixture_close(&box);
     }
 }
-END_TEST
 
 /* The loads on the vertices of the box, were they all held: largest T / (mu N). */
 static double steepest_load(void) {
@@ -204,7 +166,7 @@ static double steepest_load(void) {
 /* Held vertices of the box have loads outside the cone of friction, also when it has come to
  * rest: by Coulomb's law some must slip until the springs around them give way. With shorter
  * steps the slip converges to 6.9e-5 m, and all families agree on it. */
-START_TEST(first_slip_of_a_box_is_that_of_the_law) {
+TEST(first_slip_of_a_box_is_that_of_the_law) {
     static const char *const methods[] = {"rk4:dt=5e-4", "velocity-verlet:dt=5e-4",
                                           "dopri5:rtol=1e-6", "cvode-bdf:rtol=1e-6"};
     ck_assert_double_gt(steepest_load(), 1.1);
@@ -217,48 +179,45 @@ START_TEST(first_slip_of_a_box_is_that_of_the_law) {
         fixture_close(&box);
     }
 }
-END_TEST
 
-START_TEST(box_does_not_creep) {
+TEST(box_does_not_creep) {
     double before[3 * 512];
-    for (int k = 0; k < (all ? ADAPTIVE : 2); k++) {
+    const struct methods methods = methods_find(&(struct methods_query){.with = CS_ADAPTIVE});
+    for (size_t k = 0; k < methods.n; k++) {
         struct fixture box;
-        open_box(&box, adaptive[k]);
+        const char *method = methods.list[k].text;
+        open_box(&box, method);
         ck_assert_uint_le(box.n, 512);
-        fixture_frames(&box, all ? 300 : 180);
+        fixture_frames(&box, suite_all ? 300 : 180);
         memcpy(before, box.x, 3 * box.n * sizeof *before);
-        fixture_frames(&box, all ? 300 : 60);
-        ck_assert_msg(slip(&box, before) <= 4e-6, "%s: %.3g m", adaptive[k],
-                      slip(&box, before));
+        fixture_frames(&box, suite_all ? 300 : 60);
+        ck_assert_msg(slip(&box, before) <= 4e-6, "%s: %.3g m", method, slip(&box, before));
         fixture_close(&box);
     }
 }
-END_TEST
 
 /* Friction falls from 0.9 to 0.1 in a second. Until it is tan 20 degrees, at t0, nothing moves;
  * then the speed grows as g cos a 0.8 (t - t0)^2 / 2. */
-START_TEST(block_slides_when_friction_lets_go) {
-    static const char *const methods[] = {
-        "symplectic-euler", "rk4",       "implicit-linearised", "bdf2",
-        "dopri5",           "cvode-bdf", "fast-mass-spring"};
+TEST(block_slides_when_friction_lets_go) {
+    const struct methods methods = methods_find(&(struct methods_query){.test = "let go"});
     const double a = 20 * DEGREE, t0 = (MU - tan(a)) / 0.8;
-    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture sheet;
-        fixture_open(&sheet, methods[k], LOOSENED, -sin(a / 2), cos(a / 2), sin(a), cos(a), MU);
+        fixture_open(&sheet, method, LOOSENED, -sin(a / 2), cos(a / 2), sin(a), cos(a), MU);
         fixture_start(&sheet);
         fixture_frames(&sheet, 80);
-        ck_assert_msg(drift(&sheet) == 0, "%s: %.3g m", methods[k], drift(&sheet));
+        ck_assert_msg(drift(&sheet) == 0, "%s: %.3g m", method, drift(&sheet));
         fixture_frames(&sheet, 40);
         const double speed = 9.81 * cos(a) * 0.8 * (1 - t0) * (1 - t0) / 2;
         for (size_t i = 0; i < sheet.n; i++) {
             const double v = sheet.v[i] * cos(a) - sheet.v[sheet.n + i] * sin(a);
             ck_assert_msg(fabs(v - speed) <= 0.05 * speed, "%s: %.6f m/s, expected %.6f",
-                          methods[k], v, speed);
+                          method, v, speed);
         }
         fixture_close(&sheet);
     }
 }
-END_TEST
 
 /* A ball of 1 kg and 0.3 m, whose centre is 0.6 m above the floor: 5.886 J of gravity. */
 #define BALL                                                                                   \
@@ -285,18 +244,16 @@ static bool look(void *ctx, double t, double dt, double *x, double *v) {
 }
 
 static int detail(void) {
-    return all ? 5 : 3;
+    return suite_all ? 5 : 3;
 }
 
 /* these add energy: their steps are as long as the damping allows */
 static bool is_forward(const char *method) {
-    static const char *const forward[] = {"explicit-euler", "averaged-euler"};
-    return !strncmp(method, forward[0], strlen(forward[0])) ||
-           !strncmp(method, forward[1], strlen(forward[1]));
+    return methods_is(method, "explicit-euler") || methods_is(method, "averaged-euler");
 }
 
 static double damping_of(const char *method) {
-    return is_forward(method) && !all ? 0.2 : 0.02;
+    return is_forward(method) && !suite_all ? 0.2 : 0.02;
 }
 
 static struct log drop(const char *method, double absorption, int fps, double seconds) {
@@ -314,19 +271,14 @@ static struct log drop(const char *method, double absorption, int fps, double se
 /* The longest step in s that a method takes of its own accord on the ball, by the bounds of its
  * springs; the two of first order that add energy want h omega^2 / 2 below the damping of every
  * mode, which is d / k times omega^2 / 2. */
-static double limit_of(const char *method) {
-    static const char *const bounded[] = {"symplectic-euler", "position-verlet",
-                                          "velocity-verlet", "rk4"};
+static double limit_of(const struct method_asked *method) {
     struct fixture ball;
-    fixture_open(&ball, method, BALL, detail(), damping_of(method), 1.0, 60);
+    fixture_open(&ball, method->text, BALL, detail(), damping_of(method->text), 1.0, 60);
     const double omega = ball.system->view.omega, delta = ball.system->view.delta;
     fixture_close(&ball);
-    if (is_forward(method))
-        return 0.1 * damping_of(method) / 400;
-    for (size_t k = 0; k < sizeof bounded / sizeof *bounded; k++)
-        if (!strcmp(method, bounded[k]))
-            return 1 / (omega + delta);
-    return HUGE_VAL;
+    if (is_forward(method->text))
+        return 0.1 * damping_of(method->text) / 400;
+    return method->traits & CS_IMPLICIT ? HUGE_VAL : 1 / (omega + delta);
 }
 
 static void check_drop(const char *method, double absorption, int fps) {
@@ -338,52 +290,36 @@ static void check_drop(const char *method, double absorption, int fps) {
                   method, absorption, fps, log.lowest / 9.81);
 }
 
-START_TEST(ball_gets_no_energy_from_the_floor) {
+TEST(ball_gets_no_energy_from_the_floor) {
     static const double absorptions[] = {1, -0.6};
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "drop", .without = CS_ADAPTIVE});
     for (int a = 0; a < 2; a++)
-        for (int k = 0; k < STEPPED; k++)
-            for (int rate = 240; rate <= (all ? 960 : 240); rate *= 4) {
-                char method[64];
-                const double limit = limit_of(stepped[k]), h = fmin(1.0 / rate, limit);
-                if (all && limit < 1.0 / rate && rate < 960)
+        for (size_t k = 0; k < methods.n; k++)
+            for (int rate = 240; rate <= (suite_all ? 960 : 240); rate *= 4) {
+                char method[120];
+                const double limit = limit_of(methods.list + k), h = fmin(1.0 / rate, limit);
+                if (suite_all && limit < 1.0 / rate && rate < 960)
                     continue; // the same as with the next
-                snprintf(method, sizeof method, "%s:dt=%.17g", stepped[k], h);
+                methods_set(method, methods.list[k].text, "dt", h);
                 check_drop(method, absorptions[a], 60);
             }
 }
-END_TEST
 
-START_TEST(ball_gets_none_at_a_sixtieth) {
-    static const char *const methods[] = {
-        "implicit-linearised", "backward-euler", "tr-bdf2", "sdirk2",           "bdf2",
-        "implicit-midpoint",   "newmark",        "xpbd",    "fast-mass-spring", "ros2"};
-    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
-        check_drop(methods[k], 1, 60);
+TEST(ball_gets_none_at_a_sixtieth) {
+    const struct methods methods = methods_find(&(struct methods_query){
+        .test = "long drop", .with = CS_IMPLICIT, .without = CS_ADAPTIVE, .dt = 1 / 60.0});
+    for (size_t k = 0; k < methods.n; k++)
+        check_drop(methods.list[k].text, 1, 60);
 }
-END_TEST
 
-START_TEST(ball_gets_none_at_a_tolerance) {
+TEST(ball_gets_none_at_a_tolerance) {
     static const double tolerances[] = {1e-3, 1e-5};
-    for (int k = 0; k < ADAPTIVE; k++)
-        for (int r = 0; r < (all ? 2 : 1); r++)
-            for (int fps = 60; fps >= 5; fps /= 12) {
-                char method[64];
-                snprintf(method, sizeof method, "%s:rtol=%g", adaptive[k], tolerances[r]);
-                check_drop(method, 1, fps);
-            }
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    all = argc > 1 && !strcmp(argv[1], "all");
-    const TTest *const tests[] = {block_below_the_angle_of_friction_stays,
-                                  block_above_it_slides,
-                                  box_below_the_angle_of_friction_stays,
-                                  first_slip_of_a_box_is_that_of_the_law,
-                                  box_does_not_creep,
-                                  block_slides_when_friction_lets_go,
-                                  ball_gets_no_energy_from_the_floor,
-                                  ball_gets_none_at_a_sixtieth,
-                                  ball_gets_none_at_a_tolerance};
-    return fixture_run("projection", tests, sizeof tests / sizeof *tests);
+    for (int r = 0; r < (suite_all ? 2 : 1); r++) {
+        const struct methods methods =
+            methods_find(&(struct methods_query){.with = CS_ADAPTIVE, .rtol = tolerances[r]});
+        for (size_t k = 0; k < methods.n; k++)
+            for (int fps = 60; fps >= 5; fps /= 12)
+                check_drop(methods.list[k].text, 1, fps);
+    }
 }

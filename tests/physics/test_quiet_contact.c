@@ -10,14 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LENGTH(a) (sizeof(a) / sizeof *(a))
 #define SHEET                                                                                  \
     "\"thickness\": 0.02, \"mass\": {\"areal_density\": 0.3}, \"springs\": {\"stretch\": 60, " \
     "\"shear\": 20, \"bend\": 1, \"damping\": 0.02}"
 
 static const double gravity = 9.81;
-static bool all;
-
 /* --- a slope of triangles, without friction --- */
 
 /* a sheet on the top of a box, with gravity along it: how the sheet is turned, cells of the box
@@ -48,20 +45,19 @@ static double lost_on_slope(const char *method, double turn, uint32_t detail) {
 }
 
 /* Steps of 4 ms damp what little the rims of the sheet excite. */
-START_TEST(slope_takes_nothing) {
+TEST(slope_takes_nothing) {
     static const struct {
         const char *method;
         double most;
     } methods[] = {{"implicit-linearised:dt=4e-3", 0.002}, {"rk4:dt=2e-3", 0.001}};
-    for (size_t m = 0; m < (all ? LENGTH(methods) : 1); m++)
-        for (int k = all ? 0 : 1; k < (all ? 4 : 2); k++) {
+    for (size_t m = 0; m < (suite_all ? LENGTH(methods) : 1); m++)
+        for (int k = suite_all ? 0 : 1; k < (suite_all ? 4 : 2); k++) {
             const double lost =
                 lost_on_slope(methods[m].method, 0.15 + 0.1 * k, k % 2 ? 18 : 6);
             ck_assert_msg(fabs(lost) < methods[m].most, "%s, turn %d: %.3g g",
                           methods[m].method, k, lost);
         }
 }
-END_TEST
 
 /* --- a sheet on a sheet on a floor --- */
 
@@ -114,7 +110,7 @@ static void push_flat(const struct fixture *cloth, size_t upper, double y, doubl
     }
 }
 
-START_TEST(sheets_push_straight) {
+TEST(sheets_push_straight) {
     static const double heights[] = {0.5, 0.7};
     for (size_t k = 0; k < LENGTH(heights); k++) {
         struct fixture cloth;
@@ -126,7 +122,6 @@ START_TEST(sheets_push_straight) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* m/s, of particles [begin, end): root mean square, and as a whole along the floor */
 static void speeds_of(const struct fixture *cloth, size_t begin, size_t end, double *rms,
@@ -142,9 +137,9 @@ static void speeds_of(const struct fixture *cloth, size_t begin, size_t end, dou
     *drift = hypot(v[0], v[2]);
 }
 
-START_TEST(sheets_lie_still) {
-    const char *method = all ? "symplectic-euler:dt=2e-4" : "implicit-linearised:dt=4e-3";
-    const uint32_t frames = all ? 180 : 30;
+TEST(sheets_lie_still) {
+    const char *method = suite_all ? "symplectic-euler:dt=2e-4" : "implicit-linearised:dt=4e-3";
+    const uint32_t frames = suite_all ? 180 : 30;
     for (int rubs = 0; rubs < 2; rubs++) {
         struct fixture cloth;
         double rms, drift;
@@ -154,12 +149,11 @@ START_TEST(sheets_lie_still) {
         // a tenth of friction_speed
         ck_assert_msg(!rubs || rms < 0.001, "rms %.3g m/s", rms);
         speeds_of(&cloth, cloth.n - 36, cloth.n, &rms, &drift);
-        ck_assert_msg(drift < (all ? 0.001 : 0.002) * gravity * frames / 60, "rub %d: %.3g g",
-                      rubs, drift / gravity / (frames / 60.0));
+        ck_assert_msg(drift < (suite_all ? 0.001 : 0.002) * gravity * frames / 60,
+                      "rub %d: %.3g g", rubs, drift / gravity / (frames / 60.0));
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* --- friction that is linearised --- */
 
@@ -189,7 +183,7 @@ static double slide(const char *method, double a) {
 /* Friction at its slope, step by step: u' = u - a u/s/(1 + a/s^3), s^2 = 1 + u^2, with u =
  * v/ev. It goes to and fro for ever, u' = -u, where a s^2 = 2 s^3 + 2 a, which has a root for
  * a^2 >= 54. Newton's iteration takes the friction of the end, and rests. */
-START_TEST(linearised_friction_chatters_above_a_limit) {
+TEST(linearised_friction_chatters_above_a_limit) {
     static const char linearised[] = "implicit-linearised:dt=4e-3";
     const double a = 1.05 * sqrt(54);
     ck_assert_double_lt(slide(linearised, 0.99 * sqrt(54)), 1e-9);
@@ -200,12 +194,4 @@ START_TEST(linearised_friction_chatters_above_a_limit) {
         *(a * s * s > 2 * s * s * s + 2 * a ? &low : &high) = s;
     }
     ck_assert_double_eq_tol(slide(linearised, a), sqrt(low * low - 1), 1e-3);
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    all = argc > 1 && strcmp(argv[1], "all") == 0;
-    const TTest *const tests[] = {slope_takes_nothing, sheets_push_straight, sheets_lie_still,
-                                  linearised_friction_chatters_above_a_limit};
-    return fixture_run("quiet", tests, LENGTH(tests));
 }

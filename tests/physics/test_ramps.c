@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* Gravity from 0 to 6 m/s2 between 0.1 and 0.6 s: v = 6 t^2 and x = 2 t^3 from there. */
-START_TEST(ramp_is_linear_in_time) {
+TEST(ramp_is_linear_in_time) {
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet:dt=0.0005", DUST, "0",
                  "{\"from\": 0.1, \"to\": 0.6,"
@@ -24,11 +24,10 @@ START_TEST(ramp_is_linear_in_time) {
     ck_assert(dust.session.scene.forces.gravity[1] == 0);
     fixture_close(&dust);
 }
-END_TEST
 
 /* A stiffness that changes at the start is that of a scene which has it, to the bit; and the
  * automatic step is right for the stiffest that a ramp will come to. */
-START_TEST(springs_are_rebuilt) {
+TEST(springs_are_rebuilt) {
     struct fixture soft, stiff;
     fixture_open(&soft, "velocity-verlet", CLOTH,
                  "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.stretch\","
@@ -52,12 +51,11 @@ START_TEST(springs_are_rebuilt) {
     fixture_close(&soft);
     fixture_close(&stiff);
 }
-END_TEST
 
 /* A weight on a spring, 2 pi a second: at 0.25 s it passes the middle with 0.1 m * 2 pi and
  * becomes four times as heavy, so that it swings half as fast and twice as far: at 0.75 s it is
  * at rest 0.2 m behind the middle. */
-START_TEST(masses_change_at_once) {
+TEST(masses_change_at_once) {
     static const char *const exact[] = {"velocity-verlet:dt=1e-4", "rk4:dt=1e-3",
                                         "implicit-midpoint:dt=1e-3", "cvode-bdf:rtol=1e-8"};
     for (size_t k = 0; k < sizeof exact / sizeof *exact; k++) {
@@ -77,10 +75,9 @@ START_TEST(masses_change_at_once) {
         fixture_close(&weight);
     }
 }
-END_TEST
 
 /* The automatic step is right for the lightest that comes. */
-START_TEST(lightest_mass_binds_the_step) {
+TEST(lightest_mass_binds_the_step) {
     struct fixture cloth, light;
     fixture_open(&cloth, "velocity-verlet", CLOTH, "");
     fixture_open(&light, "velocity-verlet", CLOTH,
@@ -91,7 +88,6 @@ START_TEST(lightest_mass_binds_the_step) {
     fixture_close(&light);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* a body of edges, hinges and a network; %s: stretch, bend, unit, and the events */
 #define JELLY                                                                                  \
@@ -101,7 +97,7 @@ END_TEST
 
 /* The same for a mesh, in both units; and half way of a ramp the energy is the mean of both
  * ends'. */
-START_TEST(springs_of_a_mesh_follow_ramps) {
+TEST(springs_of_a_mesh_follow_ramps) {
     static const char *const units[] = {"N/m", "N"};
     static const char at_once[] =
         "{\"at\": 0, \"ramp\": {\"key\": \"bodies[0].springs.stretch\", \"value\": 90}},"
@@ -136,11 +132,10 @@ START_TEST(springs_of_a_mesh_follow_ramps) {
         fixture_close(&soft);
     }
 }
-END_TEST
 
 /* The method with a factored matrix takes implicit Euler's steps also while the matrix changes:
  * springs get a hundred times as stiff, and drag comes in, within ten steps. */
-START_TEST(factored_matrix_follows_ramps) {
+TEST(factored_matrix_follows_ramps) {
     static const char scene[] =
         "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"areal_density\": 0.3},"
         " \"springs\": {\"stretch\": 20, \"shear\": 7, \"bend\": 2, \"damping\": 0.01,"
@@ -166,13 +161,4 @@ START_TEST(factored_matrix_follows_ramps) {
         ck_assert_double_eq_tol(factored.x[i], euler.x[i], 1e-9);
     fixture_close(&euler);
     fixture_close(&factored);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        ramp_is_linear_in_time,         springs_are_rebuilt,
-        masses_change_at_once,          lightest_mass_binds_the_step,
-        springs_of_a_mesh_follow_ramps, factored_matrix_follows_ramps};
-    return fixture_run("ramps", tests, sizeof tests / sizeof *tests);
 }

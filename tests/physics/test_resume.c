@@ -79,34 +79,33 @@ static void check(const struct broken *broken) {
     cs_session_close(&whole);
 }
 
-START_TEST(scenes_go_on) {
+TEST(scenes_go_on) {
     static const struct broken all[] = {
-        {"scenes/grab_release.json", "velocity-verlet", 30, {1, 11, 23}},
-        {"scenes/viewpoint_flag.json", "implicit-linearised", 20, {3, 8, 17}},
-        {"scenes/push.json", "bdf2", 16, {2, 7, 12}},
-        {"scenes/swing.json", "dopri5", 20, {1, 9, 15}},
-        {"scenes/two_winds.json", "implicit-linearised", 16, {2, 7, 12}},
-        {"scenes/contact_compare.json", "newmark", 16, {3, 8, 13}},
-        {"scenes/contact_compare.json", "gauss", 8, {2, 4, 7}},
-        {"scenes/explosion_cured.json", "implicit-linearised", 12, {1, 4, 9}},
-        {"scenes/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
-        {"scenes/layers.json", NULL, 6, {2, 4, 5}},
-        {"scenes/funnel.json", "implicit-linearised", 4, {1, 2, 3}},
-        {"scenes/self_compare.json", "newmark", 60, {20, 35, 50}},
-        {"scenes/self_compare.json", "dopri5", 60, {20, 35, 50}},
-        {"scenes/mixed_company.json", "shape-matching", 10, {1, 4, 7}},
-        {"scenes/disc_drape.json", "bdf2", 36, {24, 29, 33}},
-        {"scenes/disc_drape.json", "fast-mass-spring", 36, {24, 29, 33}},
+        {SCENES "/grab_release.json", "velocity-verlet", 30, {1, 11, 23}},
+        {SCENES "/viewpoint_flag.json", "implicit-linearised", 20, {3, 8, 17}},
+        {SCENES "/push.json", "bdf2", 16, {2, 7, 12}},
+        {SCENES "/swing.json", "dopri5", 20, {1, 9, 15}},
+        {SCENES "/two_winds.json", "implicit-linearised", 16, {2, 7, 12}},
+        {SCENES "/contact_compare.json", "newmark", 16, {3, 8, 13}},
+        {SCENES "/contact_compare.json", "gauss", 8, {2, 4, 7}},
+        {SCENES "/explosion_cured.json", "implicit-linearised", 12, {1, 4, 9}},
+        {SCENES "/sphere_rest.json", "implicit-linearised", 10, {1, 4, 7}},
+        {SCENES "/layers.json", NULL, 6, {2, 4, 5}},
+        {SCENES "/funnel.json", "implicit-linearised", 4, {1, 2, 3}},
+        {SCENES "/self_compare.json", "newmark", 60, {20, 35, 50}},
+        {SCENES "/self_compare.json", "dopri5", 60, {20, 35, 50}},
+        {SCENES "/mixed_company.json", "shape-matching", 10, {1, 4, 7}},
+        {SCENES "/disc_drape.json", "bdf2", 36, {24, 29, 33}},
+        {SCENES "/disc_drape.json", "fast-mass-spring", 36, {24, 29, 33}},
     };
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         check(all + k);
 }
-END_TEST
 
 /* the record of another scene has too many bytes, or too few */
-START_TEST(foreign_records_are_refused) {
-    static const struct broken one = {"scenes/hang.json", "velocity-verlet", 3, {1, 2, 3}};
-    static const struct broken two = {"scenes/swing.json", "velocity-verlet", 3, {1, 2, 3}};
+TEST(foreign_records_are_refused) {
+    static const struct broken one = {SCENES "/hang.json", "velocity-verlet", 3, {1, 2, 3}};
+    static const struct broken two = {SCENES "/swing.json", "velocity-verlet", 3, {1, 2, 3}};
     struct cs_error error = {0};
     struct cs_session session;
     struct cs_serialiser record = {0};
@@ -120,10 +119,4 @@ START_TEST(foreign_records_are_refused) {
     ck_assert(error.status == CS_ERR_FILE || !cs_serialiser_is_done(&record));
     cs_serialiser_finish(&record);
     cs_session_close(&session);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {scenes_go_on, foreign_records_are_refused};
-    return fixture_run("resume", tests, sizeof tests / sizeof *tests);
 }

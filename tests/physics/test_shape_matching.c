@@ -10,7 +10,7 @@
 
 /* alpha = 0 leaves every particle to itself, and to its springs where they are asked for: the
  * bits are those of symplectic Euler without springs, or with them */
-START_TEST(alpha_0_is_symplectic_euler) {
+TEST(alpha_0_is_symplectic_euler) {
     static const char scene[] =
         "{\"bodies\": [{\"mesh\": {\"shape\": \"torus\", \"detail\": 5, \"velocity\": [1, 2, "
         "0], \"spin\": [1, 2, 3]}, \"mass\": {\"total\": 1}, %s}], \"colliders\": [{\"floor\": "
@@ -35,10 +35,9 @@ START_TEST(alpha_0_is_symplectic_euler) {
         fixture_close(&free);
     }
 }
-END_TEST
 
 /* the shape at rest is where it stays: solid, flat, in parts, with any beta */
-START_TEST(rest_is_a_fixed_point) {
+TEST(rest_is_a_fixed_point) {
     static const char *const shapes[] = {LIMBS, SHEET, "\"cloth\": {\"grid\": [6, 1]}",
                                          "\"cloth\": {\"grid\": [1, 1]}"};
     static const char *const ways[] = {"", "\"alpha\": 1, \"beta\": 1", "\"beta\": 0.5",
@@ -53,12 +52,11 @@ START_TEST(rest_is_a_fixed_point) {
             fixture_close(&body);
         }
 }
-END_TEST
 
 /* Two particles pulled apart by u are a spring, u'' = -k/m u with k/m = a/((1 - a) s^2), and
  * the step is implicit Euler's: u' = (u + h v)/(1 + k/m h^2). With alpha_step 0 that a holds
  * for any step. */
-START_TEST(pair_swings_as_a_spring_in_implicit_euler) {
+TEST(pair_swings_as_a_spring_in_implicit_euler) {
     static const struct {
         const char *matching;
         double step; /* s, that alpha is for; 0: h */
@@ -89,7 +87,6 @@ START_TEST(pair_swings_as_a_spring_in_implicit_euler) {
             fixture_close(&pair);
         }
 }
-END_TEST
 
 static void state_at(int parts, double *state, size_t *n) {
     struct fixture body;
@@ -106,7 +103,7 @@ static void state_at(int parts, double *state, size_t *n) {
 }
 
 /* with alpha meant for a step of its own, the motion has a limit as h goes to 0: order 1 */
-START_TEST(motion_has_a_limit_at_order_1) {
+TEST(motion_has_a_limit_at_order_1) {
     static double states[3][1024];
     size_t n = 0;
     for (int level = 0; level < 3; level++)
@@ -116,12 +113,11 @@ START_TEST(motion_has_a_limit_at_order_1) {
         cs_rms_difference(states[0], states[1], n) / cs_rms_difference(states[1], states[2], n);
     ck_assert_double_eq_tol(ratio, 2, 0.1);
 }
-END_TEST
 
 /* A rigid ball that turns by p_n in a step n turns by atan(sin p/(2 - cos p)) in the next, the
  * rotation of 2 R_n - R_n-1; the first one is atan(w h). So much angular momentum is lost: of
  * first order in h. Momentum and distances are kept. */
-START_TEST(rigid_ball_turns_as_it_must) {
+TEST(rigid_ball_turns_as_it_must) {
     for (int parts = 1; parts <= 2; parts++) {
         struct fixture ball;
         char method[64];
@@ -156,10 +152,9 @@ START_TEST(rigid_ball_turns_as_it_must) {
         fixture_close(&ball);
     }
 }
-END_TEST
 
 /* Ways to the goals make no force and no torque, for any beta and any number of parts. */
-START_TEST(goals_have_no_force_and_no_torque) {
+TEST(goals_have_no_force_and_no_torque) {
     static const char *const ways[] = {"", "\"beta\": 0.6", "\"clusters\": 5",
                                        "\"clusters\": 3, \"beta\": 1, \"overlap\": 0.5"};
     for (int w = 0; w < 4; w++) {
@@ -188,7 +183,6 @@ START_TEST(goals_have_no_force_and_no_torque) {
         fixture_close(&body);
     }
 }
-END_TEST
 
 #define CLOTH                                                                                  \
     "{\"cloth\": {\"grid\": [6, 5]}, \"mass\": {\"total\": 0.2}, \"pins\": [\"top\"]}, "       \
@@ -196,7 +190,7 @@ END_TEST
     "\"mass\": {\"total\": 1}}"
 
 /* cloth and network body move as if the matched body were not there, to the last bit */
-START_TEST(other_bodies_are_those_of_symplectic_euler) {
+TEST(other_bodies_are_those_of_symplectic_euler) {
     struct fixture mixed, alone;
     fixture_open(&mixed, "shape-matching:dt=0.0005",
                  "{\"bodies\": [" CLOTH ", {" BOX ", \"mass\": {\"total\": 1}, "
@@ -221,7 +215,6 @@ START_TEST(other_bodies_are_those_of_symplectic_euler) {
     ck_assert_uint_gt(mixed.session.run.counts.steps, 60);
     fixture_close(&mixed);
 }
-END_TEST
 
 /* alpha_step, pairs */
 #define THROWN                                                                                 \
@@ -253,7 +246,7 @@ static uint64_t throw_boxes(const char *step, const char *pairs, struct cs_count
 /* Steps are cut as those of other methods are. Where alpha holds for any step, its parts have
  * the stiffness of the whole, here of a frame. Where nothing keeps the boxes off each other no
  * part is short enough. */
-START_TEST(a_limit_holds_off_what_goals_draw) {
+TEST(a_limit_holds_off_what_goals_draw) {
     static const char *const steps[] = {"0.016666666666666666", "0"};
     double y[2];
     for (int s = 0; s < 2; s++) {
@@ -269,17 +262,4 @@ START_TEST(a_limit_holds_off_what_goals_draw) {
                       "%s", error.message);
     }
     ck_assert_double_eq_tol(y[0], y[1], 1e-8);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {a_limit_holds_off_what_goals_draw,
-                                  alpha_0_is_symplectic_euler,
-                                  rest_is_a_fixed_point,
-                                  pair_swings_as_a_spring_in_implicit_euler,
-                                  motion_has_a_limit_at_order_1,
-                                  rigid_ball_turns_as_it_must,
-                                  goals_have_no_force_and_no_torque,
-                                  other_bodies_are_those_of_symplectic_euler};
-    return fixture_run("shape_matching", tests, sizeof tests / sizeof *tests);
 }

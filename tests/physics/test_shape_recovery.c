@@ -14,7 +14,7 @@ static void stretch(struct fixture *body, double sx, double sy, double sz) {
     }
 }
 
-START_TEST(damaged_bodies_get_up) {
+TEST(damaged_bodies_get_up) {
     static const char *const ways[] = {"\"alpha\": 0.5", "\"alpha\": 1",
                                        "\"alpha\": 0.5, \"beta\": 0.5"};
     static const char *const shapes[] = {BOX, LIMBS};
@@ -32,11 +32,10 @@ START_TEST(damaged_bodies_get_up) {
                 fixture_close(&body);
             }
 }
-END_TEST
 
 /* beta = 1: a body at its old volume, whatever its stretch, is at its goals; another one comes
  * back to its volume but keeps its proportions */
-START_TEST(beta_1_keeps_linear_deformations) {
+TEST(beta_1_keeps_linear_deformations) {
     struct fixture body;
     fixture_open(&body, "shape-matching", FLOATING, BALL, "\"alpha\": 0.7, \"beta\": 1", "");
     stretch(&body, 2, 0.4, 1.25);
@@ -57,11 +56,10 @@ START_TEST(beta_1_keeps_linear_deformations) {
         ck_assert_double_eq_tol(body.x[k], before[k], 1e-6);
     fixture_close(&body);
 }
-END_TEST
 
 /* Held at one vertex, with k/m of the free ones and a thousandfold weight of the held one: it
  * is pulled from its goal by g/(1000 k/m). */
-START_TEST(locked_vertex_holds_the_body) {
+TEST(locked_vertex_holds_the_body) {
     struct fixture body;
     const double alpha = 0.5, h = 1.0 / 60, g = 9.81;
     fixture_open(&body, "shape-matching",
@@ -89,10 +87,9 @@ START_TEST(locked_vertex_holds_the_body) {
     free(goal);
     fixture_close(&body);
 }
-END_TEST
 
 /* let go, it falls with what momentum it has: the weights are those of free particles again */
-START_TEST(released_vertex_is_as_heavy_as_it_was) {
+TEST(released_vertex_is_as_heavy_as_it_was) {
     struct fixture body;
     double before[2][3], after[2][3];
     fixture_open(&body, "shape-matching:dt=0.002",
@@ -109,10 +106,9 @@ START_TEST(released_vertex_is_as_heavy_as_it_was) {
         ck_assert_double_eq_tol(after[0][c] - before[0][c], c == 1 ? -9.81 * 0.5 : 0, 1e-12);
     fixture_close(&body);
 }
-END_TEST
 
 /* looking at the goals changes nothing of the run */
-START_TEST(goals_are_only_looked_at) {
+TEST(goals_are_only_looked_at) {
     struct fixture looked, plain;
     fixture_open(&looked, "shape-matching", FLOATING, LIMBS, "\"clusters\": 3", "");
     fixture_open(&plain, "shape-matching", FLOATING, LIMBS, "\"clusters\": 3", "");
@@ -131,12 +127,11 @@ START_TEST(goals_are_only_looked_at) {
     fixture_close(&looked);
     fixture_close(&plain);
 }
-END_TEST
 
 /* Without the square root a ball at rest has its goals at 1/M of its size, M = sum m q^2/3 of
  * one direction, and swings about M^-1/2; with it, or with the linear transformation A, whose
  * M is 1, it rests (soft-body thesis, sec. 2.5). */
-START_TEST(without_its_root_a_pq_pulsates) {
+TEST(without_its_root_a_pq_pulsates) {
     static const char *const rotations[] = {"polar", "unrooted-linear", "unrooted-pq"};
     for (int r = 0; r < 3; r++) {
         struct fixture ball;
@@ -172,13 +167,4 @@ START_TEST(without_its_root_a_pq_pulsates) {
         }
         fixture_close(&ball);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        damaged_bodies_get_up,        beta_1_keeps_linear_deformations,
-        locked_vertex_holds_the_body, released_vertex_is_as_heavy_as_it_was,
-        goals_are_only_looked_at,     without_its_root_a_pq_pulsates};
-    return fixture_run("shape_recovery", tests, sizeof tests / sizeof *tests);
 }

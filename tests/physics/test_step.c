@@ -18,7 +18,7 @@ static bool was_told(const struct fixture *cloth, const char *part) {
 
 /* Three seconds from a stirred start end with less energy than the start, from weak damping to
  * dampers that set the limit alone. */
-START_TEST(automatic_step_is_stable) {
+TEST(automatic_step_is_stable) {
     static const char *const methods[] = {"explicit-euler", "symplectic-euler",
                                           "averaged-euler", "velocity-verlet",
                                           "position-verlet"};
@@ -38,10 +38,9 @@ START_TEST(automatic_step_is_stable) {
             fixture_close(&cloth);
         }
 }
-END_TEST
 
 /* No step of explicit Euler is stable without damping: it says so, and blows up. */
-START_TEST(hopeless_step_is_told) {
+TEST(hopeless_step_is_told) {
     struct fixture cloth;
     struct cs_error error = {0};
     fixture_open(&cloth, "explicit-euler", SCENE, 0.0, 0.0);
@@ -54,10 +53,9 @@ START_TEST(hopeless_step_is_told) {
     ck_assert_int_ne(run->outcome, CS_RUNNING);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* dt is cut to whole steps a frame: 1/60 s in dt = 4 ms is five steps, in 1/600 s ten. */
-START_TEST(steps_fill_the_frame) {
+TEST(steps_fill_the_frame) {
     static const struct {
         const char *integrator;
         uint64_t steps;
@@ -79,9 +77,8 @@ START_TEST(steps_fill_the_frame) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(endless_frame_is_refused) {
+TEST(endless_frame_is_refused) {
     struct fixture cloth;
     struct cs_error error = {0};
     fixture_open(&cloth, "symplectic-euler:dt=1e-14", SCENE, 0.0, 0.0);
@@ -90,10 +87,9 @@ START_TEST(endless_frame_is_refused) {
     ck_assert_msg(strstr(error.message, "needs more than 1e+09 steps"), "%s", error.message);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* cvode-bdf gives up with a reason when it may not take the steps it wants. */
-START_TEST(step_budget_is_kept) {
+TEST(step_budget_is_kept) {
     struct fixture cloth;
     struct cs_error error = {0};
     fixture_open(&cloth, "cvode-bdf:rtol=1e-10,max_steps=3", SCENE, 0.1, 0.0);
@@ -104,12 +100,11 @@ START_TEST(step_budget_is_kept) {
     ck_assert_uint_eq(cloth.session.run.counts.steps, 3);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* A sheet that comes to lie on a floor: its particles are too quick for dt, which is cut for
  * most of the time. Steps that are worked out and thrown away are few, and what is known at the
  * end of a frame counts in the next. */
-START_TEST(cut_steps_stay_cut) {
+TEST(cut_steps_stay_cut) {
     static const char *const methods[] = {"implicit-linearised:dt=0.00833",
                                           "newmark:dt=0.00833"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
@@ -129,12 +124,4 @@ START_TEST(cut_steps_stay_cut) {
                       (unsigned)rejected, (unsigned)counts->steps);
         fixture_close(&cloth);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {automatic_step_is_stable, hopeless_step_is_told,
-                                  steps_fill_the_frame,     endless_frame_is_refused,
-                                  step_budget_is_kept,      cut_steps_stay_cut};
-    return fixture_run("step", tests, sizeof tests / sizeof *tests);
 }

@@ -143,7 +143,7 @@ static bool all_are_seen(const struct fixture *cloth, const double *x) {
 
 /* A list that was never made, one of another place and one that covers the way give the same.
  */
-START_TEST(steps_are_seen_as_by_all_pairs) {
+TEST(steps_are_seen_as_by_all_pairs) {
     struct fixture cloth;
     static double x[MOST], away[MOST];
     uint64_t seed = 7;
@@ -170,10 +170,9 @@ START_TEST(steps_are_seen_as_by_all_pairs) {
     ck_assert_uint_gt(unseen, 8);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* the sheet above goes down, slowly, from out of range until more is unseen than may be */
-START_TEST(steps_that_come_into_range_are_asked) {
+TEST(steps_that_come_into_range_are_asked) {
     struct fixture cloth;
     static double x[MOST];
     bool expected = true;
@@ -196,10 +195,9 @@ START_TEST(steps_that_come_into_range_are_asked) {
     ck_assert_double_gt(least, 0.07);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* a list that covers a step has room for the next one, where that goes on alike */
-START_TEST(lists_look_ahead) {
+TEST(lists_look_ahead) {
     struct fixture cloth;
     static double x[MOST];
     enum { STEPS = 12 };
@@ -217,7 +215,6 @@ START_TEST(lists_look_ahead) {
     ck_assert_uint_le(search->n_builds - before, STEPS / 2);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* one pair through the distance filter */
 static bool passes(const struct fixture *cloth, const struct pair *pair, double reach) {
@@ -230,7 +227,7 @@ static bool passes(const struct fixture *cloth, const struct pair *pair, double 
 }
 
 /* the boxes of a pair's sides as swept boxes know them, to the last bit */
-START_TEST(sieves_hold_what_swaths_do) {
+TEST(sieves_hold_what_swaths_do) {
     struct fixture cloth;
     static double x[MOST];
     uint64_t seed = 3;
@@ -256,12 +253,4 @@ START_TEST(sieves_hold_what_swaths_do) {
     ck_assert_uint_gt(meet, all / 20);
     ck_assert_uint_lt(meet, all / 2);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {steps_are_seen_as_by_all_pairs,
-                                  steps_that_come_into_range_are_asked, lists_look_ahead,
-                                  sieves_hold_what_swaths_do};
-    return fixture_run("seen", tests, sizeof tests / sizeof *tests);
 }

@@ -25,7 +25,7 @@ static const char *const methods[] = {"cvode-bdf", "cvode-adams",     "ark-erk",
 enum { METHODS = sizeof methods / sizeof *methods };
 
 /* SUNDIALS takes its own small tables at the first step after create, and nothing later. */
-START_TEST(steps_take_nothing) {
+TEST(steps_take_nothing) {
     allocations_begin();
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
@@ -44,7 +44,6 @@ START_TEST(steps_take_nothing) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* a host whose memory ends after so many requests */
 struct poor_host {
@@ -92,7 +91,7 @@ static enum cs_step create_and_destroy(const struct fixture *cloth, struct poor_
     return status;
 }
 
-START_TEST(create_may_fail_anywhere) {
+TEST(create_may_fail_anywhere) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         fixture_open(&cloth, methods[k], SCENE);
@@ -107,9 +106,8 @@ START_TEST(create_may_fail_anywhere) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
-START_TEST(failures_have_reasons) {
+TEST(failures_have_reasons) {
     static const struct {
         const char *integrator, *reason;
     } rows[] = {{"ark-erk:max_steps=2,rtol=1e-10", "more than 2 steps"},
@@ -127,11 +125,10 @@ START_TEST(failures_have_reasons) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* A failure of the host's solver ends the run with the host's words, and no step follows it.
  * CVODE asks for no solve where the residual is small: not so at that tolerance. */
-START_TEST(failed_solve_ends_the_run) {
+TEST(failed_solve_ends_the_run) {
     static const char *const implicit[] = {"cvode-bdf:rtol=1e-2", "ark-dirk", "ark-imex"};
     for (size_t k = 0; k < sizeof implicit / sizeof *implicit; k++) {
         struct fixture cloth;
@@ -149,10 +146,9 @@ START_TEST(failed_solve_ends_the_run) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* a state that is no number is refused by the library's own name for it */
-START_TEST(codes_are_named) {
+TEST(codes_are_named) {
     for (size_t k = 0; k < METHODS; k++) {
         struct fixture cloth;
         struct cs_error error = {0};
@@ -166,10 +162,9 @@ START_TEST(codes_are_named) {
         fixture_close(&cloth);
     }
 }
-END_TEST
 
 /* 990 steps; a new start at order 1 after every step that touches takes 13400. */
-START_TEST(history_survives_contact) {
+TEST(history_survives_contact) {
     struct fixture cloth;
     fixture_open(&cloth, "cvode-bdf:rtol=1e-5", SCENE);
     fixture_start(&cloth);
@@ -179,7 +174,6 @@ START_TEST(history_survives_contact) {
     ck_assert_msg(counts->steps < 3000, "%llu steps", (unsigned long long)counts->steps);
     fixture_close(&cloth);
 }
-END_TEST
 
 /* hangs by two corners; what follows the pins closes the body, and may act between steps */
 #define HANGING                                                                                \
@@ -208,7 +202,7 @@ static void hang(const char *method, const char *more, int fps, struct hung *out
 
 /* Frames are interpolated: neither the motion nor its cost depends on how many there are. Where
  * anything acts between steps each frame ends one. */
-START_TEST(steps_pass_frames) {
+TEST(steps_pass_frames) {
     static struct hung few, many;
     hang("cvode-bdf:rtol=1e-2", "}]", 10, &few);
     hang("cvode-bdf:rtol=1e-2", "}]", 500, &many);
@@ -218,10 +212,9 @@ START_TEST(steps_pass_frames) {
     hang("cvode-bdf:rtol=1e-2", "}], \"forces\": {\"velocity_loss\": 1e-12}", 500, &many);
     ck_assert_uint_gt(many.forces, 250);
 }
-END_TEST
 
 /* The interpolant is as good as the steps: between them the error follows the tolerance too. */
-START_TEST(interpolated_frames_follow_the_tolerance) {
+TEST(interpolated_frames_follow_the_tolerance) {
     static const double rtols[] = {1e-2, 1e-4, 1e-6};
     static struct hung reference, found;
     hang("dopri5:rtol=1e-11", "}]", 10, &reference);
@@ -237,7 +230,6 @@ START_TEST(interpolated_frames_follow_the_tolerance) {
         }
     }
 }
-END_TEST
 
 /* what the host says of a scene that goes on so */
 static bool may_pass(const char *more) {
@@ -249,7 +241,7 @@ static bool may_pass(const char *more) {
     return passes;
 }
 
-START_TEST(what_acts_between_steps_is_told) {
+TEST(what_acts_between_steps_is_told) {
     static const char *const acting[] = {
         ", \"strain_limit\": 1.1}]",
         "}], \"forces\": {\"velocity_loss\": 0.01}",
@@ -261,18 +253,4 @@ START_TEST(what_acts_between_steps_is_told) {
     ck_assert(may_pass("}], \"forces\": {\"drag\": 0.1}"));
     for (size_t k = 0; k < sizeof acting / sizeof *acting; k++)
         ck_assert_msg(!may_pass(acting[k]), "%s", acting[k]);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {steps_take_nothing,
-                                  create_may_fail_anywhere,
-                                  failures_have_reasons,
-                                  failed_solve_ends_the_run,
-                                  codes_are_named,
-                                  history_survives_contact,
-                                  steps_pass_frames,
-                                  interpolated_frames_follow_the_tolerance,
-                                  what_acts_between_steps_is_told};
-    return fixture_run("sundials", tests, sizeof tests / sizeof *tests);
 }

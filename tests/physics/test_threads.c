@@ -1,7 +1,7 @@
 /* The state does not depend on the number of threads, to the last bit: of scenes whose blocks
  * cut rows, bodies and meshes, and of each kernel by itself. */
 #include "allocations.h"
-#include "fixture.h"
+#include "methods.h"
 
 #include "base/pool.h"
 #include "model/force/normals.h"
@@ -60,33 +60,34 @@ static double *run(const char *method, const char *scene, uint32_t n, size_t *le
     return state;
 }
 
-static const struct {
-    const char *method, *scene;
-} runs[] = {
-    {"symplectic-euler:dt=0.0005", SCENE},
-    {"explicit-euler:dt=0.0001", SCENE},
-    {"averaged-euler:dt=0.0002", SCENE},
-    {"velocity-verlet:dt=0.0005", SCENE},
-    {"position-verlet:dt=0.0005", SCENE},
-    {"rk4:dt=0.001", SCENE},
-    {"implicit-linearised", SCENE},
-    {"implicit-linearised", CALM},
-    {"backward-euler", CALM},
-    {"cvode-bdf:rtol=0.001", CALM},
-};
-
-START_TEST(states_are_the_same_to_the_bit) {
+static void check_bits(const char *method, const char *scene) {
     size_t length;
-    double *one = run(runs[_i].method, runs[_i].scene, 1, &length);
+    double *one = run(method, scene, 1, &length);
     for (size_t k = 0; k < COUNTS; k++) {
-        double *several = run(runs[_i].method, runs[_i].scene, counts[k], &length);
-        ck_assert_msg(!memcmp(one, several, length * sizeof *one), "%s with %u threads",
-                      runs[_i].method, counts[k]);
+        double *several = run(method, scene, counts[k], &length);
+        ck_assert_msg(!memcmp(one, several, length * sizeof *one), "%s with %u threads", method,
+                      counts[k]);
         free(several);
     }
     free(one);
 }
-END_TEST
+
+/* Solvers are loose here, as bits do not depend on it. Of the libraries one is enough: what has
+ * threads is the host under them. */
+TEST(states_are_the_same_to_the_bit) {
+    static const char *const more[] = {"cvode-bdf:rtol=0.001", NULL};
+    const struct methods methods =
+        methods_find(&(struct methods_query){.test = "threads",
+                                             .without = CS_LIBRARY_BITS,
+                                             .rtol = 1e-2,
+                                             .residual = 1e-3,
+                                             .more = more});
+    for (size_t k = 0; k < methods.n; k++) {
+        check_bits(methods.list[k].text, SCENE);
+        if (methods.list[k].traits & (CS_IMPLICIT | CS_MULTISTEP))
+            check_bits(methods.list[k].text, CALM);
+    }
+}
 
 /* what the kernels give one by one, end to end, each in so many rows (3,n): the first is the
  * whole force, the last ones diagonal blocks, force with blocks */
@@ -139,7 +140,7 @@ static double *kernels(uint32_t n, size_t *length) {
     return found;
 }
 
-START_TEST(kernels_are_the_same_to_the_bit) {
+TEST(kernels_are_the_same_to_the_bit) {
     size_t length;
     double *one = kernels(1, &length);
     for (size_t k = 0; k < COUNTS; k++) {
@@ -163,10 +164,9 @@ START_TEST(kernels_are_the_same_to_the_bit) {
     ck_assert(!memcmp(both + n3, both - BLOCKS * n3, BLOCKS * n3 * sizeof *one));
     free(one);
 }
-END_TEST
 
 /* a system may be shared among other threads than it was built for */
-START_TEST(threads_may_change_under_a_system) {
+TEST(threads_may_change_under_a_system) {
     size_t length;
     struct fixture all;
     double *one = run("symplectic-euler:dt=0.0005", SCENE, 1, &length);
@@ -182,9 +182,8 @@ START_TEST(threads_may_change_under_a_system) {
     cs_pool_stop();
     free(one);
 }
-END_TEST
 
-START_TEST(steps_take_nothing) {
+TEST(steps_take_nothing) {
     struct fixture all;
     struct cs_error error = {0};
     allocations_begin();
@@ -200,21 +199,4 @@ START_TEST(steps_take_nothing) {
     ck_assert_uint_eq(all.session.run.frame, 3);
     fixture_close(&all);
     cs_pool_stop();
-}
-END_TEST
-
-int main(void) {
-    TCase *tcase = tcase_create("threads");
-    tcase_set_timeout(tcase, 0); // the build has one, longer where a sanitizer is at work
-    tcase_add_loop_test(tcase, states_are_the_same_to_the_bit, 0, sizeof runs / sizeof *runs);
-    tcase_add_test(tcase, kernels_are_the_same_to_the_bit);
-    tcase_add_test(tcase, threads_may_change_under_a_system);
-    tcase_add_test(tcase, steps_take_nothing);
-    Suite *suite = suite_create("threads");
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
 }

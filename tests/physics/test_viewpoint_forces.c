@@ -1,5 +1,5 @@
 /* Forces from a viewpoint: their momentum, their times, whom they reach. */
-#include "fixture.h"
+#include "methods.h"
 
 #include "model/event/events.h"
 #include "model/event/viewpoint_forces.h"
@@ -8,12 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const methods[] = {"explicit-euler:dt=1e-3", "symplectic-euler",
-                                      "averaged-euler:dt=1e-3", "velocity-verlet",
-                                      "position-verlet",        "rk4:dt=2e-3",
-                                      "implicit-linearised",    "implicit-block:dt=0.004",
-                                      "backward-euler:dt=0.01", "cvode-bdf:rtol=1e-3"};
-enum { METHODS = sizeof methods / sizeof *methods };
+/* every method there is */
+static struct methods all_methods(void) {
+    static const char *const more[] = {"rk4:dt=2e-3", "backward-euler:dt=0.01", NULL};
+    return methods_find(&(struct methods_query){.test = "events", .more = more});
+}
 
 /* 16 particles of 0.25 kg in a square of 1 m, in front of a camera at 2 m; %s: stiffness,
  * events
@@ -24,15 +23,9 @@ enum { METHODS = sizeof methods / sizeof *methods };
     " \"forces\": {\"gravity\": [0, 0, 0]}, \"camera\": {\"eye\": [0, 0, 2]},"                 \
     " \"events\": [%s]}"
 
-static void ck_bits(const double *a, const double *b, size_t n, const char *what) {
-    for (size_t i = 0; i < n; i++)
-        ck_assert_msg(!memcmp(a + i, b + i, sizeof *a), "%s: value %zu is %.17g and %.17g",
-                      what, i, a[i], b[i]);
-}
-
 /* force times time on each of those that are seen, along the view; springs change nothing about
  * it, nor do ends within frames */
-START_TEST(momentum_is_force_times_time) {
+TEST(momentum_is_force_times_time) {
     static const struct {
         const char *event;
         double p;
@@ -68,19 +61,20 @@ START_TEST(momentum_is_force_times_time) {
             fixture_close(&dust);
         }
 }
-END_TEST
 
 /* A viewpoint force that sees all of them is an impact of as much. To the bit: the numbers are
  * powers of two. */
-START_TEST(same_as_an_impact) {
+TEST(same_as_an_impact) {
     static const char *const events[] = {
         "{\"from\": 0.0375, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": "
         "0}}",
         "{\"from\": 0.0375, \"to\": 0.2, \"impact\": {\"direction\": [0, 0, -1]}}"};
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture dust[2];
         for (size_t e = 0; e < 2; e++) {
-            fixture_open(dust + e, methods[k], DUST, "40", events[e]);
+            fixture_open(dust + e, method, DUST, "40", events[e]);
             cs_perturb_smooth(dust[e].system, 0.02, 0.1);
             fixture_start(dust + e);
         }
@@ -90,44 +84,46 @@ START_TEST(same_as_an_impact) {
         impact->impact.impulse = 8 * (state->end - state->begin);
         for (size_t e = 0; e < 2; e++)
             fixture_frames(dust + e, 15);
-        ck_bits(dust[0].x, dust[1].x, 6 * dust[1].n, methods[k]);
+        ck_bits(dust[0].x, dust[1].x, 6 * dust[1].n, method);
         for (size_t e = 0; e < 2; e++)
             fixture_close(dust + e);
     }
 }
-END_TEST
 
 /* From a frame on, every look is at a frame: no method notices those that see the same. */
-START_TEST(looks_that_see_the_same_change_nothing) {
+TEST(looks_that_see_the_same_change_nothing) {
     static const char *const events[] = {
         "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5}}",
         "{\"from\": 0.05, \"to\": 0.2, \"viewpoint_force\": {\"force\": 0.5, \"refresh\": 0}}"};
-    for (size_t k = 0; k < METHODS; k++) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture dust[2];
         for (size_t e = 0; e < 2; e++) {
-            fixture_open(dust + e, methods[k], DUST, "40", events[e]);
+            fixture_open(dust + e, method, DUST, "40", events[e]);
             fixture_start(dust + e);
             fixture_frames(dust + e, 15);
         }
         ck_assert(dust[0].system->events->viewpoint_forces->states->n_tests == 9);
-        ck_bits(dust[0].x, dust[1].x, 6 * dust[0].n, methods[k]);
+        ck_bits(dust[0].x, dust[1].x, 6 * dust[0].n, method);
         for (size_t e = 0; e < 2; e++)
             fixture_close(dust + e);
     }
 }
-END_TEST
 
 /* What the frame loop does about a look that sees others: the same bits as runs joined there.
  */
-START_TEST(runs_are_joined_at_looks) {
-    for (size_t k = 0; k < METHODS; k++) {
+TEST(runs_are_joined_at_looks) {
+    const struct methods methods = all_methods();
+    for (size_t k = 0; k < methods.n; k++) {
+        const char *method = methods.list[k].text;
         struct fixture dust, parts;
         /* seen until it has left the rectangle by 0.05 s: at 0.1 s, frame 6, that is found */
         static const char event[] =
             "{\"from\": 0, \"to\": 1, \"viewpoint_force\": {\"force\": 0.25, \"refresh\": 10,"
             " \"rectangle\": [0.4, 0.4, 0.6, 0.6]}}";
-        fixture_open(&dust, methods[k], DUST, "0", event);
-        fixture_open(&parts, methods[k], DUST, "0",
+        fixture_open(&dust, method, DUST, "0", event);
+        fixture_open(&parts, method, DUST, "0",
                      "{\"from\": 0, \"to\": 9, \"impact\": {\"direction\": [0, 0, -1],"
                      " \"impulse\": 2.25, \"particles\": [5]}}");
         const size_t n = dust.n;
@@ -146,17 +142,16 @@ START_TEST(runs_are_joined_at_looks) {
         struct cs_error error = {0};
         ck_assert_int_eq(cs_run_restart(&parts.session.run, 0.1, &error), CS_OK);
         fixture_frames(&parts, 3);
-        ck_bits(dust.x, parts.x, 6 * n, methods[k]);
+        ck_bits(dust.x, parts.x, 6 * n, method);
         ck_assert_double_eq_tol(dust.v[2 * n + 5], -0.1, 1e-9);
         fixture_close(&dust);
         fixture_close(&parts);
     }
 }
-END_TEST
 
 /* A cloth behind another and one outside the rectangle get nothing, nor do those that an
  * obstacle hides, nor bodies that are not meant. */
-START_TEST(only_what_is_seen_moves) {
+TEST(only_what_is_seen_moves) {
     struct fixture cloths;
     fixture_open(
         &cloths, "velocity-verlet",
@@ -194,10 +189,9 @@ START_TEST(only_what_is_seen_moves) {
         ck_assert(cloths.v[2 * cloths.n + i] == 0);
     fixture_close(&cloths);
 }
-END_TEST
 
 /* From two sides, and twice from one: forces add up, and opposite ones leave nothing. */
-START_TEST(viewpoint_forces_add_up) {
+TEST(viewpoint_forces_add_up) {
     static const char side[] = "\"viewpoint\": {\"eye\": [2, 0, 2], \"target\": [0, 0, 0]}";
     static const char back[] = "\"viewpoint\": {\"eye\": [0, 0, -2], \"target\": [0, 0, 0]}";
     struct fixture dust;
@@ -222,10 +216,9 @@ START_TEST(viewpoint_forces_add_up) {
     ck_assert_double_eq_tol(p[2], -aslant - 16 * 0.1 * 0.1, 1e-12);
     fixture_close(&dust);
 }
-END_TEST
 
 /* Pinned ones are seen, and stay; the others get no more for it. */
-START_TEST(pinned_ones_stay) {
+TEST(pinned_ones_stay) {
     struct fixture dust;
     double p[3], l[3];
     fixture_open(&dust, "velocity-verlet", DUST, "0",
@@ -239,10 +232,9 @@ START_TEST(pinned_ones_stay) {
     ck_assert(dust.x[2 * dust.n] == 0 && dust.v[2 * dust.n] == 0);
     fixture_close(&dust);
 }
-END_TEST
 
 /* The view is the camera's unless it is given: fixed, while the camera looks from elsewhere. */
-START_TEST(viewpoint_is_the_cameras_by_default) {
+TEST(viewpoint_is_the_cameras_by_default) {
     struct fixture dust;
     fixture_open(
         &dust, "velocity-verlet", DUST, "0",
@@ -261,7 +253,6 @@ START_TEST(viewpoint_is_the_cameras_by_default) {
               b->eye[1] == 6);
     fixture_close(&dust);
 }
-END_TEST
 
 #define CLOTH                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [9, 8]}, \"mass\": {\"total\": 0.2},"                \
@@ -270,7 +261,7 @@ END_TEST
 
 /* A blow and two winds that see others at every look: two methods that have nothing in common
  * agree, and the coarser comes near four times as fast when its step is halved. */
-START_TEST(methods_agree) {
+TEST(methods_agree) {
     static const char *const by[] = {"cvode-bdf:rtol=1e-9,linear_rtol=1e-9,max_order=5",
                                      "velocity-verlet:dt=0.0005", "velocity-verlet:dt=0.001"};
     struct fixture cloths[3];
@@ -296,10 +287,9 @@ START_TEST(methods_agree) {
     for (size_t k = 0; k < 3; k++)
         fixture_close(cloths + k);
 }
-END_TEST
 
 /* The plan says what they take; without any there is nothing, and blows alone push nothing. */
-START_TEST(bytes_are_planned) {
+TEST(bytes_are_planned) {
     struct fixture with, blow, without;
     fixture_open(
         &with, "velocity-verlet", CLOTH,
@@ -308,12 +298,12 @@ START_TEST(bytes_are_planned) {
     fixture_open(&blow, "velocity-verlet", CLOTH,
                  "{\"at\": 0.1, \"viewpoint_force\": {\"force\": 1}}");
     fixture_open(&without, "velocity-verlet", CLOTH, "");
-    const struct cs_plan_row *rows = with.session.plan.rows;
+    const struct cs_plan_row *rows = with.system->plan.rows;
     const size_t more = with.system->arena.used - without.system->arena.used;
     ck_assert_uint_eq(more,
                       rows[CS_FEATURE_EVENTS].bytes + rows[CS_FEATURE_VIEWPOINT_FORCES].bytes);
     ck_assert(!without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].built);
-    ck_assert_uint_eq(without.session.plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes, 0);
+    ck_assert_uint_eq(without.system->plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes, 0);
     ck_assert_ptr_null(blow.system->event_force);
     fixture_close(&with);
     fixture_close(&blow);
@@ -322,11 +312,10 @@ START_TEST(bytes_are_planned) {
     ck_assert_ptr_null(without.system->events->viewpoint_forces);
     fixture_close(&without);
 }
-END_TEST
 
 /* Times at which steps are cut: 0.1 s and 0.5 s, and the looks between them that are at no
  * frame. */
-START_TEST(cuts_are_counted) {
+TEST(cuts_are_counted) {
     static const struct {
         double refresh;
         uint32_t cuts;
@@ -344,10 +333,9 @@ START_TEST(cuts_are_counted) {
         fixture_close(&dust);
     }
 }
-END_TEST
 
 /* A look within a nanosecond of an end is made there: no step of rounding errors. */
-START_TEST(looks_and_ends_are_one) {
+TEST(looks_and_ends_are_one) {
     struct fixture dust;
     fixture_open(&dust, "velocity-verlet", DUST, "0",
                  "{\"from\": 0.002, \"to\": 0.015, \"viewpoint_force\": {\"force\": 1, "
@@ -358,11 +346,10 @@ START_TEST(looks_and_ends_are_one) {
     ck_assert_uint_eq(dust.session.run.counts.steps, 15);
     fixture_close(&dust);
 }
-END_TEST
 
 /* Looks do not hide a blow-up: it is found in the frame in which it is found without them, and
  * what is pushed for long is none. */
-START_TEST(bound_goes_on_over_looks) {
+TEST(bound_goes_on_over_looks) {
     static const char *const events[] = {
         "", "{\"from\": 0, \"to\": 9, \"viewpoint_force\": {\"force\": 0.01, \"refresh\": 240,"
             " \"rectangle\": [0.3, 0.3, 0.5, 0.7]}}"};
@@ -389,22 +376,4 @@ START_TEST(bound_goes_on_over_looks) {
     fixture_start(&dust);
     fixture_frames(&dust, 1200);
     fixture_close(&dust);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {momentum_is_force_times_time,
-                                  same_as_an_impact,
-                                  looks_that_see_the_same_change_nothing,
-                                  runs_are_joined_at_looks,
-                                  only_what_is_seen_moves,
-                                  viewpoint_forces_add_up,
-                                  pinned_ones_stay,
-                                  viewpoint_is_the_cameras_by_default,
-                                  methods_agree,
-                                  bytes_are_planned,
-                                  cuts_are_counted,
-                                  looks_and_ends_are_one,
-                                  bound_goes_on_over_looks};
-    return fixture_run("viewpoint_forces", tests, sizeof tests / sizeof *tests);
 }

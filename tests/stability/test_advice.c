@@ -52,7 +52,6 @@ enum { FEW = 2, ALL = sizeof rows / sizeof *rows };
 static const char *const methods[] = {"symplectic-euler", "velocity-verlet",
                                       "position-verlet",  "rk4",
                                       "explicit-euler",   "averaged-euler"};
-static bool all;
 
 /* Methods that gain energy from what swings at the start: growth, not a limit, ends them. */
 static bool is_forward(const char *method) {
@@ -83,7 +82,7 @@ static void check_scene(const struct row *row) {
     struct cs_advise advise = {.session = {.scene = path, .overrides = row->overrides},
                                .methods = methods,
                                .n_methods = row->n_methods ? row->n_methods
-                                            : all          ? ALL_METHODS
+                                            : suite_all    ? ALL_METHODS
                                                            : FEW_METHODS,
                                .seconds = row->seconds,
                                .budget = 20,
@@ -98,21 +97,7 @@ static void check_scene(const struct row *row) {
     cs_advise_finish(&advise);
 }
 
-START_TEST(advice_holds_on_two_scenes) {
-    for (int i = 0; i < FEW; i++)
+TEST(advice_holds) {
+    for (int i = 0; i < (suite_all ? ALL : FEW); i++)
         check_scene(rows + i);
-}
-END_TEST
-
-START_TEST(advice_holds_on_all_scenes) {
-    for (int i = 0; i < ALL; i++)
-        check_scene(rows + i);
-}
-END_TEST
-
-int main(int argc, char **argv) {
-    const TTest *const few[] = {advice_holds_on_two_scenes};
-    const TTest *const many[] = {advice_holds_on_all_scenes};
-    all = argc > 1 && !strcmp(argv[1], "all");
-    return all ? fixture_run("advice", many, 1) : fixture_run("advice", few, 1);
 }

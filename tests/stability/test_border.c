@@ -39,7 +39,7 @@ static double border_of(const struct row *row, struct cs_reference *reference) {
 
 /* Found: 0.99 to 1.02 of the limit worst on the way; the limits at the start are up to 1.2
  * times too high where the cloth is drawn out far. */
-START_TEST(border_lies_on_the_worst_limit) {
+TEST(border_lies_on_the_worst_limit) {
     static const struct row rows[] = {{"hang", "symplectic-euler", "[12, 12]", 0.5},
                                       {"hang", "symplectic-euler", "[20, 20]", 0.5},
                                       {"hang", "velocity-verlet", "[12, 12]", 0.5},
@@ -56,17 +56,15 @@ START_TEST(border_lies_on_the_worst_limit) {
                       rows[i].grid, border, reference.smallest_limit.dt);
     }
 }
-END_TEST
 
 /* Found: 0.98. The limit is damping / stiffness, a fifteenth of 2 / omega here. */
-START_TEST(forward_euler_lives_by_damping) {
+TEST(forward_euler_lives_by_damping) {
     static const struct row row = {"drum", "explicit-euler", "[16, 16]", 1};
     struct cs_reference reference;
     const double border = border_of(&row, &reference);
     ck_assert_double_eq_tol(border / reference.start_limit.dt, 1, 0.1);
     ck_assert_double_lt(border, 0.1 * 2 / sqrt(reference.start_limit.mode.omega_squared));
 }
-END_TEST
 
 /* A sheet over a box of triangles. Watched for 200 of its periods, the soft one comes down and
  * goes in, and its reference ends under the limit; the stiff one does not get there. */
@@ -93,7 +91,7 @@ static void map_over_a_box(struct cs_stability *map, struct cs_stability_setting
     cs_stability_run(map, settings, error);
 }
 
-START_TEST(column_without_a_reference_is_not_judged) {
+TEST(column_without_a_reference_is_not_judged) {
     struct cs_stability map;
     struct cs_stability_settings settings;
     struct cs_error error = {0};
@@ -114,12 +112,4 @@ START_TEST(column_without_a_reference_is_not_judged) {
     ck_assert_int_eq(error.status, CS_ERR_USAGE);
     ck_assert_ptr_nonnull(strstr(error.message, "no run to judge by"));
     cs_stability_finish(&map);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {border_lies_on_the_worst_limit,
-                                  forward_euler_lives_by_damping,
-                                  column_without_a_reference_is_not_judged};
-    return fixture_run("border", tests, sizeof tests / sizeof *tests);
 }

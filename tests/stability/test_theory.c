@@ -29,7 +29,7 @@ static double limit_of(const char *method, double square, double rate) {
  * Euler h = r / w^2 where underdamped, averaged Euler twice that, RK4 h w = 2 sqrt 2. The
  * search ends within 2^(1/4) / 2^12 of the limit; what is left is the start that a method
  * with history has not quite forgotten after 8 steps. */
-START_TEST(limits_of_one_oscillator) {
+TEST(limits_of_one_oscillator) {
     static const struct {
         const char *method;
         double rate, limit;
@@ -54,10 +54,9 @@ START_TEST(limits_of_one_oscillator) {
     ck_assert(limit_of("implicit-linearised", 100, 0) > 1e100);
     ck_assert(limit_of("backward-euler", 100, 4) > 1e100);
 }
-END_TEST
 
 /* A chain of n particles, both ends pinned: w^2 = 4 k/m sin^2(pi (n-2) / (2 (n-1))). */
-START_TEST(fastest_motion_of_a_chain) {
+TEST(fastest_motion_of_a_chain) {
     const double pi = 3.14159265358979323846;
     struct fixture chain;
     struct cs_stiffest_modes modes;
@@ -74,11 +73,10 @@ START_TEST(fastest_motion_of_a_chain) {
     cs_stiffest_modes_finish(&modes);
     fixture_close(&chain);
 }
-END_TEST
 
 /* Pulled apart by hand, one particle in a sound cloth is a local instability; thrown apart as a
  * whole, it is a global one. */
-START_TEST(watch_tells_local_from_global) {
+TEST(watch_tells_local_from_global) {
     struct fixture cloth;
     struct cs_energy_monitor monitor;
     struct cs_energy_monitor_row row;
@@ -105,11 +103,4 @@ START_TEST(watch_tells_local_from_global) {
     ck_assert_int_eq(row.verdict, CS_STABILITY_NOT_FINITE);
     ck_assert_uint_eq(monitor.first.particle, 250);
     fixture_close(&cloth);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {limits_of_one_oscillator, fastest_motion_of_a_chain,
-                                  watch_tells_local_from_global};
-    return fixture_run("theory", tests, sizeof tests / sizeof *tests);
 }

@@ -1,9 +1,10 @@
 #!/bin/sh
 # Who may include whom: the own folder, and folders on lower floors; modules: include only.
 # A folder of src that is not in the list below is an error, and so is one with more than 25
-# units (a unit: NAME.c, NAME.h or both). Units form no circle either: one that includes another's
-# header, or names what another's .c defines (a header may declare for several), stands above it.
-# The host is known to sim alone, and only a session begins a run.
+# units (a unit: NAME.c, NAME.h or both). Units form no circle either, in src or in plugins: one that
+# includes another's header, or names what another's .c defines (a header may declare for several),
+# stands above it.
+# The host is known to sim alone, only a session begins a run, and only follow.c steps one.
 cd "$1" || exit 1
 awk '
     BEGIN {
@@ -24,15 +25,16 @@ awk '
     FNR == 1 && FILENAME ~ /^src/ {
         from = folder_of(substr(FILENAME, 5))
         if (!(from in floor)) wrong(FILENAME ": the floor of src/" from " is not known")
-        if (!(here in known)) {
-            known[here]; units[++n_units] = here
-            if (++inside[from] == 26) wrong("src/" from " has more than 25 units")
-        }
+    }
+    FNR == 1 && !(here in known) {
+        known[here]; units[++n_units] = here
+        if (FILENAME ~ /^src/ && ++inside[from] == 26) wrong("src/" from " has more than 25 units")
     }
     /^#include "/ {
         split($0, quoted, "\"")
         if (FILENAME ~ /^plugins/) {
             if (quoted[2] ~ /\//) wrong(FILENAME " includes " quoted[2] ": modules see only <clothsim/...>")
+            else connect(here, "plugins/" unit_of(quoted[2]), "includes " quoted[2])
         } else {
             to = folder_of(quoted[2])
             if (!(to in floor)) wrong(FILENAME " includes " quoted[2] ": no folder of src")
@@ -46,12 +48,17 @@ awk '
     /cs_run_begin\(/ && from != "sim" && FILENAME != "src/study/session.c" {
         wrong(FILENAME " begins a run: see cs_session_begin")
     }
+    /cs_run_frame\(/ && FILENAME ~ /^src/ && from != "sim" && FILENAME != "src/study/follow.c" {
+        wrong(FILENAME " steps a run: see cs_follow_next")
+    }
     FILENAME ~ /^include/ && /^#include </ && !/<(clothsim\/|std|math)/ {
         wrong(FILENAME ": " $0 ": only the standard library and clothsim")
     }
 
-    # --- circles: what each .c of src defines and names, without comments and texts ---
-    FILENAME !~ /^src.*\.c$/ { next }
+    # --- circles: what each .c defines and names, without comments and texts; what plugins share
+    # with each other has no prefix ---
+    FNR == 1 { shared = FILENAME ~ /^plugins/ ? "[a-z][a-z0-9_]+" : "cs_[a-z0-9_]+" }
+    FILENAME !~ /^(src|plugins).*\.c$/ { next }
     {
         line = $0
         gsub(/"([^"\\]|\\.)*"/, "", line); sub(/\/\/.*/, "", line)
@@ -59,12 +66,12 @@ awk '
         gsub(/\/\*([^*]|\*[^\/])*\*\//, "", line)
         in_comment = sub(/\/\*.*/, "", line)
     }
-    line ~ /^[a-z]/ && line !~ /^(static|extern|typedef)/ && match(line, /cs_[a-z0-9_]+(\(|\[| =)/) {
+    line ~ /^[a-z]/ && line !~ /^(static|extern|typedef)/ && match(line, shared "(\\(|\\[| =)") {
         name = substr(line, RSTART, RLENGTH); sub(/[^a-z0-9_].*/, "", name)
         if (index(owners[name] " ", " " here " ") == 0) owners[name] = owners[name] " " here
     }
     {
-        while (match(line, /cs_[a-z0-9_]+/)) {
+        while (match(line, shared)) {
             name = substr(line, RSTART, RLENGTH); line = substr(line, RSTART + RLENGTH)
             if (!((here, name) in named)) { named[here, name]; names[here] = names[here] " " name }
         }

@@ -35,7 +35,7 @@ static double sampled(enum cs_primitive_pair_kind kind, const double p[4][3], in
 }
 
 /* never above what a sample has, and no further below than two samples lie apart */
-START_TEST(distances_are_the_least_ones) {
+TEST(distances_are_the_least_ones) {
     uint64_t state = 5;
     for (int round = 0; round < 600; round++) {
         const enum cs_primitive_pair_kind kind =
@@ -52,22 +52,20 @@ START_TEST(distances_are_the_least_ones) {
         UNIT_ASSERT_OFTEN(d >= near - 3.5 / 60);
     }
 }
-END_TEST
 
 /* two edges that cross at a small angle touch, however parallel they are */
-START_TEST(nearly_parallel_edges_touch) {
+TEST(nearly_parallel_edges_touch) {
     for (double angle = 0.1; angle > 1e-12; angle /= 10) {
         const double p[4][3] = {{-1, 0, 0}, {1, 0, 0}, {-1, -angle, 0}, {1, angle, 0}};
         ck_assert_double_le(sqrt(cs_exact_distance_squared(CS_PRIMITIVE_EDGE_EDGE, p)),
                             1e-3 * angle);
     }
 }
-END_TEST
 
 /* A point straight at a triangle, and two edges at each other: the share is below that at which
  * they touch, and not by more than a tenth of the way. Moving all of it along changes nothing.
  */
-START_TEST(shares_are_below_the_touch) {
+TEST(shares_are_below_the_touch) {
     static const double flat[3][3] = {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
     for (double past = 0.01; past < 20; past *= 3)
         for (int moved = 0; moved < 2; moved++) {
@@ -90,10 +88,9 @@ START_TEST(shares_are_below_the_touch) {
             ck_assert_double_gt(other, 0.89 * touch);
         }
 }
-END_TEST
 
 /* moves of all kinds: at no moment up to the share is a pair closed that was open */
-START_TEST(nothing_is_closed_up_to_the_share) {
+TEST(nothing_is_closed_up_to_the_share) {
     uint64_t state = 11;
     int cut = 0;
     for (int round = 0; round < 4000; round++) {
@@ -117,9 +114,8 @@ START_TEST(nothing_is_closed_up_to_the_share) {
     }
     ck_assert_int_gt(cut, 300);
 }
-END_TEST
 
-START_TEST(touching_pairs_may_not_move) {
+TEST(touching_pairs_may_not_move) {
     const double p[4][3] = {{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
     double moves[4][3] = {{0, 0, 1}};
     ck_assert_double_eq(
@@ -130,12 +126,4 @@ START_TEST(touching_pairs_may_not_move) {
     moves[0][2] = (double)NAN;
     ck_assert_double_eq(
         cs_accd_safe_fraction(CS_PRIMITIVE_POINT_TRIANGLE, p, (const double(*)[3])moves, 1), 1);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {distances_are_the_least_ones, nearly_parallel_edges_touch,
-                                  shares_are_below_the_touch, nothing_is_closed_up_to_the_share,
-                                  touching_pairs_may_not_move};
-    return unit_run("gap", tests, sizeof tests / sizeof *tests);
 }

@@ -33,7 +33,7 @@ static void update(struct cs_mesh *mesh, const double *x, struct cs_arena *arena
 }
 
 /* a tenth of the diagonal away the walls of a groove of radius r rise by reach / 2 r */
-START_TEST(grooves_have_the_slope_of_their_walls) {
+TEST(grooves_have_the_slope_of_their_walls) {
     static double x[3 * N];
     for (double r = 0.3; r < 3; r *= 2) {
         struct cs_arena arena = {0};
@@ -51,10 +51,9 @@ START_TEST(grooves_have_the_slope_of_their_walls) {
         cs_arena_finish(&arena);
     }
 }
-END_TEST
 
 /* what is flat has no folds, at its border neither, however it is turned */
-START_TEST(a_plane_has_no_folds) {
+TEST(a_plane_has_no_folds) {
     static double x[3 * N];
     struct cs_arena arena = {0};
     struct cs_mesh mesh;
@@ -65,10 +64,4 @@ START_TEST(a_plane_has_no_folds) {
     for (int i = 0; i < N; i++)
         UNIT_ASSERT_OFTEN(fabs((double)mesh.vertices[i].value) < 1e-12);
     cs_arena_finish(&arena);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {grooves_have_the_slope_of_their_walls, a_plane_has_no_folds};
-    return unit_run("folds", tests, sizeof tests / sizeof *tests);
 }

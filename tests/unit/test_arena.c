@@ -13,7 +13,7 @@ static bool is_zero(const unsigned char *bytes, size_t n) {
 }
 
 /* sizes round the alignment and round a block, each filled with its own number */
-START_TEST(pieces_are_aligned_zeroed_and_apart) {
+TEST(pieces_are_aligned_zeroed_and_apart) {
     static const size_t sizes[] = {1,     63,    64,    65,    0,       1000, 65536 - 64,
                                    65536, 65537, 40000, 40000, 1000000, 64,   3};
     enum { N = sizeof sizes / sizeof *sizes };
@@ -36,10 +36,27 @@ START_TEST(pieces_are_aligned_zeroed_and_apart) {
     UNIT_ASSERT_OK(&error);
     cs_arena_finish(&arena);
 }
-END_TEST
+
+/* the same takes, part by part; what was refused is in none */
+TEST(parts_are_counted) {
+    struct cs_arena arena = {0};
+    struct cs_error error = {0};
+    size_t parts[2] = {0, 5};
+    cs_arena_alloc(&arena, 10, &error);
+    arena.part = parts;
+    cs_arena_alloc(&arena, 20, &error);
+    cs_arena_alloc(&arena, SIZE_MAX, &error);
+    arena.part = parts + 1;
+    cs_arena_alloc_array(&arena, 10, 3, &error);
+    ck_assert_uint_eq(parts[0], 20);
+    ck_assert_uint_eq(parts[1], 35);
+    ck_assert_uint_eq(arena.used, 60);
+    cs_arena_finish(&arena);
+    ck_assert_ptr_null(arena.part);
+}
 
 /* and the arena can be used again; what it gives is zeroed again */
-START_TEST(finish_empties) {
+TEST(finish_empties) {
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     for (int round = 0; round < 3; round++) {
@@ -52,7 +69,6 @@ START_TEST(finish_empties) {
     }
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* a sanitizer would stop the program instead of refusing */
 const char *__asan_default_options(void);
@@ -61,7 +77,7 @@ const char *__asan_default_options(void) {
 }
 
 /* no sum of sizes wraps round to a small piece; the first message stays */
-START_TEST(impossible_sizes_are_refused) {
+TEST(impossible_sizes_are_refused) {
     static const size_t sizes[][2] = {{SIZE_MAX, 1},
                                       {SIZE_MAX - 63, 1},
                                       {SIZE_MAX / 2, 1},
@@ -81,9 +97,8 @@ START_TEST(impossible_sizes_are_refused) {
         cs_arena_finish(&arena);
     }
 }
-END_TEST
 
-START_TEST(text_is_copied) {
+TEST(text_is_copied) {
     struct cs_arena arena = {0};
     struct cs_error error = {0};
     char text[] = "particle";
@@ -92,11 +107,4 @@ START_TEST(text_is_copied) {
     ck_assert_str_eq(copy, "particle");
     ck_assert_str_eq(cs_arena_copy_text(&arena, "", &error), "");
     cs_arena_finish(&arena);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {pieces_are_aligned_zeroed_and_apart, finish_empties,
-                                  impossible_sizes_are_refused, text_is_copied};
-    return unit_run("arena", tests, sizeof tests / sizeof *tests);
 }

@@ -25,7 +25,7 @@ static void begin(struct cs_camera_fit *fit, int32_t projection, int64_t width) 
 }
 
 /* highest and lowest place at the share that was asked for; the view keeps its direction */
-START_TEST(places_reach_as_far_as_they_should) {
+TEST(places_reach_as_far_as_they_should) {
     double x[3 * N], rows[2];
     scatter(x);
     for (int32_t projection = 0; projection < 2; projection++)
@@ -43,10 +43,9 @@ START_TEST(places_reach_as_far_as_they_should) {
             ck_assert_double_eq_tol(lean, 1.5 / sqrt(10), 1e-12);
         }
 }
-END_TEST
 
 /* a picture that is narrow is filled from side to side, and its height less than was asked */
-START_TEST(a_narrow_picture_is_full_in_its_width) {
+TEST(a_narrow_picture_is_full_in_its_width) {
     struct cs_camera_fit fit;
     struct cs_camera camera;
     double x[3 * N], rows[2];
@@ -57,10 +56,9 @@ START_TEST(a_narrow_picture_is_full_in_its_width) {
     ck_assert_double_lt(rows[1] - rows[0], 1.2);
     ck_assert_double_gt(rows[1] - rows[0], 0.2);
 }
-END_TEST
 
 /* those that bound a cloud give its camera to a hundredth, and what is not finite counts not */
-START_TEST(extremes_stand_for_all) {
+TEST(extremes_stand_for_all) {
     struct cs_camera_fit fit;
     struct cs_camera camera;
     double x[3 * N], few[3 * CS_CAMERA_FIT_EXTREMES], rows[2];
@@ -73,12 +71,4 @@ START_TEST(extremes_stand_for_all) {
     x[3] = x[N + 4] = 0.2;
     cs_camera_fit_rows(&fit, &camera, N, x, rows);
     ck_assert_double_eq_tol(rows[1] - rows[0], 1.2, 0.012);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {places_reach_as_far_as_they_should,
-                                  a_narrow_picture_is_full_in_its_width,
-                                  extremes_stand_for_all};
-    return unit_run("fit", tests, sizeof tests / sizeof *tests);
 }

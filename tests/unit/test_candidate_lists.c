@@ -159,7 +159,7 @@ static void move(struct sheet *sheet, uint64_t *state) {
     }
 }
 
-START_TEST(lists_miss_no_pair) {
+TEST(lists_miss_no_pair) {
     struct sheet sheet;
     uint64_t state = 1;
     size_t found = 0;
@@ -177,10 +177,9 @@ START_TEST(lists_miss_no_pair) {
     ck_assert_uint_gt(found, 16 * 100);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* the order of sums: by kind, then by the first and then by the second of a pair */
-START_TEST(keys_ascend) {
+TEST(keys_ascend) {
     struct sheet sheet;
     uint64_t state = 1;
     size_t n = 0;
@@ -202,7 +201,6 @@ START_TEST(keys_ascend) {
     ck_assert_uint_gt(n, 1000);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* --- at the end of what a list is good for --- */
 
@@ -220,7 +218,7 @@ static void put_beside(struct sheet *sheet, const double *flat, double distance)
 
 /* A list made where a pair is just about to be in it, or just was not, and used after a move
  * straight to where it is just still good, or just no more. */
-START_TEST(what_comes_straight_is_seen) {
+TEST(what_comes_straight_is_seen) {
     struct sheet sheet;
     double flat[3 * 8];
     size_t felt = 0;
@@ -239,10 +237,4 @@ START_TEST(what_comes_straight_is_seen) {
         }
     ck_assert_uint_gt(felt, 100);
     sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {lists_miss_no_pair, keys_ascend, what_comes_straight_is_seen};
-    return unit_run("lists", tests, sizeof tests / sizeof *tests);
 }

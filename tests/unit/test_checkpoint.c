@@ -36,7 +36,7 @@ static void expect_refusal(const struct cs_checkpoint_key *expected, uint32_t n,
     cs_serialiser_finish(&record);
 }
 
-START_TEST(it_comes_back) {
+TEST(it_comes_back) {
     struct cs_error error = {0};
     struct cs_serialiser record;
     struct memory memory = {0};
@@ -54,9 +54,8 @@ START_TEST(it_comes_back) {
     ck_assert(record.failed && memory.count == 7);
     cs_serialiser_finish(&record);
 }
-END_TEST
 
-START_TEST(what_differs_is_told) {
+TEST(what_differs_is_told) {
     struct cs_checkpoint_key others[FACTS] = {facts[0], facts[1]};
     write_one();
     others[0].value = "{\n  \"dt\": 0.002,\n  \"n\": 3\n}";
@@ -69,10 +68,9 @@ START_TEST(what_differs_is_told) {
     expect_refusal(others, FACTS, "says nothing of the plugin");
     expect_refusal(facts, 1, "it holds no record");
 }
-END_TEST
 
 /* every byte turned, in each of its bits, and every length but the whole */
-START_TEST(damage_is_noticed) {
+TEST(damage_is_noticed) {
     struct cs_error error = {0};
     char *bytes;
     size_t length;
@@ -90,10 +88,4 @@ START_TEST(damage_is_noticed) {
     }
     UNIT_ASSERT_OK(&error);
     free(bytes);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {it_comes_back, what_differs_is_told, damage_is_noticed};
-    return unit_run("checkpoint", tests, sizeof tests / sizeof *tests);
 }

@@ -26,18 +26,30 @@ static struct cs_scene scene = {.colliders = {colliders, N_COLLIDERS}};
 static const struct cs_system rest = {.scene = &scene};
 static const float camera[4] = {0, 0, 5, 1};
 
+static struct cs_arena arena;
+static struct cs_collider_geometry solids;
+
+/* the vertices of one collider under cells of 0.02 m, in the arena; returns their number */
+static uint32_t fill(const struct cs_posed_collider *of, const float eye[4]) {
+    struct cs_error error = {0};
+    struct cs_scene alone = {.colliders = {colliders, 1}};
+    cs_collider_geometry_init(&solids, &(struct cs_system){.scene = &alone}, of, &arena,
+                              &error);
+    UNIT_ASSERT_OK(&error);
+    solids.cell = 0.02;
+    if (solids.of[0].n)
+        cs_solids_fill(&solids, 0, eye);
+    return solids.of[0].n;
+}
+
 static struct cs_vertex *make(uint32_t k, struct cs_posed_collider *of, uint32_t *n) {
     cs_posed_collider_at(&rest, k, 0, of);
-    *n = cs_collider_mesh_count(of);
-    struct cs_vertex *vertices = calloc(*n + 1, sizeof *vertices);
-    ck_assert_ptr_nonnull(vertices);
-    cs_collider_mesh_fill(of, 0.02, camera, vertices);
-    ck_assert(vertices[*n].normal[0] == 0 && vertices[*n].normal[1] == 0);
-    return vertices;
+    *n = fill(of, camera);
+    return solids.vertices;
 }
 
 /* distance 0 but for the floats, and the normal of the surface there */
-START_TEST(vertices_lie_on_the_surface) {
+TEST(vertices_lie_on_the_surface) {
     for (uint32_t k = 0; k < CURVED; k++) {
         struct cs_posed_collider of;
         uint32_t n;
@@ -51,15 +63,13 @@ START_TEST(vertices_lie_on_the_surface) {
             for (int c = 0; c < 3; c++)
                 ck_assert_double_eq_tol((double)vertices[i].normal[c], normal[c], 3e-6);
         }
-        free(vertices);
     }
 }
-END_TEST
 
 /* Six times the volume under each triangle seen from the origin: the sum is that of the whole
  * only if the surface is closed and its triangles all turn outwards. Inscribed, it holds less.
  */
-START_TEST(volume_is_that_of_the_solid) {
+TEST(volume_is_that_of_the_solid) {
     const double pi = acos(-1), h[3] = {0.68, 0.38, 0.48}, r = 0.06;
     const double length = sqrt(0.36 + 0.16 + 0.16);
     const double volumes[CURVED] = {
@@ -85,12 +95,10 @@ START_TEST(volume_is_that_of_the_solid) {
         }
         ck_assert_double_le(six / 6, volumes[k]);
         ck_assert_double_ge(six / 6, 0.99 * volumes[k]);
-        free(v);
     }
 }
-END_TEST
 
-START_TEST(planes_are_squares) {
+TEST(planes_are_squares) {
     static const uint32_t list[] = {PLANE, FLOOR};
     static const double extents[] = {2, 3};
     for (size_t k = 0; k < 2; k++) {
@@ -108,10 +116,8 @@ START_TEST(planes_are_squares) {
             ck_assert_double_eq_tol(cs_posed_collider_distance(&of, p, normal), -0.0006, 1e-6);
             ck_assert_double_eq_tol(squared, 2 * extents[k] * extents[k], 1e-5);
         }
-        free(v);
     }
 }
-END_TEST
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -135,17 +141,15 @@ static void area_of(double p[3][3], double area[3]) {
 
 /* From afar the triangles lie side by side within the outline, a regular polygon, all facing
  * the eye: what they cover along the line of sight is its area. */
-START_TEST(a_ball_covers_its_outline) {
+TEST(a_ball_covers_its_outline) {
     static const float light[4] = {0.6f, 0, 0.8f, 0};
     const double to[3] = {(double)light[0], (double)light[1], (double)light[2]};
     struct cs_posed_collider of;
     struct cs_vertex *v;
     double sum = 0;
     cs_posed_collider_at(&rest, SPHERE, 0, &of);
-    ck_assert_uint_eq(cs_collider_mesh_count(&of), CS_SPHERE_CAP_VERTICES);
-    v = calloc(CS_SPHERE_CAP_VERTICES, sizeof *v);
-    ck_assert_ptr_nonnull(v);
-    cs_collider_mesh_fill(&of, 0.02, light, v);
+    ck_assert_uint_eq(fill(&of, light), CS_SPHERE_CAP_VERTICES);
+    v = solids.vertices;
     for (uint32_t i = 0; i < CS_SPHERE_CAP_VERTICES; i += 3) {
         double p[3][3], area[3];
         take(v + i, p);
@@ -155,19 +159,18 @@ START_TEST(a_ball_covers_its_outline) {
     }
     const double turn = 2 * acos(-1) / CS_SPHERE_CAP_OUTLINE;
     ck_assert_double_eq_tol(sum, 0.5 * CS_SPHERE_CAP_OUTLINE * sin(turn), 1e-5);
-    free(v);
 }
-END_TEST
 
 /* From a place at twice the radius: all points lie on the sphere on this side of the circle
  * where sight touches it, and the outline on that circle: (p - c) . (eye - p) = 0. */
-START_TEST(a_ball_ends_where_sight_touches_it) {
+TEST(a_ball_ends_where_sight_touches_it) {
     static const float eye[4] = {1.2f, 1.6f, 0, 1};
     struct cs_posed_collider of;
-    struct cs_vertex v[CS_SPHERE_CAP_VERTICES];
+    const struct cs_vertex *v;
     uint32_t outline = 0;
     cs_posed_collider_at(&rest, SPHERE, 0, &of);
-    cs_collider_mesh_fill(&of, 0.02, eye, v);
+    fill(&of, eye);
+    v = solids.vertices;
     for (uint32_t i = 0; i < CS_SPHERE_CAP_VERTICES; i += 3) {
         double p[3][3];
         take(v + i, p);
@@ -185,16 +188,16 @@ START_TEST(a_ball_ends_where_sight_touches_it) {
     // each chord of the outline has a triangle of its own, each spoke's end one more
     ck_assert_uint_eq(outline, 2 * CS_SPHERE_CAP_OUTLINE + CS_SPHERE_CAP_SECTORS);
 }
-END_TEST
 
 /* From within, the whole of it is there: its volume, as above. */
-START_TEST(a_ball_is_whole_from_within) {
+TEST(a_ball_is_whole_from_within) {
     static const float eye[4] = {0.1f, 0.2f, 0.3f, 1};
     struct cs_posed_collider of;
-    struct cs_vertex v[CS_SPHERE_CAP_VERTICES];
+    const struct cs_vertex *v;
     double six = 0;
     cs_posed_collider_at(&rest, SPHERE, 0, &of);
-    cs_collider_mesh_fill(&of, 0.02, eye, v);
+    fill(&of, eye);
+    v = solids.vertices;
     for (uint32_t i = 0; i < CS_SPHERE_CAP_VERTICES; i += 3) {
         double p[3][3], area[3];
         take(v + i, p);
@@ -204,12 +207,10 @@ START_TEST(a_ball_is_whole_from_within) {
     ck_assert_double_le(six / 6, 4 * acos(-1) / 3);
     ck_assert_double_ge(six / 6, 0.98 * 4 * acos(-1) / 3);
 }
-END_TEST
 
 /* a box of side 1, turned and moved: each triangle where it is met, closed, of volume 1; and
  * what a line meets of it */
-START_TEST(a_mesh_is_as_it_is) {
-    struct cs_arena arena = {0};
+TEST(a_mesh_is_as_it_is) {
     struct cs_error error = {0};
     struct cs_trimesh mesh = {0};
     cs_trimesh_make(&mesh, CS_MESH_BOX, 3, &arena, &error);
@@ -224,11 +225,9 @@ START_TEST(a_mesh_is_as_it_is) {
     struct cs_scene of_mesh = {.colliders = {&collider, 1}};
     struct cs_posed_collider of;
     cs_posed_collider_at(&(struct cs_system){.scene = &of_mesh}, 0, 0, &of);
-    const uint32_t n = cs_collider_mesh_count(&of);
+    const uint32_t n = fill(&of, camera);
     ck_assert_uint_eq(n, 3 * mesh.n_triangles);
-    struct cs_vertex *vertices = calloc(n, sizeof *vertices);
-    ck_assert_ptr_nonnull(vertices);
-    cs_collider_mesh_fill(&of, 0.02, camera, vertices);
+    const struct cs_vertex *vertices = solids.vertices;
     double volume = 0;
     for (uint32_t t = 0; t < n; t += 3) {
         double p[3][3], height = 0, cross[3];
@@ -251,26 +250,10 @@ START_TEST(a_mesh_is_as_it_is) {
     ck_assert(cs_posed_collider_hits_segment(&of, from, way, gap + 1e-6));
     ck_assert(!cs_posed_collider_hits_segment(&of, from, way, gap - 1e-6));
     ck_assert(!cs_posed_collider_hits_segment(&of, beside, way, 1));
-    free(vertices);
-    cs_arena_finish(&arena);
 }
-END_TEST
 
-START_TEST(hidden_ones_have_no_triangles) {
+TEST(hidden_ones_have_no_triangles) {
     struct cs_posed_collider of;
     cs_posed_collider_at(&rest, HIDDEN, 0, &of);
-    ck_assert_uint_eq(cs_collider_mesh_count(&of), 0);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {vertices_lie_on_the_surface,
-                                  volume_is_that_of_the_solid,
-                                  planes_are_squares,
-                                  a_ball_covers_its_outline,
-                                  a_ball_ends_where_sight_touches_it,
-                                  a_ball_is_whole_from_within,
-                                  a_mesh_is_as_it_is,
-                                  hidden_ones_have_no_triangles};
-    return unit_run("solid", tests, sizeof tests / sizeof *tests);
+    ck_assert_uint_eq(fill(&of, camera), 0);
 }

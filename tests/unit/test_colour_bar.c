@@ -22,7 +22,7 @@ static bool is_round(double step) {
 
 /* Of any range: within it, a round step apart, multiples of it, at most one more than asked for
  * and at least two of five; 0 is one where values have both signs. */
-START_TEST(ticks_are_round) {
+TEST(ticks_are_round) {
     for (int trial = 0; trial < 20000; trial++) {
         const double scale = pow(10, 30 * uniform() - 15);
         const double from = scale * (2 * uniform() - 1);
@@ -46,9 +46,8 @@ START_TEST(ticks_are_round) {
         ck_assert(zero || range[0] > 0 || range[1] < 0);
     }
 }
-END_TEST
 
-START_TEST(ends_that_are_round_have_ticks) {
+TEST(ends_that_are_round_have_ticks) {
     static const double tenths[2] = {-0.3, 0.2}, none[2] = {4, 4};
     double ticks[CS_COLOUR_BAR_TICKS];
     ck_assert_uint_eq(cs_colour_bar_ticks(tenths, 5, ticks), 6);
@@ -60,7 +59,6 @@ START_TEST(ends_that_are_round_have_ticks) {
     ck_assert_uint_eq(cs_colour_bar_ticks((const double[2]){0, (double)NAN}, 5, ticks), 1);
     ck_assert_uint_eq(cs_colour_bar_ticks((const double[2]){-HUGE_VAL, HUGE_VAL}, 5, ticks), 1);
 }
-END_TEST
 
 /* What a reader without the cones for green sees (Vienot, Brettel and Mollon 1999, linear RGB),
  * in the colours of CIELAB (CIE 15, white D65). */
@@ -87,7 +85,7 @@ static void lab_without_green(const float rgb[3], double lab[3]) {
 
 /* Neighbours differ by at least 10 (Delta E of 1976); lightness tells how far a value is from
  * the lowest, or from 0 in the middle of a map that has a sign. */
-START_TEST(colours_are_told_apart_without_green) {
+TEST(colours_are_told_apart_without_green) {
     static const int32_t looks[] = {CS_LOOK_FORCE, CS_LOOK_STRAIN};
     for (int k = 0; k < 2; k++) {
         float stops[6][4];
@@ -108,7 +106,6 @@ START_TEST(colours_are_told_apart_without_green) {
         ck_assert(looks[k] == CS_LOOK_FORCE || fabs(lab[2][0] - lab[3][0]) < 6);
     }
 }
-END_TEST
 
 static int by_size(const void *a, const void *b) {
     const double x = fabs(*(const double *)a), y = fabs(*(const double *)b);
@@ -116,7 +113,7 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* against sorting, of both signs and many sizes */
-START_TEST(a_hundredth_is_beyond_the_range) {
+TEST(a_hundredth_is_beyond_the_range) {
     enum { MOST = 1234 };
     double values[MOST], sorted[MOST];
     for (uint32_t n = 1; n <= MOST; n = n * 5 / 4 + 1) {
@@ -127,19 +124,10 @@ START_TEST(a_hundredth_is_beyond_the_range) {
         ck_assert_double_eq_tol(cs_diagnostics_magnitude(values, n), expected, 1e-7 * expected);
     }
 }
-END_TEST
 
-START_TEST(values_that_are_no_numbers_are_passed_over) {
+TEST(values_that_are_no_numbers_are_passed_over) {
     const double values[] = {(double)NAN, 2, -HUGE_VAL, -3, 1, HUGE_VAL, 1e300};
     ck_assert_double_eq(cs_diagnostics_magnitude(values, 7), 3);
     ck_assert_double_eq(cs_diagnostics_magnitude(values, 1), 0);
     ck_assert_double_eq(cs_diagnostics_magnitude(values, 0), 0);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        ticks_are_round, ends_that_are_round_have_ticks, colours_are_told_apart_without_green,
-        a_hundredth_is_beyond_the_range, values_that_are_no_numbers_are_passed_over};
-    return unit_run("bar", tests, sizeof tests / sizeof *tests);
 }

@@ -34,7 +34,7 @@ static struct cs_projection_counts resolve(struct sheet *sheet) {
     return commit(sheet, 0.01, last);
 }
 
-START_TEST(particle_is_put_on_the_floor_with_its_skin) {
+TEST(particle_is_put_on_the_floor_with_its_skin) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "", FLOOR(", \"thickness\": 0.02"));
     sheet_put(&one, 0, 0.3, -0.1, 4, 0, 0, 0);
@@ -44,10 +44,9 @@ START_TEST(particle_is_put_on_the_floor_with_its_skin) {
     SHEET_ASSERT_AT(&one, one.x, 0, 0.3, 0.52, 4, 1e-15);
     sheet_close(&one);
 }
-END_TEST
 
 /* on the surface or in front of it nothing happens, whatever the velocity */
-START_TEST(particle_in_front_is_left_alone) {
+TEST(particle_in_front_is_left_alone) {
     static const double heights[] = {0.5, 0.5000001, 3};
     struct sheet one;
     sheet_open(&one, 0, SCENE, "", FLOOR(""));
@@ -61,10 +60,9 @@ START_TEST(particle_in_front_is_left_alone) {
     }
     sheet_close(&one);
 }
-END_TEST
 
 /* along the normal only, from a point that is 1.5 m behind the plane and its skin of 0.1 m */
-START_TEST(particle_is_put_on_a_plane) {
+TEST(particle_is_put_on_a_plane) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "",
                "{\"plane\": {\"point\": [1, 2, 3], \"normal\": [2, 0, 1.5]}, \"thickness\": "
@@ -74,9 +72,8 @@ START_TEST(particle_is_put_on_a_plane) {
     SHEET_ASSERT_AT(&one, one.x, 0, 1 + 0.1 * 0.8 - 0.6, 7, 3 + 0.1 * 0.6 + 0.8, 1e-14);
     sheet_close(&one);
 }
-END_TEST
 
-START_TEST(particle_is_put_on_a_sphere) {
+TEST(particle_is_put_on_a_sphere) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "",
                "{\"sphere\": {\"centre\": [1, 2, 3], \"radius\": 0.5}, \"thickness\": 0.1}");
@@ -89,10 +86,9 @@ START_TEST(particle_is_put_on_a_sphere) {
     SHEET_ASSERT_AT(&one, one.x, 0, 1, 2.6, 3, 1e-14);
     sheet_close(&one);
 }
-END_TEST
 
 /* on a face of a turned box, and on its rounded edge */
-START_TEST(particle_is_put_on_a_box) {
+TEST(particle_is_put_on_a_box) {
     const double half = sqrt(0.5);
     struct sheet one;
     sheet_open(&one, 0, SCENE, "",
@@ -110,10 +106,9 @@ START_TEST(particle_is_put_on_a_box) {
     ck_assert_uint_eq(resolve(&one).projected, 0);
     sheet_close(&one);
 }
-END_TEST
 
 /* on the rod and on its end */
-START_TEST(particle_is_put_on_a_capsule) {
+TEST(particle_is_put_on_a_capsule) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "",
                "{\"capsule\": {\"from\": [0, 0, 1], \"to\": [0, 0, 3], \"radius\": 0.25}}");
@@ -127,11 +122,10 @@ START_TEST(particle_is_put_on_a_capsule) {
     ck_assert_uint_eq(resolve(&one).projected, 0);
     sheet_close(&one);
 }
-END_TEST
 
 /* Normal and tangential velocity are those against the floor, which rises at 1 m/s and slides
  * at 2 m/s: half of 3 m/s inwards is taken away, and friction 0.2 takes 0.3 of 5 m/s. */
-START_TEST(velocities_are_those_against_a_moving_floor) {
+TEST(velocities_are_those_against_a_moving_floor) {
     struct cs_collider_motion motion = {
         .t_end = HUGE_VAL, .rate = {2, 1, 0}, .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     struct sheet one;
@@ -142,10 +136,9 @@ START_TEST(velocities_are_those_against_a_moving_floor) {
     SHEET_ASSERT_AT(&one, one.v, 0, 2 + 0.94 * 3, 1 - 1.5, 0.94 * 4, 1e-15);
     sheet_close(&one);
 }
-END_TEST
 
 /* ka of the normal velocity is taken away, and -e turns it round; the rest is kept */
-START_TEST(normal_velocity_is_absorbed) {
+TEST(normal_velocity_is_absorbed) {
     static const struct {
         const char *absorption;
         double left; /* of -2 m/s */
@@ -165,11 +158,10 @@ START_TEST(normal_velocity_is_absorbed) {
         sheet_close(&one);
     }
 }
-END_TEST
 
 /* One second on a slope of 30 degrees in steps of 10 ms, the velocity alone: below
  * tan(30 degrees) of friction the particle slides at g (sin - mu cos) t, above it sticks. */
-START_TEST(slope_is_slid_down_or_stuck_to) {
+TEST(slope_is_slid_down_or_stuck_to) {
     const double angle = acos(-1) / 6, g = 9.81, dt = 0.01;
     static const double parts[] = {0, 0.5, 0.999, 1.001, 3}; // of tan(angle)
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
@@ -190,10 +182,9 @@ START_TEST(slope_is_slid_down_or_stuck_to) {
         sheet_close(&one);
     }
 }
-END_TEST
 
 /* friction goes by the normal velocity that was changed: 1.5 times the inward one here */
-START_TEST(friction_counts_the_bounce) {
+TEST(friction_counts_the_bounce) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "", FLOOR(", \"absorption\": -0.5, \"friction\": 0.2"));
     sheet_put(&one, 0, 0, 0.4, 0, 3, -2, -4);
@@ -202,11 +193,10 @@ START_TEST(friction_counts_the_bounce) {
     SHEET_ASSERT_AT(&one, one.v, 0, kept * 3, 1, -kept * 4, 1e-15);
     sheet_close(&one);
 }
-END_TEST
 
 /* The tangential move of a step loses friction times the depth, all of it where that is more:
  * 0.03 m down and (0.3, -0.4) m across here. */
-START_TEST(friction_holds_the_move) {
+TEST(friction_holds_the_move) {
     static const struct {
         double friction, kept;
     } rows[] = {{0, 1}, {5, 1 - 5 * 0.03 / 0.5}, {1e3, 0}};
@@ -223,10 +213,9 @@ START_TEST(friction_holds_the_move) {
         sheet_close(&one);
     }
 }
-END_TEST
 
 /* what a rising and sliding floor has taken along is no move against it */
-START_TEST(friction_takes_along) {
+TEST(friction_takes_along) {
     struct cs_collider_motion motion = {
         .t_end = HUGE_VAL, .rate = {2, 1, 0}, .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     const double last[6] = {1, 0.49, 2, 0, 0, 0};
@@ -239,9 +228,8 @@ START_TEST(friction_takes_along) {
     SHEET_ASSERT_AT(&one, one.v, 0, 2, 1, 0, 1e-15);
     sheet_close(&one);
 }
-END_TEST
 
-START_TEST(pinned_particle_is_not_tested) {
+TEST(pinned_particle_is_not_tested) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "0", FLOOR(""));
     sheet_put(&one, 0, 0, -1, 0, 0, 0, 0);
@@ -251,10 +239,9 @@ START_TEST(pinned_particle_is_not_tested) {
     ck_assert_double_eq(one.x[1], -1);
     sheet_close(&one);
 }
-END_TEST
 
 /* so that the blow-up test still finds it */
-START_TEST(particle_that_is_not_finite_stays_so) {
+TEST(particle_that_is_not_finite_stays_so) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "", FLOOR(", \"friction\": 1"));
     sheet_put(&one, 0, 0, (double)NAN, 0, 0, -1, 0);
@@ -262,9 +249,8 @@ START_TEST(particle_that_is_not_finite_stays_so) {
     ck_assert_double_nan(one.x[1]);
     sheet_close(&one);
 }
-END_TEST
 
-START_TEST(corner_of_floor_and_wall_holds) {
+TEST(corner_of_floor_and_wall_holds) {
     struct sheet one;
     sheet_open(&one, 0, SCENE, "",
                FLOOR("") ", {\"plane\": {\"normal\": [-1, 0, 0]}, \"thickness\": 0.1}");
@@ -275,24 +261,4 @@ START_TEST(corner_of_floor_and_wall_holds) {
     SHEET_ASSERT_AT(&one, one.x, 0, -0.1, 0.5, 1, 1e-15);
     SHEET_ASSERT_AT(&one, one.v, 0, 0, 0, 1, 0);
     sheet_close(&one);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {particle_is_put_on_the_floor_with_its_skin,
-                                  particle_in_front_is_left_alone,
-                                  particle_is_put_on_a_plane,
-                                  particle_is_put_on_a_sphere,
-                                  particle_is_put_on_a_box,
-                                  particle_is_put_on_a_capsule,
-                                  velocities_are_those_against_a_moving_floor,
-                                  normal_velocity_is_absorbed,
-                                  slope_is_slid_down_or_stuck_to,
-                                  friction_counts_the_bounce,
-                                  friction_holds_the_move,
-                                  friction_takes_along,
-                                  pinned_particle_is_not_tested,
-                                  particle_that_is_not_finite_stays_so,
-                                  corner_of_floor_and_wall_holds};
-    return unit_run("contact", tests, sizeof tests / sizeof *tests);
 }

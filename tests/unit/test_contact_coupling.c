@@ -81,7 +81,7 @@ static uint64_t iterations_of(size_t r, bool meets, double friction) {
 }
 
 /* 7 and 11 without contact. With their diagonal blocks alone pairs take 40 and 75. */
-START_TEST(a_fold_takes_at_most_twice_the_iterations) {
+TEST(a_fold_takes_at_most_twice_the_iterations) {
     for (size_t r = 32; r <= 64; r *= 2) {
         const uint64_t apart = iterations_of(r, false, 0);
         for (double friction = 0; friction < 0.5; friction += 0.3) {
@@ -92,7 +92,6 @@ START_TEST(a_fold_takes_at_most_twice_the_iterations) {
         }
     }
 }
-END_TEST
 
 /* --- the springs themselves --- */
 
@@ -179,7 +178,7 @@ static void compare(struct folded *folded, double least, double most) {
 }
 
 /* but for bent gradients, whatever moves; and what moves alike costs nothing */
-START_TEST(links_are_the_pairs) {
+TEST(links_are_the_pairs) {
     struct folded folded;
     open_folded(&folded, 32, true, 0.3, "");
     set_up(&folded, true);
@@ -192,7 +191,6 @@ START_TEST(links_are_the_pairs) {
     free(cells);
     shut_folded(&folded);
 }
-END_TEST
 
 /* --- the cycle --- */
 
@@ -215,7 +213,7 @@ static void assert_symmetric_and_positive(struct folded *folded) {
 }
 
 /* the exact matrix has more in its diagonal than the links, and some of it is negative */
-START_TEST(the_cycle_is_symmetric_and_positive) {
+TEST(the_cycle_is_symmetric_and_positive) {
     struct folded folded;
     open_folded(&folded, 33, true, 0.3, ", \"pins\": [\"top\", 200]");
     set_up(&folded, true);
@@ -226,9 +224,8 @@ START_TEST(the_cycle_is_symmetric_and_positive) {
         ck_assert(!(folded.crumple.sheet.system.inv_mass[i] > 0) || is_alive(&folded, i));
     shut_folded(&folded);
 }
-END_TEST
 
-START_TEST(threads_change_no_bit) {
+TEST(threads_change_no_bit) {
     struct cs_error error = {0};
     double *alone = NULL;
     for (uint32_t threads = 1; threads <= 3; threads++) {
@@ -248,10 +245,9 @@ START_TEST(threads_change_no_bit) {
     }
     free(alone);
 }
-END_TEST
 
 /* what was loaded before does not stay */
-START_TEST(a_matrix_without_pairs_in_range_has_no_links) {
+TEST(a_matrix_without_pairs_in_range_has_no_links) {
     struct folded folded;
     open_folded(&folded, 32, true, 0.3, "");
     set_up(&folded, true);
@@ -262,13 +258,4 @@ START_TEST(a_matrix_without_pairs_in_range_has_no_links) {
     set_up(&folded, true);
     ck_assert(!first_level(&folded)->extra_springs->is_nonempty);
     shut_folded(&folded);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {a_fold_takes_at_most_twice_the_iterations,
-                                  links_are_the_pairs, the_cycle_is_symmetric_and_positive,
-                                  threads_change_no_bit,
-                                  a_matrix_without_pairs_in_range_has_no_links};
-    return unit_run("coupling", tests, sizeof tests / sizeof *tests);
 }

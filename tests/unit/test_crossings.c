@@ -117,27 +117,24 @@ static void expect_crossed(double at, double lift, uint64_t first, uint64_t seco
     sheet_close(&sheet);
 }
 
-START_TEST(sheets_through_each_other) {
+TEST(sheets_through_each_other) {
     // rows of the second are 0.1 apart, from -0.519 to 0.581: six lie within the first, whose
     // plane cuts their edges and the diagonals of seven rows of cells, one of them outside
     expect_crossed(0.13, 0.02, 7 + 6, 6 + 6);
 }
-END_TEST
 
 /* the second stands exactly in a column of the first: no edge of the first goes through it,
  * and what goes through edges of the first counts once */
-START_TEST(sheet_in_a_column_of_another) {
+TEST(sheet_in_a_column_of_another) {
     expect_crossed(0, 0.02, 0, 6 + 6);
 }
-END_TEST
 
 /* ... and its own column in the plane of the first: all is touch */
-START_TEST(columns_in_each_other) {
+TEST(columns_in_each_other) {
     expect_crossed(0, 0, 0, 0);
 }
-END_TEST
 
-START_TEST(what_lies_in_a_plane_does_not_cross) {
+TEST(what_lies_in_a_plane_does_not_cross) {
     struct sheet sheet;
     char bodies[1024];
     snprintf(bodies, sizeof bodies, SHEET ", " SHEET, 6, 5, 1.0, 1.0, 0.0, 0.0, 0.0, "", 4, 7,
@@ -146,7 +143,6 @@ START_TEST(what_lies_in_a_plane_does_not_cross) {
     ck_assert_uint_eq(cs_crossings_count(&sheet.system, 0, sheet.x).n, 0);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* crumpled sheets, a mesh, a rope and a single particle, at several stages of disorder */
 static void open_disorder(struct sheet *sheet) {
@@ -160,7 +156,7 @@ static void open_disorder(struct sheet *sheet) {
     open(sheet, bodies);
 }
 
-START_TEST(counts_are_those_of_all_pairs) {
+TEST(counts_are_those_of_all_pairs) {
     for (int k = 0; k < 6; k++) {
         struct sheet sheet;
         struct cs_error error = {0};
@@ -181,9 +177,8 @@ START_TEST(counts_are_those_of_all_pairs) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
-START_TEST(shares_are_those_of_all_pairs) {
+TEST(shares_are_those_of_all_pairs) {
     int cut = 0;
     for (int k = 1; k < 6; k++) {
         struct sheet sheet;
@@ -209,11 +204,10 @@ START_TEST(shares_are_those_of_all_pairs) {
     }
     ck_assert_int_gt(cut, 2);
 }
-END_TEST
 
 /* Two sheets of 4 x 4, 0.2 m above each other, with a spike of 0.15 m over the middle of a
  * triangle: its tip is the nearest point, whichever body has it. */
-START_TEST(spikes_of_either_body_are_seen) {
+TEST(spikes_of_either_body_are_seen) {
     for (size_t spiked = 0; spiked < 2; spiked++) {
         struct sheet sheet;
         char bodies[1024];
@@ -232,10 +226,9 @@ START_TEST(spikes_of_either_body_are_seen) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* a fall of a metre together, and states that are not finite */
-START_TEST(shared_moves_and_blow_ups) {
+TEST(shared_moves_and_blow_ups) {
     struct sheet sheet;
     open_disorder(&sheet);
     double *to = malloc(3 * sheet.n * sizeof *to);
@@ -250,36 +243,4 @@ START_TEST(shared_moves_and_blow_ups) {
     cs_crossings_count(&sheet.system, 0, to);
     free(to);
     sheet_close(&sheet);
-}
-END_TEST
-
-/* the bytes that a plan would name are those taken, but for rounding to 64 */
-START_TEST(bytes_are_told) {
-    struct sheet sheet;
-    struct cs_error error = {0};
-    char bodies[1024];
-    snprintf(bodies, sizeof bodies, SHEET ", " SHEET, 30, 20, 1.0, 1.0, 0.0, 0.0, 0.0, "", 25,
-             1, 1.0, 1.0, 0.0, 0.0, 0.0, "");
-    sheet_open(&sheet, 0, "{\"bodies\": [%s]}", bodies);
-    const size_t before = sheet.system.arena.used;
-    cs_crossings_build(&sheet.system, &error);
-    UNIT_ASSERT_OK(&error);
-    const size_t taken = sheet.system.arena.used - before;
-    const size_t told = cs_crossings_bytes(&sheet.scene) + cs_surfaces_bytes(&sheet.scene);
-    ck_assert_msg(taken >= told && taken < told + 20 * 64, "%zu, %zu", taken, told);
-    sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {sheets_through_each_other,
-                                  sheet_in_a_column_of_another,
-                                  columns_in_each_other,
-                                  what_lies_in_a_plane_does_not_cross,
-                                  counts_are_those_of_all_pairs,
-                                  shares_are_those_of_all_pairs,
-                                  shared_moves_and_blow_ups,
-                                  spikes_of_either_body_are_seen,
-                                  bytes_are_told};
-    return unit_run("crossings", tests, sizeof tests / sizeof *tests);
 }

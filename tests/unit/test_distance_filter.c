@@ -123,7 +123,7 @@ static void check(bool edges, double away, double scale) {
     ck_assert(away > 1e4 || far > ROUNDS);
 }
 
-START_TEST(nothing_near_is_held_back) {
+TEST(nothing_near_is_held_back) {
     for (int edges = 0; edges < 2; edges++) {
         check(edges, 0, 1);
         check(edges, 300, 1);
@@ -133,10 +133,9 @@ START_TEST(nothing_near_is_held_back) {
         check(edges, 0, 1e12);
     }
 }
-END_TEST
 
 /* places that are not finite are let through: who asks next is to see them */
-START_TEST(not_finite_is_let_through) {
+TEST(not_finite_is_let_through) {
     static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     for (int edges = 0; edges < 2; edges++)
         for (size_t k = 0; k < 12; k++) {
@@ -149,10 +148,4 @@ START_TEST(not_finite_is_let_through) {
                                    (const uint32_t[2]){0, 1});
             ck_assert_uint_eq(cs_distance_filter_run(&filter, edges), 1);
         }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {nothing_near_is_held_back, not_finite_is_let_through};
-    return unit_run("sieve", tests, sizeof tests / sizeof *tests);
 }

@@ -40,7 +40,7 @@ static void to_doubles(const int64_t p[3], double scale, double out[3]) {
 }
 
 /* points beside a plane, far from the origin: determinants that rounding turns round */
-START_TEST(signs_of_points_beside_a_plane) {
+TEST(signs_of_points_beside_a_plane) {
     uint64_t state = 1;
     int rounded_wrong = 0, zeros = 0;
     for (int round = 0; round < ROUNDS; round++) {
@@ -79,10 +79,9 @@ START_TEST(signs_of_points_beside_a_plane) {
     ck_assert_int_gt(zeros, ROUNDS / 10);
     ck_assert_int_gt(rounded_wrong, ROUNDS / 10);
 }
-END_TEST
 
 /* differences that need two doubles each */
-START_TEST(signs_of_points_of_many_sizes) {
+TEST(signs_of_points_of_many_sizes) {
     const double tiny = 0x1p-80, a[3] = {1, 0, 0}, b[3] = {0, 1, 0}, c[3] = {0, 0, 1};
     const double third = 1 / 3.0, rest = 1 - 2 * third;
     const double on[3] = {third, third, rest};
@@ -99,7 +98,6 @@ START_TEST(signs_of_points_of_many_sizes) {
     ck_assert_int_eq(cs_orient3d(a, b, nan, on), 0);
     ck_assert_int_eq(cs_orient3d(far, b, c, far), 0);
 }
-END_TEST
 
 /* The second end really moved, by 1 / MOVE of the least difference and less: see
  * edge_triangle.h. */
@@ -120,7 +118,7 @@ static bool pierces_wide(const int64_t p[5][3]) {
 }
 
 /* few places, so that ends lie in planes and edges go through sides and corners all the time */
-START_TEST(edges_through_triangles_of_few_places) {
+TEST(edges_through_triangles_of_few_places) {
     uint64_t state = 7;
     int pierced = 0, touched = 0;
     for (int round = 0; round < ROUNDS; round++) {
@@ -144,11 +142,10 @@ START_TEST(edges_through_triangles_of_few_places) {
     ck_assert_int_gt(pierced, 1000);
     ck_assert_int_gt(touched, 300);
 }
-END_TEST
 
 /* six triangles about a corner, and an edge through the corner: one of them has it, however the
  * edge goes */
-START_TEST(corner_of_a_surface_counts_once) {
+TEST(corner_of_a_surface_counts_once) {
     static const double ring[6][2] = {{2, 0}, {1, 2}, {-1, 1}, {-2, 0}, {-1, -2}, {1, -1}};
     uint64_t state = 3;
     for (int round = 0; round < 500; round++) {
@@ -171,12 +168,4 @@ START_TEST(corner_of_a_surface_counts_once) {
         }
         UNIT_ASSERT_OFTEN(n == 1);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {signs_of_points_beside_a_plane, signs_of_points_of_many_sizes,
-                                  edges_through_triangles_of_few_places,
-                                  corner_of_a_surface_counts_once};
-    return unit_run("pierce", tests, sizeof tests / sizeof *tests);
 }

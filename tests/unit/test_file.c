@@ -16,7 +16,7 @@ static void assert_content(const char *path, const char *expected) {
     free(bytes);
 }
 
-START_TEST(written_file_reads_back) {
+TEST(written_file_reads_back) {
     struct cs_error error = {0};
     cs_folder_create("alone", &error);
     cs_file_write("alone/a.txt", "hello", 5, &error);
@@ -27,9 +27,8 @@ START_TEST(written_file_reads_back) {
     assert_content("alone/a.txt", "");
     ck_assert_int_eq(unit_count_files("alone"), 1);
 }
-END_TEST
 
-START_TEST(target_is_untouched_until_finish) {
+TEST(target_is_untouched_until_finish) {
     struct cs_error error = {0};
     struct cs_file_out out;
     cs_file_write("b.txt", "old", 3, &error);
@@ -43,9 +42,8 @@ START_TEST(target_is_untouched_until_finish) {
     cs_file_abandon(&out);
     assert_content("b.txt", "new");
 }
-END_TEST
 
-START_TEST(abandoned_file_leaves_nothing) {
+TEST(abandoned_file_leaves_nothing) {
     struct cs_error error = {0};
     struct cs_file_out out, empty = {0};
     ck_assert_int_eq(cs_file_create(&out, "c.txt", &error), CS_OK);
@@ -56,10 +54,9 @@ START_TEST(abandoned_file_leaves_nothing) {
     ck_assert_int_ne(access(out.temporary, F_OK), 0);
     ck_assert_int_ne(access("c.txt", F_OK), 0);
 }
-END_TEST
 
 /* A link that waits under the temporary's name must not lead the write elsewhere. */
-START_TEST(temporary_follows_no_link) {
+TEST(temporary_follows_no_link) {
     struct cs_error error = {0};
     struct cs_file_out out;
     char temporary[64];
@@ -73,9 +70,8 @@ START_TEST(temporary_follows_no_link) {
     assert_content("victim.txt", "safe");
     assert_content("d.txt", "data");
 }
-END_TEST
 
-START_TEST(places_that_cannot_be_written_are_refused) {
+TEST(places_that_cannot_be_written_are_refused) {
     char *too_long = malloc(6000);
     memset(too_long, 'x', 5999);
     too_long[5999] = 0;
@@ -97,10 +93,9 @@ START_TEST(places_that_cannot_be_written_are_refused) {
     }
     free(too_long);
 }
-END_TEST
 
 /* root may write everywhere, so that only others can see this */
-START_TEST(read_only_folder_is_refused) {
+TEST(read_only_folder_is_refused) {
     struct cs_error error = {0};
     if (geteuid() == 0)
         return;
@@ -108,10 +103,9 @@ START_TEST(read_only_folder_is_refused) {
     cs_file_write("closed/a.txt", "a", 1, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "Permission denied");
 }
-END_TEST
 
 /* A full disk shows as a failed write, or only when the buffer is written out. */
-START_TEST(full_disk_leaves_no_file) {
+TEST(full_disk_leaves_no_file) {
     for (size_t length = 10; length <= 100000; length *= 100) {
         struct cs_error error = {0};
         struct cs_file_out out;
@@ -127,9 +121,8 @@ START_TEST(full_disk_leaves_no_file) {
         free(bytes);
     }
 }
-END_TEST
 
-START_TEST(size_limit_keeps_the_old_file) {
+TEST(size_limit_keeps_the_old_file) {
     struct cs_error error = {0};
     static const char bytes[20000];
     cs_folder_create("limit", &error);
@@ -141,9 +134,8 @@ START_TEST(size_limit_keeps_the_old_file) {
     assert_content("limit/limit.bin", "old");
     ck_assert_int_eq(unit_count_files("limit"), 1);
 }
-END_TEST
 
-START_TEST(what_is_no_small_regular_file_is_not_read) {
+TEST(what_is_no_small_regular_file_is_not_read) {
     struct cs_error made = {0};
     cs_file_write("six.txt", "123456", 6, &made);
     ck_assert_int_eq(mkfifo("pipe", 0600), 0);
@@ -166,9 +158,8 @@ START_TEST(what_is_no_small_regular_file_is_not_read) {
     }
     assert_content("six.txt", "123456");
 }
-END_TEST
 
-START_TEST(folders_are_made_with_parents) {
+TEST(folders_are_made_with_parents) {
     struct cs_error error = {0};
     struct stat info;
     const char *const paths[] = {"p/q/r", "p/q/r", "p//q/s/", ".", "/", "/tmp", "p/../t"};
@@ -179,9 +170,8 @@ START_TEST(folders_are_made_with_parents) {
         ck_assert(S_ISDIR(info.st_mode));
     }
 }
-END_TEST
 
-START_TEST(folder_over_a_file_is_refused) {
+TEST(folder_over_a_file_is_refused) {
     const char *const paths[] = {"file", "file/below", ""};
     struct cs_error made = {0};
     cs_file_write("file", "x", 1, &made);
@@ -190,20 +180,4 @@ START_TEST(folder_over_a_file_is_refused) {
         cs_folder_create(paths[i], &error);
         UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "cannot make the folder");
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {written_file_reads_back,
-                                  target_is_untouched_until_finish,
-                                  abandoned_file_leaves_nothing,
-                                  temporary_follows_no_link,
-                                  places_that_cannot_be_written_are_refused,
-                                  read_only_folder_is_refused,
-                                  full_disk_leaves_no_file,
-                                  size_limit_keeps_the_old_file,
-                                  what_is_no_small_regular_file_is_not_read,
-                                  folders_are_made_with_parents,
-                                  folder_over_a_file_is_refused};
-    return unit_run("file", tests, sizeof tests / sizeof *tests);
 }

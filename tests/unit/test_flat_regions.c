@@ -104,7 +104,7 @@ static void open_flat(struct cs_flat_region *flat, struct cs_arena *arena) {
 
 /* never further apart than they are, and by half as much more it would be: a fault that is to
  * be found */
-START_TEST(bound_is_below_all_distances) {
+TEST(bound_is_below_all_distances) {
     static struct grid grid;
     struct cs_arena arena = {0};
     struct cs_flat_region flat;
@@ -126,10 +126,9 @@ START_TEST(bound_is_below_all_distances) {
     ck_assert_int_gt(flats, 3);
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* a place that is not finite makes its blocks, and those beside them, not flat */
-START_TEST(not_finite_is_not_flat) {
+TEST(not_finite_is_not_flat) {
     static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     static struct grid grid;
     struct cs_arena arena = {0};
@@ -144,10 +143,9 @@ START_TEST(not_finite_is_not_flat) {
     }
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* every item once; those of a grid with the others of their block, which its span holds */
-START_TEST(clusters_have_all_items) {
+TEST(clusters_have_all_items) {
     static struct grid grid;
     struct cs_arena arena = {0};
     struct cs_error error = {0};
@@ -184,7 +182,6 @@ START_TEST(clusters_have_all_items) {
         ck_assert_int_eq(seen[e], 1);
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* a box of a size, empty ones among them; every fiftieth large */
 static struct cs_aabb draw_box(uint64_t *seed, uint32_t number) {
@@ -198,7 +195,7 @@ static struct cs_aabb draw_box(uint64_t *seed, uint32_t number) {
 }
 
 /* each cluster that a box meets once, large ones too, which have cells of their own */
-START_TEST(clusters_near_a_box_are_found) {
+TEST(clusters_near_a_box_are_found) {
     enum { BOXES = 500, QUERIES = 300 };
     static struct cs_aabb boxes[BOXES];
     static uint32_t last[BOXES], body[BOXES];
@@ -225,11 +222,4 @@ START_TEST(clusters_near_a_box_are_found) {
     }
     cs_nearby_clusters_finish(&near);
     cs_aabb_clusters_finish(&clusters);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {bound_is_below_all_distances, not_finite_is_not_flat,
-                                  clusters_have_all_items, clusters_near_a_box_are_found};
-    return unit_run("flat", tests, sizeof tests / sizeof *tests);
 }

@@ -29,7 +29,7 @@ static void fill(struct cs_gather *gather, uint32_t at[LOTS][ENDS], uint32_t to[
     ck_assert(cs_gather_set(gather));
 }
 
-START_TEST(each_point_has_one_row) {
+TEST(each_point_has_one_row) {
     static uint32_t at[LOTS][ENDS], to[LOTS][ENDS];
     struct cs_arena arena = {0};
     struct cs_error error = {0};
@@ -50,10 +50,9 @@ START_TEST(each_point_has_one_row) {
     }
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* whole numbers, whose sums are the same in any order; points that are no particles get none */
-START_TEST(sums_are_those_of_all_ends) {
+TEST(sums_are_those_of_all_ends) {
     static uint32_t at[LOTS][ENDS], to[LOTS][ENDS];
     static double right[2 * PARTICLES], out[2 * PARTICLES], x[3 * POINTS];
     struct cs_arena arena = {0};
@@ -83,10 +82,4 @@ START_TEST(sums_are_those_of_all_ends) {
     cs_gather_add(&gather, gather.row_sums, 2, 1234, PARTICLES, out);
     ck_assert(!memcmp(right, out, sizeof out));
     cs_arena_finish(&arena);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {each_point_has_one_row, sums_are_those_of_all_ends};
-    return unit_run("gather", tests, sizeof tests / sizeof *tests);
 }

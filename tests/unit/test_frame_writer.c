@@ -56,17 +56,15 @@ static void write_and_compare(const char *folder, bool threaded) {
     cs_frame_writer_destroy(frames);
 }
 
-START_TEST(frames_are_written_inline) {
+TEST(frames_are_written_inline) {
     write_and_compare("inline", false);
 }
-END_TEST
 
-START_TEST(frames_are_written_by_the_worker) {
+TEST(frames_are_written_by_the_worker) {
     write_and_compare("worker", true);
 }
-END_TEST
 
-START_TEST(destroy_writes_what_is_queued) {
+TEST(destroy_writes_what_is_queued) {
     struct cs_error error = {0};
     struct cs_frame_writer *frames;
     ck_assert_int_eq(mkdir("queued", 0777), 0);
@@ -80,7 +78,6 @@ START_TEST(destroy_writes_what_is_queued) {
     assert_frame("queued/frame_100001.png", 100001);
     cs_frame_writer_destroy(NULL);
 }
-END_TEST
 
 /* Frame 3 cannot be written: 1 and 2 are there, none after it, and the caller hears of it. */
 static void fail_at_third(const char *folder, bool threaded) {
@@ -105,14 +102,13 @@ static void fail_at_third(const char *folder, bool threaded) {
     ck_assert_int_eq(unit_count_files(folder), 3);
 }
 
-START_TEST(failure_stops_frames) {
+TEST(failure_stops_frames) {
     fail_at_third("bad-inline", false);
     fail_at_third("bad-worker", true);
 }
-END_TEST
 
 /* the last frame has no later give that could tell */
-START_TEST(finish_tells_of_the_last_frame) {
+TEST(finish_tells_of_the_last_frame) {
     struct cs_error error = {0};
     struct cs_frame_writer *frames;
     double seconds;
@@ -124,12 +120,4 @@ START_TEST(finish_tells_of_the_last_frame) {
     cs_frame_writer_finish(frames, &seconds, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_FILE, "cannot write \"no-such-folder/frame_00001.png\"");
     cs_frame_writer_destroy(frames);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {frames_are_written_inline, frames_are_written_by_the_worker,
-                                  destroy_writes_what_is_queued, failure_stops_frames,
-                                  finish_tells_of_the_last_frame};
-    return unit_run("frames", tests, sizeof tests / sizeof *tests);
 }

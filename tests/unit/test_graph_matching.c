@@ -34,7 +34,7 @@ static void expect_parents(const struct joined *joined, uint32_t n, const uint32
 }
 
 /* 0 - 1 - 2 - 3 - 4: the last one is left over and goes to the pair beside it */
-START_TEST(path_becomes_a_shorter_path) {
+TEST(path_becomes_a_shorter_path) {
     static const uint32_t ends[][2] = {{0, 1}, {1, 2}, {2, 3}, {4, 3}}, to[] = {0, 0, 1, 1, 1};
     struct joined joined;
     join(&joined, 5, 4, ends[0], NULL);
@@ -49,10 +49,9 @@ START_TEST(path_becomes_a_shorter_path) {
     ck_assert_uint_eq(joined.coarse.ends[1], 1);
     cs_arena_finish(&joined.arena);
 }
-END_TEST
 
 /* the heaviest neighbour, by the sum of parallel edges; of equals the first */
-START_TEST(weights_choose) {
+TEST(weights_choose) {
     static const uint32_t ends[][2] = {{0, 1}, {0, 2}, {0, 3}, {3, 0}, {1, 2}};
     static const double heavy[] = {1, 2, 1.5, 1.5, 1}, equal[] = {2, 2, 1, 1, 1};
     static const uint32_t to_heavy[] = {0, 1, 1, 0}, to_equal[] = {0, 0, 0, 0};
@@ -70,10 +69,9 @@ START_TEST(weights_choose) {
     expect_parents(&joined, 4, to_equal);
     cs_arena_finish(&joined.arena);
 }
-END_TEST
 
 /* All tips of a star but one find its hub taken, and follow it; a node without edges stays. */
-START_TEST(star_and_lone_node) {
+TEST(star_and_lone_node) {
     uint32_t ends[20][2];
     struct joined joined;
     for (uint32_t k = 0; k < 20; k++) {
@@ -87,10 +85,9 @@ START_TEST(star_and_lone_node) {
         ck_assert_uint_eq(joined.parents[k], k == 20 ? 1 : 0);
     cs_arena_finish(&joined.arena);
 }
-END_TEST
 
 /* again and again a closed ring ends as one node, and no weight is lost but inside pairs */
-START_TEST(ring_ends_as_one_node) {
+TEST(ring_ends_as_one_node) {
     uint32_t ends[MOST][2];
     struct joined joined;
     uint32_t n = 50, n_edges = 50, rounds = 0;
@@ -116,11 +113,4 @@ START_TEST(ring_ends_as_one_node) {
         rounds++;
     }
     ck_assert_uint_le(rounds, 6);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {path_becomes_a_shorter_path, weights_choose,
-                                  star_and_lone_node, ring_ends_as_one_node};
-    return unit_run("graph", tests, sizeof tests / sizeof *tests);
 }

@@ -4,7 +4,7 @@
 #include "unit.h"
 
 /* canonical digits as `xxh128sum` prints them */
-START_TEST(bytes_match_known_digests) {
+TEST(bytes_match_known_digests) {
     static const struct {
         const char *bytes, *digits;
     } rows[] = {{"", "99aa06d3014798d86001c324468d497f"},
@@ -16,17 +16,15 @@ START_TEST(bytes_match_known_digests) {
         ck_assert_str_eq(digits, rows[i].digits);
     }
 }
-END_TEST
 
-START_TEST(no_doubles_hash_like_no_bytes) {
+TEST(no_doubles_hash_like_no_bytes) {
     char digits[CS_HASH_DIGITS];
     cs_hash_doubles(NULL, 0, digits);
     ck_assert_str_eq(digits, "99aa06d3014798d86001c324468d497f");
 }
-END_TEST
 
 /* a file of several blocks, and what is none */
-START_TEST(files_hash_as_their_bytes) {
+TEST(files_hash_as_their_bytes) {
     enum { LENGTH = 150000 };
     char *bytes = malloc(LENGTH), of_file[CS_HASH_DIGITS], of_bytes[CS_HASH_DIGITS];
     struct cs_error error = {0};
@@ -44,11 +42,10 @@ START_TEST(files_hash_as_their_bytes) {
     ck_assert_str_eq(of_file, "");
     free(bytes);
 }
-END_TEST
 
 /* 1.0, -2.5 and 1e-300 as the bytes that a little-endian machine holds, written out, so that
  * the test means the same on every machine. */
-START_TEST(doubles_hash_as_little_endian_bytes) {
+TEST(doubles_hash_as_little_endian_bytes) {
     static const double values[] = {1.0, -2.5, 1e-300};
     static const unsigned char bytes[] = {0,    0,    0,    0,    0,    0,    0xf0, 0x3f,
                                           0,    0,    0,    0,    0,    0,    4,    0xc0,
@@ -58,10 +55,9 @@ START_TEST(doubles_hash_as_little_endian_bytes) {
     cs_hash_bytes(bytes, sizeof bytes, of_bytes);
     ck_assert_str_eq(of_values, of_bytes);
 }
-END_TEST
 
 /* every length round the blocks of the hash: by pieces the same as at once */
-START_TEST(pieces_do_not_show) {
+TEST(pieces_do_not_show) {
     enum { MOST = 1300 };
     double values[MOST];
     unsigned char bytes[8 * MOST];
@@ -79,24 +75,12 @@ START_TEST(pieces_do_not_show) {
         ck_assert_str_eq(of_values, of_bytes);
     }
 }
-END_TEST
 
-START_TEST(one_bit_changes_the_hash) {
+TEST(one_bit_changes_the_hash) {
     double values[64] = {0};
     char before[CS_HASH_DIGITS], after[CS_HASH_DIGITS];
     cs_hash_doubles(values, 64, before);
     values[63] = -0.0;
     cs_hash_doubles(values, 64, after);
     ck_assert_str_ne(before, after);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {bytes_match_known_digests,
-                                  files_hash_as_their_bytes,
-                                  no_doubles_hash_like_no_bytes,
-                                  doubles_hash_as_little_endian_bytes,
-                                  pieces_do_not_show,
-                                  one_bit_changes_the_hash};
-    return unit_run("hash", tests, sizeof tests / sizeof *tests);
 }

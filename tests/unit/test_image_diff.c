@@ -21,7 +21,7 @@ static bool passes(const struct cs_image *a, const struct cs_image *b) {
     return cs_image_difference_passes(&difference);
 }
 
-START_TEST(identical_images_pass) {
+TEST(identical_images_pass) {
     struct cs_image a = make_ramp(), b = make_ramp();
     const struct cs_image_difference difference = cs_image_compare(&a, &b);
     ck_assert_double_eq(difference.rmse, 0);
@@ -32,10 +32,9 @@ START_TEST(identical_images_pass) {
     free(a.rgb);
     free(b.rgb);
 }
-END_TEST
 
 /* Two pixels of four differ: one by 3 and -1, one by 2. Sum of squares 14 over 12 channels. */
-START_TEST(figures_of_a_small_image) {
+TEST(figures_of_a_small_image) {
     uint8_t left[12] = {10, 20, 30, 0, 0, 0, 255, 255, 255, 7, 7, 7};
     uint8_t right[12] = {13, 19, 30, 0, 0, 0, 255, 255, 253, 7, 7, 7};
     const struct cs_image a = {2, 2, left, NULL}, b = {2, 2, right, NULL};
@@ -46,10 +45,9 @@ START_TEST(figures_of_a_small_image) {
     ck_assert_uint_eq(difference.pixels, 2);
     ck_assert(!cs_image_difference_passes(&difference));
 }
-END_TEST
 
 /* Other CPU instructions: one channel in 20 off by one. */
-START_TEST(rounding_passes) {
+TEST(rounding_passes) {
     struct cs_image a = make_ramp(), b = make_ramp();
     for (int i = 0; i < 3 * SIDE * SIDE; i += 20)
         b.rgb[i]++;
@@ -58,10 +56,9 @@ START_TEST(rounding_passes) {
     free(a.rgb);
     free(b.rgb);
 }
-END_TEST
 
 /* A light that moved a little: no channel is off by more than one, but half of them are. */
-START_TEST(light_shift_fails) {
+TEST(light_shift_fails) {
     struct cs_image a = make_ramp(), b = make_ramp();
     for (int i = 0; i < 3 * SIDE * SIDE; i += 2)
         b.rgb[i]--;
@@ -73,10 +70,9 @@ START_TEST(light_shift_fails) {
     free(a.rgb);
     free(b.rgb);
 }
-END_TEST
 
 /* An edge that moved: few pixels, hardly any error in the mean. */
-START_TEST(lost_edge_fails) {
+TEST(lost_edge_fails) {
     struct cs_image a = make_ramp(), b = make_ramp();
     for (int i = 0; i < 6; i++)
         b.rgb[3000 + 3 * i] += 3;
@@ -90,9 +86,8 @@ START_TEST(lost_edge_fails) {
     free(a.rgb);
     free(b.rgb);
 }
-END_TEST
 
-START_TEST(bounds_are_inclusive) {
+TEST(bounds_are_inclusive) {
     struct cs_image_difference difference = {.rmse = 0.45, .share = 0.0005};
     ck_assert(cs_image_difference_passes(&difference));
     difference.rmse = 0.4501;
@@ -100,9 +95,8 @@ START_TEST(bounds_are_inclusive) {
     difference.rmse = (double)NAN;
     ck_assert(!cs_image_difference_passes(&difference));
 }
-END_TEST
 
-START_TEST(amplified_difference_is_clamped) {
+TEST(amplified_difference_is_clamped) {
     uint8_t left[6] = {10, 10, 10, 0, 255, 9}, right[6] = {10, 11, 9, 255, 0, 17}, pixels[6];
     static const uint8_t expected[6] = {128, 144, 112, 255, 0, 255};
     const struct cs_image a = {2, 1, left, NULL}, b = {2, 1, right, NULL};
@@ -112,22 +106,8 @@ START_TEST(amplified_difference_is_clamped) {
     ck_assert_uint_eq(out.height, 1);
     ck_assert_mem_eq(out.rgb, expected, sizeof expected);
 }
-END_TEST
 
-START_TEST(empty_images_are_equal) {
+TEST(empty_images_are_equal) {
     const struct cs_image none = {0, 0, NULL, NULL};
     ck_assert(passes(&none, &none));
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {identical_images_pass,
-                                  figures_of_a_small_image,
-                                  rounding_passes,
-                                  light_shift_fails,
-                                  lost_edge_fails,
-                                  bounds_are_inclusive,
-                                  amplified_difference_is_clamped,
-                                  empty_images_are_equal};
-    return unit_run("compare", tests, sizeof tests / sizeof *tests);
 }

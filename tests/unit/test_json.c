@@ -33,7 +33,7 @@ static struct cs_json *parse(const char *text) {
     return root;
 }
 
-START_TEST(numbers_are_strict) {
+TEST(numbers_are_strict) {
     static const struct refused rows[] = {
         {"01", 0, "needless 0"},
         {"-01", 0, "needless 0"},
@@ -71,9 +71,8 @@ START_TEST(numbers_are_strict) {
         cs_json_destroy(root);
     }
 }
-END_TEST
 
-START_TEST(strings_are_strict) {
+TEST(strings_are_strict) {
     static const struct refused rows[] = {
         {"\"abc", 0, "the string that starts here does not end"},
         {"\"abc\\", 4, "unknown escape"},
@@ -115,9 +114,8 @@ START_TEST(strings_are_strict) {
         cs_json_destroy(root);
     }
 }
-END_TEST
 
-START_TEST(structure_is_strict) {
+TEST(structure_is_strict) {
     static const struct refused rows[] = {
         {"", 0, "found the end of the text, expected a value"},
         {"  \n ", 4, "found the end of the text, expected a value"},
@@ -143,9 +141,8 @@ START_TEST(structure_is_strict) {
     assert_refused("[1]\0", 4, 3, "found byte 0x00, expected the end of the text");
     assert_refused("[\"\0\"]", 5, 2, "control character 0x00");
 }
-END_TEST
 
-START_TEST(keys_are_given_once) {
+TEST(keys_are_given_once) {
     static const struct refused rows[] = {
         {"{\"a\": 1, \"a\": 2}", 9, "key \"a\" is given twice"},
         {"{\"a\": 1, \"b\": 3, \"\\u0061\": 2}", 17, "key \"a\" is given twice"},
@@ -154,9 +151,8 @@ START_TEST(keys_are_given_once) {
     assert_all_refused(rows, sizeof rows / sizeof *rows);
     cs_json_destroy(parse("{\"a\": {\"a\": 1}, \"A\": 2, \"b\": [{\"a\": 1}, {\"a\": 1}]}"));
 }
-END_TEST
 
-START_TEST(depth_is_limited) {
+TEST(depth_is_limited) {
     for (size_t depth = 63; depth <= 66; depth++) {
         char text[200] = "";
         memset(text, '[', depth);
@@ -167,10 +163,9 @@ START_TEST(depth_is_limited) {
             assert_refused(text, 2 * depth, 64, "nested deeper than 64 levels");
     }
 }
-END_TEST
 
 /* a large text is refused before it costs memory or time */
-START_TEST(size_is_limited) {
+TEST(size_is_limited) {
     const size_t most = CS_JSON_BYTES_MAX;
     char *text = malloc(most + 2);
     memset(text, '[', most + 1);
@@ -192,10 +187,9 @@ START_TEST(size_is_limited) {
     cs_json_destroy(root);
     free(text);
 }
-END_TEST
 
 /* many keys: sorted, not compared each with each */
-START_TEST(many_keys_are_checked_quickly) {
+TEST(many_keys_are_checked_quickly) {
     struct cs_text text = {0};
     for (int i = 0; i < 100000; i++)
         cs_text_add(&text, "%s\"k%d\": 0", i ? ", " : "{", i);
@@ -204,7 +198,6 @@ START_TEST(many_keys_are_checked_quickly) {
     assert_refused(cs_text_get(&text), text.length, length, "key \"k777\" is given twice");
     cs_text_finish(&text);
 }
-END_TEST
 
 static void assert_place(const struct cs_json *value, const char *text, bool of_key,
                          size_t at) {
@@ -213,7 +206,7 @@ static void assert_place(const struct cs_json *value, const char *text, bool of_
     ck_assert_uint_eq(offset, at);
 }
 
-START_TEST(values_know_their_places) {
+TEST(values_know_their_places) {
     const char *text =
         " {\n \"a\\\"]\" : [ 1,\"x,]\" , { } ,[ ],{\"b\":null} ],\"c\"\n:\ttrue}";
     struct cs_json *root = parse(text);
@@ -239,33 +232,22 @@ START_TEST(values_know_their_places) {
     ck_assert_uint_eq(column, 1);
     cs_json_destroy(root);
 }
-END_TEST
 
-START_TEST(members_are_found_exactly) {
+TEST(members_are_found_exactly) {
     struct cs_json *root = parse("{\"ab\": [1, 2], \"AB\": \"t\", \"n\": null, \"f\": false}");
     ck_assert_int_eq(cs_json_kind_of(root), CS_JSON_OBJECT);
     ck_assert_uint_eq(cs_json_count(root), 4);
     ck_assert_str_eq(cs_json_text(cs_json_find(root, "AB")), "t");
     ck_assert_uint_eq(cs_json_count(cs_json_find(root, "ab")), 2);
     ck_assert_ptr_null(cs_json_find(root, "Ab"));
+    ck_assert_ptr_null(cs_json_find(NULL, "AB"));
+    ck_assert_ptr_eq(cs_json_find_kind(root, "AB", CS_JSON_TEXT), cs_json_find(root, "AB"));
+    ck_assert_ptr_null(cs_json_find_kind(root, "AB", CS_JSON_NUMBER));
+    ck_assert_ptr_null(cs_json_find_kind(root, "Ab", CS_JSON_TEXT));
     ck_assert_ptr_null(cs_json_at(cs_json_find(root, "ab"), 2));
     ck_assert_ptr_null(cs_json_at(root, 0));
     ck_assert_ptr_null(cs_json_find(cs_json_find(root, "n"), "x"));
     ck_assert_int_eq(cs_json_kind_of(cs_json_find(root, "n")), CS_JSON_NULL);
     ck_assert(!cs_json_is_true(cs_json_find(root, "f")));
     cs_json_destroy(root);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {numbers_are_strict,
-                                  strings_are_strict,
-                                  structure_is_strict,
-                                  keys_are_given_once,
-                                  depth_is_limited,
-                                  size_is_limited,
-                                  many_keys_are_checked_quickly,
-                                  values_know_their_places,
-                                  members_are_found_exactly};
-    return unit_run("json", tests, sizeof tests / sizeof *tests);
 }

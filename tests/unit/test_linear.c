@@ -90,7 +90,7 @@ static double residual_of(const struct solver *solver, const double *b, const do
     return sqrt(left / whole);
 }
 
-START_TEST(matrix_is_symmetric_and_blind_to_pins) {
+TEST(matrix_is_symmetric_and_blind_to_pins) {
     static const char *const models[] = {"relative", "axial"};
     for (size_t k = 0; k < 2; k++) {
         struct solver solver;
@@ -111,10 +111,9 @@ START_TEST(matrix_is_symmetric_and_blind_to_pins) {
         shut(&solver);
     }
 }
-END_TEST
 
 /* from the start 0 and from a wild one, at several tolerances */
-START_TEST(solution_is_that_of_a_dense_factor) {
+TEST(solution_is_that_of_a_dense_factor) {
     struct solver solver;
     static double a[ROWS][ROWS];
     double b[ROWS], expected[ROWS];
@@ -150,9 +149,8 @@ START_TEST(solution_is_that_of_a_dense_factor) {
         }
     shut(&solver);
 }
-END_TEST
 
-START_TEST(good_start_needs_no_iteration) {
+TEST(good_start_needs_no_iteration) {
     struct solver solver;
     double b[ROWS], u[ROWS] = {0}, residual;
     uint64_t iterations;
@@ -175,10 +173,9 @@ START_TEST(good_start_needs_no_iteration) {
         ck_assert_double_eq(u[row], 0);
     shut(&solver);
 }
-END_TEST
 
 /* Without springs A is diagonal, and the preconditioner is its inverse: one iteration. */
-START_TEST(diagonal_matrix_takes_one_iteration) {
+TEST(diagonal_matrix_takes_one_iteration) {
     struct sheet sheet;
     struct cs_arena arena = {0};
     struct cs_error error = {0};
@@ -205,11 +202,10 @@ START_TEST(diagonal_matrix_takes_one_iteration) {
     cs_arena_finish(&arena);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* A sheet pressed to a third of its size: the exact matrix is indefinite, the clamped one is
  * positive definite. */
-START_TEST(clamped_matrix_is_definite) {
+TEST(clamped_matrix_is_definite) {
     struct solver solver;
     static double a[ROWS][ROWS];
     start(&solver, "axial");
@@ -228,12 +224,11 @@ START_TEST(clamped_matrix_is_definite) {
     ck_assert(factor(a));
     shut(&solver);
 }
-END_TEST
 
 /* Two particles of 0.5 kg, k = 1 N/m, at half the rest length: across the spring the exact A is
  * ((m + a, -a), (-a, m + a)) with a = -|ck|, so that moving together costs m, moving apart
  * m + 2 a, and an own block has m + a. */
-START_TEST(indefinite_matrix_is_found_out) {
+TEST(indefinite_matrix_is_found_out) {
     struct sheet pair;
     struct cs_arena arena = {0};
     struct cs_error error = {0};
@@ -275,15 +270,4 @@ START_TEST(indefinite_matrix_is_found_out) {
     SHEET_ASSERT_AT(&pair, u, 0, 1 / (0.5 + 2 * 0.6), 0, 0, 1e-12);
     cs_arena_finish(&arena);
     sheet_close(&pair);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {matrix_is_symmetric_and_blind_to_pins,
-                                  solution_is_that_of_a_dense_factor,
-                                  good_start_needs_no_iteration,
-                                  diagonal_matrix_takes_one_iteration,
-                                  clamped_matrix_is_definite,
-                                  indefinite_matrix_is_found_out};
-    return unit_run("linear", tests, sizeof tests / sizeof *tests);
 }

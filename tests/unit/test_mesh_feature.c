@@ -49,7 +49,7 @@ static void differ(struct cs_feature_kind form, double p[4][3], double dp[4][3],
     }
 }
 
-START_TEST(derivatives_are_those_of_differences) {
+TEST(derivatives_are_those_of_differences) {
     uint64_t state = 1;
     double worst[3] = {0};
     for (int k = 0; k < 30000; k++) {
@@ -75,10 +75,9 @@ START_TEST(derivatives_are_those_of_differences) {
     ck_assert_msg(worst[0] < 1e-9 && worst[1] < 1e-9 && worst[2] < 1e-9, "%g %g %g", worst[0],
                   worst[1], worst[2]);
 }
-END_TEST
 
 /* a force along the gradient moves and turns nothing as a whole */
-START_TEST(gradient_keeps_momentum) {
+TEST(gradient_keeps_momentum) {
     uint64_t state = 3;
     double worst = 0;
     for (int k = 0; k < 10000; k++) {
@@ -89,7 +88,6 @@ START_TEST(gradient_keeps_momentum) {
     }
     ck_assert_msg(worst < 1e-12, "%g", worst);
 }
-END_TEST
 
 /* --- a mesh --- */
 
@@ -213,7 +211,7 @@ static void put(struct field *field, double x, double y, double z) {
 }
 
 /* over the inside of any flat mesh it is the law of the height, with no force along it */
-START_TEST(flat_meshes_are_felt_once) {
+TEST(flat_meshes_are_felt_once) {
     const double range = 0.4, y[] = {0.2, 0.5, 0.7, 0.9};
     uint64_t state = 5;
     double worst = 0;
@@ -235,7 +233,6 @@ START_TEST(flat_meshes_are_felt_once) {
     }
     ck_assert_msg(worst < 1e-9, "%g", worst);
 }
-END_TEST
 
 /* --- bent meshes --- */
 
@@ -346,7 +343,7 @@ static void check_reach(struct field *field, double range) {
 }
 
 /* features that are felt once are what all triangles together feel */
-START_TEST(facets_are_joined_to_the_same_sum) {
+TEST(facets_are_joined_to_the_same_sum) {
     uint64_t state = 11;
     double worst = 0;
     uint32_t tried = 0;
@@ -375,11 +372,10 @@ START_TEST(facets_are_joined_to_the_same_sum) {
     }
     ck_assert_msg(tried > 1000 && worst < 1e-9, "%u: %g", tried, worst);
 }
-END_TEST
 
 /* whatever the mesh is like, a point is pushed away from the nearest of it, by an energy that
  * is not small */
-START_TEST(bent_meshes_never_draw) {
+TEST(bent_meshes_never_draw) {
     const double range = 0.4;
     uint64_t state = 7;
     uint32_t tried = 0;
@@ -406,12 +402,4 @@ START_TEST(bent_meshes_never_draw) {
         cs_arena_finish(&field.arena);
     }
     ck_assert_uint_gt(tried, 1000);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {derivatives_are_those_of_differences, gradient_keeps_momentum,
-                                  flat_meshes_are_felt_once, facets_are_joined_to_the_same_sum,
-                                  bent_meshes_never_draw};
-    return unit_run("facet", tests, sizeof tests / sizeof *tests);
 }

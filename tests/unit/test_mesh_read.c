@@ -14,7 +14,7 @@ static enum cs_status read_obj(const char *text, const double scale[3], struct c
     "# four corners\r\no thing\ns off\nmtllib x y\n\n"                                         \
     "v 0 0 0\nv\t1 0 0 # behind\nv 0 1 0\r\nv 0 0 1e0\n"
 
-START_TEST(tetrahedron_is_whole) {
+TEST(tetrahedron_is_whole) {
     static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
     const double scale[3] = {2, 3, 4};
     struct cs_trimesh mesh;
@@ -38,9 +38,8 @@ START_TEST(tetrahedron_is_whole) {
     ck_assert_double_eq_tol(mesh.area[0], (3 + 4 + 6) / 3.0, 1e-15);
     cs_arena_finish(&arena);
 }
-END_TEST
 
-START_TEST(polygons_become_fans_with_texture) {
+TEST(polygons_become_fans_with_texture) {
     static const uint32_t triangles[9] = {0, 1, 2, 0, 2, 3, 0, 3, 4};
     struct cs_trimesh mesh;
     struct cs_arena arena = {0};
@@ -65,9 +64,8 @@ START_TEST(polygons_become_fans_with_texture) {
                         0); /* the last corner: -3 is the first of three */
     cs_arena_finish(&arena);
 }
-END_TEST
 
-START_TEST(bad_meshes_are_refused) {
+TEST(bad_meshes_are_refused) {
     static const struct {
         const char *text, *message;
     } bad[] = {
@@ -112,10 +110,9 @@ START_TEST(bad_meshes_are_refused) {
         cs_arena_finish(&arena);
     }
 }
-END_TEST
 
 /* Cut anywhere, the text is read or refused, and never read beyond its end. */
-START_TEST(truncated_text_is_refused_or_read) {
+TEST(truncated_text_is_refused_or_read) {
     static const char whole[] = TETRAHEDRON "vt 0 0\nf 1/1 3/1 2/1\nf 1/1 2/1 4/1\n";
     uint32_t refused = 0;
     for (size_t length = 0; length < sizeof whole; length++) {
@@ -132,9 +129,8 @@ START_TEST(truncated_text_is_refused_or_read) {
     }
     ck_assert_uint_ge(refused, sizeof whole - 10);
 }
-END_TEST
 
-START_TEST(zero_bytes_and_missing_files_are_refused) {
+TEST(zero_bytes_and_missing_files_are_refused) {
     struct cs_trimesh mesh = {0};
     struct cs_arena arena = {0};
     struct cs_error error = {0}, missing = {0};
@@ -143,12 +139,4 @@ START_TEST(zero_bytes_and_missing_files_are_refused) {
     cs_mesh_read("none.obj", "none.obj", plain, &mesh, &arena, &missing);
     UNIT_ASSERT_FAILED(&missing, CS_ERR_FILE, "none.obj");
     cs_arena_finish(&arena);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {tetrahedron_is_whole, polygons_become_fans_with_texture,
-                                  bad_meshes_are_refused, truncated_text_is_refused_or_read,
-                                  zero_bytes_and_missing_files_are_refused};
-    return unit_run("mesh_read", tests, sizeof tests / sizeof *tests);
 }

@@ -13,7 +13,7 @@ static double true_residual(struct crumple *crumple) {
 }
 
 /* what the recurrence calls the residual is one, whatever single precision does inside */
-START_TEST(residual_is_the_true_one) {
+TEST(residual_is_the_true_one) {
     for (int kind = 0; kind < KINDS; kind++)
         for (double k = 1; k < 1e7; k *= 1e3) {
             struct crumple crumple;
@@ -27,11 +27,10 @@ START_TEST(residual_is_the_true_one) {
             crumple_shut(&crumple);
         }
 }
-END_TEST
 
 /* Counts of iterations do not depend on the machine. At 64 x 64 the blocks of the diagonal
  * alone need 100 and more. */
-START_TEST(few_iterations_at_any_stiffness_and_size) {
+TEST(few_iterations_at_any_stiffness_and_size) {
     static const struct {
         int r;
         double rtol;
@@ -54,9 +53,8 @@ START_TEST(few_iterations_at_any_stiffness_and_size) {
                 crumple_shut(&crumple);
             }
 }
-END_TEST
 
-START_TEST(few_iterations_on_meshes) {
+TEST(few_iterations_on_meshes) {
     for (int detail = 12; detail <= 24; detail *= 2)
         for (double k = 1e2; k < 1e9; k *= 100) {
             struct crumple crumple;
@@ -70,11 +68,10 @@ START_TEST(few_iterations_on_meshes) {
             crumple_shut(&crumple);
         }
 }
-END_TEST
 
 /* A flat sheet has its mass across and nothing else, which single precision cannot see beside
  * the stiffness along, wherever it lies. */
-START_TEST(flat_sheets_are_solved) {
+TEST(flat_sheets_are_solved) {
     for (double stretched = 0.9; stretched < 1.15; stretched += 0.1)
         for (double k = 1e4; k < 1e9; k *= 100) {
             struct crumple crumple;
@@ -96,10 +93,9 @@ START_TEST(flat_sheets_are_solved) {
             crumple_shut(&crumple);
         }
 }
-END_TEST
 
 /* masses from 1e-9 kg on in one system, with stiffness to fit and not */
-START_TEST(range_of_single_precision_is_no_limit) {
+TEST(range_of_single_precision_is_no_limit) {
     for (double heavy = 1e-9; heavy < 1e7; heavy *= 1e4)
         for (double k = 1e2; k < 1e9; k *= 1e3) {
             struct crumple crumple;
@@ -117,11 +113,10 @@ START_TEST(range_of_single_precision_is_no_limit) {
             crumple_shut(&crumple);
         }
 }
-END_TEST
 
 /* A spread of masses inside one body that no preconditioner in single precision can do: the
  * solver gives up on it and is right all the same. */
-START_TEST(blocks_take_over_where_precision_ends) {
+TEST(blocks_take_over_where_precision_ends) {
     struct crumple crumple;
     sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
                CRUMPLE_GRID_VALUES(30, 1e3, ""));
@@ -136,10 +131,9 @@ START_TEST(blocks_take_over_where_precision_ends) {
     ck_assert_double_le(true_residual(&crumple), 1.01e-6);
     crumple_shut(&crumple);
 }
-END_TEST
 
 /* Without clamping: a stretched sheet is definite and solved; a pressed one is found out. */
-START_TEST(exact_matrix_is_solved_or_found_indefinite) {
+TEST(exact_matrix_is_solved_or_found_indefinite) {
     for (int pressed = 0; pressed < 2; pressed++) {
         struct crumple crumple;
         sheet_open(&crumple.sheet, CS_NEED_SOLVE, "{\"bodies\": [" CRUMPLE_GRID "]}",
@@ -158,10 +152,9 @@ START_TEST(exact_matrix_is_solved_or_found_indefinite) {
         crumple_shut(&crumple);
     }
 }
-END_TEST
 
 /* the rule of linear.h */
-START_TEST(levels_are_used_where_they_pay) {
+TEST(levels_are_used_where_they_pay) {
     static const struct {
         int r;
         double k;
@@ -174,30 +167,13 @@ START_TEST(levels_are_used_where_they_pay) {
         crumple_start(&crumple, 0.01);
         crumple_setup(&crumple, true);
         ck_assert_int_eq(crumple.linear.stiff, rows[row].stiff);
+        ck_assert_int_eq(cs_multigrid_is_used(&crumple.sheet.scene), rows[row].r > 24);
+        ck_assert_int_eq(crumple.linear.multigrid.n, rows[row].r > 24);
         crumple_shut(&crumple);
     }
 }
-END_TEST
 
-/* a grid's levels are planned to the byte, a mesh's about */
-START_TEST(plan_knows_the_memory) {
-    for (int kind = 0; kind < 3; kind += 2) {
-        struct crumple crumple;
-        struct cs_arena arena = {0};
-        struct cs_multigrid multigrid;
-        struct cs_error error = {0};
-        open_kind(&crumple, kind, 1e3);
-        cs_multigrid_init(&multigrid, &crumple.sheet.system, &arena, &error);
-        UNIT_ASSERT_OK(&error);
-        const double said = (double)cs_multigrid_bytes(&crumple.sheet.scene, false);
-        ck_assert_double_le(fabs(said - (double)arena.used), kind ? 0.4 * said : 0);
-        cs_arena_finish(&arena);
-        crumple_shut(&crumple);
-    }
-}
-END_TEST
-
-START_TEST(threads_change_no_bit) {
+TEST(threads_change_no_bit) {
     for (int kind = 0; kind < KINDS; kind++) {
         struct cs_error error = {0};
         double *alone = NULL;
@@ -222,19 +198,4 @@ START_TEST(threads_change_no_bit) {
         }
         free(alone);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {residual_is_the_true_one,
-                                  few_iterations_at_any_stiffness_and_size,
-                                  few_iterations_on_meshes,
-                                  flat_sheets_are_solved,
-                                  range_of_single_precision_is_no_limit,
-                                  blocks_take_over_where_precision_ends,
-                                  exact_matrix_is_solved_or_found_indefinite,
-                                  levels_are_used_where_they_pay,
-                                  plan_knows_the_memory,
-                                  threads_change_no_bit};
-    return unit_run("multigrid", tests, sizeof tests / sizeof *tests);
 }

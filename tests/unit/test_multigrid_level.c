@@ -36,7 +36,7 @@ static size_t cell_of(const struct cs_hierarchy *hierarchy, size_t i) {
 }
 
 /* but for the scale, in single precision */
-START_TEST(first_level_is_the_matrix) {
+TEST(first_level_is_the_matrix) {
     for (int kind = 0; kind < KINDS; kind++) {
         struct crumple crumple;
         open_kind(&crumple, kind, 1e3);
@@ -68,10 +68,9 @@ START_TEST(first_level_is_the_matrix) {
         crumple_shut(&crumple);
     }
 }
-END_TEST
 
 /* A translation costs the mass, on every level the same: halved springs change that not. */
-START_TEST(translations_cost_the_same_on_every_level) {
+TEST(translations_cost_the_same_on_every_level) {
     for (int kind = 1; kind < 3; kind++) {
         struct crumple crumple;
         open_kind(&crumple, kind, 1e4);
@@ -100,11 +99,10 @@ START_TEST(translations_cost_the_same_on_every_level) {
         crumple_shut(&crumple);
     }
 }
-END_TEST
 
 /* The theorem of multigrid_level.h, by power iteration: (A p).(D^-1 A p) / p.(A p) is below the
  * largest eigenvalue of D^-1 A and comes near to it. */
-START_TEST(smoother_bound_holds_on_every_level) {
+TEST(smoother_bound_holds_on_every_level) {
     for (int kind = 0; kind < KINDS; kind++)
         for (double k = 100; k < 1e9; k *= 1e3) {
             struct crumple crumple;
@@ -139,10 +137,9 @@ START_TEST(smoother_bound_holds_on_every_level) {
             crumple_shut(&crumple);
         }
 }
-END_TEST
 
 /* x.My = y.Mx to the rounding of single precision, x.Mx > 0, and nothing where pinned */
-START_TEST(cycle_is_symmetric_and_positive) {
+TEST(cycle_is_symmetric_and_positive) {
     for (int kind = 0; kind < KINDS; kind++) {
         struct crumple crumple;
         open_kind(&crumple, kind, 1e4);
@@ -169,12 +166,4 @@ START_TEST(cycle_is_symmetric_and_positive) {
         free(x);
         crumple_shut(&crumple);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        first_level_is_the_matrix, translations_cost_the_same_on_every_level,
-        smoother_bound_holds_on_every_level, cycle_is_symmetric_and_positive};
-    return unit_run("level", tests, sizeof tests / sizeof *tests);
 }

@@ -8,7 +8,7 @@
     "{\"total\": 1}}], " WIND "}"
 
 /* a plane has one normal, at its border too: +z hanging, +y flat, and turned with the cloth */
-START_TEST(plane_has_one_normal) {
+TEST(plane_has_one_normal) {
     static const struct {
         const char *more;
         double normal[3];
@@ -25,11 +25,10 @@ START_TEST(plane_has_one_normal) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* (right - left) x (up - down) of a stirred sheet, the particle itself where there is no
  * neighbour (cloth thesis, eq. 4.6-4.9) */
-START_TEST(normal_is_the_product_of_the_neighbours) {
+TEST(normal_is_the_product_of_the_neighbours) {
     enum { COLUMNS = 5, ROWS = 4, N = COLUMNS * ROWS };
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE, COLUMNS, ROWS, "");
@@ -54,10 +53,9 @@ START_TEST(normal_is_the_product_of_the_neighbours) {
     }
     sheet_close(&sheet);
 }
-END_TEST
 
 /* a row of particles spans nothing, nor does a sheet in one place: 0, not NAN */
-START_TEST(nothing_spanned_is_no_normal) {
+TEST(nothing_spanned_is_no_normal) {
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE, 5, 1, "");
     cs_normals_update(&sheet.system, sheet.x);
@@ -71,10 +69,9 @@ START_TEST(nothing_spanned_is_no_normal) {
         SHEET_ASSERT_AT(&sheet, sheet.system.normals, i, 0, 0, 0, 0);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* the second body's border is no neighbour of the first's */
-START_TEST(bodies_are_apart) {
+TEST(bodies_are_apart) {
     struct sheet sheet;
     sheet_open(&sheet, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]}, \"mass\": {\"total\": 1}},"
@@ -86,10 +83,9 @@ START_TEST(bodies_are_apart) {
                         1e-15);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* central differences with a step of 1e-6: truncation near 1e-11, rounding near 1e-10 */
-START_TEST(derivative_is_that_of_the_normal) {
+TEST(derivative_is_that_of_the_normal) {
     enum { N = 12 };
     struct sheet sheet;
     double dx[3 * N], x[3 * N], slope[3 * N], dn[3];
@@ -112,12 +108,4 @@ START_TEST(derivative_is_that_of_the_normal) {
         SHEET_ASSERT_AT(&sheet, slope, i, dn[0], dn[1], dn[2], 1e-8);
     }
     sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {plane_has_one_normal, normal_is_the_product_of_the_neighbours,
-                                  nothing_spanned_is_no_normal, bodies_are_apart,
-                                  derivative_is_that_of_the_normal};
-    return unit_run("normals", tests, sizeof tests / sizeof *tests);
 }

@@ -18,7 +18,7 @@ static char *read_all(const char *path, size_t expected) {
 
 /* Format 1.0: magic, version, little-endian length of the header's rest, and that rest ends in
  * a newline at a multiple of 64. */
-START_TEST(header_is_format_1_0) {
+TEST(header_is_format_1_0) {
     struct cs_error error = {0};
     const double a[6] = {0};
     cs_npy_write("h.npy", a, 2, &error);
@@ -32,10 +32,9 @@ START_TEST(header_is_format_1_0) {
     ck_assert_int_eq(bytes[127], '\n');
     free(bytes);
 }
-END_TEST
 
 /* component-major in memory, one row a particle in the file, little-endian */
-START_TEST(rows_are_particles) {
+TEST(rows_are_particles) {
     struct cs_error error = {0};
     const double a[6] = {1, 2, /* x */ 3, 4, /* y */ -0.5, 1e300 /* z */};
     static const unsigned char rows[2][3][8] = {
@@ -51,10 +50,9 @@ START_TEST(rows_are_particles) {
     ck_assert_mem_eq(bytes + 128, rows, sizeof rows);
     free(bytes);
 }
-END_TEST
 
 /* sizes round the blocks in which rows are written */
-START_TEST(every_particle_arrives) {
+TEST(every_particle_arrives) {
     static const uint32_t counts[] = {0, 1, 511, 512, 513, 1024, 1500};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
         struct cs_error error = {0};
@@ -77,9 +75,8 @@ START_TEST(every_particle_arrives) {
         free(a);
     }
 }
-END_TEST
 
-START_TEST(failure_leaves_no_file) {
+TEST(failure_leaves_no_file) {
     struct cs_error missing = {0}, limited = {0};
     double *a = calloc(3000, sizeof *a);
     cs_npy_write("none/x.npy", a, 10, &missing);
@@ -92,11 +89,4 @@ START_TEST(failure_leaves_no_file) {
     UNIT_ASSERT_FAILED(&limited, CS_ERR_FILE, "File too large");
     ck_assert_int_eq(unit_count_files("small"), 0);
     free(a);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {header_is_format_1_0, rows_are_particles,
-                                  every_particle_arrives, failure_leaves_no_file};
-    return unit_run("npy", tests, sizeof tests / sizeof *tests);
 }

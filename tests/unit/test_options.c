@@ -84,7 +84,7 @@ static struct all defaults(void) {
 }
 
 /* over whatever was in the struct before */
-START_TEST(every_field_gets_its_default) {
+TEST(every_field_gets_its_default) {
     const struct all all = defaults();
     ck_assert_double_eq(all.real, 0.25);
     ck_assert_double_nan(all.absent);
@@ -99,9 +99,8 @@ START_TEST(every_field_gets_its_default) {
     ck_assert_double_eq(all.inner.weight, 3);
     ck_assert(all.list.n == 0 && !all.list.items);
 }
-END_TEST
 
-START_TEST(absent_values_are_known) {
+TEST(absent_values_are_known) {
     struct all all = defaults();
     static const char *const absent[] = {"absent", "text", "inner", "list"};
     for (uint32_t r = 0; r < table.n; r++) {
@@ -118,7 +117,6 @@ START_TEST(absent_values_are_known) {
     for (uint32_t r = 0; r < table.n; r++)
         ck_assert(cs_option_is_set(rows + r, &all));
 }
-END_TEST
 
 /* what `set` makes of a text: OK, or a message with all of the part */
 static void check_set(struct all *all, const char *name, const char *text, const char *part) {
@@ -134,7 +132,7 @@ static void check_set(struct all *all, const char *name, const char *text, const
         UNIT_ASSERT_OK(&error);
 }
 
-START_TEST(text_sets_each_type) {
+TEST(text_sets_each_type) {
     struct all all = defaults();
     check_set(&all, "real", "1e-3", NULL);
     check_set(&all, "absent", "0", NULL);
@@ -152,10 +150,9 @@ START_TEST(text_sets_each_type) {
         ck_assert(all.fact);
     }
 }
-END_TEST
 
 /* with the range in the message, and the field as it was */
-START_TEST(wrong_values_are_refused) {
+TEST(wrong_values_are_refused) {
     struct all all = defaults();
     check_set(&all, "real", "1.0001", "1.0001 is out of range (0..1 s)");
     check_set(&all, "real", "-1e-9", "out of range");
@@ -172,9 +169,8 @@ START_TEST(wrong_values_are_refused) {
     ck_assert(all.fact);
     ck_assert_int_eq(all.mode, 1);
 }
-END_TEST
 
-START_TEST(components_are_named) {
+TEST(components_are_named) {
     struct cs_error error = {0};
     const struct cs_option *row = cs_option_find(&table, "vector");
     ck_assert_int_eq(cs_option_check_range(row, 5, 1, "a.b", CS_ERR_SCENE, &error), CS_OK);
@@ -188,18 +184,16 @@ START_TEST(components_are_named) {
     cs_option_check_range(row, HUGE_VAL, 0, "a.c", CS_ERR_SCENE, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE, "out of range");
 }
-END_TEST
 
-START_TEST(rows_are_found_by_name) {
+TEST(rows_are_found_by_name) {
     ck_assert_ptr_eq(cs_option_find(&table, "whole"), rows + 2);
     ck_assert_ptr_null(cs_option_find(&table, "Whole"));
     ck_assert_ptr_null(cs_option_find(&table, ""));
     ck_assert_str_eq(cs_option_nearest(&table, "vectro"), "vector");
     ck_assert_ptr_null(cs_option_nearest(&table, "zzzzzzzz"));
 }
-END_TEST
 
-START_TEST(values_are_printed_as_json) {
+TEST(values_are_printed_as_json) {
     static const char *const expected[] = {"0.25",      "null",   "3",    "true", "\"exact\"",
                                            "[1.5, -2]", "[4, 4]", "\"\"", "",     ""};
     const struct all all = defaults();
@@ -210,9 +204,8 @@ START_TEST(values_are_printed_as_json) {
         cs_text_finish(&text);
     }
 }
-END_TEST
 
-START_TEST(ranges_are_printed) {
+TEST(ranges_are_printed) {
     static const char *const expected[] = {
         "0..1 s", "0..1 m", "1..9", "true or false", "fast, exact", "-5..5 m", "0..5",
         "",       "",       ""};
@@ -223,12 +216,39 @@ START_TEST(ranges_are_printed) {
         cs_text_finish(&text);
     }
 }
-END_TEST
 
-int main(void) {
-    const TTest *const tests[] = {every_field_gets_its_default, absent_values_are_known,
-                                  text_sets_each_type,          wrong_values_are_refused,
-                                  components_are_named,         rows_are_found_by_name,
-                                  values_are_printed_as_json,   ranges_are_printed};
-    return unit_run("options", tests, sizeof tests / sizeof *tests);
+/* without an object: the default */
+TEST(defaults_and_words_are_printed) {
+    static const char *const json[] = {"0.25",      "null",      "3",     "true",
+                                       "\"exact\"", "[1.5, -2]", "[4, 4]"};
+    static const char *const plain[] = {"0.25",  "null",    "3",   "true",
+                                        "exact", "1.5, -2", "4, 4"};
+    for (uint32_t r = 0; r < sizeof json / sizeof *json; r++) {
+        struct cs_text text = {0}, words = {0};
+        cs_option_print(rows + r, NULL, &text);
+        cs_option_print_plain(rows + r, NULL, &words);
+        ck_assert_str_eq(cs_text_get(&text), json[r]);
+        ck_assert_str_eq(cs_text_get(&words), plain[r]);
+        cs_text_finish(&text);
+        cs_text_finish(&words);
+    }
+}
+
+TEST(what_is_expected_is_named) {
+    static const char *const expected[] = {"a number (0..1 s)",
+                                           "a number (0..1 m)",
+                                           "a whole number (1..9)",
+                                           "true or false",
+                                           "one of fast, exact",
+                                           "a list of 2 numbers (-5..5 m)",
+                                           "a list of 2 whole numbers (0..5)",
+                                           "a text",
+                                           "an object",
+                                           "a list"};
+    for (uint32_t r = 0; r < table.n; r++) {
+        struct cs_text text = {0};
+        cs_option_print_expected(rows + r, &text);
+        ck_assert_str_eq(cs_text_get(&text), expected[r]);
+        cs_text_finish(&text);
+    }
 }

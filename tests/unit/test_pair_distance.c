@@ -60,7 +60,7 @@ static bool is_inside(const struct cs_pair_distance *s) {
 
 /* Never below the true distance. Inside the rim it is that of the point to the plane; of edges
  * it exceeds it by what pulling to the middles does. */
-START_TEST(distance_is_never_too_small) {
+TEST(distance_is_never_too_small) {
     uint64_t state = 1;
     int inside = 0;
     for (int pair = 0; pair < PAIRS; pair++)
@@ -78,10 +78,9 @@ START_TEST(distance_is_never_too_small) {
         }
     ck_assert_int_gt(inside, PAIRS / 50);
 }
-END_TEST
 
 /* at right angles over the inside of both it is the height itself */
-START_TEST(distance_inside_is_the_height) {
+TEST(distance_inside_is_the_height) {
     double triangle[4][3] = {{0.3, 0.3, -0.25}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     double edges[4][3] = {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0.25}, {0.5, 1, 0.25}};
     double g[4][3];
@@ -94,7 +93,6 @@ START_TEST(distance_inside_is_the_height) {
     distance_at(CS_PAIR_EDGE_EDGE, aside, g);
     ck_assert_double_eq_tol(g[1][2], -0.75, 1e-3);
 }
-END_TEST
 
 /* slopes of the distance against the gradient, and of the gradient against the tangent; both
  * relative to the largest, by the best of several steps */
@@ -118,7 +116,7 @@ static void differ(const struct cs_pair_distance *s, double p[4][3], double dp[4
     }
 }
 
-START_TEST(derivatives_are_those_of_differences) {
+TEST(derivatives_are_those_of_differences) {
     uint64_t state = 2;
     for (int kind = 0; kind < 2; kind++) {
         double worst[2] = {0, 0};
@@ -140,10 +138,9 @@ START_TEST(derivatives_are_those_of_differences) {
                       worst[1]);
     }
 }
-END_TEST
 
 /* a force along the gradient moves and turns nothing as a whole */
-START_TEST(gradient_keeps_momentum) {
+TEST(gradient_keeps_momentum) {
     uint64_t state = 3;
     double worst = 0;
     for (int pair = 0; pair < PAIRS; pair++)
@@ -155,10 +152,9 @@ START_TEST(gradient_keeps_momentum) {
         }
     ck_assert_msg(worst < 1e-12, "%g", worst);
 }
-END_TEST
 
 /* points in one place, edges without length: numbers, not NAN */
-START_TEST(degenerate_pairs_stay_finite) {
+TEST(degenerate_pairs_stay_finite) {
     for (int kind = 0; kind < 2; kind++)
         for (int same = 1; same <= 4; same++) {
             double p[4][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, g[4][3], dg[4][3],
@@ -171,12 +167,4 @@ START_TEST(degenerate_pairs_stay_finite) {
             cs_pair_distance_tangent(&s, p, dg, dw);
             ck_assert(isfinite(s.d) && isfinite(place_size(g)) && isfinite(place_size(dg)));
         }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {distance_is_never_too_small, distance_inside_is_the_height,
-                                  derivatives_are_those_of_differences, gradient_keeps_momentum,
-                                  degenerate_pairs_stay_finite};
-    return unit_run("stencil", tests, sizeof tests / sizeof *tests);
 }

@@ -47,7 +47,7 @@ static uint32_t built(const struct cs_plan *plan) {
 }
 
 /* one key at a time on top of a cloth in gravity */
-START_TEST(each_key_builds_its_feature) {
+TEST(each_key_builds_its_feature) {
     const uint32_t least = BIT(SPRINGS) | FORCE(gravity);
     static const char still[] = "\"wind\": {\"direction\": [1, 0, 0], \"strength\": ";
     char wind[200], wind_n[200], calm[200];
@@ -97,48 +97,81 @@ START_TEST(each_key_builds_its_feature) {
     const struct cs_plan drawn = plan_of(rows[0].scene, 0, true);
     ck_assert_uint_eq(built(&drawn), least | BIT(RENDER));
 }
-END_TEST
 
-START_TEST(bytes_are_those_of_the_arrays) {
-    const struct cs_plan plan = plan_of(CLOTH("") ", \"forces\": {\"wind\": {\"direction\":"
-                                                  " [1, 0, 0], \"strength\": 2}}}",
-                                        CS_NEED_SPRINGS | CS_NEED_SOLVE, false);
-    ck_assert_uint_eq(plan.n, N);
-    ck_assert_uint_eq(plan.n_springs, S);
-    ck_assert_uint_eq(plan.n_bodies, 1);
-    ck_assert_uint_eq(plan.state_bytes, 11 * N * RS + sizeof(struct cs_body_range));
-    ck_assert_uint_eq(plan.forces[number_of(&cs_term_wind)].bytes, 3 * N * RS);
-    ck_assert_uint_eq(plan.rows[CS_FEATURE_AREA].bytes, N * RS);
-    ck_assert_uint_eq(plan.rows[CS_FEATURE_SOLVER].bytes, (4 * S + 22 * N) * RS);
+#define WIND ", \"forces\": {\"wind\": {\"direction\": [1, 0, 0], \"strength\": 2}}"
+
+TEST(bytes_are_those_of_the_arrays) {
+    struct sheet sheet;
+    sheet_open(&sheet, CS_NEED_SPRINGS, "%s", CLOTH(", \"pins\": [\"top\"]") WIND "}");
+    const struct cs_plan *plan = &sheet.system.plan;
+    ck_assert_uint_eq(plan->n, N);
+    ck_assert_uint_eq(plan->n_springs, S);
+    ck_assert_uint_eq(plan->n_bodies, 1);
+    ck_assert_uint_eq(plan->state_bytes,
+                      11 * N * RS + sizeof(struct cs_body_range) + 3 * sizeof(uint32_t));
+    ck_assert_uint_eq(plan->forces[number_of(&cs_term_wind)].bytes, 3 * N * RS);
+    ck_assert_uint_eq(plan->rows[CS_FEATURE_AREA].bytes, N * RS);
+    /* ends and kind; length, stiffness and damping; axial or not */
+    ck_assert_uint_eq(plan->rows[CS_FEATURE_SPRING_LIST].bytes,
+                      S * (3 * sizeof(uint32_t) + 3 * RS + 1));
+    sheet_close(&sheet);
 }
-END_TEST
 
-/* what the plan promises of the system's arrays is what the system takes */
-START_TEST(system_takes_what_was_planned) {
-    static const size_t arrays[] = {CS_FEATURE_SPRINGS, CS_FEATURE_AREA, CS_FEATURE_SPRING_LIST,
-                                    CS_FEATURE_CLUSTERS};
-    static const uint32_t needs[] = {0, CS_NEED_SPRINGS, CS_NEED_CLUSTERS};
-    for (int n = 0; n < 3; n++) {
+/* of a plan that was built; meshes are the scene's */
+static size_t sum_of(const struct cs_plan *plan) {
+    size_t bytes = plan->state_bytes - plan->rows[CS_FEATURE_MESHES].bytes;
+    for (uint32_t f = 0; f < CS_FEATURES; f++)
+        bytes += plan->rows[f].bytes;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        bytes += plan->forces[k].bytes;
+    return bytes;
+}
+
+/* rows that have bytes */
+static uint32_t taken(const struct cs_plan *plan) {
+    uint32_t bits = 0;
+    for (uint32_t f = 0; f < CS_FEATURES; f++)
+        bits |= (uint32_t)(plan->rows[f].bytes > 0) << f;
+    for (uint32_t k = 0; k < cs_n_terms; k++)
+        bits |= (uint32_t)(plan->forces[k].bytes > 0) << (CS_FEATURES + k);
+    return bits;
+}
+
+/* what the system takes stands in the row of what it is for, contact's too */
+TEST(every_byte_is_in_one_row) {
+#define MET ", \"self_contact\": true, \"thickness\": 0.01"
+#define LAW ", \"contact\": {\"law\": \"force\"}, \"colliders\": "
+    const struct {
+        const char *scene;
+        uint32_t needs, taken;
+    } rows[] = {
+        {CLOTH("") "}", 0, BIT(SPRINGS)},
+        {CLOTH("") "}", CS_NEED_SPRINGS, BIT(SPRINGS) | BIT(SPRING_LIST)},
+        {CLOTH(", \"shape_matching\": {\"springs\": true, \"clusters\": 2}") WIND "}",
+         CS_NEED_CLUSTERS, BIT(SPRINGS) | BIT(CLUSTERS) | BIT(AREA) | FORCE(wind)},
+        {CLOTH("") LAW "[{\"floor\": {\"height\": -2}}]}", 0, BIT(SPRINGS) | FORCE(contact)},
+        {CLOTH("") LAW "[{\"sphere\": {\"centre\": [0, -9, 0], \"radius\": 0.1}, "
+                       "\"thickness\": 0.02}]}",
+         0, BIT(SPRINGS) | FORCE(contact) | FORCE(cover)},
+        {CLOTH(MET) LAW "[{\"mesh\": {\"shape\": \"box\", \"place\": "
+                        "{\"translate\": [0, -9, 0]}}}]}",
+         0, BIT(SPRINGS) | BIT(MESHES) | BIT(CROSSINGS) | FORCE(pairs)},
+        {CLOTH("") ", \"events\": [{\"from\": 1, \"to\": 2, \"viewpoint_force\": "
+                   "{\"force\": 1}}]}",
+         0, BIT(SPRINGS) | BIT(EVENTS) | BIT(VIEWPOINT_FORCES)},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct sheet sheet;
-        sheet_open(
-            &sheet, needs[n],
-            CLOTH(", \"shape_matching\": {\"springs\": true, \"clusters\": 2}") ", \"forces\": "
-                                                                                "{\"wind\": "
-                                                                                "{\"direction\""
-                                                                                ": [1, 0, 0],"
-                                                                                " \"strength\":"
-                                                                                " 2}}}");
-        size_t bytes = sheet.system.plan.state_bytes +
-                       sheet.system.plan.forces[number_of(&cs_term_wind)].bytes;
-        for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-            bytes += sheet.system.plan.rows[arrays[k]].bytes;
-        ck_assert_uint_eq(sheet.system.arena.used, bytes);
+        sheet_open(&sheet, rows[k].needs, "%s", rows[k].scene);
+        ck_assert_msg(taken(&sheet.system.plan) == rows[k].taken,
+                      "%s: bytes in %x, expected in %x", rows[k].scene,
+                      taken(&sheet.system.plan), rows[k].taken);
+        ck_assert_uint_eq(sum_of(&sheet.system.plan), sheet.system.arena.used);
         sheet_close(&sheet);
     }
 }
-END_TEST
 
-START_TEST(plan_is_printed_a_line_a_feature) {
+TEST(plan_is_printed_a_line_a_feature) {
     const struct cs_plan plan = plan_of(CLOTH("") "}", 0, false);
     struct cs_text text = {0};
     cs_plan_print(&plan, &text);
@@ -149,12 +182,4 @@ START_TEST(plan_is_printed_a_line_a_feature) {
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ncontact        left out "));
     ck_assert_ptr_nonnull(strstr(cs_text_get(&text), "\ngravity        built "));
     cs_text_finish(&text);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {each_key_builds_its_feature, bytes_are_those_of_the_arrays,
-                                  system_takes_what_was_planned,
-                                  plan_is_printed_a_line_a_feature};
-    return unit_run("plan", tests, sizeof tests / sizeof *tests);
 }

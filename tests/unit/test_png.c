@@ -20,7 +20,7 @@ static void read_file(const char *path, unsigned char **bytes, size_t *length) {
     UNIT_ASSERT_OK(&error);
 }
 
-START_TEST(pixels_come_back) {
+TEST(pixels_come_back) {
     static const uint32_t sizes[][2] = {{1, 1}, {7, 3}, {64, 48}, {1, 300}};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
         for (int level = 0; level <= 9; level += 3) {
@@ -36,7 +36,6 @@ START_TEST(pixels_come_back) {
             free(back.rgb);
         }
 }
-END_TEST
 
 /* the payload of the number-th chunk of a kind, NULL if there are fewer */
 static const unsigned char *find_chunk(const unsigned char *bytes, size_t length,
@@ -50,7 +49,7 @@ static const unsigned char *find_chunk(const unsigned char *bytes, size_t length
     return NULL;
 }
 
-START_TEST(texts_are_in_the_file_and_no_time) {
+TEST(texts_are_in_the_file_and_no_time) {
     struct cs_error error = {0};
     struct cs_image image = make_picture(20, 10);
     const struct cs_png_text texts[] = {
@@ -75,9 +74,8 @@ START_TEST(texts_are_in_the_file_and_no_time) {
     free(bytes);
     free(image.rgb);
 }
-END_TEST
 
-START_TEST(texts_come_back) {
+TEST(texts_come_back) {
     static const char *const keys[] = {"state-hash", "none", "e"};
     struct cs_error error = {0};
     struct cs_image image = make_picture(20, 10), back;
@@ -96,11 +94,10 @@ START_TEST(texts_come_back) {
     free(values[2]);
     free(image.rgb);
 }
-END_TEST
 
 /* colours stay what they are behind what covers nothing, and the file says that there are four
  * channels */
-START_TEST(pictures_may_have_alpha) {
+TEST(pictures_may_have_alpha) {
     struct cs_error error = {0};
     struct cs_image image = make_picture(33, 7), back;
     uint8_t alpha[33 * 7];
@@ -129,10 +126,9 @@ START_TEST(pictures_may_have_alpha) {
     free(image.rgb);
     free(back.rgb);
 }
-END_TEST
 
 /* larger, smaller and larger again than the memory that is there */
-START_TEST(pictures_share_work_memory) {
+TEST(pictures_share_work_memory) {
     static const uint32_t sizes[][2] = {{7, 3}, {64, 48}, {1, 1}, {300, 200}};
     struct cs_error error = {0};
     struct cs_png_encoder work = {.level = 1};
@@ -148,9 +144,8 @@ START_TEST(pictures_share_work_memory) {
     }
     cs_png_encoder_finish(&work);
 }
-END_TEST
 
-START_TEST(same_picture_same_bytes) {
+TEST(same_picture_same_bytes) {
     struct cs_error error = {0};
     struct cs_image image = make_picture(50, 40);
     unsigned char *a, *b;
@@ -165,7 +160,6 @@ START_TEST(same_picture_same_bytes) {
     free(b);
     free(image.rgb);
 }
-END_TEST
 
 /* A 2 x 1 picture of each kind of pixel, made by hand: signature, IHDR, PLTE and tRNS where the
  * kind has them, IDAT as a stored deflate block, IEND. */
@@ -229,7 +223,7 @@ static size_t make_png(const struct kind *kind, uint32_t width, uint32_t height,
     return (size_t)(end - bytes);
 }
 
-START_TEST(every_kind_becomes_rgb) {
+TEST(every_kind_becomes_rgb) {
     static const struct kind kinds[] = {
         {8, 2, 0, 6, {0}, {1, 2, 3, 4, 5, 6}, {1, 2, 3, 4, 5, 6}, 0},       /* RGB */
         {8, 6, 0, 8, {0}, {1, 2, 3, 0, 4, 5, 6, 9}, {1, 2, 3, 4, 5, 6}, 0}, /* RGBA */
@@ -251,11 +245,10 @@ START_TEST(every_kind_becomes_rgb) {
         free(image.rgb);
     }
 }
-END_TEST
 
 /* a claim of size that the file cannot hold costs no memory; sides beyond the limit are refused
  */
-START_TEST(huge_claims_are_refused) {
+TEST(huge_claims_are_refused) {
     static const struct kind rgb = {8, 2, 0, 6, {0}, {1, 2, 3, 4, 5, 6}, {0}, 0};
     static const struct {
         uint32_t width, height;
@@ -270,9 +263,8 @@ START_TEST(huge_claims_are_refused) {
         ck_assert_ptr_null(image.rgb);
     }
 }
-END_TEST
 
-START_TEST(truncated_anywhere_is_refused) {
+TEST(truncated_anywhere_is_refused) {
     struct cs_error made = {0};
     struct cs_image image = make_picture(16, 16);
     const struct cs_png_text text = {"Source", "0123"};
@@ -293,10 +285,9 @@ START_TEST(truncated_anywhere_is_refused) {
     free(bytes);
     free(image.rgb);
 }
-END_TEST
 
 /* a flipped bit is refused or leaves the pixels alone (in a text), and never crashes */
-START_TEST(flipped_bits_do_not_pass) {
+TEST(flipped_bits_do_not_pass) {
     struct cs_error made = {0};
     struct cs_image image = make_picture(16, 16);
     unsigned char *bytes;
@@ -315,9 +306,8 @@ START_TEST(flipped_bits_do_not_pass) {
     free(bytes);
     free(image.rgb);
 }
-END_TEST
 
-START_TEST(failure_leaves_no_file) {
+TEST(failure_leaves_no_file) {
     struct cs_error missing = {0}, limited = {0}, absent = {0}, other = {0};
     struct cs_image image = make_picture(200, 200), none;
     cs_png_write("none/x.png", &image, 1, NULL, 0, &missing);
@@ -334,20 +324,4 @@ START_TEST(failure_leaves_no_file) {
     UNIT_ASSERT_FAILED(&limited, CS_ERR_FILE, "cannot write \"small/x.png\": File too large");
     ck_assert_int_eq(unit_count_files("small"), 0);
     free(image.rgb);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {pixels_come_back,
-                                  texts_are_in_the_file_and_no_time,
-                                  texts_come_back,
-                                  pictures_may_have_alpha,
-                                  same_picture_same_bytes,
-                                  pictures_share_work_memory,
-                                  every_kind_becomes_rgb,
-                                  huge_claims_are_refused,
-                                  truncated_anywhere_is_refused,
-                                  flipped_bits_do_not_pass,
-                                  failure_leaves_no_file};
-    return unit_run("png", tests, sizeof tests / sizeof *tests);
 }

@@ -31,7 +31,7 @@ static void count(void *arg, uint32_t block) {
     stats->times[block]++;
 }
 
-START_TEST(every_block_is_done_once) {
+TEST(every_block_is_done_once) {
     static struct tally stats;
     for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
         start(threads[t]);
@@ -45,7 +45,6 @@ START_TEST(every_block_is_done_once) {
     }
     cs_pool_stop();
 }
-END_TEST
 
 static void note_order(void *arg, uint32_t block) {
     struct tally *stats = arg;
@@ -63,7 +62,7 @@ static void check_order(uint32_t blocks) {
         ck_assert_uint_eq(stats.order[b], b);
 }
 
-START_TEST(one_thread_goes_in_order) {
+TEST(one_thread_goes_in_order) {
     check_order(100); /* without a pool */
     start(1);
     check_order(100);
@@ -74,14 +73,13 @@ START_TEST(one_thread_goes_in_order) {
     cs_pool_stop();
     ck_assert_uint_eq(cs_pool_threads(), 1);
 }
-END_TEST
 
 static void run_inner(void *arg, uint32_t block) {
     (void)block;
     cs_pool_run(50, count, arg);
 }
 
-START_TEST(a_loop_within_a_loop_is_the_threads_own) {
+TEST(a_loop_within_a_loop_is_the_threads_own) {
     static struct tally stats;
     start(3);
     cs_pool_run(40, run_inner, &stats);
@@ -89,7 +87,6 @@ START_TEST(a_loop_within_a_loop_is_the_threads_own) {
         ck_assert_uint_eq(stats.times[b], 40);
     cs_pool_stop();
 }
-END_TEST
 
 /* two threads that are not of the pool ask at once: both loops are whole */
 static void *ask_often(void *arg) {
@@ -98,7 +95,7 @@ static void *ask_often(void *arg) {
     return NULL;
 }
 
-START_TEST(two_callers_do_not_disturb_each_other) {
+TEST(two_callers_do_not_disturb_each_other) {
     static struct tally here, there;
     pthread_t other;
     start(3);
@@ -111,7 +108,6 @@ START_TEST(two_callers_do_not_disturb_each_other) {
         ck_assert_uint_eq(there.times[b], 500);
     }
 }
-END_TEST
 
 /* each loop reads what others wrote in the one before, without an atomic word */
 enum { ROUNDS = 2000, CELLS = 64 };
@@ -121,7 +117,7 @@ static void pass_on(void *arg, uint32_t block) {
     cells[(round + 1) % 2][block] = cells[round % 2][(block + 1) % CELLS] + 1;
 }
 
-START_TEST(a_loop_sees_what_the_last_one_wrote) {
+TEST(a_loop_sees_what_the_last_one_wrote) {
     start(4);
     for (uint32_t round = 0; round < ROUNDS; round++)
         cs_pool_run(CELLS, pass_on, &round);
@@ -129,9 +125,8 @@ START_TEST(a_loop_sees_what_the_last_one_wrote) {
         ck_assert_uint_eq(cells[ROUNDS % 2][c], ROUNDS);
     cs_pool_stop();
 }
-END_TEST
 
-START_TEST(starts_and_stops_repeatedly) {
+TEST(starts_and_stops_repeatedly) {
     static struct tally stats;
     for (int k = 0; k < 100; k++) {
         start(1 + (uint32_t)k % 5);
@@ -143,7 +138,6 @@ START_TEST(starts_and_stops_repeatedly) {
     for (uint32_t b = 0; b < 10; b++)
         ck_assert_uint_eq(stats.times[b], 100);
 }
-END_TEST
 
 /* Under the address sanitizer this case is left out: a thread of the parent may hold a lock of
  * the sanitizer's allocator while the process forks. Nobody opens that lock in the child, which
@@ -158,7 +152,7 @@ END_TEST
 
 #if FORKS
 /* a child has one thread and may start its own; the parent's go on */
-START_TEST(a_child_has_no_pool) {
+TEST(a_child_has_no_pool) {
     static struct tally stats;
     int end = 1;
     start(4);
@@ -180,7 +174,6 @@ START_TEST(a_child_has_no_pool) {
     ck_assert_uint_eq(stats.times[999], 2);
     cs_pool_stop();
 }
-END_TEST
 #endif
 
 /* a thread of the pool never takes a signal */
@@ -198,7 +191,7 @@ static void send_signal(void *arg, uint32_t block) {
         kill(getpid(), SIGUSR1);
 }
 
-START_TEST(signals_are_the_callers) {
+TEST(signals_are_the_callers) {
     signal(SIGUSR1, take_signal);
     start(4);
     for (int k = 0; k < 100; k++) {
@@ -209,21 +202,4 @@ START_TEST(signals_are_the_callers) {
         ck_assert(pthread_equal(taker, pthread_self()));
     }
     cs_pool_stop();
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        every_block_is_done_once,
-        one_thread_goes_in_order,
-        a_loop_within_a_loop_is_the_threads_own,
-        two_callers_do_not_disturb_each_other,
-        a_loop_sees_what_the_last_one_wrote,
-        starts_and_stops_repeatedly,
-#if FORKS
-        a_child_has_no_pool,
-#endif
-        signals_are_the_callers
-    };
-    return unit_run("pool", tests, sizeof tests / sizeof *tests);
 }

@@ -54,7 +54,7 @@ static double sampled(const struct cs_posed_collider *of, const double p[3]) {
     return sqrt(least) - of->radius;
 }
 
-START_TEST(sine_and_cosine_are_those_of_libm) {
+TEST(sine_and_cosine_are_those_of_libm) {
     for (int k = 0; k < 4000; k++) {
         const double angle = 0.013 * k;
         double sine, cosine;
@@ -64,11 +64,10 @@ START_TEST(sine_and_cosine_are_those_of_libm) {
         ck_assert_double_eq_tol(cosine, cos(angle), 1e-15 + 2.3e-16 * angle);
     }
 }
-END_TEST
 
 /* Outside the core the distance is the smallest one to any point of it, less the radius. The
  * grid's cells are 0.02 m at most, so that it is at most 0.02^2 / distance too large. */
-START_TEST(distance_is_the_least_to_the_core) {
+TEST(distance_is_the_least_to_the_core) {
     static const int list[] = {SPHERE, BOX, CAPSULE, ROUND};
     for (size_t k = 0; k < 4; k++) {
         struct cs_posed_collider of;
@@ -85,10 +84,9 @@ START_TEST(distance_is_the_least_to_the_core) {
         }
     }
 }
-END_TEST
 
 /* Going back by d along -n ends on the surface, where the normal is the same. */
-START_TEST(normal_leads_to_the_surface) {
+TEST(normal_leads_to_the_surface) {
     for (uint32_t k = 0; k < N_COLLIDERS; k++) {
         struct cs_posed_collider of;
         uint64_t seed = 11;
@@ -109,9 +107,8 @@ START_TEST(normal_leads_to_the_surface) {
         }
     }
 }
-END_TEST
 
-START_TEST(floor_and_plane_are_half_spaces) {
+TEST(floor_and_plane_are_half_spaces) {
     struct cs_posed_collider of;
     double n[3];
     const double below[3] = {5, -1, 7},
@@ -122,10 +119,9 @@ START_TEST(floor_and_plane_are_half_spaces) {
     cs_posed_collider_at(&at_rest, PLANE, 0, &of);
     ck_assert_double_eq_tol(cs_posed_collider_distance(&of, off, n), 2, 1e-15);
 }
-END_TEST
 
 /* What has no nearest point is pushed upwards. */
-START_TEST(middle_has_a_normal) {
+TEST(middle_has_a_normal) {
     static const int list[] = {SPHERE, CAPSULE};
     for (size_t k = 0; k < 2; k++) {
         struct cs_posed_collider of;
@@ -138,7 +134,6 @@ START_TEST(middle_has_a_normal) {
         ck_assert(n[0] == 0 && n[1] == 1 && n[2] == 0);
     }
 }
-END_TEST
 
 /* what is not a number is the largest */
 static double larger(double a, double b) {
@@ -148,7 +143,7 @@ static double larger(double a, double b) {
 /* Gradient and Hessian against central differences with a step of 1e-5 m. Third derivatives
  * reach 60 / band^2, which makes 1e-10 / 0.03^2 the scale of the truncation. Deep inside, where
  * the nearest face changes, the function has a bend: points there are left out. */
-START_TEST(derivatives_match_differences) {
+TEST(derivatives_match_differences) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const double step = 1e-5;
     double worst[2] = {0, 0};
@@ -160,7 +155,7 @@ START_TEST(derivatives_match_differences) {
             double p[3], g[3], h[6], ahead[3], behind[3], unused[6];
             draw_point(&seed, &of, p);
             const double d = cs_posed_collider_smooth_distance(&of, p, g, h);
-            if (d < -0.5 * of.radius && of.kind != CS_COLLIDER_PLANE)
+            if (d < -0.5 * of.radius && !cs_shape_is_endless(of.shape))
                 continue;
             for (int c = 0; c < 3; c++) {
                 const double kept = p[c];
@@ -181,10 +176,9 @@ START_TEST(derivatives_match_differences) {
     ck_assert_double_le(worst[0], 2e-7);
     ck_assert_double_le(worst[1], 2e-5);
 }
-END_TEST
 
 /* On a face of the box the distance is exact to any depth, with a gradient of length 1. */
-START_TEST(faces_are_exact) {
+TEST(faces_are_exact) {
     struct cs_posed_collider of;
     cs_posed_collider_at(&at_rest, BOX, 0, &of);
     for (int depth = -20; depth <= 20; depth++) {
@@ -200,10 +194,9 @@ START_TEST(faces_are_exact) {
             ck_assert_double_eq_tol(h[e], 0, 1e-10);
     }
 }
-END_TEST
 
 /* never smaller than the distance, and larger by at most 0.01 radii outside */
-START_TEST(smooth_distance_is_near_the_distance) {
+TEST(smooth_distance_is_near_the_distance) {
     static const int list[] = {BOX, CAPSULE, ROUND};
     double excess = 0, shortest = HUGE_VAL;
     bool below = false;
@@ -228,7 +221,6 @@ START_TEST(smooth_distance_is_near_the_distance) {
     ck_assert_double_le(excess, 0.01);
     ck_assert_double_ge(excess, 0.003); // it is not the distance itself
 }
-END_TEST
 
 /* largest change of the Hessian from one of n points of a way to the next */
 static double largest_jump(const struct cs_posed_collider *of, const double from[3],
@@ -250,7 +242,7 @@ static double largest_jump(const struct cs_posed_collider *of, const double from
 /* On ways over faces, edges, corners and ends the Hessian has no jump: halving the distance of
  * points halves the changes between them (a jump would stay), twice over. The distance itself
  * fails this: its Hessian jumps where a face becomes an edge. */
-START_TEST(hessian_has_no_jump) {
+TEST(hessian_has_no_jump) {
     static const int list[] = {BOX, CAPSULE};
     static const double ways[][2][3] = {{{0.5, 0.29, 0.13}, {-0.5, 0.29, 0.13}},
                                         {{0.5, 0.56, 0.45}, {-0.6, 0.56, -0.4}},
@@ -273,11 +265,10 @@ START_TEST(hessian_has_no_jump) {
         }
     }
 }
-END_TEST
 
 /* All that is near is found, and next to nothing else: of points whose distance is more than a
  * billionth from the reach. */
-START_TEST(what_is_near_is_told_from_the_rest) {
+TEST(what_is_near_is_told_from_the_rest) {
     static const double reaches[] = {0, 0.01, 0.2};
     bool missed = false, idle = false;
     for (uint32_t k = 0; k < N_COLLIDERS; k++) {
@@ -297,12 +288,11 @@ START_TEST(what_is_near_is_told_from_the_rest) {
     }
     ck_assert(!missed && !idle);
 }
-END_TEST
 
 /* Lines against the least distance of 4001 points on them: it lies within the spacing times the
  * slope of the distance, 1, so that both agree unless it is that near to 0. A plane's line is
  * met as well where its other end is behind. */
-START_TEST(lines_meet_what_their_points_meet) {
+TEST(lines_meet_what_their_points_meet) {
     uint32_t met = 0, missed = 0;
     for (uint32_t k = 0; k < N_COLLIDERS; k++) {
         struct cs_posed_collider of;
@@ -327,7 +317,6 @@ START_TEST(lines_meet_what_their_points_meet) {
     ck_assert_uint_gt(met, 200);
     ck_assert_uint_gt(missed, 200);
 }
-END_TEST
 
 /* --- motion --- */
 
@@ -348,7 +337,7 @@ static void set_motions(const double rate[3], const double spin[3]) {
 }
 
 /* a quarter turn about y takes x to -z and z to x; the centre goes on by the path alone */
-START_TEST(quarter_turn_is_one) {
+TEST(quarter_turn_is_one) {
     static const double still[3] = {0}, spin[3] = {0, 1.57079632679489661923, 0};
     struct cs_posed_collider before, after;
     set_motions(still, spin);
@@ -361,11 +350,10 @@ START_TEST(quarter_turn_is_one) {
         ck_assert_double_eq(after.centre[k], colliders[BOX].box.centre[k] + 0.1 * (k + 1));
     }
 }
-END_TEST
 
 /* A point fixed to the obstacle moves with cs_posed_collider_velocity: central differences over
  * 2 ms; truncation |w|^3 r dt^2 / 6. Before, at, and behind the end of the chord alike. */
-START_TEST(velocity_is_that_of_the_matter) {
+TEST(velocity_is_that_of_the_matter) {
     static const double rate[3] = {0.3, -0.2, 0.5}, spin[3] = {1, -2, 0.5}, dt = 1e-3;
     static const double own[3] = {0.3, 0.2, -0.4}, times[] = {1.5, 2.2, 3, 3.4};
     set_motions(rate, spin);
@@ -385,10 +373,9 @@ START_TEST(velocity_is_that_of_the_matter) {
                 ck_assert_double_eq_tol(v[c], (places[2][c] - places[0][c]) / (2 * dt), 2e-6);
         }
 }
-END_TEST
 
 /* axes stay unit vectors at right angles, and the shift meets the end of its chord exactly */
-START_TEST(moved_obstacle_stays_rigid) {
+TEST(moved_obstacle_stays_rigid) {
     static const double rate[3] = {0.1, 0.7, -0.3}, spin[3] = {40, 3, -25};
     struct cs_posed_collider of;
     set_motions(rate, spin);
@@ -403,22 +390,35 @@ START_TEST(moved_obstacle_stays_rigid) {
                                     i == j, 2e-15);
     }
 }
-END_TEST
 
-int main(void) {
-    const TTest *const tests[] = {sine_and_cosine_are_those_of_libm,
-                                  distance_is_the_least_to_the_core,
-                                  normal_leads_to_the_surface,
-                                  floor_and_plane_are_half_spaces,
-                                  middle_has_a_normal,
-                                  derivatives_match_differences,
-                                  faces_are_exact,
-                                  smooth_distance_is_near_the_distance,
-                                  hessian_has_no_jump,
-                                  what_is_near_is_told_from_the_rest,
-                                  lines_meet_what_their_points_meet,
-                                  quarter_turn_is_one,
-                                  velocity_is_that_of_the_matter,
-                                  moved_obstacle_stays_rigid};
-    return unit_run("obstacle", tests, sizeof tests / sizeof *tests);
+/* the triangles of a shape, in its own frame and placed: each corner on the surface */
+TEST(triangles_lie_on_the_surface) {
+    for (uint32_t k = 0; k < N_COLLIDERS; k++) {
+        struct cs_arena arena = {0};
+        struct cs_error error = {0};
+        struct cs_trimesh mesh = {0};
+        struct cs_posed_collider of;
+        cs_posed_collider_at(&at_rest, k, 0, &of);
+        of.shape->triangles(&of, &mesh, &arena, &error);
+        UNIT_ASSERT_OK(&error);
+        ck_assert_uint_gt(mesh.n_triangles, 1);
+        for (size_t i = 0; i < mesh.n; i++) {
+            const double own[3] = {mesh.positions[i], mesh.positions[mesh.n + i],
+                                   mesh.positions[2 * (size_t)mesh.n + i]};
+            double p[3], n[3];
+            cs_obstacle_place(&of, own, p);
+            ck_assert_double_eq_tol(cs_posed_collider_distance(&of, p, n), 0, 1e-14);
+        }
+        cs_arena_finish(&arena);
+    }
+}
+
+/* of every shape of the list all that is asked without looking */
+TEST(every_shape_answers) {
+#define X(name, keys, text)                                                                    \
+    ck_assert(cs_##name##_keys.n > 0 && cs_##name##_keys.optional);                            \
+    ck_assert(cs_shape_##name.pose &&cs_shape_##name.distance &&cs_shape_##name                \
+                  .smooth &&cs_shape_##name.meets_line &&cs_shape_##name.triangles);
+    CS_SHAPE_LIST(X)
+#undef X
 }

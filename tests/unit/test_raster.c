@@ -86,7 +86,7 @@ static float between(float least, float most) {
 
 /* The share of samples inside is the area, but for samples near the outline: at most one along
  * each quarter pixel of it is counted wrong. */
-START_TEST(a_triangle_covers_its_area) {
+TEST(a_triangle_covers_its_area) {
     const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     for (int trial = 0; trial < 300; trial++) {
@@ -111,10 +111,9 @@ START_TEST(a_triangle_covers_its_area) {
     }
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* A fan about a point covers every sample of the picture exactly once, however it lies. */
-START_TEST(neighbours_share_no_sample_and_leave_none) {
+TEST(neighbours_share_no_sample_and_leave_none) {
     const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     for (int trial = 0; trial < 60; trial++) {
@@ -144,10 +143,9 @@ START_TEST(neighbours_share_no_sample_and_leave_none) {
     }
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* of two triangles that cross, each sample shows the one whose plane is nearer there */
-START_TEST(the_nearer_one_shows) {
+TEST(the_nearer_one_shows) {
     const struct cs_clip_transform clip = perspective(0.1);
     struct cs_triangles triangles = {0};
     // planes z = -3 + x and z = -3 - x: the left half shows the second
@@ -174,10 +172,9 @@ START_TEST(the_nearer_one_shows) {
     }
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* of two at the same depth the later one */
-START_TEST(of_equals_the_later_one_shows) {
+TEST(of_equals_the_later_one_shows) {
     const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     float p[3][3] = {{-0.7f, -0.6f, 0.1f}, {0.8f, -0.5f, 0.3f}, {0.1f, 0.9f, 0.2f}};
@@ -189,11 +186,10 @@ START_TEST(of_equals_the_later_one_shows) {
             ck_assert_int_ne(field.shown[i][s], 0);
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* A triangle that reaches behind the eye is a part of a plane: what is shown is where the ray
  * meets it before the eye, and its depth and place are those of the ray. */
-START_TEST(what_lies_behind_the_eye_is_cut_off) {
+TEST(what_lies_behind_the_eye_is_cut_off) {
     const float near = 0.25f;
     const struct cs_clip_transform clip = perspective((double)near);
     struct cs_triangles triangles = {0};
@@ -235,10 +231,9 @@ START_TEST(what_lies_behind_the_eye_is_cut_off) {
     }
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* Corners so far beside the picture that pixels of theirs are no whole numbers any more. */
-START_TEST(what_reaches_far_out_is_cut) {
+TEST(what_reaches_far_out_is_cut) {
     const struct cs_clip_transform clip = perspective(0.01);
     struct cs_triangles triangles = {0};
     float p[3][3] = {{-1e5f, -1e5f, -0.02f}, {1e5f, -1e5f, -0.02f}, {0, 1e5f, -0.02f}};
@@ -248,10 +243,9 @@ START_TEST(what_reaches_far_out_is_cut) {
         ck_assert_double_le(fabs((double)field.depth[i][0] - nearness(0.01, 0.02)), 4);
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* the front is counter-clockwise; asked for it alone, the other side is left out */
-START_TEST(sides_are_told_apart) {
+TEST(sides_are_told_apart) {
     const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
     float front[3][3] = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0.5f, 0}};
@@ -272,10 +266,9 @@ START_TEST(sides_are_told_apart) {
     ck_assert_uint_eq(triangles.n, 2);
     cs_triangles_finish(&triangles);
 }
-END_TEST
 
 /* samples of a pixel one by one are those that filling finds */
-START_TEST(one_pixel_is_as_in_a_row) {
+TEST(one_pixel_is_as_in_a_row) {
     uint32_t wrong = 0;
     const struct cs_clip_transform clip = parallel();
     struct cs_triangles triangles = {0};
@@ -298,17 +291,4 @@ START_TEST(one_pixel_is_as_in_a_row) {
     }
     ck_assert_uint_eq(wrong, 0);
     cs_triangles_finish(&triangles);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {a_triangle_covers_its_area,
-                                  neighbours_share_no_sample_and_leave_none,
-                                  the_nearer_one_shows,
-                                  of_equals_the_later_one_shows,
-                                  what_lies_behind_the_eye_is_cut_off,
-                                  what_reaches_far_out_is_cut,
-                                  sides_are_told_apart,
-                                  one_pixel_is_as_in_a_row};
-    return unit_run("raster", tests, sizeof tests / sizeof *tests);
 }

@@ -159,7 +159,7 @@ static void change_all(struct walk *walk, const struct cs_table *table, void *ob
 }
 
 /* Each row of the schema in turn has another value: all hashes differ, pairwise. */
-START_TEST(every_key_counts) {
+TEST(every_key_counts) {
     static struct walk walk;
     struct cs_trimesh mesh = {.file_hash = "0123"};
     cs_options_default(&cs_scene_table, &walk.scene);
@@ -180,11 +180,10 @@ START_TEST(every_key_counts) {
     ck_assert_uint_gt(walk.n, 200);
     empty(&cs_scene_table, &walk.scene);
 }
-END_TEST
 
 /* The table with a row more at its end, and with it in front: at its default it says nothing.
  */
-START_TEST(new_key_at_its_default_changes_nothing) {
+TEST(new_key_at_its_default_changes_nothing) {
     struct later_time {
         struct cs_time known;
         double slowness;
@@ -226,13 +225,12 @@ START_TEST(new_key_at_its_default_changes_nothing) {
     cs_text_finish(&after);
     cs_text_finish(&given);
 }
-END_TEST
 
 #define BODY "\"cloth\": {\"grid\": [4, 3]}, \"mass\": {\"total\": 2}"
 
 /* The same scene in other words: order of keys, numbers, defaults said, keys of the user's own.
  */
-START_TEST(spelling_does_not_count) {
+TEST(spelling_does_not_count) {
     static const char *const same[] = {
         "{\"bodies\": [{" BODY ", \"strain_limit\": 1.5}], \"time\": {\"fps\": 50}}",
         "{\"time\": {\"fps\": 5e1}, \"bodies\": [{\"strain_limit\": 1.50, " BODY "}]}",
@@ -258,19 +256,11 @@ START_TEST(spelling_does_not_count) {
         ck_assert_msg(strcmp(digits, first) != 0, "%s", others[k]);
     }
 }
-END_TEST
 
 /* Bodies have numbers: which is the first means something. */
-START_TEST(order_of_a_list_counts) {
+TEST(order_of_a_list_counts) {
     char ab[CS_HASH_DIGITS], ba[CS_HASH_DIGITS];
     hash_of_text("{\"bodies\": [{" BODY "}, {" BODY ", \"strain_limit\": 1.5}]}", ab);
     hash_of_text("{\"bodies\": [{" BODY ", \"strain_limit\": 1.5}, {" BODY "}]}", ba);
     ck_assert_str_ne(ab, ba);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {every_key_counts, new_key_at_its_default_changes_nothing,
-                                  spelling_does_not_count, order_of_a_list_counts};
-    return unit_run("scene_hash", tests, sizeof tests / sizeof *tests);
 }

@@ -13,7 +13,7 @@ static void read_text(struct cs_scene *scene, const char *text,
     UNIT_ASSERT_OK(&error);
 }
 
-START_TEST(defaults_stand_in) {
+TEST(defaults_stand_in) {
     struct cs_scene scene;
     const char *text = "{\"bodies\": [" BODY "]}";
     read_text(&scene, text, NULL, 0);
@@ -45,9 +45,8 @@ START_TEST(defaults_stand_in) {
     ck_assert_str_eq(scene.text, text);
     cs_scene_finish(&scene);
 }
-END_TEST
 
-START_TEST(everything_given_is_kept) {
+TEST(everything_given_is_kept) {
     struct cs_scene scene;
     read_text(
         &scene,
@@ -93,9 +92,8 @@ START_TEST(everything_given_is_kept) {
     ck_assert_str_eq(settings[2].value, "newton");
     cs_scene_finish(&scene);
 }
-END_TEST
 
-START_TEST(folder_is_that_of_the_path) {
+TEST(folder_is_that_of_the_path) {
     static const char *const rows[][2] = {
         {"a.json", "."}, {"s/a.json", "s"}, {"/a.json", "/"}, {"./s/t/a.json", "./s/t"}};
     const char *text = "{\"bodies\": [" BODY "]}";
@@ -108,7 +106,6 @@ START_TEST(folder_is_that_of_the_path) {
         cs_scene_finish(&scene);
     }
 }
-END_TEST
 
 /* the words of a message, so that each row below says the whole of it */
 static void assert_refused(const char *text, const struct cs_override *overrides, uint32_t n,
@@ -123,7 +120,7 @@ static void assert_refused(const char *text, const struct cs_override *overrides
     ck_assert_uint_eq(scene.bodies.n, 0);
 }
 
-START_TEST(messages_name_the_place) {
+TEST(messages_name_the_place) {
     static const char *const rows[][2] = {
         {"{\n  \"time\": {\"fps\": 60,}\n}",
          "s.json:2:22: found '}', expected a key in quotes"},
@@ -192,10 +189,9 @@ START_TEST(messages_name_the_place) {
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         assert_refused(rows[i][0], NULL, 0, CS_ERR_SCENE, rows[i][1]);
 }
-END_TEST
 
 /* what cs_scene_check says gets the place of the value at fault, or of the nearest one */
-START_TEST(checks_get_a_place) {
+TEST(checks_get_a_place) {
     struct cs_error pins = {0}, none = {0}, pair = {0}, twice = {0}, law = {0};
     struct cs_scene scene;
     const char *text =
@@ -217,9 +213,8 @@ START_TEST(checks_get_a_place) {
     cs_scene_read_text(&scene, "s.json", "{}", 2, NULL, 0, &none);
     UNIT_ASSERT_FAILED(&none, CS_ERR_SCENE, "s.json:1:1: bodies: ");
 }
-END_TEST
 
-START_TEST(long_texts_are_refused) {
+TEST(long_texts_are_refused) {
     struct cs_error error = {0};
     struct cs_scene scene;
     char text[400];
@@ -233,9 +228,8 @@ START_TEST(long_texts_are_refused) {
     UNIT_ASSERT_FAILED(&error, CS_ERR_SCENE,
                        "about: found a text of 256 bytes, expected at most 255");
 }
-END_TEST
 
-START_TEST(overrides_are_put_in) {
+TEST(overrides_are_put_in) {
     static const struct cs_override overrides[] = {{"bodies[0].springs.stretch", "200"},
                                                    {"bodies[0].cloth.grid", "[9, 8]"},
                                                    {"bodies[0].cloth.grid[1]", "7"},
@@ -285,9 +279,8 @@ START_TEST(overrides_are_put_in) {
     ck_assert_ptr_null(strstr(scene.text, "cvode"));
     cs_scene_finish(&scene);
 }
-END_TEST
 
-START_TEST(a_plain_integrator_takes_options) {
+TEST(a_plain_integrator_takes_options) {
     static const struct cs_override dt[] = {{"integrator.dt", "0.001"}};
     static const char *const texts[] = {"{\"bodies\": [" BODY
                                         "], \"integrator\": \"cvode-bdf\"}",
@@ -304,9 +297,8 @@ START_TEST(a_plain_integrator_takes_options) {
         cs_scene_finish(&scene);
     }
 }
-END_TEST
 
-START_TEST(bad_overrides_are_refused) {
+TEST(bad_overrides_are_refused) {
     static const struct {
         struct cs_override override;
         enum cs_status status;
@@ -385,9 +377,8 @@ START_TEST(bad_overrides_are_refused) {
         assert_refused("{\"bodies\": [" BODY "]}", &rows[i].override, 1, rows[i].status,
                        rows[i].message);
 }
-END_TEST
 
-START_TEST(deep_override_is_refused) {
+TEST(deep_override_is_refused) {
     char path[400] = "x-a";
     for (int i = 0; i < 70; i++)
         strcat(path, "[0]");
@@ -397,9 +388,8 @@ START_TEST(deep_override_is_refused) {
     cs_scene_read_text(&scene, "s.json", "{}", 2, &override, 1, &error);
     UNIT_ASSERT_FAILED(&error, CS_ERR_USAGE, "not a path");
 }
-END_TEST
 
-START_TEST(files_are_read) {
+TEST(files_are_read) {
     struct cs_error error = {0}, missing = {0}, folder = {0};
     struct cs_scene scene;
     FILE *file = fopen("a.json", "w");
@@ -414,20 +404,4 @@ START_TEST(files_are_read) {
     ck_assert_ptr_null(scene.path);
     cs_scene_read(&scene, ".", NULL, 0, &folder);
     UNIT_ASSERT_FAILED(&folder, CS_ERR_FILE, "it is a folder");
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {defaults_stand_in,
-                                  everything_given_is_kept,
-                                  folder_is_that_of_the_path,
-                                  messages_name_the_place,
-                                  checks_get_a_place,
-                                  long_texts_are_refused,
-                                  overrides_are_put_in,
-                                  a_plain_integrator_takes_options,
-                                  bad_overrides_are_refused,
-                                  deep_override_is_refused,
-                                  files_are_read};
-    return unit_run("scene_read", tests, sizeof tests / sizeof *tests);
 }

@@ -87,7 +87,7 @@ static void assert_same_integrator(const struct cs_scene *a, const struct cs_sce
     }
 }
 
-START_TEST(what_is_printed_reads_back) {
+TEST(what_is_printed_reads_back) {
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         struct cs_scene scene, back;
         struct cs_text first = {0}, second = {0};
@@ -104,9 +104,8 @@ START_TEST(what_is_printed_reads_back) {
         cs_scene_finish(&back);
     }
 }
-END_TEST
 
-START_TEST(every_value_is_printed) {
+TEST(every_value_is_printed) {
     struct cs_scene scene;
     struct cs_text text = {0};
     read_text(&scene, scenes[0]);
@@ -131,7 +130,6 @@ START_TEST(every_value_is_printed) {
     cs_text_finish(&text);
     cs_scene_finish(&scene);
 }
-END_TEST
 
 /* with a method's table its own values stand there, resolved */
 struct options {
@@ -142,7 +140,7 @@ struct options {
 };
 static const char *const kinds[] = {"newton", "fixed-point", NULL};
 
-START_TEST(resolved_options_are_printed) {
+TEST(resolved_options_are_printed) {
     static const struct cs_option rows[] = {
         CS_OPTION(struct options, dt, "s", (double)NAN, 1e-9, 1, "step"),
         CS_OPTION(struct options, rtol, "", 1e-4, 0, 1, "tolerance"),
@@ -168,7 +166,6 @@ START_TEST(resolved_options_are_printed) {
     cs_text_finish(&empty);
     cs_scene_finish(&scene);
 }
-END_TEST
 
 /* the value at a chain of keys, closed by NULL */
 static const struct cs_json *find(const struct cs_json *value, const char *const *keys) {
@@ -180,7 +177,7 @@ static const struct cs_json *find(const struct cs_json *value, const char *const
 }
 #define FIND(value, ...) find(value, (const char *const[]){__VA_ARGS__, NULL})
 
-START_TEST(schema_says_what_the_tables_say) {
+TEST(schema_says_what_the_tables_say) {
     struct cs_text text = {0};
     struct cs_json *root;
     struct cs_json_fault fault = {0};
@@ -209,7 +206,6 @@ START_TEST(schema_says_what_the_tables_say) {
     cs_json_destroy(root);
     cs_text_finish(&text);
 }
-END_TEST
 
 static void assert_in_manual(const struct cs_table *table, const char *manual) {
     for (uint32_t r = 0; r < table->n; r++) {
@@ -221,7 +217,7 @@ static void assert_in_manual(const struct cs_table *table, const char *manual) {
     }
 }
 
-START_TEST(manual_has_every_key) {
+TEST(manual_has_every_key) {
     struct cs_text text = {0};
     cs_text_add(&text, "\n");
     cs_scene_print_manual(&text);
@@ -236,12 +232,4 @@ START_TEST(manual_has_every_key) {
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         ck_assert_msg(strstr(cs_text_get(&text), parts[i]) != NULL, "no %s", parts[i]);
     cs_text_finish(&text);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {what_is_printed_reads_back, every_value_is_printed,
-                                  resolved_options_are_printed, schema_says_what_the_tables_say,
-                                  manual_has_every_key};
-    return unit_run("scene_write", tests, sizeof tests / sizeof *tests);
 }

@@ -13,7 +13,7 @@ static void start(struct sheet *sheet, int columns, int rows, const char *more,
 
 /* x = (j / (columns - 1) - 1/2) width, y = (1/2 - i / (rows - 1)) height (cloth thesis,
  * eq. 4.1); flat: what was up lies at -z */
-START_TEST(grid_is_spread_about_its_centre) {
+TEST(grid_is_spread_about_its_centre) {
     for (int flat = 0; flat < 2; flat++) {
         struct sheet sheet;
         start(&sheet, 5, 3, flat ? ", \"start\": \"flat\"" : "", "");
@@ -27,10 +27,9 @@ START_TEST(grid_is_spread_about_its_centre) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* one particle of a row or column of one stands in the middle */
-START_TEST(single_rows_lie_in_the_middle) {
+TEST(single_rows_lie_in_the_middle) {
     struct sheet sheet;
     start(&sheet, 1, 1, "", "");
     SHEET_ASSERT_AT(&sheet, sheet.x, 0, 0, 0, 0, 0);
@@ -43,11 +42,10 @@ START_TEST(single_rows_lie_in_the_middle) {
     SHEET_ASSERT_AT(&sheet, sheet.x, 1, 0, -1, 0, 0);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* A quarter turn about z takes (x, y, z) to (-y, x, z); the same as quaternions of any length
  * and as a matrix. The shift comes after it. */
-START_TEST(place_is_a_turn_and_a_shift) {
+TEST(place_is_a_turn_and_a_shift) {
     static const char *const places[] = {"\"rotate\": [0, 0, 1, 1]",
                                          "\"rotate\": [0, 0, -0.2, -0.2]",
                                          "\"matrix\": [0, -1, 0, 1, 0, 0, 0, 0, 1]"};
@@ -63,11 +61,10 @@ START_TEST(place_is_a_turn_and_a_shift) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* stretch moves the particles and leaves rest lengths and areas; the bump is
  * sin(pi a) sin(pi b) along the normal, to the last bits */
-START_TEST(start_may_be_stretched_and_bumped) {
+TEST(start_may_be_stretched_and_bumped) {
     const double pi = acos(-1);
     for (int flat = 0; flat < 2; flat++) {
         struct sheet sheet;
@@ -87,20 +84,18 @@ START_TEST(start_may_be_stretched_and_bumped) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* a turn of 120 degrees about (1, 1, 1) takes x to y, y to z and z to x */
-START_TEST(quaternion_turns_the_right_way) {
+TEST(quaternion_turns_the_right_way) {
     struct sheet sheet;
     start(&sheet, 2, 2, ", \"place\": {\"rotate\": [1, 1, 1, 1]}", "");
     SHEET_ASSERT_AT(&sheet, sheet.x, 0, 0, -1.5, 1, 1e-15);
     SHEET_ASSERT_AT(&sheet, sheet.x, 3, 0, 1.5, -1, 1e-15);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* corners a quarter, edges a half, inside a whole cell: their sum is the size */
-START_TEST(area_shares_add_up_to_the_size) {
+TEST(area_shares_add_up_to_the_size) {
     static const int grids[][2] = {{1, 1}, {2, 1}, {1, 7}, {2, 2}, {3, 5}, {40, 31}};
     for (size_t k = 0; k < sizeof grids / sizeof *grids; k++) {
         struct sheet sheet;
@@ -122,7 +117,6 @@ START_TEST(area_shares_add_up_to_the_size) {
     ck_assert_double_eq_tol(cs_shape_area(body, 6), 1, 1e-15);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* fails unless exactly the particles marked x in the picture of rows are pinned */
 static void check_pins(const char *pins, const char *picture) {
@@ -134,7 +128,7 @@ static void check_pins(const char *pins, const char *picture) {
     sheet_close(&sheet);
 }
 
-START_TEST(every_pin_name_means_its_particles) {
+TEST(every_pin_name_means_its_particles) {
     static const char *const pictures[] = {
         "x... .... ....", "...x .... ....", ".... .... x...",
         ".... .... ...x", "xxxx .... ....", ".... .... xxxx",
@@ -148,9 +142,8 @@ START_TEST(every_pin_name_means_its_particles) {
     }
     ck_assert_uint_eq(n, sizeof pictures / sizeof *pictures);
 }
-END_TEST
 
-START_TEST(pins_by_index_and_box) {
+TEST(pins_by_index_and_box) {
     check_pins("", ".... .... ....");
     check_pins("0, 6, 11", "x... ..x. ...x");
     check_pins("{\"index\": 5}, 5", ".... .x.. ....");
@@ -160,10 +153,9 @@ START_TEST(pins_by_index_and_box) {
     check_pins("\"left\", {\"box\": {\"min\": [1.4, -9, -9], \"max\": [9, 0, 9]}}, 0",
                "x... x..x x..x");
 }
-END_TEST
 
 /* the box means where the particles start, not the grid */
-START_TEST(box_is_in_the_scene) {
+TEST(box_is_in_the_scene) {
     struct sheet sheet;
     start(&sheet, 2, 2, ", \"place\": {\"translate\": [0, 100, 0]}",
           "{\"box\": {\"min\": [-9, 100, -9], \"max\": [9, 109, 9]}}");
@@ -171,18 +163,4 @@ START_TEST(box_is_in_the_scene) {
     ck_assert_uint_eq(sheet.system.pinned[0], 0);
     ck_assert_uint_eq(sheet.system.pinned[1], 1);
     sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {grid_is_spread_about_its_centre,
-                                  single_rows_lie_in_the_middle,
-                                  place_is_a_turn_and_a_shift,
-                                  start_may_be_stretched_and_bumped,
-                                  quaternion_turns_the_right_way,
-                                  area_shares_add_up_to_the_size,
-                                  every_pin_name_means_its_particles,
-                                  pins_by_index_and_box,
-                                  box_is_in_the_scene};
-    return unit_run("shape", tests, sizeof tests / sizeof *tests);
 }

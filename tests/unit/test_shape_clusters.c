@@ -18,7 +18,7 @@ static const struct cs_shape_clusters *parts_of(const struct cs_scene *scene) {
     return cs_scene_bodies(scene)->shape_matching.parts;
 }
 
-START_TEST(one_part_is_the_body) {
+TEST(one_part_is_the_body) {
     struct cs_scene scene;
     read_body(&scene, "\"cloth\": {\"grid\": [3, 2]}", "");
     const struct cs_shape_clusters *parts = parts_of(&scene);
@@ -29,11 +29,10 @@ START_TEST(one_part_is_the_body) {
         ck_assert_uint_eq(parts->items[i], i);
     cs_scene_finish(&scene);
 }
-END_TEST
 
 /* a strip of 8 in two parts of four: the boxes have sides of 3 cells, and a third of that on
  * either side takes one more column in */
-START_TEST(parts_overlap_by_a_share_of_their_side) {
+TEST(parts_overlap_by_a_share_of_their_side) {
     static const struct {
         const char *overlap;
         uint32_t items[2][8], n[2];
@@ -58,11 +57,10 @@ START_TEST(parts_overlap_by_a_share_of_their_side) {
         cs_scene_finish(&scene);
     }
 }
-END_TEST
 
 /* Without overlap the parts of a mesh part it: sizes as even as the number allows. Particles on
  * the plane of a cut lie in both boxes. */
-START_TEST(every_particle_has_a_part) {
+TEST(every_particle_has_a_part) {
     for (int64_t clusters = 1; clusters <= 9; clusters++) {
         struct cs_scene scene;
         char matching[64];
@@ -83,9 +81,8 @@ START_TEST(every_particle_has_a_part) {
         cs_scene_finish(&scene);
     }
 }
-END_TEST
 
-START_TEST(placement_does_not_matter) {
+TEST(placement_does_not_matter) {
     struct cs_scene here, there;
     const char *matching = "\"clusters\": 5";
     read_body(&here, "\"mesh\": {\"shape\": \"limbs\", \"detail\": 10}", matching);
@@ -100,10 +97,9 @@ START_TEST(placement_does_not_matter) {
     cs_scene_finish(&here);
     cs_scene_finish(&there);
 }
-END_TEST
 
 /* in the view, behind the particles of other bodies; only where they are asked for */
-START_TEST(view_has_what_was_asked_for) {
+TEST(view_has_what_was_asked_for) {
     static const char scene[] =
         "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]}, \"mass\": {\"total\": 1}},"
         " {\"cloth\": {\"grid\": [3, 1]}, \"mass\": {\"total\": 1}, \"shape_matching\":"
@@ -131,12 +127,4 @@ START_TEST(view_has_what_was_asked_for) {
     ck_assert_double_eq_tol(cs_shape_clusters_energy(&with.system),
                             0.5 * 0.25 / 0.25 * (2 * 0.25 / 3), 1e-15);
     sheet_close(&with);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {one_part_is_the_body, parts_overlap_by_a_share_of_their_side,
-                                  every_particle_has_a_part, placement_does_not_matter,
-                                  view_has_what_was_asked_for};
-    return unit_run("clusters", tests, sizeof tests / sizeof *tests);
 }

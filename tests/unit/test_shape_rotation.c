@@ -1,6 +1,6 @@
 /* The rotation of shape matching against closed forms, its own optimality and its symmetries.
  */
-#include "shape_rotation.h"
+#include "../../plugins/shape_rotation.h"
 #include "unit.h"
 
 #include <math.h>
@@ -64,7 +64,7 @@ static void rotation_of(const double a[9], double r[9]) {
 
 /* a = r s with a known rotation and a known positive stretch: r comes back, however much it is
  * stretched and however small all is */
-START_TEST(known_rotations_come_back) {
+TEST(known_rotations_come_back) {
     static const double stretches[][3] = {{1, 1, 1},   {3, 1, 0.2},        {1, 1, 1e-3},
                                           {1e6, 1, 1}, {2e-9, 1e-9, 3e-9}, {5, 5, 0}};
     uint64_t state = 7;
@@ -85,12 +85,11 @@ START_TEST(known_rotations_come_back) {
             ck_assert_double_le(difference(found, r), 1e-14 * size / gap);
         }
 }
-END_TEST
 
 /* u diag(s) w^T with proper u and w: a mirror image where the product of s is negative. The
  * rotation that makes the trace largest is u w^T all the same, as long as the negative one is
  * the smallest (Kabsch 1976). */
-START_TEST(mirror_images_turn_their_least_axis_back) {
+TEST(mirror_images_turn_their_least_axis_back) {
     static const double s[3] = {2, 1, -0.4};
     uint64_t state = 11;
     for (int k = 0; k < 200; k++) {
@@ -110,10 +109,9 @@ START_TEST(mirror_images_turn_their_least_axis_back) {
         ck_assert_double_le(difference(found, expected), 1e-13);
     }
 }
-END_TEST
 
 /* of any matrix, also of rank 1: no other rotation has a larger trace of r^T a */
-START_TEST(no_other_rotation_is_nearer) {
+TEST(no_other_rotation_is_nearer) {
     uint64_t state = 3;
     for (int k = 0; k < 200; k++) {
         double a[9], r[9];
@@ -131,10 +129,9 @@ START_TEST(no_other_rotation_is_nearer) {
         }
     }
 }
-END_TEST
 
 /* p a, with a rotation p, has the rotation p r */
-START_TEST(turned_matrices_have_turned_rotations) {
+TEST(turned_matrices_have_turned_rotations) {
     uint64_t state = 5;
     for (int k = 0; k < 200; k++) {
         double a[9], p[9], pa[9], r[9], pr[9], found[9];
@@ -148,11 +145,10 @@ START_TEST(turned_matrices_have_turned_rotations) {
         ck_assert_double_le(difference(found, pr), 1e-12);
     }
 }
-END_TEST
 
 /* A line leaves a turn about itself open, a point leaves all open: what is free stays as it
  * was. */
-START_TEST(what_is_free_stays_as_it_was) {
+TEST(what_is_free_stays_as_it_was) {
     const double half = sqrt(0.5);
     const double quarter_z[4] = {0, 0, half, half};
     double last[4], r[9], before[9];
@@ -177,9 +173,8 @@ START_TEST(what_is_free_stays_as_it_was) {
     shape_rotation(along_y, 1, last, r);
     ck_assert_double_le(difference(r, before), 1e-15);
 }
-END_TEST
 
-START_TEST(pseudo_inverse_leaves_flat_directions_out) {
+TEST(pseudo_inverse_leaves_flat_directions_out) {
     static const double sizes[][3] = {{2, 3, 5}, {4, 1e-30, 9}, {0, 7, 0}, {0, 0, 0}};
     uint64_t state = 9;
     for (int k = 0; k < 4; k++) {
@@ -197,10 +192,9 @@ START_TEST(pseudo_inverse_leaves_flat_directions_out) {
         ck_assert_double_le(difference(product, (double[9]){0}), 1e-13);
     }
 }
-END_TEST
 
 /* b (b^T b)^-1 */
-START_TEST(inverse_transposed_is_that) {
+TEST(inverse_transposed_is_that) {
     uint64_t state = 13;
     double b[9], out[9], transposed[9], product[9];
     for (int i = 0; i < 9; i++)
@@ -213,31 +207,18 @@ START_TEST(inverse_transposed_is_that) {
         ck_assert_double_eq_tol(product[i], i % 4 == 0, 1e-14);
     ck_assert(!shape_inverse_transposed((double[9]){1, 0, 0, 0, 1}, out));
 }
-END_TEST
 
-START_TEST(cube_roots) {
+TEST(cube_roots) {
     for (double root = 1e-5; root < 1e5; root *= 1.37)
         ck_assert_double_eq_tol(shape_cube_root(root * root * root) / root, 1, 1e-15);
     ck_assert_double_eq(shape_cube_root(1), 1);
     ck_assert_double_eq(shape_cube_root(0.125), 0.5);
 }
-END_TEST
 
 /* what is none ends, and is none still */
-START_TEST(no_numbers_stay_none) {
+TEST(no_numbers_stay_none) {
     double last[4] = {0, 0, 0, 1}, r[9];
     const double a[9] = {(double)NAN, 1, 2, 3, 4, 5, 6, 7, 8};
     shape_rotation(a, 1, last, r);
     ck_assert(!isfinite(r[0]));
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        known_rotations_come_back,    mirror_images_turn_their_least_axis_back,
-        no_other_rotation_is_nearer,  turned_matrices_have_turned_rotations,
-        what_is_free_stays_as_it_was, pseudo_inverse_leaves_flat_directions_out,
-        inverse_transposed_is_that,   cube_roots,
-        no_numbers_stay_none};
-    return unit_run("shape_rotation", tests, sizeof tests / sizeof *tests);
 }

@@ -10,7 +10,7 @@ static const double regular[][6] = {{4, 1, -2, 5, 0.5, 3},
                                     {4e-200, 1e-200, -2e-200, 5e-200, 0.5e-200, 3e-200},
                                     {4e99, 1e99, -2e99, 5e99, 0.5e99, 3e99}};
 
-START_TEST(inverse_times_the_block_is_one) {
+TEST(inverse_times_the_block_is_one) {
     for (size_t k = 0; k < sizeof regular / sizeof *regular; k++) {
         double inverse[6], any[6];
         ck_assert(cs_sym3_invert(regular[k], inverse));
@@ -26,16 +26,14 @@ START_TEST(inverse_times_the_block_is_one) {
         }
     }
 }
-END_TEST
 
-START_TEST(scaled_determinant_is_of_the_block_over_its_largest_entry) {
+TEST(scaled_determinant_is_of_the_block_over_its_largest_entry) {
     double inverse[6];
     const double block[6] = {2, 0, 0, -4, 0, 1};
     ck_assert_double_eq(cs_sym3_invert_any(block, inverse), 0.5 * -1 * 0.25);
 }
-END_TEST
 
-START_TEST(block_without_inverse_is_said_and_nothing_written) {
+TEST(block_without_inverse_is_said_and_nothing_written) {
     const double nan = (double)NAN, inf = (double)INFINITY;
     const double singular[][6] = {{0, 0, 0, 0, 0, 0},     {1, 2, 3, 4, 6, 9},
                                   {1, 0, 0, 1e-31, 0, 1}, {1, 0, 0, 1, 0, nan},
@@ -49,21 +47,11 @@ START_TEST(block_without_inverse_is_said_and_nothing_written) {
             ck_assert_double_eq(inverse[c], 7);
     }
 }
-END_TEST
 
-START_TEST(block_may_be_inverted_in_place) {
+TEST(block_may_be_inverted_in_place) {
     double block[6], inverse[6];
     memcpy(block, regular[0], sizeof block);
     cs_sym3_invert(regular[0], inverse);
     cs_sym3_invert_any(block, block);
     ck_assert_mem_eq(block, inverse, sizeof block);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {inverse_times_the_block_is_one,
-                                  scaled_determinant_is_of_the_block_over_its_largest_entry,
-                                  block_without_inverse_is_said_and_nothing_written,
-                                  block_may_be_inverted_in_place};
-    return unit_run("small", tests, sizeof tests / sizeof *tests);
 }

@@ -3,7 +3,7 @@
 #include "sheet.h"
 
 /* two free particles: w^2 = 2 k / m, and half the rate of relative damping is d / m */
-START_TEST(pair_has_its_own_frequency) {
+TEST(pair_has_its_own_frequency) {
     struct sheet pair;
     sheet_open(&pair, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"particle\": 0.5},"
@@ -13,9 +13,8 @@ START_TEST(pair_has_its_own_frequency) {
     ck_assert_double_eq_tol(pair.system.view.delta, (0.6 + 0.1) / 0.5, 1e-14);
     sheet_close(&pair);
 }
-END_TEST
 
-START_TEST(nothing_swings_without_springs) {
+TEST(nothing_swings_without_springs) {
     struct sheet sheet;
     sheet_open(&sheet, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3]}, \"mass\": {\"total\": 1},"
@@ -24,10 +23,9 @@ START_TEST(nothing_swings_without_springs) {
     ck_assert_double_eq(sheet.system.view.delta, 0);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* a pinned particle does not count, however many springs it has */
-START_TEST(pins_do_not_swing) {
+TEST(pins_do_not_swing) {
     struct sheet chain;
     sheet_open(&chain, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [3, 1]}, \"mass\": {\"particle\": 0.5},"
@@ -35,10 +33,9 @@ START_TEST(pins_do_not_swing) {
     ck_assert_double_eq_tol(chain.system.view.omega, 10, 1e-14);
     sheet_close(&chain);
 }
-END_TEST
 
 /* drag by area, on masses that are not */
-START_TEST(drag_by_area_counts) {
+TEST(drag_by_area_counts) {
     struct sheet sheet;
     sheet_open(
         &sheet, 0,
@@ -48,7 +45,6 @@ START_TEST(drag_by_area_counts) {
     ck_assert_double_eq_tol(sheet.system.view.delta, 0.5 * 0.4 * 1 / 0.1, 1e-14);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* largest eigenvalue of -D df with D the inverse masses, by 300 power iterations */
 static double largest_of(const struct sheet *sheet, bool velocity) {
@@ -77,7 +73,7 @@ static double largest_of(const struct sheet *sheet, bool velocity) {
 }
 
 /* at rest the bound is above the truth, by less than a factor of 1.7 in frequency */
-START_TEST(sheet_stays_below_its_bounds) {
+TEST(sheet_stays_below_its_bounds) {
     static const char *const models[] = {"relative", "axial"};
     for (size_t m = 0; m < 2; m++) {
         struct sheet sheet;
@@ -95,12 +91,4 @@ START_TEST(sheet_stays_below_its_bounds) {
         ck_assert_double_gt(delta, 0.3 * sheet.system.view.delta);
         sheet_close(&sheet);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {pair_has_its_own_frequency, nothing_swings_without_springs,
-                                  pins_do_not_swing, drag_by_area_counts,
-                                  sheet_stays_below_its_bounds};
-    return unit_run("bounds", tests, sizeof tests / sizeof *tests);
 }

@@ -22,14 +22,13 @@ static void make(struct cs_trimesh *mesh, enum cs_mesh_shape shape, uint32_t det
 }
 
 /* the published first numbers of SplitMix64 from seed 1234567 */
-START_TEST(draws_are_splitmix) {
+TEST(draws_are_splitmix) {
     static const uint64_t expected[] = {6457827717110365317u, 3203168211198807973u,
                                         9817491932198370423u, 4593380528125082431u};
     struct cs_rng draws = {1234567};
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++)
         ck_assert(cs_rng_next(&draws) == expected[k]);
 }
-END_TEST
 
 static double distance(const struct cs_trimesh *mesh, const uint32_t *ends) {
     double squared = 0;
@@ -52,7 +51,7 @@ static bool same_pair(const uint32_t *a, const uint32_t *b) {
     return (a[0] == b[0] && a[1] == b[1]) || (a[0] == b[1] && a[1] == b[0]);
 }
 
-START_TEST(no_pair_is_joined_twice) {
+TEST(no_pair_is_joined_twice) {
     for (int32_t placement = 0; placement < 3; placement++) {
         struct cs_spring_network network = usual;
         struct cs_trimesh mesh;
@@ -73,10 +72,9 @@ START_TEST(no_pair_is_joined_twice) {
         cs_arena_finish(&arena);
     }
 }
-END_TEST
 
 /* On a sphere the normal is the place: n.m <= -1/2 is a chord of sqrt(3)/2 of the diameter. */
-START_TEST(normals_are_opposed) {
+TEST(normals_are_opposed) {
     for (int32_t placement = 0; placement < 3; placement++) {
         struct cs_spring_network network = usual;
         struct cs_trimesh mesh;
@@ -94,10 +92,9 @@ START_TEST(normals_are_opposed) {
         cs_arena_finish(&arena);
     }
 }
-END_TEST
 
 /* Nearest of one candidate is the first opposed one; of more, springs become shorter. */
-START_TEST(nearest_shortens_springs) {
+TEST(nearest_shortens_springs) {
     struct cs_spring_network network = usual;
     struct cs_trimesh opposed, nearest;
     struct cs_arena arena, other;
@@ -120,9 +117,8 @@ START_TEST(nearest_shortens_springs) {
     }
     cs_arena_finish(&arena);
 }
-END_TEST
 
-START_TEST(seeds_and_tries_decide) {
+TEST(seeds_and_tries_decide) {
     struct cs_spring_network network = usual;
     struct cs_trimesh first, again, other, fewer;
     struct cs_arena arenas[4];
@@ -143,10 +139,9 @@ START_TEST(seeds_and_tries_decide) {
     for (int k = 0; k < 4; k++)
         cs_arena_finish(arenas + k);
 }
-END_TEST
 
 /* More springs than there are pairs: the draws run out, and the loop ends. */
-START_TEST(full_meshes_end) {
+TEST(full_meshes_end) {
     const struct cs_spring_network all = {
         .placement = CS_PLACEMENT_RANDOM, .springs = 200, .tries = 1000};
     struct cs_trimesh mesh;
@@ -154,12 +149,4 @@ START_TEST(full_meshes_end) {
     make(&mesh, CS_MESH_BOX, 3, &all, &arena);
     ck_assert_uint_eq(mesh.n_network_springs, 56 * 55 / 2 - mesh.n_edges);
     cs_arena_finish(&arena);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {draws_are_splitmix,     no_pair_is_joined_twice,
-                                  normals_are_opposed,    nearest_shortens_springs,
-                                  seeds_and_tries_decide, full_meshes_end};
-    return unit_run("network", tests, sizeof tests / sizeof *tests);
 }

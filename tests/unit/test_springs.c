@@ -45,7 +45,7 @@ static int count_by_definition(int columns, int rows) {
 }
 
 /* as many as there should be, each one of the six steps, none twice: so all are there */
-START_TEST(runs_are_the_twelve_neighbours) {
+TEST(runs_are_the_twelve_neighbours) {
     for (size_t g = 0; g < N_GRIDS; g++) {
         const int columns = grids[g][0], rows = grids[g][1];
         struct sheet sheet;
@@ -77,9 +77,8 @@ START_TEST(runs_are_the_twelve_neighbours) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
-START_TEST(second_body_has_its_own_particles) {
+TEST(second_body_has_its_own_particles) {
     struct sheet sheet;
     sheet_open(&sheet, 0, "{\"bodies\": [" GRID ", " GRID "]}", 3, 2, "0", 2, 2, "0.5");
     const struct cs_springs *springs = &sheet.system.springs;
@@ -94,9 +93,8 @@ START_TEST(second_body_has_its_own_particles) {
     }
     sheet_close(&sheet);
 }
-END_TEST
 
-START_TEST(kinds_without_stiffness_have_no_springs) {
+TEST(kinds_without_stiffness_have_no_springs) {
     struct sheet sheet;
     sheet_open(&sheet, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [5, 4]}, \"mass\": {\"total\": 1},"
@@ -106,10 +104,9 @@ START_TEST(kinds_without_stiffness_have_no_springs) {
         ck_assert_uint_eq(sheet.system.springs.runs[r].kind, CS_SPRING_SHEAR);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* a stiffness in N is divided by the rest length of each spring */
-START_TEST(stiffness_in_newtons_is_by_length) {
+TEST(stiffness_in_newtons_is_by_length) {
     struct sheet sheet;
     sheet_open(&sheet, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [4, 4], \"size\": [3, 2]}, \"mass\": "
@@ -121,7 +118,6 @@ START_TEST(stiffness_in_newtons_is_by_length) {
     }
     sheet_close(&sheet);
 }
-END_TEST
 
 /* f += force of one spring, from the formula in springs.h */
 static void add_spring(const struct sheet *sheet, const struct cs_spring_run *run, uint32_t i,
@@ -150,7 +146,7 @@ static void add_spring(const struct sheet *sheet, const struct cs_spring_run *ru
 }
 
 /* every grid, both damping models and none, every kind of part alone and all */
-START_TEST(force_is_the_sum_of_single_springs) {
+TEST(force_is_the_sum_of_single_springs) {
     static const char *const dampings[] = {"0", "0.7, \"damping_model\": \"axial\"",
                                            "0.7, \"damping_model\": \"relative\""};
     static const uint32_t parts[] = {CS_PART_STRETCH, CS_PART_SHEAR,
@@ -184,7 +180,6 @@ START_TEST(force_is_the_sum_of_single_springs) {
             sheet_close(&sheet);
         }
 }
-END_TEST
 
 /* own blocks of one spring at both ends, from the formula in springs.h: minus
  * k (1 - L/l) I + k L/l u u^T of df/dx, and minus d u u^T or d I of df/dv */
@@ -207,7 +202,7 @@ static void add_own_blocks(const struct sheet *sheet, const struct cs_spring_run
         }
 }
 
-START_TEST(own_blocks_are_the_sum_of_single_springs) {
+TEST(own_blocks_are_the_sum_of_single_springs) {
     static const char *const dampings[] = {"0", "0.7, \"damping_model\": \"axial\"",
                                            "0.7, \"damping_model\": \"relative\""};
     for (size_t g = 0; g < N_GRIDS; g++)
@@ -238,10 +233,9 @@ START_TEST(own_blocks_are_the_sum_of_single_springs) {
             sheet_close(&sheet);
         }
 }
-END_TEST
 
 /* column i of the factored matrix, at particle i itself */
-START_TEST(own_blocks_of_the_factors_are_those_of_the_product) {
+TEST(own_blocks_of_the_factors_are_those_of_the_product) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (size_t g = 0; g < N_GRIDS; g++) {
         struct sheet sheet;
@@ -268,9 +262,8 @@ START_TEST(own_blocks_of_the_factors_are_those_of_the_product) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
-START_TEST(force_is_added_to_what_is_there) {
+TEST(force_is_added_to_what_is_there) {
     struct sheet pair;
     double f[6] = {1, 2, 3, 4, 5, 6};
     sheet_open(&pair, 0, SCENE, 2, 1, "0");
@@ -283,10 +276,9 @@ START_TEST(force_is_added_to_what_is_there) {
     SHEET_ASSERT_AT(&pair, f, 1, 2, 4 - 200 * 0.5, 6, 1e-12);
     sheet_close(&pair);
 }
-END_TEST
 
 /* two particles in one place have no direction: no force, and nothing that is not finite */
-START_TEST(particles_in_one_place_feel_no_spring) {
+TEST(particles_in_one_place_feel_no_spring) {
     struct sheet pair;
     double f[6] = {0}, df[6] = {0};
     sheet_open(&pair, 0, SCENE, 2, 1, "0.7");
@@ -309,10 +301,9 @@ START_TEST(particles_in_one_place_feel_no_spring) {
                         0.5 * 200 * 9);
     sheet_close(&pair);
 }
-END_TEST
 
 /* 1/2 k (l - L)^2 of each spring, by part */
-START_TEST(energy_is_the_sum_of_single_springs) {
+TEST(energy_is_the_sum_of_single_springs) {
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE, 7, 5, "0");
     ck_assert_double_eq_tol(
@@ -339,7 +330,6 @@ START_TEST(energy_is_the_sum_of_single_springs) {
                             expected[0] + expected[1] + expected[2], 1e-12);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* in magnitude, of springs whose ends are numbers */
 static double largest_strain(const struct sheet *sheet) {
@@ -359,7 +349,7 @@ static double largest_strain(const struct sheet *sheet) {
     return largest;
 }
 
-START_TEST(largest_strain_is_that_of_single_springs) {
+TEST(largest_strain_is_that_of_single_springs) {
     double most = 0;
     for (size_t g = 0; g < N_GRIDS; g++) {
         struct sheet sheet;
@@ -376,20 +366,4 @@ START_TEST(largest_strain_is_that_of_single_springs) {
         sheet_close(&sheet);
     }
     ck_assert_double_gt(most, 0.1);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {runs_are_the_twelve_neighbours,
-                                  second_body_has_its_own_particles,
-                                  kinds_without_stiffness_have_no_springs,
-                                  stiffness_in_newtons_is_by_length,
-                                  force_is_the_sum_of_single_springs,
-                                  force_is_added_to_what_is_there,
-                                  particles_in_one_place_feel_no_spring,
-                                  energy_is_the_sum_of_single_springs,
-                                  own_blocks_are_the_sum_of_single_springs,
-                                  own_blocks_of_the_factors_are_those_of_the_product,
-                                  largest_strain_is_that_of_single_springs};
-    return unit_run("springs", tests, sizeof tests / sizeof *tests);
 }

@@ -18,7 +18,7 @@ static double decode(double c) {
 }
 
 /* the nearest byte, but where the formula is within its own rounding of the middle of two */
-START_TEST(a_byte_is_the_nearest_of_the_curve) {
+TEST(a_byte_is_the_nearest_of_the_curve) {
     double most = 0;
     cs_srgb_make(&tone);
     for (int i = 0; i <= 1000000; i++) {
@@ -28,9 +28,8 @@ START_TEST(a_byte_is_the_nearest_of_the_curve) {
     }
     ck_assert_double_le(most, 0.5 + 1e-5);
 }
-END_TEST
 
-START_TEST(bytes_come_back) {
+TEST(bytes_come_back) {
     cs_srgb_make(&tone);
     for (uint32_t byte = 0; byte < 256; byte++) {
         ck_assert_uint_eq(cs_srgb_encode(&tone, tone.linear[byte]), byte);
@@ -38,10 +37,9 @@ START_TEST(bytes_come_back) {
     }
     ck_assert_uint_eq(cs_srgb_pack(&tone, 1, 0, 1), 0xff00ff);
 }
-END_TEST
 
 /* all or nothing is exact; between, at most one off the exact mean, and nothing overflows */
-START_TEST(blending_is_a_mean) {
+TEST(blending_is_a_mean) {
     double most = 0;
     uint32_t wrong = 0;
     for (uint32_t a = 0; a < 256; a += 3)
@@ -57,10 +55,9 @@ START_TEST(blending_is_a_mean) {
     ck_assert_double_le(most, 1);
     ck_assert_uint_eq(wrong, 0);
 }
-END_TEST
 
 /* Four samples give the byte of the mean of their light; whoever of them comes first. */
-START_TEST(samples_give_the_mean_of_their_light) {
+TEST(samples_give_the_mean_of_their_light) {
     uint32_t wrong = 0;
     cs_srgb_make(&tone);
     for (uint32_t a = 0; a < 256; a++)
@@ -79,11 +76,10 @@ START_TEST(samples_give_the_mean_of_their_light) {
         }
     ck_assert_uint_eq(wrong, 0);
 }
-END_TEST
 
 /* A colour laid on nothing stays what it is and covers by its share; laid on what covers by
  * half, the two count as Porter and Duff have it. */
-START_TEST(colours_lie_on_nothing) {
+TEST(colours_lie_on_nothing) {
     const uint32_t nothing = 0xff000000, colour = 0x102030;
     for (uint32_t share = 1; share < 256; share++)
         ck_assert_uint_eq(cs_srgb_blend(nothing, colour, share), colour | (255 - share) << 24);
@@ -92,11 +88,10 @@ START_TEST(colours_lie_on_nothing) {
     ck_assert_uint_eq(cs_srgb_blend(0x99000064, 200, 51), (255u - 133) << 24 | 138);
     ck_assert_uint_eq(cs_srgb_blend(0x99000064, 200, 255), 200);
 }
-END_TEST
 
 /* What three of four samples show is the pixel's colour, and they cover three quarters; on
  * white it is the mean of the light. */
-START_TEST(samples_of_nothing_leave_the_colour) {
+TEST(samples_of_nothing_leave_the_colour) {
     const uint32_t nothing = 0xff000000, colour = 0x4080c0, white = 0xffffff;
     const uint32_t none[4] = {nothing, nothing, nothing, nothing};
     uint32_t some[4] = {colour, nothing, colour, colour}, on_white[4];
@@ -115,7 +110,6 @@ START_TEST(samples_of_nothing_leave_the_colour) {
             ck_assert_int_le(abs((int)(found >> k & 255) - (int)(expected >> k & 255)), 1);
     }
 }
-END_TEST
 
 static void near(float found, float expected, double by) {
     ck_assert_double_le(fabs((double)found - (double)expected), by);
@@ -143,7 +137,7 @@ static int slope(int x, int y) {
 }
 
 /* 12 x 8, 6 x 4, 3 x 2, 1 x 1: each the mean of the light of what it replaces */
-START_TEST(copies_are_means) {
+TEST(copies_are_means) {
     struct cs_arena arena = {0};
     struct cs_mipmap mips;
     const double expected = 65535 * (decode(100 / 255.0) + decode(200 / 255.0)) / 2;
@@ -156,7 +150,6 @@ START_TEST(copies_are_means) {
             near(mips.levels[copy].light[i], (float)expected, 1.5);
     cs_arena_finish(&arena);
 }
-END_TEST
 
 // light of a byte
 static float light(double byte) {
@@ -164,7 +157,7 @@ static float light(double byte) {
 }
 
 /* in the middle of a texel its own light, between two their mean, and the same a repeat on */
-START_TEST(a_texture_repeats_and_is_blended) {
+TEST(a_texture_repeats_and_is_blended) {
     struct cs_arena arena = {0};
     struct cs_mipmap mips;
     float rgb[3];
@@ -188,10 +181,9 @@ START_TEST(a_texture_repeats_and_is_blended) {
     near(rgb[0], 0.5f, 0.5);
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* rows of an odd length lose nothing: of three texels each counts by a third */
-START_TEST(odd_copies_are_means_too) {
+TEST(odd_copies_are_means_too) {
     struct cs_error error = {0};
     for (int lit = 0; lit < 9; lit++) {
         struct cs_arena arena = {0};
@@ -205,18 +197,4 @@ START_TEST(odd_copies_are_means_too) {
         near(mips.levels[1].light[0], 65535.0f / 9, 0.6);
         cs_arena_finish(&arena);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {a_byte_is_the_nearest_of_the_curve,
-                                  bytes_come_back,
-                                  blending_is_a_mean,
-                                  samples_give_the_mean_of_their_light,
-                                  colours_lie_on_nothing,
-                                  samples_of_nothing_leave_the_colour,
-                                  copies_are_means,
-                                  odd_copies_are_means_too,
-                                  a_texture_repeats_and_is_blended};
-    return unit_run("tone", tests, sizeof tests / sizeof *tests);
 }

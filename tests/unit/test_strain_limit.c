@@ -16,7 +16,7 @@ static double length_of(const struct sheet *sheet, size_t a, size_t b) {
     return sqrt(squared);
 }
 
-START_TEST(short_springs_are_left_alone) {
+TEST(short_springs_are_left_alone) {
     static const double lengths[] = {0, 0.5, 1, 1.0999};
     struct sheet pair;
     sheet_open(&pair, 0, CHAIN, 2, 1, "", 5);
@@ -29,11 +29,10 @@ START_TEST(short_springs_are_left_alone) {
     }
     sheet_close(&pair);
 }
-END_TEST
 
 /* 1.5 m in a direction of length 3 become 1.1 m about the same centre; each velocity changes by
  * its move over dt */
-START_TEST(pair_is_shortened_about_its_centre) {
+TEST(pair_is_shortened_about_its_centre) {
     struct sheet pair;
     sheet_open(&pair, 0, CHAIN, 2, 1, "", 1);
     sheet_put(&pair, 0, -0.25, -0.5, -0.5, 0, 0, 0);
@@ -47,9 +46,8 @@ START_TEST(pair_is_shortened_about_its_centre) {
                     1e-14);
     sheet_close(&pair);
 }
-END_TEST
 
-START_TEST(pinned_end_stays) {
+TEST(pinned_end_stays) {
     struct sheet pair;
     sheet_open(&pair, 0, CHAIN, 2, 1, "0", 1);
     sheet_put(&pair, 0, 0, 0, 0, 0, 0, 0);
@@ -67,12 +65,11 @@ START_TEST(pinned_end_stays) {
     ck_assert_uint_eq(cs_strain_limit_apply(&pair.system, 0.5, pair.x, pair.v), 0);
     sheet_close(&pair);
 }
-END_TEST
 
 /* The middle particle of three is twice as heavy as the ends. Whatever the sweeps do, centre of
  * mass and momentum are kept, and angular momentum too: moves are along the springs, and with
  * v = 0 before the velocities are the moves over dt. */
-START_TEST(momentum_is_kept) {
+TEST(momentum_is_kept) {
     struct sheet chain;
     sheet_open(&chain, 0, CHAIN, 3, 2, "", 7);
     const double *m = chain.system.mass;
@@ -93,11 +90,10 @@ START_TEST(momentum_is_kept) {
     }
     sheet_close(&chain);
 }
-END_TEST
 
 /* A chain just below its limit, pulled at its far end: the first pass runs towards that end and
  * moves its last spring only, the second runs back and hands the pull on to the near end. */
-START_TEST(every_other_sweep_runs_backwards) {
+TEST(every_other_sweep_runs_backwards) {
     for (int sweeps = 1; sweeps <= 2; sweeps++) {
         struct sheet chain;
         sheet_open(&chain, 0, CHAIN, 5, 4, "", sweeps);
@@ -112,10 +108,9 @@ START_TEST(every_other_sweep_runs_backwards) {
         sheet_close(&chain);
     }
 }
-END_TEST
 
 /* With enough passes no spring is too long, and a pass that finds nothing is the last. */
-START_TEST(enough_sweeps_hold_the_chain) {
+TEST(enough_sweeps_hold_the_chain) {
     struct sheet chain;
     sheet_open(&chain, 0, CHAIN, 6, 5, "0", 10000);
     for (size_t i = 0; i < 6; i++)
@@ -126,10 +121,9 @@ START_TEST(enough_sweeps_hold_the_chain) {
     SHEET_ASSERT_AT(&chain, chain.x, 0, 0, 0, 0, 0);
     sheet_close(&chain);
 }
-END_TEST
 
 /* a square sheared flat: its sides are as they were, one diagonal far too long */
-START_TEST(only_stretch_springs_are_limited) {
+TEST(only_stretch_springs_are_limited) {
     struct sheet square;
     sheet_open(&square, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2]}, \"mass\": {\"total\": 1},"
@@ -141,10 +135,9 @@ START_TEST(only_stretch_springs_are_limited) {
     ck_assert_uint_eq(cs_strain_limit_apply(&square.system, 1, square.x, square.v), 0);
     sheet_close(&square);
 }
-END_TEST
 
 /* each body has its own limit, or none */
-START_TEST(limit_belongs_to_a_body) {
+TEST(limit_belongs_to_a_body) {
     struct sheet two;
     sheet_open(&two, 0,
                "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"total\": 1}},"
@@ -157,7 +150,6 @@ START_TEST(limit_belongs_to_a_body) {
     ck_assert_double_eq_tol(length_of(&two, 2, 3), 1.5, 1e-15);
     sheet_close(&two);
 }
-END_TEST
 
 /* one spring by the formula of the manual's section on theory; true if it was too long */
 static bool shorten(struct sheet *sheet, size_t a, size_t b, double longest) {
@@ -214,7 +206,7 @@ static uint64_t pass(struct sheet *sheet, size_t first, size_t columns, bool bac
 
 /* The same bits as one spring after the other in the stated order, whatever the numbers of
  * columns and rows leave for the ends of vectors and strips, and with pinned particles. */
-START_TEST(order_is_the_stated_one) {
+TEST(order_is_the_stated_one) {
     static const size_t sizes[][2] = {{2, 1}, {1, 9}, {3, 5}, {16, 17}, {17, 16}, {37, 20}};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         const size_t columns = sizes[k][0], rows = sizes[k][1];
@@ -242,18 +234,4 @@ START_TEST(order_is_the_stated_one) {
         sheet_close(sheets);
         sheet_close(sheets + 1);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {short_springs_are_left_alone,
-                                  pair_is_shortened_about_its_centre,
-                                  pinned_end_stays,
-                                  momentum_is_kept,
-                                  every_other_sweep_runs_backwards,
-                                  enough_sweeps_hold_the_chain,
-                                  only_stretch_springs_are_limited,
-                                  limit_belongs_to_a_body,
-                                  order_is_the_stated_one};
-    return unit_run("limit", tests, sizeof tests / sizeof *tests);
 }

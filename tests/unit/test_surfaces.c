@@ -47,7 +47,7 @@ static void check_order(const struct cs_surfaces *s) {
 }
 
 /* vertices - edges + triangles: 1 of a disc, 2 of a sphere, 0 of a torus */
-START_TEST(surfaces_obey_euler) {
+TEST(surfaces_obey_euler) {
     struct sheet sheet;
     char bodies[1024];
     snprintf(bodies, sizeof bodies, GRID ", " MESH ", " MESH ", " GRID, 5, 4, "sphere", "torus",
@@ -64,10 +64,9 @@ START_TEST(surfaces_obey_euler) {
     check_order(s);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* a rope has edges in no triangle, a particle has nothing; numbers are those of the system */
-START_TEST(ropes_have_edges_alone) {
+TEST(ropes_have_edges_alone) {
     struct sheet sheet;
     char bodies[1024];
     snprintf(bodies, sizeof bodies, GRID ", " GRID ", " GRID, 1, 1, 4, 1, 1, 3);
@@ -80,26 +79,4 @@ START_TEST(ropes_have_edges_alone) {
     for (uint32_t e = 0; e < 5; e++)
         ck_assert_uint_eq(cs_surfaces_body(s->first_edge, 3, e), e < 3 ? 1 : 2);
     sheet_close(&sheet);
-}
-END_TEST
-
-/* the bytes that a plan would name are those taken, but for rounding to 64 */
-START_TEST(bytes_are_told) {
-    struct sheet sheet;
-    struct cs_error error = {0};
-    char bodies[1024];
-    snprintf(bodies, sizeof bodies, GRID ", " MESH, 20, 10, "sphere");
-    sheet_open(&sheet, 0, "{\"bodies\": [%s]}", bodies);
-    const size_t before = sheet.system.arena.used;
-    cs_surfaces_build(&sheet.system, &error);
-    const size_t taken = sheet.system.arena.used - before;
-    const size_t told = cs_surfaces_bytes(&sheet.scene);
-    ck_assert_msg(taken >= told && taken < told + 5 * 64, "%zu, %zu", taken, told);
-    sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {surfaces_obey_euler, ropes_have_edges_alone, bytes_are_told};
-    return unit_run("surfaces", tests, sizeof tests / sizeof *tests);
 }

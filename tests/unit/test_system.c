@@ -7,7 +7,7 @@
 #define SCENE(mass, more) "{\"bodies\": [" BODY(mass, more) "]}"
 
 /* the four kinds, by particle of a grid of 3 x 2 and size 2 x 1 */
-START_TEST(mass_is_by_particle_area_total_or_degree) {
+TEST(mass_is_by_particle_area_total_or_degree) {
     static const struct {
         const char *scene;
         double mass[6];
@@ -25,10 +25,9 @@ START_TEST(mass_is_by_particle_area_total_or_degree) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* a pinned particle keeps its mass, and has no inverse mass and no velocity */
-START_TEST(pinned_particles_rest) {
+TEST(pinned_particles_rest) {
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE("\"particle\": 0.5", ", \"pins\": [5, 1, 5]"));
     ck_assert_uint_eq(sheet.system.n_pinned, 2);
@@ -42,9 +41,8 @@ START_TEST(pinned_particles_rest) {
     }
     sheet_close(&sheet);
 }
-END_TEST
 
-START_TEST(view_shows_the_arrays) {
+TEST(view_shows_the_arrays) {
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE("\"particle\": 0.5", ""));
     const struct cs_view *view = &sheet.system.view;
@@ -56,9 +54,8 @@ START_TEST(view_shows_the_arrays) {
     ck_assert_int_eq(memcmp(view->start, sheet.x, 18 * sizeof(double)), 0);
     sheet_close(&sheet);
 }
-END_TEST
 
-START_TEST(bodies_follow_each_other) {
+TEST(bodies_follow_each_other) {
     struct sheet sheet;
     sheet_open(&sheet, 0,
                "{\"bodies\": [" BODY("\"particle\": 1",
@@ -76,10 +73,9 @@ START_TEST(bodies_follow_each_other) {
     ck_assert_uint_eq(sheet.system.pinned[0], 6);
     sheet_close(&sheet);
 }
-END_TEST
 
 /* the list says what the runs say, spring by spring */
-START_TEST(spring_list_is_the_runs) {
+TEST(spring_list_is_the_runs) {
     struct sheet sheet;
     sheet_open(
         &sheet, CS_NEED_SPRINGS,
@@ -105,10 +101,9 @@ START_TEST(spring_list_is_the_runs) {
     }
     sheet_close(&sheet);
 }
-END_TEST
 
 /* no wind, no area law, no need for springs: no arrays */
-START_TEST(what_is_not_needed_is_not_there) {
+TEST(what_is_not_needed_is_not_there) {
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE("\"particle\": 1", ""));
     ck_assert_ptr_null(sheet.system.normals);
@@ -132,15 +127,4 @@ START_TEST(what_is_not_needed_is_not_there) {
     ck_assert_uint_eq(sheet.system.n_terms, 3);
     ck_assert_uint_eq(sheet.system.arena.used, least + 4 * 6 * sizeof(double));
     sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {mass_is_by_particle_area_total_or_degree,
-                                  pinned_particles_rest,
-                                  view_shows_the_arrays,
-                                  bodies_follow_each_other,
-                                  spring_list_is_the_runs,
-                                  what_is_not_needed_is_not_there};
-    return unit_run("system", tests, sizeof tests / sizeof *tests);
 }

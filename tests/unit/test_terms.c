@@ -26,7 +26,7 @@ static double area_of(size_t i) {
     return (row == 0 || row == 2 ? 0.5 : 1) * (column == 0 || column == 3 ? 0.5 : 1);
 }
 
-START_TEST(gravity_is_mass_times_g) {
+TEST(gravity_is_mass_times_g) {
     struct sheet sheet;
     double f[VALUES];
     sheet_open(&sheet, 0, SCENE, "\"gravity\": [1, -2, 3]");
@@ -42,9 +42,8 @@ START_TEST(gravity_is_mass_times_g) {
         cs_term_gravity.energy(&sheet.system, &(struct cs_eval){.x = sheet.x}), energy, 1e-14);
     sheet_close(&sheet);
 }
-END_TEST
 
-START_TEST(drag_is_against_the_velocity) {
+TEST(drag_is_against_the_velocity) {
     for (int by_area = 0; by_area < 2; by_area++) {
         struct sheet sheet;
         double f[VALUES];
@@ -60,10 +59,9 @@ START_TEST(drag_is_against_the_velocity) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* strength times |w.n| along w: the same from in front and behind, nothing edge-on */
-START_TEST(wind_is_by_the_angle_of_the_cloth) {
+TEST(wind_is_by_the_angle_of_the_cloth) {
     static const struct {
         const char *wind;
         double w[3], facing; /* unit direction, |w.n| */
@@ -91,12 +89,11 @@ START_TEST(wind_is_by_the_angle_of_the_cloth) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 #define EVERYTHING "\"drag\": 0.3, \"wind\": {\"direction\": [1, 0.3, 0.2], \"strength\": 4}"
 
 /* every bit alone adds up to all of them, and none gives nothing */
-START_TEST(parts_add_up) {
+TEST(parts_add_up) {
     struct sheet sheet;
     double all[VALUES], sum[VALUES] = {0}, f[VALUES];
     sheet_open(&sheet, 0, SCENE, EVERYTHING);
@@ -118,9 +115,8 @@ START_TEST(parts_add_up) {
         ck_assert_double_eq(f[i], 0);
     sheet_close(&sheet);
 }
-END_TEST
 
-START_TEST(only_wind_needs_normals) {
+TEST(only_wind_needs_normals) {
     struct sheet sheet;
     sheet_open(&sheet, 0, SCENE, EVERYTHING);
     ck_assert(cs_terms_need_normals(&sheet.system, CS_PART_WIND));
@@ -131,10 +127,9 @@ START_TEST(only_wind_needs_normals) {
     ck_assert(!cs_terms_need_normals(&sheet.system, CS_PART_ALL));
     sheet_close(&sheet);
 }
-END_TEST
 
 /* in the order of the sum, and only those with something to add */
-START_TEST(scene_has_only_its_terms) {
+TEST(scene_has_only_its_terms) {
     static const struct {
         const char *forces;
         const struct cs_term *terms[4];
@@ -153,10 +148,9 @@ START_TEST(scene_has_only_its_terms) {
         sheet_close(&sheet);
     }
 }
-END_TEST
 
 /* which the Jacobian test does not see, as it never moves them */
-START_TEST(derivative_is_zero_on_pins) {
+TEST(derivative_is_zero_on_pins) {
     struct sheet sheet;
     double d[VALUES], df[VALUES];
     sheet_open(&sheet, 0, SCENE, EVERYTHING);
@@ -171,14 +165,4 @@ START_TEST(derivative_is_zero_on_pins) {
     SHEET_ASSERT_AT(&sheet, df, 5, 0, 0, 0, 0);
     ck_assert_double_ne(df[6], 0);
     sheet_close(&sheet);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {
-        gravity_is_mass_times_g,           drag_is_against_the_velocity,
-        wind_is_by_the_angle_of_the_cloth, parts_add_up,
-        only_wind_needs_normals,           scene_has_only_its_terms,
-        derivative_is_zero_on_pins};
-    return unit_run("terms", tests, sizeof tests / sizeof *tests);
 }

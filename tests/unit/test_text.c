@@ -13,7 +13,7 @@ static void check_real(double value, const char *expected) {
     cs_text_finish(&text);
 }
 
-START_TEST(reals_are_short) {
+TEST(reals_are_short) {
     check_real(0, "0");
     check_real(-0.0, "-0");
     check_real(1, "1");
@@ -29,10 +29,9 @@ START_TEST(reals_are_short) {
     check_real(HUGE_VAL, "null");
     check_real((double)NAN, "null");
 }
-END_TEST
 
 /* 100 000 bit patterns from all over the range */
-START_TEST(reals_read_back_the_same) {
+TEST(reals_read_back_the_same) {
     uint64_t bits = 1;
     static const double edges[] = {DBL_MIN, DBL_MAX, -DBL_MAX, DBL_EPSILON, 4.9e-324, 1e23};
     for (size_t k = 0; k < 100000; k++) {
@@ -50,9 +49,8 @@ START_TEST(reals_read_back_the_same) {
         cs_text_finish(&text);
     }
 }
-END_TEST
 
-START_TEST(only_whole_finite_numbers_are_read) {
+TEST(only_whole_finite_numbers_are_read) {
     static const char *const wrong[] = {"",    " ",   " 1",  "1 ",  "1x",    "0x10",
                                         "nan", "inf", "1,5", "1e",  "1e999", "--1",
                                         "+",   ".",   "e5",  "1_0", "1\n",   "-1e400"};
@@ -65,9 +63,8 @@ START_TEST(only_whole_finite_numbers_are_read) {
     ck_assert(cs_parse_real(".5", &value) && value == 0.5);
     ck_assert(cs_parse_real("+2.", &value) && value == 2);
 }
-END_TEST
 
-START_TEST(text_grows) {
+TEST(text_grows) {
     struct cs_text text = {0};
     ck_assert_str_eq(cs_text_get(&text), "");
     for (int i = 0; i < 5000; i++)
@@ -81,10 +78,9 @@ START_TEST(text_grows) {
     cs_text_finish(&text);
     ck_assert_str_eq(cs_text_get(&text), "");
 }
-END_TEST
 
 /* a failed text stays as it is */
-START_TEST(failed_text_takes_nothing_more) {
+TEST(failed_text_takes_nothing_more) {
     struct cs_text text = {.failed = true};
     cs_text_add(&text, "more");
     cs_text_add_real(&text, 1);
@@ -92,17 +88,15 @@ START_TEST(failed_text_takes_nothing_more) {
     ck_assert_str_eq(cs_text_get(&text), "");
     cs_text_finish(&text);
 }
-END_TEST
 
-START_TEST(json_strings_are_escaped) {
+TEST(json_strings_are_escaped) {
     struct cs_text text = {0};
     cs_text_add_json(&text, "a \"b\" \\ \n\t\x01 \xc3\xa4");
     ck_assert_str_eq(cs_text_get(&text), "\"a \\\"b\\\" \\\\ \\u000a\\u0009\\u0001 \xc3\xa4\"");
     cs_text_finish(&text);
 }
-END_TEST
 
-START_TEST(nearest_word_is_found) {
+TEST(nearest_word_is_found) {
     static const char *const words[] = {"stretch", "shear", "bend", "damping", NULL};
     static const struct {
         const char *word, *nearest;
@@ -120,16 +114,4 @@ START_TEST(nearest_word_is_found) {
     memset(endless, 'a', sizeof endless - 1);
     endless[sizeof endless - 1] = 0;
     cs_nearest_word(endless, words);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {reals_are_short,
-                                  reals_read_back_the_same,
-                                  only_whole_finite_numbers_are_read,
-                                  text_grows,
-                                  failed_text_takes_nothing_more,
-                                  json_strings_are_escaped,
-                                  nearest_word_is_found};
-    return unit_run("text", tests, sizeof tests / sizeof *tests);
 }

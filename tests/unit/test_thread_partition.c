@@ -48,7 +48,7 @@ static bool is_border(const struct cs_system *system, uint32_t particle) {
     return true;
 }
 
-START_TEST(blocks_cover_whole_rows_and_their_runs) {
+TEST(blocks_cover_whole_rows_and_their_runs) {
     for (int k = 0; k < CASES; k++) {
         struct sheet sheet;
         make(&sheet, k / THREADS, threads[k % THREADS]);
@@ -74,9 +74,8 @@ START_TEST(blocks_cover_whole_rows_and_their_runs) {
         unmake(&sheet);
     }
 }
-END_TEST
 
-START_TEST(lots_have_each_listed_spring_once) {
+TEST(lots_have_each_listed_spring_once) {
     struct sheet sheet;
     make(&sheet, GRIDS, 3);
     const struct cs_springs *springs = &sheet.system.springs;
@@ -96,10 +95,9 @@ START_TEST(lots_have_each_listed_spring_once) {
     free(times);
     unmake(&sheet);
 }
-END_TEST
 
 /* ascending at each particle, each end once */
-START_TEST(springs_wait_at_both_ends) {
+TEST(springs_wait_at_both_ends) {
     struct sheet sheet;
     make(&sheet, GRIDS, 2);
     const struct cs_springs *springs = &sheet.system.springs;
@@ -126,9 +124,8 @@ START_TEST(springs_wait_at_both_ends) {
     ck_assert_uint_eq(listed, 6);
     unmake(&sheet);
 }
-END_TEST
 
-START_TEST(bytes_are_those_taken) {
+TEST(bytes_are_those_taken) {
     for (int k = 0; k < CASES; k++) {
         struct sheet alone, shared;
         make(&alone, k / THREADS, 1);
@@ -141,12 +138,4 @@ START_TEST(bytes_are_those_taken) {
                           least + shared.system.plan.rows[CS_FEATURE_THREADS].bytes);
         unmake(&shared);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {blocks_cover_whole_rows_and_their_runs,
-                                  lots_have_each_listed_spring_once, springs_wait_at_both_ends,
-                                  bytes_are_those_taken};
-    return unit_run("shares", tests, sizeof tests / sizeof *tests);
 }

@@ -27,7 +27,7 @@ static void write_trail(double values[N]) {
     ck_assert_int_eq(fclose(file), 0);
 }
 
-START_TEST(points_come_back) {
+TEST(points_come_back) {
     double values[N];
     struct cs_error error = {0};
     write_trail(values);
@@ -51,7 +51,6 @@ START_TEST(points_come_back) {
     cs_trace_stream_finish(&trace);
     free(bytes);
 }
-END_TEST
 
 /* points that a text of so many bytes begins with, and what is said of its end */
 static int count_points(const char *text, size_t n, enum cs_status *status) {
@@ -66,7 +65,7 @@ static int count_points(const char *text, size_t n, enum cs_status *status) {
     return count;
 }
 
-START_TEST(what_breaks_off_gives_whole_points_only) {
+TEST(what_breaks_off_gives_whole_points_only) {
     double values[N];
     enum cs_status status;
     write_trail(values);
@@ -77,9 +76,8 @@ START_TEST(what_breaks_off_gives_whole_points_only) {
     }
     free(bytes);
 }
-END_TEST
 
-START_TEST(what_is_none_is_refused) {
+TEST(what_is_none_is_refused) {
     static const char *const texts[] = {
         "clothsim trail 2\n",
         "out\n",
@@ -93,11 +91,4 @@ START_TEST(what_is_none_is_refused) {
         ck_assert_int_eq(count_points(texts[k], strlen(texts[k]), &status), 0);
         ck_assert_int_eq(status, CS_ERR_FILE);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {points_come_back, what_breaks_off_gives_whole_points_only,
-                                  what_is_none_is_refused};
-    return unit_run("trail", tests, sizeof tests / sizeof *tests);
 }

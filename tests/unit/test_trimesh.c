@@ -34,7 +34,7 @@ static double area_of(const struct cs_trimesh *mesh) {
     return area;
 }
 
-START_TEST(shapes_are_closed_and_look_outwards) {
+TEST(shapes_are_closed_and_look_outwards) {
     static const double pi = 3.14159265358979323846;
     const struct {
         uint32_t least, euler;
@@ -67,10 +67,9 @@ START_TEST(shapes_are_closed_and_look_outwards) {
             cs_arena_finish(&arena);
         }
 }
-END_TEST
 
 /* the sizes that the scenes of the soft-body thesis want */
-START_TEST(vertices_are_as_many_as_promised) {
+TEST(vertices_are_as_many_as_promised) {
     static const struct {
         enum cs_mesh_shape shape;
         uint32_t detail, n;
@@ -85,9 +84,8 @@ START_TEST(vertices_are_as_many_as_promised) {
         cs_arena_finish(&arena);
     }
 }
-END_TEST
 
-START_TEST(spheres_and_tori_lie_on_their_surface) {
+TEST(spheres_and_tori_lie_on_their_surface) {
     struct cs_trimesh mesh;
     struct cs_arena arena;
     make(&mesh, CS_MESH_SPHERE, 9, &arena);
@@ -105,10 +103,9 @@ START_TEST(spheres_and_tori_lie_on_their_surface) {
     }
     cs_arena_finish(&arena);
 }
-END_TEST
 
 /* limbs are the same on both sides: the mirror image of each vertex is one */
-START_TEST(limbs_are_symmetric) {
+TEST(limbs_are_symmetric) {
     struct cs_trimesh mesh;
     struct cs_arena arena;
     make(&mesh, CS_MESH_LIMBS, 20, &arena);
@@ -124,7 +121,6 @@ START_TEST(limbs_are_symmetric) {
     }
     cs_arena_finish(&arena);
 }
-END_TEST
 
 static bool has_corner(const struct cs_trimesh *mesh, uint32_t t, uint32_t i) {
     const uint32_t *corner = mesh->triangles + 3 * (size_t)t;
@@ -132,7 +128,7 @@ static bool has_corner(const struct cs_trimesh *mesh, uint32_t t, uint32_t i) {
 }
 
 /* Edges, hinges and neighbourhoods against a search over all pairs. */
-START_TEST(edges_agree_with_brute_force) {
+TEST(edges_agree_with_brute_force) {
     for (uint32_t s = 0; s < CS_MESH_SHAPES; s++) {
         struct cs_trimesh mesh;
         struct cs_arena arena;
@@ -168,13 +164,4 @@ START_TEST(edges_agree_with_brute_force) {
         ck_assert_uint_eq(mesh.vertex_triangles_end[mesh.n - 1], 3 * mesh.n_triangles);
         cs_arena_finish(&arena);
     }
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {shapes_are_closed_and_look_outwards,
-                                  vertices_are_as_many_as_promised,
-                                  spheres_and_tori_lie_on_their_surface, limbs_are_symmetric,
-                                  edges_agree_with_brute_force};
-    return unit_run("trimesh", tests, sizeof tests / sizeof *tests);
 }

@@ -16,7 +16,7 @@ enum { LENGTHS = sizeof lengths / sizeof *lengths };
 static const struct cs_vector_kernels *const kernels = &cs_vector_kernels;
 
 /* whole numbers, whose sums are exact in any order */
-START_TEST(sums_of_whole_numbers_are_exact) {
+TEST(sums_of_whole_numbers_are_exact) {
     static double x[MOST], y[MOST];
     for (size_t i = 0; i < MOST; i++) {
         x[i] = (double)(i % 101) - 50;
@@ -35,7 +35,6 @@ START_TEST(sums_of_whole_numbers_are_exact) {
         ck_assert_double_eq(kernels->max_norm(lengths[k], x), largest);
     }
 }
-END_TEST
 
 /* The published order: in blocks of 4096, lane l takes the terms l, l + 8, ...; the lanes are
  * added in pairs of distance 4, then 2, then 1, and the blocks one after the other. */
@@ -53,7 +52,7 @@ static double sum_in_order(const double *terms, size_t n) {
     return sum;
 }
 
-START_TEST(sums_have_one_order) {
+TEST(sums_have_one_order) {
     static double x[MOST], y[MOST], products[MOST], squares[MOST];
     uint64_t seed = 1;
     for (size_t i = 0; i < MOST; i++) {
@@ -69,10 +68,9 @@ START_TEST(sums_have_one_order) {
                             sum_in_order(squares, lengths[k]));
     }
 }
-END_TEST
 
 /* z beside, on x, on y, and on both */
-START_TEST(linear_sum_may_write_on_its_input) {
+TEST(linear_sum_may_write_on_its_input) {
     double x[19], y[19], z[19];
     for (int alias = 0; alias < 4; alias++) {
         for (int i = 0; i < 19; i++)
@@ -84,9 +82,8 @@ START_TEST(linear_sum_may_write_on_its_input) {
             ck_assert_double_eq(out[i], alias == 3 ? 1.5 * i : 2 * i - 0.5 * (100 - 3 * i));
     }
 }
-END_TEST
 
-START_TEST(numbers_that_are_not_finite_show) {
+TEST(numbers_that_are_not_finite_show) {
     for (size_t at = 0; at < 20; at++) {
         double x[20], w[20];
         for (size_t i = 0; i < 20; i++)
@@ -99,7 +96,6 @@ START_TEST(numbers_that_are_not_finite_show) {
         ck_assert_double_nan(kernels->weighted_sum_of_squares(20, x, w));
     }
 }
-END_TEST
 
 /* longer than the block sums that wait at a time, and not a whole number of blocks */
 enum { LONG = 513 * BLOCK + 77 };
@@ -110,7 +106,7 @@ static void count_items(void *arg, size_t begin, size_t end) {
         times[i]++;
 }
 
-START_TEST(threads_change_no_bit) {
+TEST(threads_change_no_bit) {
     static const uint32_t threads[] = {1, 2, 3, 7};
     double *x = malloc(4 * LONG * sizeof *x);
     ck_assert_ptr_nonnull(x);
@@ -137,12 +133,4 @@ START_TEST(threads_change_no_bit) {
     }
     cs_pool_stop();
     free(x);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {sums_of_whole_numbers_are_exact, sums_have_one_order,
-                                  linear_sum_may_write_on_its_input,
-                                  numbers_that_are_not_finite_show, threads_change_no_bit};
-    return unit_run("vector", tests, sizeof tests / sizeof *tests);
 }

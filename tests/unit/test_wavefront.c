@@ -42,7 +42,7 @@ static void same_as_one_by_one(uint32_t loops, uint32_t blocks) {
             UNIT_ASSERT_OFTEN(wavefront.done[k][b] == 1);
 }
 
-START_TEST(wave_is_one_loop_after_the_other) {
+TEST(wave_is_one_loop_after_the_other) {
     struct cs_error error = {0};
     for (uint32_t threads = 1; threads <= 7; threads += threads < 4 ? 1 : 3) {
         ck_assert_int_eq(cs_pool_start(threads, &error), CS_OK);
@@ -51,10 +51,4 @@ START_TEST(wave_is_one_loop_after_the_other) {
                 same_as_one_by_one(loops, blocks);
     }
     cs_pool_stop();
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {wave_is_one_loop_after_the_other};
-    return unit_run("wave", tests, sizeof tests / sizeof *tests);
 }

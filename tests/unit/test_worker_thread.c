@@ -43,7 +43,7 @@ static void assert_written(const struct diary *diary) {
         ck_assert_int_eq(diary->entries[k], k);
 }
 
-START_TEST(work_is_done_in_order_on_another_thread) {
+TEST(work_is_done_in_order_on_another_thread) {
     struct diary diary = {0};
     struct page pages[20];
     struct cs_worker_thread *worker = cs_worker_thread_create();
@@ -55,9 +55,8 @@ START_TEST(work_is_done_in_order_on_another_thread) {
     ck_assert(diary.blocked);
     cs_worker_thread_destroy(worker);
 }
-END_TEST
 
-START_TEST(without_a_hand_work_is_done_at_once) {
+TEST(without_a_hand_work_is_done_at_once) {
     struct diary diary = {0};
     struct page pages[20];
     give_all(NULL, &diary, pages);
@@ -66,21 +65,12 @@ START_TEST(without_a_hand_work_is_done_at_once) {
     cs_worker_thread_wait(NULL);
     cs_worker_thread_destroy(NULL);
 }
-END_TEST
 
-START_TEST(destroy_waits_for_what_was_given) {
+TEST(destroy_waits_for_what_was_given) {
     struct diary diary = {0};
     struct page pages[20];
     struct cs_worker_thread *worker = cs_worker_thread_create();
     give_all(worker, &diary, pages);
     cs_worker_thread_destroy(worker);
     assert_written(&diary);
-}
-END_TEST
-
-int main(void) {
-    const TTest *const tests[] = {work_is_done_in_order_on_another_thread,
-                                  without_a_hand_work_is_done_at_once,
-                                  destroy_waits_for_what_was_given};
-    return unit_run("hand", tests, sizeof tests / sizeof *tests);
 }

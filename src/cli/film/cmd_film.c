@@ -15,21 +15,30 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FILM_OUT, FILM_FPS, FILM_SHEET, FILM_TILE, FILM_OVERWRITE, FILM_QUIET, FILM_ROWS };
 enum { PATH_BYTES = 4096 };
 
-static const struct cs_arg rows[FILM_ROWS] = {
-    [FILM_OUT] = {"out", 'o', "FILE",
-                  "an .mp4 or .webm (default: film.mp4 in DIR); a .png of a sheet (sheet.png)",
-                  false},
-    [FILM_FPS] = {"fps", 0, "RATE", "pictures a second (default: as fast as the scene moved)",
-                  false},
-    [FILM_SHEET] = {"sheet", 0, "COLUMNSxROWS",
-                    "instead of a film one picture of so many at most, such as 5x4", false},
-    [FILM_TILE] = {"tile", 0, "PIXELS", "width of each on a sheet at most (default: 320)",
-                   false},
-    [FILM_OVERWRITE] = {"overwrite", 'y', NULL, "replace a film or sheet that is there", false},
-    [FILM_QUIET] = {"quiet", 'q', NULL, "print nothing", false},
+struct options {
+    const char *out, *grid;
+    double rate;
+    uint32_t tile;
+    bool overwrite, quiet;
+};
+static const struct options defaults = {.tile = 320};
+
+static const struct cs_arg rows[] = {
+    {"out", 'o', "FILE",
+     "an .mp4 or .webm (default: film.mp4 in DIR); a .png of a sheet (sheet.png)",
+     CS_ARG_INTO(struct options, out)},
+    {"fps", 0, "RATE", "pictures a second (default: as fast as the scene moved)",
+     CS_ARG_INTO(struct options, rate)},
+    {"sheet", 0, "COLUMNSxROWS",
+     "instead of a film one picture of so many at most, such as 5x4",
+     CS_ARG_INTO(struct options, grid)},
+    {"tile", 0, "PIXELS", "width of each on a sheet at most (default: 320)",
+     CS_ARG_INTO(struct options, tile), .min = 16, .max = 4096},
+    {"overwrite", 'y', NULL, "replace a film or sheet that is there",
+     CS_ARG_INTO(struct options, overwrite)},
+    {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
 /* What a film is made of, and where it goes: to `part`, which becomes `out`. */
@@ -44,12 +53,11 @@ struct film {
 
 /* Where the film goes, by its ending what it is; the part keeps the ending, which ffmpeg reads.
  */
-static enum cs_status set_output_path(const struct cs_args *args, struct film *film,
+static enum cs_status set_output_path(const struct options *options, struct film *film,
                                       struct cs_error *error) {
-    const char *name = cs_args_get(args, FILM_OUT);
     char made[PATH_BYTES], here[PATH_BYTES] = "";
     snprintf(made, sizeof made, "%.4000s/film.mp4", film->folder);
-    const char *out = name ? name : made, *ending = strrchr(out, '.');
+    const char *out = options->out ? options->out : made, *ending = strrchr(out, '.');
     film->webm = ending && !strcmp(ending, ".webm");
     if (!film->webm && (!ending || strcmp(ending, ".mp4")))
         return cs_fail(error, CS_ERR_USAGE,
@@ -61,7 +69,7 @@ static enum cs_status set_output_path(const struct cs_args *args, struct film *f
         PATH_BYTES)
         return cs_fail(error, CS_ERR_FILE, "\"%.60s...\": the path is too long", out);
     snprintf(film->part, sizeof film->part, "%s.part%s", film->out, ending);
-    return cs_args_get(args, FILM_OVERWRITE) ? CS_OK : cs_output_check_file(out, error);
+    return options->overwrite ? CS_OK : cs_output_check_file(out, error);
 }
 
 enum { ARGUMENTS = 48 };
@@ -166,12 +174,13 @@ static enum cs_status check_pictures(struct film *film, const struct cs_film_rep
 
 static enum cs_status make_film(const struct cs_args *args, const struct cs_film_report *report,
                                 struct cs_text *told, struct cs_error *error) {
-    struct film film = {.folder = args->operands[0], .rate = cs_film_rate(report)};
-    if (cs_args_get(args, FILM_TILE))
+    const struct options *options = args->options;
+    struct film film = {.folder = args->operands[0],
+                        .rate = options->rate > 0 ? options->rate : cs_film_rate(report),
+                        .clear = report->clear};
+    if (cs_args_is_given(args, "tile"))
         return cs_fail(error, CS_ERR_USAGE, "--tile is of a sheet: give --sheet too");
-    film.clear = report->clear;
-    if (cs_args_real(args, FILM_FPS, &film.rate, error) ||
-        set_output_path(args, &film, error) || check_pictures(&film, report, error) ||
+    if (set_output_path(options, &film, error) || check_pictures(&film, report, error) ||
         make(&film, error))
         return error->status;
     cs_text_add(told, "%s: %g pictures a second\n", film.out, film.rate);
@@ -180,12 +189,12 @@ static enum cs_status make_film(const struct cs_args *args, const struct cs_film
 
 enum { MOST_TILES = 1000 };
 
-static enum cs_status read_sheet(const struct cs_args *args, struct cs_contact_sheet *sheet,
+static enum cs_status read_sheet(const struct options *options, struct cs_contact_sheet *sheet,
                                  struct cs_error *error) {
-    const char *found = cs_args_get(args, FILM_SHEET);
+    const char *found = options->grid;
     char rest;
-    *sheet = (struct cs_contact_sheet){.tile = 320};
-    if (cs_args_get(args, FILM_FPS))
+    *sheet = (struct cs_contact_sheet){.tile = options->tile};
+    if (options->rate > 0)
         return cs_fail(error, CS_ERR_USAGE, "--fps is of a film: a sheet has none");
     if (strspn(found, "0123456789x") != strlen(found) || strlen(found) > 9 ||
         sscanf(found, "%ux%u%c", &sheet->columns, &sheet->rows, &rest) != 2 ||
@@ -196,21 +205,21 @@ static enum cs_status read_sheet(const struct cs_args *args, struct cs_contact_s
             "--sheet: found \"%.60s\", expected columns and rows of 1 to %d, such as "
             "5x4",
             found, MOST_TILES);
-    return cs_args_integer(args, FILM_TILE, 16, 4096, &sheet->tile, error);
+    return CS_OK;
 }
 
 static enum cs_status place_sheet(const struct cs_args *args, char out[PATH_BYTES],
                                   struct cs_error *error) {
-    const char *name = cs_args_get(args, FILM_OUT);
-    if (name)
-        snprintf(out, PATH_BYTES, "%.4000s", name);
+    const struct options *options = args->options;
+    if (options->out)
+        snprintf(out, PATH_BYTES, "%.4000s", options->out);
     else
         snprintf(out, PATH_BYTES, "%.4000s/sheet.png", args->operands[0]);
     const char *ending = strrchr(out, '.');
     if (!ending || strcmp(ending, ".png"))
         return cs_fail(error, CS_ERR_USAGE,
                        "--out: expected a name that ends in .png, found \"%.60s\"", out);
-    return cs_args_get(args, FILM_OVERWRITE) ? CS_OK : cs_output_check_file(out, error);
+    return options->overwrite ? CS_OK : cs_output_check_file(out, error);
 }
 
 static enum cs_status make_sheet(const struct cs_args *args,
@@ -220,7 +229,7 @@ static enum cs_status make_sheet(const struct cs_args *args,
     char out[PATH_BYTES];
     struct cs_contact_sheet sheet;
     struct cs_image image;
-    if (read_sheet(args, &sheet, error) || place_sheet(args, out, error) ||
+    if (read_sheet(args->options, &sheet, error) || place_sheet(args, out, error) ||
         cs_contact_sheet_make(&sheet, args->operands[0], report, &image, error))
         return error->status;
     cs_png_write(out, &image, 6, &text, 1, error);
@@ -233,16 +242,17 @@ static enum cs_status make_sheet(const struct cs_args *args,
 }
 
 static enum cs_status film(struct cs_args *args, struct cs_error *error) {
+    const struct options *options = args->options;
     struct cs_film_report report;
     struct cs_text told = {0};
     if (cs_film_report_read(args->operands[0], &report, error))
         return error->status;
-    if (cs_args_get(args, FILM_SHEET))
+    if (options->grid)
         make_sheet(args, &report, &told, error);
     else
         make_film(args, &report, &told, error);
     cs_film_report_finish(&report);
-    if (!error->status && !cs_args_get(args, FILM_QUIET))
+    if (!error->status && !options->quiet)
         return cs_print_out(stdout, &told, error);
     cs_text_finish(&told);
     return error->status;
@@ -254,8 +264,7 @@ const struct cs_command cs_command_film = {
     .summary = "make a film or a contact sheet of the pictures of a run",
     .notes = "DIR is the folder that clothsim run wrote. ffmpeg makes the film.\n\n"
              "Example: clothsim film out -o cloth.webm\n",
-    .rows = rows,
-    .n_rows = FILM_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,
     .main = film,

@@ -11,19 +11,13 @@
 
 enum { PATH_BYTES = 4096, MOST_PICTURES = 10000000 };
 
-static const struct cs_json *member(const struct cs_json *object, const char *key,
-                                    enum cs_json_kind kind) {
-    const struct cs_json *value = object ? cs_json_find(object, key) : NULL;
-    return value && cs_json_kind_of(value) == kind ? value : NULL;
-}
-
 static double number_of(const struct cs_json *object, const char *key) {
-    const struct cs_json *value = member(object, key, CS_JSON_NUMBER);
+    const struct cs_json *value = cs_json_find_kind(object, key, CS_JSON_NUMBER);
     return value ? cs_json_number(value) : 0;
 }
 
 static int32_t look_of(const struct cs_json *render) {
-    const struct cs_json *look = member(render, "look", CS_JSON_TEXT);
+    const struct cs_json *look = cs_json_find_kind(render, "look", CS_JSON_TEXT);
     for (int32_t k = 0; look && cs_look_names[k]; k++)
         if (!strcmp(cs_look_names[k], cs_json_text(look)))
             return k;
@@ -32,14 +26,14 @@ static int32_t look_of(const struct cs_json *render) {
 
 static bool is_clear(const struct cs_json *render) {
     const struct cs_json *kind =
-        member(member(render, "background", CS_JSON_OBJECT), "kind", CS_JSON_TEXT);
+        cs_json_find_kind(cs_json_find(render, "background"), "kind", CS_JSON_TEXT);
     return kind && !strcmp(cs_json_text(kind), "none");
 }
 
 /* false: it was not drawn. Runs of older versions gave a picture the number of its frame. */
 static bool read_picture(const struct cs_json *frame, struct cs_film_picture *picture) {
-    const struct cs_json *drawn = member(frame, "drawn", CS_JSON_BOOL);
-    const struct cs_json *range = member(frame, "range", CS_JSON_LIST);
+    const struct cs_json *drawn = cs_json_find_kind(frame, "drawn", CS_JSON_BOOL);
+    const struct cs_json *range = cs_json_find_kind(frame, "range", CS_JSON_LIST);
     if (!drawn || !cs_json_is_true(drawn))
         return false;
     *picture = (struct cs_film_picture){.frame = number_of(frame, "number")};
@@ -57,10 +51,10 @@ static bool read_picture(const struct cs_json *frame, struct cs_film_picture *pi
 
 static enum cs_status read_pictures(const struct cs_json *root, struct cs_film_report *report,
                                     struct cs_error *error) {
-    const struct cs_json *scene = member(root, "scene", CS_JSON_OBJECT),
-                         *frames = member(root, "frames", CS_JSON_LIST);
-    report->fps = number_of(member(scene, "time", CS_JSON_OBJECT), "fps");
-    const struct cs_json *render = member(scene, "render", CS_JSON_OBJECT);
+    const struct cs_json *scene = cs_json_find(root, "scene"),
+                         *frames = cs_json_find_kind(root, "frames", CS_JSON_LIST);
+    report->fps = number_of(cs_json_find(scene, "time"), "fps");
+    const struct cs_json *render = cs_json_find(scene, "render");
     report->look = look_of(render);
     report->clear = is_clear(render);
     if (!frames || !(report->fps > 0))

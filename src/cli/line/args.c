@@ -54,11 +54,11 @@ static const struct cs_arg *find_row(const struct cs_command *command, const cha
     return NULL;
 }
 
-static enum cs_status check_given_once(const struct cs_args *args, const struct cs_arg *row,
-                                       struct cs_error *error) {
-    if (row->repeatable || !cs_args_get(args, (uint32_t)(row - args->command->rows)))
-        return CS_OK;
-    return cs_fail(error, CS_ERR_USAGE, "--%s is given more than once", row->name);
+bool cs_args_is_given(const struct cs_args *args, const char *name) {
+    for (uint32_t i = 0; i < args->n_given; i++)
+        if (!strcmp(args->given[i].row->name, name))
+            return true;
+    return false;
 }
 
 /* Takes the option at argv[*i], and its value where that is the next word. */
@@ -68,8 +68,8 @@ static enum cs_status take_option(struct cs_args *args, int argc, char **argv, i
     const struct cs_arg *row = find_row(args->command, argv[*i], &attached);
     if (!row || (!row->value && attached && argv[*i][1] != '-'))
         return unknown_option(args->command, argv[*i], error);
-    if (check_given_once(args, row, error))
-        return error->status;
+    if (!row->repeatable && cs_args_is_given(args, row->name))
+        return cs_fail(error, CS_ERR_USAGE, "--%s is given more than once", row->name);
     const char *value = attached;
     if (!row->value) {
         if (attached)
@@ -86,8 +86,7 @@ static enum cs_status take_option(struct cs_args *args, int argc, char **argv, i
     if (row->value && !*value)
         return cs_fail(error, CS_ERR_USAGE, "--%s needs a value: --%s %s", row->name, row->name,
                        row->value);
-    args->given[args->n_given++] =
-        (struct cs_arg_value){(uint32_t)(row - args->command->rows), value};
+    args->given[args->n_given++] = (struct cs_arg_value){row, value};
     return CS_OK;
 }
 
@@ -110,18 +109,9 @@ static enum cs_status check_operands(const struct cs_args *args, struct cs_error
     return CS_OK;
 }
 
-enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
-                             char **argv, struct cs_error *error) {
-    args->command = command;
-    args->help = asks_for_help(argc, argv);
-    if (args->help)
-        return CS_OK;
-    /* no word gives more than one option or operand */
-    args->given = cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->given, error);
-    args->operands =
-        cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->operands, error);
-    if (error->status)
-        return error->status;
+/* Options and operands into their arrays; the values are not looked at. */
+static enum cs_status sort(struct cs_args *args, int argc, char **argv,
+                           struct cs_error *error) {
     bool options = true;
     for (int i = 0; i < argc; i++) {
         if (options && !strcmp(argv[i], "--"))
@@ -136,27 +126,27 @@ enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *comm
     return check_operands(args, error);
 }
 
+enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
+                             char **argv, struct cs_error *error) {
+    args->command = command;
+    args->help = asks_for_help(argc, argv);
+    if (args->help)
+        return CS_OK;
+    /* no word gives more than one option or operand */
+    args->given = cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->given, error);
+    args->operands =
+        cs_arena_alloc_array(&args->arena, (size_t)argc, sizeof *args->operands, error);
+    args->options = cs_arena_alloc(&args->arena, command->size, error);
+    if (error->status || sort(args, argc, argv, error))
+        return error->status;
+    memcpy(args->options, command->defaults, command->size);
+    for (uint32_t i = 0; i < args->n_given && !error->status; i++)
+        cs_arg_read(args->given[i].row, args->given[i].value, args->options, &args->arena,
+                    error);
+    return error->status;
+}
+
 void cs_args_finish(struct cs_args *args) {
     cs_arena_finish(&args->arena);
     *args = (struct cs_args){0};
-}
-
-const char *cs_args_get(const struct cs_args *args, uint32_t row) {
-    for (uint32_t i = args->n_given; i-- > 0;)
-        if (args->given[i].row == row)
-            return args->given[i].value;
-    return NULL;
-}
-
-enum cs_status cs_args_get_all(struct cs_args *args, uint32_t row, const char *const **values,
-                               uint32_t *n, struct cs_error *error) {
-    const char **all = cs_arena_alloc_array(&args->arena, args->n_given, sizeof *all, error);
-    *n = 0;
-    if (!all)
-        return error->status;
-    for (uint32_t i = 0; i < args->n_given; i++)
-        if (args->given[i].row == row)
-            all[(*n)++] = args->given[i].value;
-    *values = all;
-    return CS_OK;
 }

@@ -18,7 +18,7 @@ static void add_row(const struct cs_arg *row, struct cs_text *out) {
 }
 
 void cs_command_print_help(const struct cs_command *command, struct cs_text *out) {
-    static const struct cs_arg help = {"help", 'h', NULL, "this text", false};
+    static const struct cs_arg help = {.name = "help", .short_name = 'h', .help = "this text"};
     cs_text_add(out, "usage: clothsim %s%s%s [options]\n\n", command->name,
                 *command->operands ? " " : "", command->operands);
     cs_print_hanging("", command->summary, 0, out);

@@ -59,13 +59,11 @@ void cs_print_message(const char *message) {
     fputc('\n', stderr);
 }
 
+bool cs_print_is_stdout(const char *path) {
+    return path && !strcmp(path, "-");
+}
+
 enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_error *error) {
-    if (!strcmp(path, "-"))
-        return cs_print_out(stdout, text, error);
-    if (text->failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", path);
-    else
-        cs_file_write(path, text->bytes, text->length, error);
-    cs_text_finish(text);
-    return error->status;
+    return cs_print_is_stdout(path) ? cs_print_out(stdout, text, error)
+                                    : cs_file_write_text(path, text, error);
 }

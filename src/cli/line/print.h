@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 /* Adds `left`, then `right` from `column` on, wrapped at 80 columns and hanging there; where
@@ -20,5 +21,8 @@ enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_e
 
 /* "clothsim: message" on stderr, in one line whatever the message holds. */
 void cs_print_message(const char *message);
+
+/* true for the name that stands for standard output; path may be NULL. */
+bool cs_print_is_stdout(const char *path);
 
 #endif

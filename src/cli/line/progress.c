@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-void cs_progress_begin(struct cs_progress *progress, bool quiet) {
-    *progress = (struct cs_progress){
-        .shown = !quiet, .terminal = isatty(STDERR_FILENO), .label = "frame"};
+void cs_progress_begin(struct cs_progress *progress, const char *what, bool quiet) {
+    *progress =
+        (struct cs_progress){.shown = !quiet, .terminal = isatty(STDERR_FILENO), .label = what};
     progress->start = progress->last = cs_clock_wall();
 }
 
@@ -25,7 +25,8 @@ static void write_line(struct cs_progress *progress, const char *line) {
     progress->width = width;
 }
 
-void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total) {
+void cs_progress_show(void *ctx, uint32_t done, uint32_t total) {
+    struct cs_progress *progress = ctx;
     const double now = cs_clock_wall();
     if (!progress->shown || !done ||
         now - progress->last < (progress->terminal ? 0.1 : OFF_TERMINAL))

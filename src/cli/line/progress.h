@@ -13,10 +13,11 @@ struct cs_progress {
     int width;          /* of the line that is there */
 };
 
-void cs_progress_begin(struct cs_progress *progress, bool quiet);
+void cs_progress_begin(struct cs_progress *progress, const char *what, bool quiet);
 
-/* Rewrites the line, at most ten times a second; off a terminal, adds one every half minute. */
-void cs_progress_show(struct cs_progress *progress, uint32_t done, uint32_t total);
+/* Rewrites the line, at most ten times a second; off a terminal, adds one every half minute.
+ * progress is a struct cs_progress: studies call this with their ctx. */
+void cs_progress_show(void *progress, uint32_t done, uint32_t total);
 
 /* Takes the line away. */
 void cs_progress_end(struct cs_progress *progress);

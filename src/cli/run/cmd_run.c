@@ -4,7 +4,8 @@
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
-#include "cli/manifest.h"
+#include "cli/run/run_job.h"
+#include "cli/run/run_outputs.h"
 #include "cli/run/run_range.h"
 #include "cli/run/run_report.h"
 #include "model/force/diagnostics.h"
@@ -12,143 +13,108 @@
 
 #include <string.h>
 
-enum {
-    RUN_FRAMES,
-    RUN_INTEGRATOR,
-    RUN_SET,
-    RUN_PLUGIN,
-    RUN_OUT,
-    RUN_OVERWRITE,
-    RUN_NO_RENDER,
-    RUN_EVERY,
-    RUN_CHECKPOINT,
-    RUN_RESUME,
-    RUN_ISOLATE,
-    RUN_STATES,
-    RUN_EXPORT,
-    RUN_VALUES,
-    RUN_HASH,
-    RUN_JSON,
-    RUN_WATCH,
-    RUN_LEDGER,
-    RUN_TRACE,
-    RUN_TIMING,
-    RUN_THREADS,
-    RUN_RENDERER,
-    RUN_RANGE,
-    RUN_FAST,
-    RUN_LEVEL,
-    RUN_STRICT,
-    RUN_QUIET,
-    RUN_ROWS
-};
 enum { MOST_FRAMES = 10000000 };
 
-static const struct cs_arg rows[RUN_ROWS] = {
-    [RUN_FRAMES] = {"frames", 'n', "N", "simulate frames 1 to N (default: one second of them)",
-                    false},
-    [RUN_INTEGRATOR] =
-        {"integrator", 'i', "NAME[:KEY=VALUE,...]",
-         "method and its options, instead of the scene's (see: clothsim integrators)", false},
-    [RUN_SET] =
-        {"set", 's', "PATH=VALUE",
-         "another value for a key of the scene, such as bodies[0].springs.stretch=200; may "
-         "be repeated",
-         true},
-    [RUN_PLUGIN] = {"plugin", 'p', "FILE", "load an integrator module; may be repeated", true},
-    [RUN_OUT] = {"out", 'o', "DIR",
-                 "folder for frame_00001.png ... and run.json (default: out)", false},
-    [RUN_OVERWRITE] = {"overwrite", 'y', NULL, "replace the files of an earlier run", false},
-    [RUN_NO_RENDER] = {"no-render", 0, NULL, "draw nothing", false},
-    [RUN_EVERY] =
-        {"every", 0, "K",
-         "draw and export frames K, 2K, 3K ... only, numbered 1, 2, 3 ... (default: 1)", false},
-    [RUN_CHECKPOINT] = {"checkpoint", 0, "EVERY",
-                        "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
-                        false},
-    [RUN_RESUME] = {"resume", 0, "DIR",
-                    "go on from the checkpoint in DIR, with the same scene and options", false},
-    [RUN_ISOLATE] = {"isolate", 0, "SECONDS",
-                     "run in a process of its own, and end it where one call into the method "
-                     "or the renderer takes longer",
-                     false},
-    [RUN_STATES] = {"states", 0, "DIR",
-                    "write x_00000.npy, v_00000.npy ...: positions and velocities of the start "
-                    "(0) and of each frame",
-                    false},
-    [RUN_EXPORT] = {"export", 0, "FORMAT[,...]",
-                    "write the run into DIR for other programs: obj and pc2 (Blender), vtp "
-                    "(ParaView), npz (NumPy)",
-                    false},
-    [RUN_VALUES] = {"export-values", 0, "VALUE[,...]",
-                    "force, strain: of each particle, in files of vtp and npz", false},
-    [RUN_HASH] = {"hash", 0, NULL, "print number and state hash of each frame, one a line",
-                  false},
-    [RUN_JSON] = {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
-                  false},
-    [RUN_WATCH] = {"watch", 0, "FILE",
-                   "write energy, largest strain and largest velocity of each frame as CSV; -: "
-                   "to standard output",
-                   false},
-    [RUN_LEDGER] =
-        {"ledger", 0, "FILE",
-         "write where the energy of each frame is and went to as CSV; -: to standard output",
-         false},
-    [RUN_TRACE] = {"trace", 0, "FRAME",
-                   "write every array that this frame computes to standard output, or with "
-                   "\"frames\" the state of each frame: for clothsim bisect",
-                   false},
-    [RUN_TIMING] = {"timing", 0, NULL, "time the stages of a run, and tell its peak memory",
-                    false},
-    [RUN_THREADS] = {"threads", 0, "N",
-                     "threads that step the scene, 1 to 64 (default: one a processor, up to "
-                     "16; 1 below 16384 particles, or 1024 that meet by force: "
-                     "too little work to share)",
-                     false},
-    [RUN_RENDERER] = {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)", false},
-    [RUN_RANGE] = {"range", 0, "RANGE",
-                   "of the colours of looks force and strain in all pictures: LEAST,MOST, or "
-                   "auto, which runs the scene once before (default: of each frame)",
-                   false},
-    [RUN_FAST] = {"fast-render", 0, NULL,
-                  "use all of the processor; pixels then depend on the machine", false},
-    [RUN_LEVEL] = {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)", false},
-    [RUN_STRICT] = {"strict", 0, NULL, "exit with 8 where the run blew up", false},
-    [RUN_QUIET] = {"quiet", 'q', NULL, "no progress and no table", false},
+struct options {
+    struct cs_job_settings job;
+    const char *checkpoint, *resume, *trace, *export, *values, *range;
+    double isolate; /* s; 0: not */
+    bool strict;
+};
+static const struct options defaults = {
+    .job = {.session = {.render = true, .threads = CS_THREADS_AUTO},
+            .frame_interval = 1,
+            .folder = "out",
+            .level = 1}};
+
+static const struct cs_arg rows[] = {
+    {"frames", 'n', "N", "simulate frames 1 to N (default: one second of them)",
+     CS_ARG_INTO(struct options, job.frames), .min = 1, .max = MOST_FRAMES},
+    {"integrator", 'i', "NAME[:KEY=VALUE,...]",
+     "method and its options, instead of the scene's (see: clothsim integrators)",
+     CS_ARG_INTO(struct options, job.session.integrator)},
+    {"set", 's', "PATH=VALUE",
+     "another value for a key of the scene, such as bodies[0].springs.stretch=200; may be "
+     "repeated",
+     CS_ARG_LIST(struct options, job.session.overrides, job.session.n_overrides)},
+    CS_ARG_PLUGIN(struct options, job.session),
+    {"out", 'o', "DIR", "folder for frame_00001.png ... and run.json (default: out)",
+     CS_ARG_INTO(struct options, job.folder)},
+    {"overwrite", 'y', NULL, "replace the files of an earlier run",
+     CS_ARG_INTO(struct options, job.overwrite)},
+    {"no-render", 0, NULL, "draw nothing", CS_ARG_INTO(struct options, job.session.render)},
+    {"every", 0, "K",
+     "draw and export frames K, 2K, 3K ... only, numbered 1, 2, 3 ... (default: 1)",
+     CS_ARG_INTO(struct options, job.frame_interval), .min = 1, .max = MOST_FRAMES},
+    {"checkpoint", 0, "EVERY",
+     "write DIR/run.checkpoint every so many frames, or seconds as in 30s",
+     CS_ARG_INTO(struct options, checkpoint)},
+    {"resume", 0, "DIR", "go on from the checkpoint in DIR, with the same scene and options",
+     CS_ARG_INTO(struct options, resume)},
+    {"isolate", 0, "SECONDS",
+     "run in a process of its own, and end it where one call into the method or the renderer "
+     "takes longer",
+     CS_ARG_INTO(struct options, isolate)},
+    {"states", 0, "DIR",
+     "write x_00000.npy, v_00000.npy ...: positions and velocities of the start (0) and of "
+     "each frame",
+     CS_ARG_INTO(struct options, job.states)},
+    {"export", 0, "FORMAT[,...]",
+     "write the run into DIR for other programs: obj and pc2 (Blender), vtp (ParaView), npz "
+     "(NumPy)",
+     CS_ARG_INTO(struct options, export)},
+    {"export-values", 0, "VALUE[,...]",
+     "force, strain: of each particle, in files of vtp and npz",
+     CS_ARG_INTO(struct options, values)},
+    {"hash", 0, NULL, "print number and state hash of each frame, one a line",
+     CS_ARG_INTO(struct options, job.hash)},
+    {"json", 0, "FILE", "write the report as JSON too; -: to standard output",
+     CS_ARG_INTO(struct options, job.json)},
+    {"watch", 0, "FILE",
+     "write energy, largest strain and largest velocity of each frame as CSV; -: to standard "
+     "output",
+     CS_ARG_INTO(struct options, job.monitor_file)},
+    {"ledger", 0, "FILE",
+     "write where the energy of each frame is and went to as CSV; -: to standard output",
+     CS_ARG_INTO(struct options, job.ledger)},
+    {"trace", 0, "FRAME",
+     "write every array that this frame computes to standard output, or with \"frames\" the "
+     "state of each frame: for clothsim bisect",
+     CS_ARG_INTO(struct options, trace)},
+    {"timing", 0, NULL, "time the stages of a run, and tell its peak memory",
+     CS_ARG_INTO(struct options, job.session.run.timed)},
+    {"threads", 0, "N",
+     "threads that step the scene, 1 to 64 (default: one a processor, up to 16; 1 below 16384 "
+     "particles, or 1024 that meet by force: too little work to share)",
+     CS_ARG_INTO(struct options, job.session.threads), .min = 1, .max = CS_POOL_THREADS_MAX},
+    {"renderer", 0, "NAME", "cpu, osmesa, egl or auto (default: auto)",
+     CS_ARG_INTO(struct options, job.renderer), .names = cs_renderer_names},
+    {"range", 0, "RANGE",
+     "of the colours of looks force and strain in all pictures: LEAST,MOST, or auto, which "
+     "runs the scene once before (default: of each frame)",
+     CS_ARG_INTO(struct options, range)},
+    {"fast-render", 0, NULL, "use all of the processor; pixels then depend on the machine",
+     CS_ARG_INTO(struct options, job.fast_render)},
+    {"png-level", 0, "LEVEL", "compression, 0 to 9 (default: 1)",
+     CS_ARG_INTO(struct options, job.level), .min = 0, .max = 9},
+    {"strict", 0, NULL, "exit with 8 where the run blew up",
+     CS_ARG_INTO(struct options, strict)},
+    {"quiet", 'q', NULL, "no progress and no table", CS_ARG_INTO(struct options, job.quiet)},
 };
 
-static enum cs_status read_session(struct cs_args *args, struct cs_session_settings *session,
-                                   struct cs_error *error) {
-    session->scene = args->operands[0];
-    session->integrator = cs_args_get(args, RUN_INTEGRATOR);
-    session->render = !cs_args_get(args, RUN_NO_RENDER);
-    session->run.timed = cs_args_get(args, RUN_TIMING);
-    session->threads = CS_THREADS_AUTO;
-    session->run.stop = cs_interrupt_catch();
-    if (cs_args_integer(args, RUN_THREADS, 1, CS_POOL_THREADS_MAX, &session->threads, error) ||
-        cs_args_overrides(args, RUN_SET, &session->overrides, &session->n_overrides, error))
-        return error->status;
-    return cs_args_get_all(args, RUN_PLUGIN, &session->plugins, &session->n_plugins, error);
-}
-
 /* A resumed run goes on in its folder, at its own pace of checkpoints. */
-static enum cs_status read_checkpoints(const struct cs_args *args,
-                                       struct cs_job_settings *settings,
+static enum cs_status read_checkpoints(const struct cs_args *args, struct options *options,
                                        struct cs_error *error) {
-    const char *pace = cs_args_get(args, RUN_CHECKPOINT);
-    const char *folder = cs_args_get(args, RUN_RESUME);
-    static const int others[] = {RUN_CHECKPOINT, RUN_OUT, RUN_OVERWRITE};
-    for (size_t k = 0; folder && k < sizeof others / sizeof *others; k++)
-        if (cs_args_get(args, (uint32_t)others[k]))
+    static const char *const others[] = {"checkpoint", "out", "overwrite"};
+    for (size_t k = 0; options->resume && k < sizeof others / sizeof *others; k++)
+        if (cs_args_is_given(args, others[k]))
             return cs_fail(error, CS_ERR_USAGE, "--resume goes on as the run began: no --%s",
-                           rows[others[k]].name);
-    settings->resume = folder;
-    settings->folder = folder ? folder : settings->folder;
-    return pace ? cs_checkpointer_read_interval(pace, &settings->checkpoint, error) : CS_OK;
-}
-
-static bool is_stdout(const char *path) {
-    return path && !strcmp(path, "-");
+                           others[k]);
+    options->job.resume = options->resume;
+    options->job.folder = options->resume ? options->resume : options->job.folder;
+    return options->checkpoint ? cs_checkpointer_read_interval(options->checkpoint,
+                                                               &options->job.checkpoint, error)
+                               : CS_OK;
 }
 
 /* A program could not tell two apart in one stream. */
@@ -158,9 +124,9 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
         const char *name;
         bool asks;
     } outputs[] = {{"--hash", settings->hash},
-                   {"--json -", is_stdout(settings->json)},
-                   {"--watch -", is_stdout(settings->monitor_file)},
-                   {"--ledger -", is_stdout(settings->ledger)},
+                   {"--json -", cs_print_is_stdout(settings->json)},
+                   {"--watch -", cs_print_is_stdout(settings->monitor_file)},
+                   {"--ledger -", cs_print_is_stdout(settings->ledger)},
                    {"--trace", settings->trace.is_requested}};
     const char *first = NULL;
     for (size_t k = 0; k < sizeof outputs / sizeof *outputs; k++) {
@@ -172,36 +138,20 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
     return CS_OK;
 }
 
-static enum cs_status read_settings(struct cs_args *args, struct cs_job_settings *settings,
-                                    struct cs_error *error) {
-    const char *folder = cs_args_get(args, RUN_OUT);
-    *settings = (struct cs_job_settings){
-        .frame_interval = 1,
-        .folder = folder ? folder : "out",
-        .states = cs_args_get(args, RUN_STATES),
-        .json = cs_args_get(args, RUN_JSON),
-        .monitor_file = cs_args_get(args, RUN_WATCH),
-        .ledger = cs_args_get(args, RUN_LEDGER),
-        .renderer = CS_RENDERER_AUTO,
-        .level = 1,
-        .fast_render = cs_args_get(args, RUN_FAST),
-        .hash = cs_args_get(args, RUN_HASH),
-        .overwrite = cs_args_get(args, RUN_OVERWRITE),
-        .quiet = cs_args_get(args, RUN_QUIET),
-    };
-    if (read_checkpoints(args, settings, error) ||
-        cs_args_integer(args, RUN_FRAMES, 1, MOST_FRAMES, &settings->frames, error) ||
-        cs_args_integer(args, RUN_EVERY, 1, MOST_FRAMES, &settings->frame_interval, error) ||
-        cs_args_integer(args, RUN_LEVEL, 0, 9, &settings->level, error) ||
-        cs_args_choice(args, RUN_RENDERER, cs_renderer_names, &settings->renderer, error))
-        return error->status;
-    const char *trace = cs_args_get(args, RUN_TRACE);
-    if ((trace && cs_run_trace_read(trace, &settings->trace, error)) ||
+static enum cs_status read_settings(struct cs_args *args, struct cs_error *error) {
+    struct options *options = args->options;
+    struct cs_job_settings *settings = &options->job;
+    settings->session.scene = args->operands[0];
+    settings->session.run.stop = cs_interrupt_catch();
+    if (read_checkpoints(args, options, error) ||
+        (options->trace && cs_run_trace_read(options->trace, &settings->trace, error)) ||
         check_stream(settings, error) ||
-        cs_run_export_read(cs_args_get(args, RUN_EXPORT), cs_args_get(args, RUN_VALUES),
-                           &settings->export, error))
+        cs_run_export_read(options->export, options->values, &settings->export, error))
         return error->status;
-    return read_session(args, &settings->session, error);
+    if (!settings->session.render && !cs_job_makes_checkpoints(settings) &&
+        !settings->export.formats)
+        settings->folder = NULL;
+    return CS_OK;
 }
 
 static enum cs_status write_json(const struct cs_job *job, struct cs_error *error) {
@@ -215,29 +165,18 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the report");
     if (!error->status && settings->session.render)
         cs_file_write(cs_text_get(&path), json.bytes, json.length, error);
-    if (!error->status && settings->json && strcmp(settings->json, "-"))
-        cs_file_write(settings->json, json.bytes, json.length, error);
-    else if (!error->status && settings->json)
-        cs_print_out(stdout, &json, error);
+    if (!error->status && settings->json)
+        cs_print_file(settings->json, &json, error);
     cs_text_finish(&json);
     cs_text_finish(&path);
     return error->status;
 }
 
-/* Of each folder that the run owns, once all of its files are there. */
-static enum cs_status write_manifests(const struct cs_job *job, struct cs_error *error) {
-    if (job->folder.folder_lock)
-        cs_manifest_write(job->settings->folder, error);
-    if (job->states.folder_lock && !error->status)
-        cs_manifest_write(job->settings->states, error);
-    return error->status;
-}
-
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const bool taken = settings->hash || is_stdout(settings->json) ||
-                       is_stdout(settings->monitor_file) || is_stdout(settings->ledger) ||
-                       settings->trace.is_requested;
+    const bool taken = settings->hash || cs_print_is_stdout(settings->json) ||
+                       cs_print_is_stdout(settings->monitor_file) ||
+                       cs_print_is_stdout(settings->ledger) || settings->trace.is_requested;
     struct cs_text table = {0};
     if (settings->quiet)
         return CS_OK;
@@ -273,7 +212,7 @@ static enum cs_status print_outcome(const struct cs_job *job, bool strict,
     cs_text_add(&outcome, "; %u of %u frames were finished", run->frame, job->frames);
     if (run->outcome == CS_INTERRUPTED)
         cs_fail(error, CS_ERR_INTERRUPT, "%s", cs_text_get(&outcome));
-    else if (strict && (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED))
+    else if (strict && cs_outcome_is_blow_up(run->outcome))
         cs_fail(error, CS_ERR_UNSTABLE, "%s", cs_text_get(&outcome));
     else
         cs_print_message(cs_text_get(&outcome));
@@ -283,30 +222,28 @@ static enum cs_status print_outcome(const struct cs_job *job, bool strict,
 
 static enum cs_status run_here(void *ctx, struct cs_error *error) {
     struct cs_args *args = ctx;
-    struct cs_job_settings settings;
+    struct options *options = args->options;
     struct cs_job job = {0};
     struct cs_run_range range = {0};
-    const char *asked = cs_args_get(args, RUN_RANGE);
-    if (read_settings(args, &settings, error) ||
-        (asked && cs_run_range_set(&range, asked, &settings, error)))
+    if (read_settings(args, error) ||
+        (options->range && cs_run_range_set(&range, options->range, &options->job, error)))
         return error->status;
-    cs_job_run(&job, &settings, error);
+    cs_job_run(&job, &options->job, error);
     /* a failed step leaves the report of the frames before; its own message stands */
     struct cs_error later = {0};
     if (job.failure && !write_json(&job, &later))
-        write_manifests(&job, &later);
-    if (!error->status && !write_json(&job, error) && !write_manifests(&job, error) &&
+        cs_run_outputs_sign(&job, &later);
+    if (!error->status && !write_json(&job, error) && !cs_run_outputs_sign(&job, error) &&
         !print_table(&job, error))
-        print_outcome(&job, cs_args_get(args, RUN_STRICT), error);
+        print_outcome(&job, options->strict, error);
     cs_job_finish(&job);
     cs_run_range_finish(&range);
     return error->status;
 }
 
 static enum cs_status run(struct cs_args *args, struct cs_error *error) {
-    struct cs_isolate isolate = {.task = run_here, .ctx = args};
-    if (cs_args_real(args, RUN_ISOLATE, &isolate.seconds, error))
-        return error->status;
+    const struct options *options = args->options;
+    struct cs_isolate isolate = {.task = run_here, .ctx = args, .seconds = options->isolate};
     if (!(isolate.seconds > 0))
         return run_here(args, error);
     isolate.stop = cs_interrupt_catch();
@@ -320,8 +257,7 @@ const struct cs_command cs_command_run = {
     .notes = "Frame k shows the time k / fps. A run that blows up is a result: it says when\n"
              "and where, keeps the frames before, and exits with 0.\n\n"
              "Example: clothsim run scenes/hang.json --frames 60 -i velocity-verlet:dt=0.001\n",
-    .rows = rows,
-    .n_rows = RUN_ROWS,
+    CS_COMMAND_OPTIONS(rows, defaults),
     .operands_min = 1,
     .operands_max = 1,
     .main = run,

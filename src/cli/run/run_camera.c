@@ -3,6 +3,7 @@
 #include "cli/run/run_camera.h"
 
 #include "draw/camera_fit.h"
+#include "study/follow.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,19 +28,14 @@ static const double *positions_of(const struct motion *motion, uint32_t k) {
 static enum cs_status record(struct cs_session *session, uint32_t frames, uint32_t every,
                              struct motion *motion, struct cs_error *error) {
     struct cs_run *run = &session->run;
-    while (run->frame < frames && run->outcome == CS_RUNNING) {
-        if (cs_run_frame(run, error))
-            return error->status;
-        if (run->outcome != CS_RUNNING || run->frame % every)
-            continue;
+    struct cs_follow follow = {.run = run, .last = frames, .every = every};
+    while (cs_follow_next(&follow, error)) {
         motion->keys[motion->n].at = run->t;
         cs_camera_fit_extremes(&motion->fit, session->system.view.n, run->x,
                                motion->places +
                                    (size_t)3 * CS_CAMERA_FIT_EXTREMES * motion->n++);
     }
-    return run->outcome == CS_INTERRUPTED
-               ? cs_fail(error, CS_ERR_INTERRUPT, "interrupted while the run was framed")
-               : CS_OK;
+    return cs_follow_check(run, " while the run was framed", error);
 }
 
 static bool frames_all(const struct motion *motion, const struct cs_camera *camera,

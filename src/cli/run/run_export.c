@@ -1,5 +1,5 @@
-/* Reads what is to be exported, and begins it. */
-#include "cli/run/run_export.h"
+/* Reads what is to be exported, and exports a run. */
+#include "cli/run/job_state.h"
 
 #include <string.h>
 
@@ -39,23 +39,11 @@ enum cs_status cs_run_export_read(const char *formats, const char *values,
     if (read_set("--export", formats, cs_export_format_names, &settings->formats, error) ||
         read_set("--export-values", values, cs_export_value_names, &settings->values, error))
         return error->status;
-    if (values && !(settings->formats & (CS_EXPORT_VTP | CS_EXPORT_NPZ)))
+    if (values && !(settings->formats & cs_export_with_values()))
         return cs_fail(error, CS_ERR_USAGE,
                        "--export-values: only files of VTP and NPZ hold values; expected one "
                        "of them in --export");
     return CS_OK;
-}
-
-enum cs_status cs_run_export_begin(struct cs_export *export,
-                                   const struct cs_export_settings *settings,
-                                   const struct cs_run *run, bool goes_on,
-                                   struct cs_error *error) {
-    struct cs_export_settings these = *settings;
-    /* the start, and one every so many frames */
-    these.n_samples_before = goes_on ? run->frame / these.frame_interval + 1 : 0;
-    if (cs_export_open(export, &these, run->system, error) || goes_on)
-        return error->status;
-    return cs_export_write_sample(export, run->frame, run->t, run->x, run->v, error);
 }
 
 static void print_set(uint32_t set, const char *const *names, struct cs_text *out) {
@@ -70,3 +58,38 @@ void cs_run_export_print(const struct cs_export_settings *settings, struct cs_te
     if (!settings->formats)
         cs_text_add(out, " none");
 }
+
+/* of the run as it stands: at its start, or where it goes on */
+static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    const bool goes_on = job->settings->resume;
+    struct cs_export_settings settings = job->settings->export;
+    if (!settings.formats)
+        return CS_OK;
+    settings.folder = job->settings->folder;
+    settings.frame_interval = job->settings->frame_interval;
+    /* the start, and one every so many frames */
+    settings.n_samples_before = goes_on ? run->frame / settings.frame_interval + 1 : 0;
+    if (cs_export_open(&job->export, &settings, run->system, error) || goes_on)
+        return error->status;
+    return cs_export_write_sample(&job->export, run->frame, run->t, run->x, run->v, error);
+}
+
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    return cs_export_write_sample(&job->export, run->frame, run->t, run->x, run->v, error);
+}
+
+static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
+    return cs_job_makes_checkpoints(job->settings) ? cs_export_sync(&job->export, error)
+                                                   : CS_OK;
+}
+
+static enum cs_status end(struct cs_job *job, struct cs_error *error) {
+    return cs_export_finish(&job->export, cs_job_makes_checkpoints(job->settings), error);
+}
+
+const struct cs_run_output cs_run_output_export = {.at = {[CS_RUN_BEGIN] = begin,
+                                                          [CS_RUN_FRAME] = frame,
+                                                          [CS_RUN_SETTLE] = settle,
+                                                          [CS_RUN_END] = end}};

@@ -2,19 +2,17 @@
 #include "cli/run/run_job.h"
 
 #include "base/clock.h"
-#include "base/file.h"
-#include "base/pool.h"
-#include "cli/line/print.h"
 #include "cli/line/progress.h"
-#include "cli/run/run_file_conflicts.h"
+#include "cli/run/run_outputs.h"
 #include "scene/file/scene_hash.h"
 #include "scene/file/scene_write.h"
 #include "study/containment_warning.h"
+#include "study/follow.h"
 #include "study/overlap_warning.h"
 #include "study/provenance_write.h"
 #include "study/sampling_warning.h"
 
-#include <string.h>
+#include <stdlib.h>
 
 /* The scene with every value, its hash, and the method. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
@@ -32,197 +30,60 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
                                    &job->provenance, error);
 }
 
-static enum cs_status check_outputs(const struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_settings *settings = job->settings;
-    const struct cs_run_outputs outputs = {
-        .json = settings->json,
-        .monitor_file = settings->monitor_file,
-        .ledger = settings->ledger,
-        .states = settings->states,
-        .folder = cs_job_uses_folder(settings) ? settings->folder : NULL};
-    return cs_run_check_claims(&job->session, &outputs, error) || settings->overwrite ||
-                   settings->resume
-               ? error->status
-               : cs_run_check_fresh(&outputs, error);
-}
-
-/* more than one, so that drawing and encoding can overlap the run */
-static bool has_processors(void) {
-    return cs_pool_processors(2) > 1;
-}
-
-static enum cs_status open_pictures(struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_settings *settings = job->settings;
-    if (cs_picture_open(&job->picture, &job->session.system,
-                        (enum cs_renderer_kind)settings->renderer, settings->fast_render,
-                        has_processors(), error))
-        return error->status;
-    cs_text_add(&job->renderer, "%s", cs_picture_renderer(&job->picture));
-    if (job->renderer.failed)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the renderer's name");
-    return CS_OK;
-}
-
-/* Opens the renderer, which may be missing, before it touches any file on disk. */
-static enum cs_status open_outputs(struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_settings *settings = job->settings;
-    const struct cs_render *render = &job->session.scene.render;
-    if (settings->session.render && open_pictures(job, error))
-        return error->status;
-    const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_KEEP
-                                           : settings->overwrite ? CS_OUTPUT_REMOVE
-                                                                 : CS_OUTPUT_REFUSE;
-    if (settings->states && cs_output_lock_folders(&job->states, NULL, settings->states,
-                                                   cs_output_is_state, earlier, error))
-        return error->status;
-    if (cs_job_uses_folder(settings) &&
-        cs_output_lock_folders(&job->folder, &job->states, settings->folder,
-                               cs_output_is_result, earlier, error))
-        return error->status;
-    if (!settings->session.render)
-        return CS_OK;
-    const struct cs_frame_writer_settings frames = {
-        (uint32_t)render->size[0], (uint32_t)render->size[1],
-        render->background.kind == CS_BACKGROUND_NONE, (int)settings->level, has_processors()};
-    return cs_frame_writer_create(settings->folder, &frames, &job->writer, error);
-}
-
-/* Waits for the picture under way and hands it over. */
-static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
-    const double start = cs_clock_wall();
-    if (!job->has_begun.number)
-        return CS_OK;
-    const struct cs_picture_origin origin = {
-        &job->session.scene, job->scene_hash, cs_text_get(&job->method),
-        cs_text_get(&job->renderer), cs_text_get(&job->picture_provenance)};
-    const enum cs_status status = cs_picture_end(&job->picture, error);
-    job->wait_seconds += cs_clock_wall() - start;
-    if (!status && !cs_job_picture_submit(&job->has_begun, &origin, job->writer, error))
-        job->n_drawn++;
-    job->has_begun.number = 0;
-    return error->status;
-}
-
-/* The picture of this frame; that of the one before has been drawn in the meantime. */
-static enum cs_status begin_picture(struct cs_job *job, struct cs_job_frame *frame,
-                                    struct cs_error *error) {
+/* The state of the frame, and what is judged by it. */
+static void look(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
-    if (end_picture(job, error))
-        return error->status;
-    const double start = cs_clock_wall();
-    struct cs_image *image = cs_frame_writer_acquire(job->writer);
-    job->wait_seconds += cs_clock_wall() - start;
-    cs_picture_begin(&job->picture, run, image);
-    job->has_begun =
-        (struct cs_job_picture){.number = run->frame / job->settings->frame_interval,
-                                .frame = run->frame,
-                                .time = run->t,
-                                .image = image};
-    memcpy(job->has_begun.hash, job->hash, sizeof job->hash);
-    memcpy(job->has_begun.range, job->picture.range, sizeof job->has_begun.range);
-    memcpy(frame->range, job->picture.range, sizeof frame->range);
-    frame->drawn = true;
-    return CS_OK;
-}
-
-static enum cs_status print_hash(uint32_t number, const char *hash, struct cs_error *error) {
-    struct cs_text line = {0};
-    cs_text_add(&line, "%u %s\n", number, hash);
-    return cs_print_out(stdout, &line, error);
-}
-
-/* Looks whether the run is still sound, and keeps the rows for --watch and --ledger. */
-static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
-    struct cs_energy_monitor_row row;
-    cs_energy_monitor_sample(&job->monitor, &job->session.run, &row);
-    if (job->settings->monitor_file)
-        cs_energy_monitor_print_row(&row, job->session.run.frame, &job->watch_rows);
-    if (job->settings->ledger)
-        cs_energy_ledger_print_row(&job->ledger, job->session.run.frame, &job->ledger_rows);
-    if (job->watch_rows.failed || job->ledger_rows.failed)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of frames");
-    return CS_OK;
-}
-
-static enum cs_status begin_watch(struct cs_job *job, struct cs_error *error) {
-    if (cs_energy_monitor_begin(&job->monitor, &job->session.run, error))
-        return error->status;
-    if (job->settings->monitor_file)
-        cs_energy_monitor_print_head(&job->watch_rows);
-    if (job->settings->ledger)
-        cs_energy_ledger_print_head(&job->ledger_rows);
-    return watch_frame(job, error);
-}
-
-/* Everything that one finished frame leaves behind. */
-static enum cs_status take_frame(struct cs_job *job, struct cs_error *error) {
-    const struct cs_job_settings *settings = job->settings;
-    const struct cs_run *run = &job->session.run;
-    const uint32_t n = job->session.system.view.n;
-    struct cs_job_frame frame = {0};
-    cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
-    memcpy(frame.hash, job->hash, sizeof frame.hash);
-    if (watch_frame(job, error))
-        return error->status;
+    cs_hash_doubles(run->x, 6 * (size_t)job->session.system.view.n, job->hash);
+    cs_energy_monitor_sample(&job->monitor, run, &job->sound);
     cs_crossing_stats_add(&job->crossings, run);
-    frame.crossings = job->crossings.last_count;
-    if (settings->states &&
-        cs_output_state(settings->states, run->frame, run->x, run->v, n, error))
-        return error->status;
-    if (job->writer && run->frame % settings->frame_interval == 0 &&
-        begin_picture(job, &frame, error))
-        return error->status;
-    if (cs_export_write_sample(&job->export, run->frame, run->t, run->x, run->v, error))
-        return error->status;
-    if (cs_job_wants_json(settings) &&
-        cs_frame_log_add(&job->frame_log, run->frame, &frame, error))
-        return error->status;
-    return settings->hash ? print_hash(run->frame, job->hash, error) : CS_OK;
-}
-
-/* Waits until every picture that was begun is a file. */
-static enum cs_status drain_pictures(struct cs_job *job, struct cs_error *error) {
-    if (end_picture(job, error) || !job->writer)
-        return error->status;
-    const double start = cs_clock_wall();
-    cs_frame_writer_finish(job->writer, &job->encode_seconds, error);
-    job->wait_seconds += cs_clock_wall() - start;
-    return error->status;
 }
 
 /* The last checkpoint kept, once the files that it goes on with are there. */
 static enum cs_status write_checkpoint(struct cs_job *job, struct cs_error *error) {
-    if (!cs_job_makes_checkpoints(job->settings) || cs_export_sync(&job->export, error))
-        return error->status;
-    return cs_checkpointer_write(&job->checkpoints, error);
+    return cs_run_outputs_at(job, CS_RUN_SETTLE, error)
+               ? error->status
+               : cs_checkpointer_write(&job->checkpoints, error);
 }
 
 static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error) {
     bool due;
-    if (cs_checkpointer_capture(&job->checkpoints, &due, error) || !due ||
-        drain_pictures(job, error))
-        return error->status;
-    return write_checkpoint(job, error);
+    return cs_checkpointer_capture(&job->checkpoints, &due, error) || !due
+               ? error->status
+               : write_checkpoint(job, error);
 }
 
 /* What the job keeps of the frames so far, for a checkpoint. */
 static void record_job(void *ctx, struct cs_serialiser *record) {
     struct cs_job *job = ctx;
-    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
     CS_SERIALISER(record, job->monitor);
     CS_SERIALISER(record, job->crossings);
     CS_SERIALISER(record, job->hash);
     CS_SERIALISER(record, job->n_drawn);
-    cs_serialiser_text(record, &job->watch_rows);
-    cs_serialiser_text(record, &job->ledger_rows);
-    CS_SERIALISER(record, job->ledger.work);
-    CS_SERIALISER(record, n);
-    cs_frame_log_serialise(&job->frame_log, n, record);
+    cs_run_outputs_record(job, record);
+}
+
+static const char *yes(bool fact) {
+    return fact ? "yes" : "no";
+}
+
+/* Which files there will be, a line each: checkpoints are of use only where those of a run
+ * would be the same ones. */
+static void print_outputs(const struct cs_job_settings *settings, const char *renderer,
+                          struct cs_text *out) {
+    cs_text_add(out,
+                "pictures by: %s\ndrawn every: %u\nPNG level: %u\nfast-render: %s\nstates: "
+                "%s\nwatch: %s\nledger: %s\nJSON: %s\nexport:",
+                settings->session.render ? renderer : "none", settings->frame_interval,
+                settings->level, yes(settings->fast_render), yes(settings->states),
+                yes(settings->monitor_file), yes(settings->ledger),
+                yes(cs_job_wants_json(settings)));
+    cs_run_export_print(&settings->export, out);
+    cs_text_add(out, "\n");
 }
 
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    cs_job_print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
+    print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
     if (job->outputs.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for checkpoints");
     const struct cs_checkpoint_source of = {.scene = cs_text_get(&job->scene),
@@ -235,79 +96,54 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
                                  &settings->checkpoint, error);
 }
 
-/* Known once a run has begun, or goes on at its pace of checkpoints. */
-static enum cs_status make_recipe(struct cs_job *job, struct cs_error *error) {
-    if (!job->writer)
-        return CS_OK;
-    const struct cs_picture_provenance recipe = {.provenance = cs_text_get(&job->provenance),
-                                                 .scene = cs_text_get(&job->scene),
-                                                 .renderer = job->picture.renderer->name,
-                                                 .renderer_description =
-                                                     cs_text_get(&job->renderer),
-                                                 .fast_render = job->settings->fast_render,
-                                                 .restarts = cs_job_restarts(job)};
-    cs_provenance_out_print_recipe(&recipe, &job->picture_provenance);
-    return job->picture_provenance.failed
-               ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the texts of pictures")
-               : CS_OK;
-}
-
 static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
+    struct cs_follow follow = {.run = run, .last = job->frames, .every = 1};
     struct cs_progress progress;
-    cs_progress_begin(&progress, job->settings->quiet);
-    cs_run_trace_begin(&job->trace, run);
-    while (run->frame < job->frames && !error->status) {
-        cs_run_trace_step(&job->trace, run);
-        if (cs_run_frame(run, error) || run->outcome != CS_RUNNING)
-            break;
-        if (!cs_run_trace_frame(&job->trace, run, error) && !take_frame(job, error))
+    cs_progress_begin(&progress, "frame", job->settings->quiet);
+    while (cs_follow_next(&follow, error)) {
+        look(job);
+        if (!cs_run_outputs_at(job, CS_RUN_FRAME, error))
             make_checkpoint(job, error);
         cs_progress_show(&progress, run->frame, job->frames);
     }
     cs_progress_end(&progress);
-    cs_run_trace_end(&job->trace, run);
     return error->status;
-}
-
-/* of the job's run, as it stands; not open where nothing is exported */
-static enum cs_status begin_exports(struct cs_job *job, struct cs_error *error) {
-    struct cs_export_settings settings = job->settings->export;
-    settings.folder = job->settings->folder;
-    settings.frame_interval = job->settings->frame_interval;
-    return settings.formats ? cs_run_export_begin(&job->export, &settings, &job->session.run,
-                                                  job->settings->resume, error)
-                            : CS_OK;
 }
 
 /* Also of a run that failed: its last picture is of a frame that was fine, and so is the last
  * checkpoint. The first failure wins: a later one of drawing or writing changes nothing. */
 static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
-    if (drain_pictures(job, &later) == CS_OK)
-        write_checkpoint(job, &later);
-    cs_export_finish(&job->export, cs_job_makes_checkpoints(job->settings), &later);
+    write_checkpoint(job, &later);
+    cs_run_outputs_at(job, CS_RUN_END, &later);
     if (!error->status)
         *error = later;
 }
 
-/* The start has a state, a hash and a row but no picture. */
+/* A checkpoint that is refused leaves the rows of the run that it is of. */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
-    const struct cs_run *run = &job->session.run;
-    const uint32_t n = job->session.system.view.n;
-    const char *states = job->settings->states;
-    cs_hash_doubles(run->x, 6 * (size_t)n, job->hash);
-    if (states && cs_output_state(states, 0, run->x, run->v, n, error))
+    if (cs_job_makes_checkpoints(job->settings) && begin_checkpoints(job, error))
         return error->status;
-    cs_crossing_stats_add(&job->crossings, run);
-    return begin_watch(job, error);
+    if (job->settings->resume
+            ? cs_checkpointer_load(&job->checkpoints, job->frames, error)
+            : cs_energy_monitor_begin(&job->monitor, &job->session.run, error))
+        return error->status;
+    if (!job->settings->resume)
+        look(job);
+    return cs_run_outputs_at(job, CS_RUN_BEGIN, error);
 }
 
-/* Its account goes on from the state that was loaded. */
-static enum cs_status resume(struct cs_job *job, struct cs_error *error) {
-    if (!cs_checkpointer_load(&job->checkpoints, job->frames, error) && job->settings->ledger)
-        cs_energy_ledger_resume(&job->ledger, job->session.run.t);
-    return error->status;
+/* Bodies that nothing keeps apart: the first of three questions that has an answer. */
+static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
+    const struct cs_scene *scene = &job->session.scene;
+    if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))
+        return error->status;
+    if (!job->warning.length)
+        cs_sampling_warning_print(&job->session.system, &job->warning);
+    if (!job->warning.length)
+        cs_containment_warning_print(&job->session.system, &job->warning);
+    return CS_OK;
 }
 
 /* The run, and the account that it keeps. */
@@ -331,27 +167,12 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
     job->settings = settings;
     if (open_session(job, error) || describe(job, error) ||
         cs_checkpointer_check_interval(&job->session, &settings->checkpoint, error) ||
-        check_outputs(job, error) || open_outputs(job, error))
+        cs_run_outputs_check(job, error) || cs_run_outputs_open(job, error))
         return error->status;
-    const struct cs_scene *scene = &job->session.scene;
-    job->frames = cs_job_frames(settings, scene);
-    if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))
-        return error->status;
-    if (!job->warning.length)
-        cs_sampling_warning_print(&job->session.system, &job->warning);
-    if (!job->warning.length)
-        cs_containment_warning_print(&job->session.system, &job->warning);
-
-    if (cs_job_makes_checkpoints(settings) && begin_checkpoints(job, error))
-        return error->status;
-    /* a checkpoint that is refused leaves the rows of the run that it is of */
-    if ((settings->resume ? resume(job, error) : begin(job, error)) ||
-        begin_exports(job, error) || make_recipe(job, error))
+    job->frames = cs_job_frames(settings, &job->session.scene);
+    if (warn(job, error) || begin(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;
-    /* also after a failure: rows and frames that were finished are kept */
-    cs_output_rows(settings->monitor_file, &job->watch_rows, error);
-    cs_output_rows(settings->ledger, &job->ledger_rows, error);
     finish_files(job, error);
     job->wall_seconds = cs_clock_wall() - start;
     return error->status;
@@ -362,8 +183,8 @@ void cs_job_finish(struct cs_job *job) {
     cs_picture_close(&job->picture);
     cs_frame_writer_destroy(job->writer);
     cs_export_close(&job->export);
-    cs_output_unlock_folders(&job->folder);
-    cs_output_unlock_folders(&job->states);
+    for (int k = 0; k < CS_RUN_OUTPUTS_MAX; k++)
+        cs_output_unlock_folders(&job->folders[k]);
     cs_session_close(&job->session);
     cs_text_finish(&job->scene);
     cs_text_finish(&job->warning);
@@ -376,6 +197,6 @@ void cs_job_finish(struct cs_job *job) {
     cs_energy_ledger_close(&job->ledger);
     cs_text_finish(&job->outputs);
     cs_checkpointer_finish(&job->checkpoints);
-    cs_frame_log_finish(&job->frame_log);
+    free(job->frame_log.frames);
     *job = (struct cs_job){0};
 }

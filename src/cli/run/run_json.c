@@ -1,40 +1,31 @@
 /* Prints run.json: what is needed to repeat a run and to see that it gave the same result. */
 #include "base/ieee_check.h"
+#include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/run/run_report.h"
 #include "study/provenance_write.h"
 
 #include <cjson/cJSON.h>
 #include <png.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { SCHEMA_VERSION = 1 };
 
-static void add_real(struct cs_text *out, const char *before, double value) {
-    cs_text_add(out, "%s", before);
-    cs_text_add_real(out, value);
-}
-
 static void add_versions(const struct cs_job *job, struct cs_text *out) {
-    cs_text_add(out, "  \"versions\": {\"clothsim\": \"%s\", \"cjson\": \"%s\"", CS_VERSION,
-                cJSON_Version());
+    cs_json_write(out, "  'versions': {'clothsim': %s, 'cjson': %s", CS_VERSION,
+                  cJSON_Version());
     if (job->settings->session.render)
-        cs_text_add(out, ", \"libpng\": \"%s\"", png_get_libpng_ver(NULL));
-    cs_text_add(out, "},\n  \"renderer\": ");
-    if (job->renderer.length)
-        cs_text_add_json(out, cs_text_get(&job->renderer));
-    else
-        cs_text_add(out, "null");
-    cs_text_add(out, ",\n  \"threads\": %u,\n", cs_pool_threads());
+        cs_json_write(out, ", 'libpng': %s", png_get_libpng_ver(NULL));
+    cs_json_write(out, "},\n  'renderer': %s,\n  'threads': %u,\n",
+                  job->renderer.length ? cs_text_get(&job->renderer) : NULL, cs_pool_threads());
 }
 
 /* only where the hashes of the report are not to be compared with those of other builds */
 static void add_arithmetic(struct cs_text *out) {
     const char *fault = cs_ieee_check();
-    if (!fault)
-        return;
-    cs_text_add(out, "  \"arithmetic\": ");
-    cs_text_add_json(out, fault);
-    cs_text_add(out, ",\n");
+    if (fault)
+        cs_json_write(out, "  'arithmetic': %s,\n", fault);
 }
 
 static void add_outcome(const struct cs_job *job, struct cs_text *out) {
@@ -44,29 +35,24 @@ static void add_outcome(const struct cs_job *job, struct cs_text *out) {
         cs_text_add(&sentence, "%s", job->failure);
     else
         cs_report_print_outcome(job, &sentence);
-    cs_text_add(out, "  \"outcome\": ");
-    cs_text_add_json(out, job->failure ? "failed" : cs_outcome_text(run->outcome));
-    cs_text_add(out, ",\n  \"outcome_detail\": ");
-    cs_text_add_json(out, cs_text_get(&sentence));
+    cs_json_write(out, "  'outcome': %s,\n  'outcome_detail': %s",
+                  job->failure ? "failed" : cs_outcome_text(run->outcome),
+                  cs_text_get(&sentence));
     cs_text_finish(&sentence);
     /* only a blow-up has a particle to name and a bound that it crossed */
-    if (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED) {
-        add_real(out, ",\n  \"blow_up\": {\"time\": ", run->blow_up.time);
-        cs_text_add(out, ", \"particle\": %u", run->blow_up.particle);
-        add_real(out, ", \"kinetic_energy\": ", run->blow_up.energy);
-        add_real(out, ", \"bound\": ", run->blow_up.bound);
-        cs_text_add(out, "}");
-    }
-    cs_text_add(out, ",\n  \"verdict\": \"%s\"", cs_stability_word(job->monitor.worst_verdict));
-    if (job->monitor.has_local_instability) {
-        add_real(out, ",\n  \"unstable_from\": {\"time\": ", job->monitor.first.t);
-        cs_text_add(out, ", \"particle\": %u, \"particles\": %u}", job->monitor.first.particle,
-                    job->monitor.first.particles);
-    }
-    cs_text_add(out, ",\n  \"frames_asked\": %u,\n  \"frames_done\": %u", job->frames,
-                run->frame);
-    add_real(out, ",\n  \"time\": ", run->t);
-    cs_text_add(out, ",\n");
+    if (cs_outcome_is_blow_up(run->outcome))
+        cs_json_write(out,
+                      ",\n  'blow_up': {'time': %g, 'particle': %u, 'kinetic_energy': %g, "
+                      "'bound': %g}",
+                      run->blow_up.time, run->blow_up.particle, run->blow_up.energy,
+                      run->blow_up.bound);
+    cs_json_write(out, ",\n  'verdict': %s", cs_stability_word(job->monitor.worst_verdict));
+    if (job->monitor.has_local_instability)
+        cs_json_write(
+            out, ",\n  'unstable_from': {'time': %g, 'particle': %u, 'particles': %u}",
+            job->monitor.first.t, job->monitor.first.particle, job->monitor.first.particles);
+    cs_json_write(out, ",\n  'frames_asked': %u,\n  'frames_done': %u,\n  'time': %g,\n",
+                  job->frames, run->frame, run->t);
 }
 
 static void add_counts(const struct cs_counts *c, struct cs_text *out) {
@@ -93,10 +79,9 @@ static void add_counts(const struct cs_counts *c, struct cs_text *out) {
         {"limit_moves", c->strain_limit_moves},
         {"normals", c->normals},
     };
-    cs_text_add(out, "  \"counts\": {");
+    cs_json_write(out, "  'counts': {");
     for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        cs_text_add(out, "%s\"%s\": %llu", i ? ", " : "", rows[i].name,
-                    (unsigned long long)rows[i].value);
+        cs_json_write(out, ", %s: %llu", rows[i].name, (unsigned long long)rows[i].value);
     cs_text_add(out, "},\n");
 }
 
@@ -105,71 +90,61 @@ static void add_crossings(const struct cs_job *job, struct cs_text *out) {
     const struct cs_crossing_stats *stats = &job->crossings;
     if (!stats->is_counted)
         return;
-    cs_text_add(out, "  \"crossings\": {\"start\": %llu, \"most\": %llu, \"end\": %llu",
-                (unsigned long long)stats->start_count, (unsigned long long)stats->max_count,
-                (unsigned long long)stats->last_count);
+    cs_json_write(out, "  'crossings': {'start': %llu, 'most': %llu, 'end': %llu",
+                  (unsigned long long)stats->start_count, (unsigned long long)stats->max_count,
+                  (unsigned long long)stats->last_count);
     if (stats->max_count) {
         const uint32_t *ends =
             job->session.system.surfaces->edges + 2 * (size_t)stats->first.edge;
-        add_real(out, ", \"most_at\": ", stats->max_time);
-        add_real(out, ", \"first\": {\"time\": ", stats->first_time);
-        cs_text_add(out, ", \"edge\": [%u, %u]}", ends[0], ends[1]);
+        cs_json_write(out, ", 'most_at': %g, 'first': {'time': %g, 'edge': [%u, %u]}",
+                      stats->max_time, stats->first_time, ends[0], ends[1]);
     }
     cs_text_add(out, "},\n");
 }
 
 static void add_measures(const struct cs_run *run, struct cs_text *out) {
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
-    add_real(out, "  \"energy\": {\"kinetic\": ", energy.kinetic);
-    add_real(out, ", \"elastic\": ", energy.elastic);
-    add_real(out, ", \"gravity\": ", energy.gravity);
+    cs_json_write(out, "  'energy': {'kinetic': %g, 'elastic': %g, 'gravity': %g",
+                  energy.kinetic, energy.elastic, energy.gravity);
     if (energy.other != 0)
-        add_real(out, ", \"other\": ", energy.other);
-    add_real(out, "},\n  \"largest_strain\": ", cs_diagnostics_strain(run->system, run->x));
-    cs_text_add(out, ",\n  \"memory\": {\"bytes\": %zu, \"method\": %zu", cs_run_bytes(run),
-                run->method_bytes);
-    add_real(out, ", \"a_particle\": ", (double)cs_run_bytes(run) / run->system->view.n);
-    cs_text_add(out, "},\n  \"notes\": [");
-    for (uint32_t i = 0; i < run->n_notes; i++) {
-        cs_text_add(out, i ? ", " : "");
-        cs_text_add_json(out, run->notes[i]);
-    }
+        cs_json_write(out, ", 'other': %g", energy.other);
+    cs_json_write(out, "},\n  'largest_strain': %g,\n",
+                  cs_diagnostics_strain(run->system, run->x));
+    cs_json_write(out, "  'memory': {'bytes': %zu, 'method': %zu, 'a_particle': %g},\n",
+                  cs_run_bytes(run), run->method_bytes,
+                  (double)cs_run_bytes(run) / run->system->view.n);
+    cs_json_write(out, "  'notes': [");
+    for (uint32_t i = 0; i < run->n_notes; i++)
+        cs_json_write(out, ", %s", run->notes[i]);
     cs_text_add(out, "],\n");
 }
 
 /* The only values that differ from one run of the same scene to the next. */
 static void add_seconds(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
-    add_real(out, "  \"seconds\": {\"wall\": ", job->wall_seconds);
-    add_real(out, ", \"method\": ", run->advance_seconds);
-    for (uint32_t s = 0; job->settings->session.run.timed && s < CS_STAGES; s++) {
-        cs_text_add(out, ", \"%s\": ", cs_stage_names[s]);
-        cs_text_add_real(out, run->stage_seconds[s]);
-    }
-    if (job->settings->session.run.timed && job->settings->session.render) {
-        add_real(out, ", \"draw\": ", job->picture.seconds);
-        add_real(out, ", \"encode\": ", job->encode_seconds);
-        add_real(out, ", \"wait\": ", job->wait_seconds);
-    }
+    cs_json_write(out, "  'seconds': {'wall': %g, 'method': %g", job->wall_seconds,
+                  run->advance_seconds);
+    for (uint32_t s = 0; job->settings->session.run.timed && s < CS_STAGES; s++)
+        cs_json_write(out, ", %s: %g", cs_stage_names[s], run->stage_seconds[s]);
+    if (job->settings->session.run.timed && job->settings->session.render)
+        cs_json_write(out, ", 'draw': %g, 'encode': %g, 'wait': %g", job->picture.seconds,
+                      job->encode_seconds, job->wait_seconds);
     cs_text_add(out, "},\n");
 }
 
 static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const bool coloured = cs_picture_is_coloured(&job->session.scene);
-    cs_text_add(out, "  \"frames\": [");
+    cs_json_write(out, "  'frames': [");
     for (uint32_t i = 0; i < job->session.run.frame; i++) {
         const struct cs_job_frame *frame = job->frame_log.frames + i;
-        cs_text_add(out, "%s\n    {\"number\": %u, \"hash\": \"%s\", \"drawn\": %s",
-                    i ? "," : "", i + 1, frame->hash, frame->drawn ? "true" : "false");
+        cs_json_write(out, ",\n    {'number': %u, 'hash': %s, 'drawn': %d", i + 1, frame->hash,
+                      frame->drawn);
         if (frame->drawn)
-            cs_text_add(out, ", \"picture\": %u", (i + 1) / job->settings->frame_interval);
+            cs_json_write(out, ", 'picture': %u", (i + 1) / job->settings->frame_interval);
         if (job->crossings.is_counted)
-            cs_text_add(out, ", \"crossings\": %llu", (unsigned long long)frame->crossings);
-        if (coloured && frame->drawn) {
-            add_real(out, ", \"range\": [", frame->range[0]);
-            add_real(out, ", ", frame->range[1]);
-            cs_text_add(out, "]");
-        }
+            cs_json_write(out, ", 'crossings': %llu", (unsigned long long)frame->crossings);
+        if (coloured && frame->drawn)
+            cs_json_write(out, ", 'range': [%g, %g]", frame->range[0], frame->range[1]);
         cs_text_add(out, "}");
     }
     cs_text_add(out, "\n  ]\n");
@@ -177,20 +152,59 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
 
 void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
-    cs_text_add(out, "{\n  \"schema\": %d,\n", SCHEMA_VERSION);
+    cs_json_write(out, "{\n  'schema': %u,\n", SCHEMA_VERSION);
     add_versions(job, out);
     add_arithmetic(out);
     cs_provenance_out_add_restarts(cs_job_restarts(job), out);
     cs_text_add(out, "%s", cs_text_get(&job->provenance));
-    cs_text_add(out, ",\n  \"particles\": %u,\n  \"springs\": %u,\n", run->system->view.n,
-                run->system->springs.n);
+    cs_json_write(out, ",\n  'particles': %u,\n  'springs': %u,\n", run->system->view.n,
+                  run->system->springs.n);
     add_outcome(job, out);
     add_counts(&run->counts, out);
     add_crossings(job, out);
     add_measures(run, out);
-    cs_text_add(out, "  \"state_hash\": \"%s\",\n", job->hash);
+    cs_json_write(out, "  'state_hash': %s,\n", job->hash);
     add_seconds(job, out);
     cs_text_add(out, "  \"scene\": %s,\n", cs_text_get(&job->scene));
     add_frames(job, out);
     cs_text_add(out, "}\n");
 }
+
+static bool has_room(struct cs_frame_log *kept, size_t frames) {
+    if (frames <= kept->capacity)
+        return true;
+    void *larger =
+        cs_arena_realloc(kept->frames, &kept->capacity, frames, sizeof *kept->frames);
+    kept->frames = larger ? larger : kept->frames;
+    return larger;
+}
+
+/* The row of a frame; its picture is noted there once it is begun. */
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const uint32_t number = job->session.run.frame;
+    if (!cs_job_wants_json(job->settings))
+        return CS_OK;
+    if (!has_room(&job->frame_log, number))
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the hashes of %u frames",
+                       number);
+    struct cs_job_frame *kept = job->frame_log.frames + number - 1;
+    *kept = (struct cs_job_frame){.crossings = job->crossings.last_count};
+    memcpy(kept->hash, job->hash, sizeof kept->hash);
+    return CS_OK;
+}
+
+static void record_rows(struct cs_job *job, struct cs_serialiser *record) {
+    struct cs_frame_log *kept = &job->frame_log;
+    uint64_t n = cs_job_wants_json(job->settings) ? job->session.run.frame : 0;
+    CS_SERIALISER(record, n);
+    if (record->is_reading &&
+        (record->failed || n > record->length || !has_room(kept, (size_t)n)))
+        record->failed = true;
+    else
+        cs_serialiser_bytes(record, kept->frames, (size_t)n * sizeof *kept->frames);
+}
+
+const struct cs_run_output cs_run_output_json = {.option = "--json",
+                                                 .path = offsetof(struct cs_job_settings, json),
+                                                 .at = {[CS_RUN_FRAME] = frame},
+                                                 .record = record_rows};

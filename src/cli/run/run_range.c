@@ -2,6 +2,8 @@
 #include "cli/run/run_range.h"
 
 #include "model/force/diagnostics.h"
+#include "study/follow.h"
+#include "study/frame_picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,18 +30,13 @@ static enum cs_status take(struct search *search, uint32_t frames, struct cs_err
 static enum cs_status sample_frame(struct search *search, uint32_t frames, uint32_t every,
                                    struct cs_error *error) {
     struct cs_run *run = &search->session.run;
-    while (run->frame < frames && run->outcome == CS_RUNNING) {
-        if (cs_run_frame(run, error))
-            return error->status;
-        if (run->outcome != CS_RUNNING || run->frame % every)
-            continue;
+    struct cs_follow follow = {.run = run, .last = frames, .every = every};
+    while (cs_follow_next(&follow, error)) {
         cs_picture_values(&search->session.system, run, search->scalar, search->work);
         search->most[search->n++] =
             cs_diagnostics_magnitude(search->scalar, search->session.system.view.n);
     }
-    if (run->outcome == CS_INTERRUPTED)
-        cs_fail(error, CS_ERR_INTERRUPT, "interrupted while the range of colours was found");
-    return error->status;
+    return cs_follow_check(run, " while the range of colours was found", error);
 }
 
 static enum cs_status check(const struct cs_session *session, struct cs_error *error) {

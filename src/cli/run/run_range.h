@@ -2,7 +2,7 @@
 #ifndef CS_RUN_RANGE_H
 #define CS_RUN_RANGE_H
 
-#include "cli/run/run_job.h"
+#include "cli/run/run_settings.h"
 
 /* Zeroed: nothing found. */
 struct cs_run_range {

@@ -28,7 +28,7 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "%s", cs_outcome_text(run->outcome));
     if (run->outcome == CS_RUNNING)
         return;
-    const bool blown = run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED;
+    const bool blown = cs_outcome_is_blow_up(run->outcome);
     cs_text_add(out, " at t = %.6g s", blown ? run->blow_up.time : run->t);
     if (!blown)
         return;

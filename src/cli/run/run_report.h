@@ -2,7 +2,7 @@
 #ifndef CS_RUN_REPORT_H
 #define CS_RUN_REPORT_H
 
-#include "cli/run/run_job.h"
+#include "cli/run/job_state.h"
 
 /* Adds the table. */
 void cs_report_print_table(const struct cs_job *job, struct cs_text *out);

@@ -1,5 +1,5 @@
-/* Writes the trail of a run. */
-#include "cli/run/run_trace.h"
+/* Writes the states of a run, or all that one frame computes, to standard output. */
+#include "cli/run/job_state.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,27 +38,37 @@ static void write_state(const struct cs_run *run) {
     cs_trace_stream_write(stdout, &point);
 }
 
-void cs_run_trace_begin(struct cs_run_trace *trail, const struct cs_run *run) {
-    if (!trail->is_requested)
-        return;
-    cs_trace_stream_begin(stdout);
-    write_state(run);
-}
-
-void cs_run_trace_step(struct cs_run_trace *trail, const struct cs_run *run) {
+/* everything is told of one frame alone */
+static void expect_frame(struct cs_run_trace *trail, const struct cs_run *run) {
     trail->trace.enabled = trail->frame == run->frame + 1;
 }
 
-enum cs_status cs_run_trace_frame(struct cs_run_trace *trail, const struct cs_run *run,
-                                  struct cs_error *error) {
-    if (trail->is_requested && (!trail->frame || trail->frame == run->frame))
-        write_state(run);
-    if (trail->is_requested && (fflush(stdout) || ferror(stdout)))
-        return cs_fail(error, CS_ERR_FILE, "cannot write to standard output");
-    return CS_OK;
+static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    if (!job->trace.is_requested)
+        return CS_OK;
+    cs_trace_stream_begin(stdout);
+    write_state(run);
+    expect_frame(&job->trace, run);
+    return error->status;
 }
 
-void cs_run_trace_end(struct cs_run_trace *trail, const struct cs_run *run) {
+static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
+    const struct cs_run_trace *trail = &job->trace;
+    if (!trail->is_requested)
+        return CS_OK;
+    if (!trail->frame || trail->frame == run->frame)
+        write_state(run);
+    expect_frame(&job->trace, run);
+    return fflush(stdout) || ferror(stdout)
+               ? cs_fail(error, CS_ERR_FILE, "cannot write to standard output")
+               : CS_OK;
+}
+
+/* when and where a run blew up */
+static enum cs_status end(struct cs_job *job, struct cs_error *error) {
+    const struct cs_run *run = &job->session.run;
     const double where[] = {run->blow_up.particle, run->blow_up.energy};
     const struct cs_trace_record point = {.frame = run->frame + 1,
                                           .step = run->counts.steps,
@@ -67,6 +77,10 @@ void cs_run_trace_end(struct cs_run_trace *trail, const struct cs_run *run) {
                                           .name = "end",
                                           .values = where,
                                           .n = 2};
-    if (trail->is_requested && (run->outcome == CS_NOT_FINITE || run->outcome == CS_UNBOUNDED))
+    if (job->trace.is_requested && cs_outcome_is_blow_up(run->outcome))
         cs_trace_stream_write(stdout, &point);
+    return error->status;
 }
+
+const struct cs_run_output cs_run_output_trail = {
+    .at = {[CS_RUN_BEGIN] = begin, [CS_RUN_FRAME] = frame, [CS_RUN_END] = end}};

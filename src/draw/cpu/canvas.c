@@ -272,7 +272,9 @@ static enum cs_status paint(struct cs_canvas *canvas, const struct cs_frame *fra
     const struct cs_bounding_sphere solid =
         cs_scene_extent_solid(canvas->settings.system, frame->x, frame->colliders);
     const bool varies = cs_view_varies(canvas->settings.scene);
-    const bool moved = cs_collider_geometry_move(&canvas->solids, frame->colliders);
+    bool moved = false;
+    for (uint32_t i = 0; i < canvas->solids.n; i++)
+        moved = cs_solid_move(canvas->solids.of + i, frame->colliders + i) || moved;
     if (varies)
         move_camera(canvas, frame, &solid);
     if (moved || varies)

@@ -1,42 +1,8 @@
 /* collider_geometry.c - colliders and the ground's rectangle become triangles. */
 #include "draw/cpu/collider_geometry.h"
 
-#include "draw/collider_mesh.h"
-#include "draw/scene_extent.h"
-
 #include <math.h>
 #include <string.h>
-
-enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
-                                         const struct cs_system *system,
-                                         const struct cs_posed_collider *obstacles,
-                                         struct cs_arena *arena, struct cs_error *error) {
-    uint32_t most = 0;
-    solids->n = system->scene->colliders.n;
-    solids->cell = cs_scene_extent_cell(system);
-    for (uint32_t i = 0; i < solids->n; i++) {
-        const uint32_t count = cs_collider_mesh_count(obstacles + i);
-        most = count > most ? count : most;
-    }
-    solids->colliders =
-        cs_arena_alloc_array(arena, solids->n, sizeof *solids->colliders, error);
-    solids->vertices = cs_arena_alloc_array(arena, most, sizeof *solids->vertices, error);
-    if (!error->status && solids->n > 0)
-        memcpy(solids->colliders, obstacles, solids->n * sizeof *obstacles);
-    return error->status;
-}
-
-bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
-                               const struct cs_posed_collider *obstacles) {
-    bool moved = false;
-    for (uint32_t i = 0; i < solids->n; i++) {
-        struct cs_posed_collider *now = solids->colliders + i;
-        moved = moved || memcmp(now->centre, obstacles[i].centre, sizeof now->centre) ||
-                memcmp(now->axes, obstacles[i].axes, sizeof now->axes);
-        *now = obstacles[i];
-    }
-    return moved;
-}
 
 /* `sink` moves only the depth away from the eye: between its particles a cloth is a chord that
  * cuts into the ball it lies on, and would show specks of it */
@@ -85,9 +51,8 @@ static void add_obstacle(const struct cs_collider_geometry *solids, uint32_t i,
                          const struct cs_surface_style *style,
                          const struct cs_triangle_kind *kind,
                          const struct projection *projection) {
-    const struct cs_posed_collider *obstacle = solids->colliders + i;
-    cs_collider_mesh_fill(obstacle, solids->cell, projection->eye, solids->vertices);
-    add_vertices(solids->vertices, cs_collider_mesh_count(obstacle), style, kind, projection);
+    cs_solids_fill(solids, i, projection->eye);
+    add_vertices(solids->vertices, solids->of[i].n, style, kind, projection);
 }
 
 void cs_collider_geometry_add(const struct cs_collider_geometry *solids,
@@ -97,9 +62,9 @@ void cs_collider_geometry_add(const struct cs_collider_geometry *solids,
     const struct projection projection = {clip, eye, true, triangles};
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < solids->n; i++) {
-            const struct cs_posed_collider *obstacle = solids->colliders + i;
+            const struct cs_posed_collider *obstacle = &solids->of[i].at;
             const struct cs_triangle_kind kind = {.surface = (uint16_t)i, .attributes = 3};
-            const bool square = obstacle->kind == CS_COLLIDER_PLANE;
+            const bool square = cs_shape_is_endless(obstacle->shape);
             struct cs_surface_style style;
             cs_style_solid(&style, obstacle, solids->cell);
             cs_shading_material_make(coats + i, &style);
@@ -117,9 +82,9 @@ void cs_collider_geometry_add_shadow(const struct cs_collider_geometry *solids,
     const struct cs_triangle_kind kind = {.attributes = 0};
     const struct projection projection = {clip, light, false, triangles};
     for (uint32_t i = 0; i < solids->n; i++) {
-        const struct cs_posed_collider *obstacle = solids->colliders + i;
+        const struct cs_posed_collider *obstacle = &solids->of[i].at;
         struct cs_surface_style style;
-        if (!obstacle->collider->visible || obstacle->kind == CS_COLLIDER_PLANE)
+        if (!obstacle->collider->visible || cs_shape_is_endless(obstacle->shape))
             continue;
         cs_style_solid(&style, obstacle, solids->cell);
         add_obstacle(solids, i, &style, &kind, &projection);

@@ -2,26 +2,9 @@
 #ifndef CS_CPU_COLLIDER_GEOMETRY_H
 #define CS_CPU_COLLIDER_GEOMETRY_H
 
+#include "draw/collider_mesh.h"
 #include "draw/cpu/shade.h"
 #include "draw/ground.h"
-#include "model/system/system.h"
-
-struct cs_collider_geometry {
-    uint32_t n;                          /* colliders of the scene */
-    double cell;                         /* m: how coarse the cloth is that lies on them */
-    struct cs_posed_collider *colliders; /* (n) as they are drawn */
-    struct cs_vertex *vertices;          /* work */
-};
-
-/* obstacles: at the start. */
-enum cs_status cs_collider_geometry_init(struct cs_collider_geometry *solids,
-                                         const struct cs_system *system,
-                                         const struct cs_posed_collider *obstacles,
-                                         struct cs_arena *arena, struct cs_error *error);
-
-/* Takes where they are now; true if any of them has moved. */
-bool cs_collider_geometry_move(struct cs_collider_geometry *solids,
-                               const struct cs_posed_collider *obstacles);
 
 /* Fills the coats of all colliders, and adds the squares and then all others as the camera sees
  * them, whose number is that of the coat. *n_squares: triangles of squares. */

@@ -2,18 +2,15 @@
 #ifndef CS_DRAW_COLLIDER_H
 #define CS_DRAW_COLLIDER_H
 
+#include "draw/collider_mesh.h"
 #include "draw/gl/surface.h"
 #include "draw/view.h"
-#include "model/contact/posed_collider.h"
 
 struct cs_gl_colliders {
-    uint32_t n;
-    struct cs_posed_collider *colliders; /* (n) where they are now */
-    struct cs_surface *surfaces;         /* (n) as the camera sees them */
-    struct cs_surface *shadows;          /* (n) as the light does */
-    struct cs_vertex *vertices;          /* work: room for the largest of them */
+    struct cs_collider_geometry solids;
+    struct cs_surface *surfaces; /* (n) as the camera sees them */
+    struct cs_surface *shadows;  /* (n) as the light does */
     const struct cs_view_block *view;
-    double cell; /* m: how coarse the cloth is that lies on them */
 };
 
 /* obstacles (scene->colliders.n): where they are at the start; view is borrowed, for camera and

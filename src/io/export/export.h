@@ -5,19 +5,15 @@
 #ifndef CS_EXPORT_H
 #define CS_EXPORT_H
 
-#include "io/export/npz.h"
-#include "io/export/obj.h"
-#include "io/export/pc2.h"
-#include "io/export/pvd.h"
-#include "io/export/vtp.h"
+#include "io/export/writer.h"
 
-enum cs_export_format {
-    CS_EXPORT_OBJ = 1u << 0,
-    CS_EXPORT_PC2 = 1u << 1,
-    CS_EXPORT_VTP = 1u << 2,
-    CS_EXPORT_NPZ = 1u << 3
-};
-/* beside positions and velocities; of VTP and NPZ */
+/* The formats, in the order of their bits. */
+extern const struct cs_export_writer *const cs_export_writers[CS_N_EXPORT_FORMATS];
+
+/* The bits of those that have room for more than positions. */
+uint32_t cs_export_with_values(void);
+
+/* beside positions and velocities; of those */
 enum cs_export_value { CS_EXPORT_FORCE = 1u << 0, CS_EXPORT_STRAIN = 1u << 1 };
 
 /* names of the bits, closed by NULL */
@@ -26,14 +22,10 @@ extern const char *const cs_export_value_names[];
 
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_export {
-    struct cs_export_settings settings;
     const struct cs_system *system; /* borrowed */
     struct cs_export_mesh bodies, colliders;
-    struct cs_text obj[2]; /* of bodies, colliders */
-    struct cs_vtp vtp[2];
-    struct cs_pc2 pc2[2];
-    struct cs_pvd pvd;
-    struct cs_npz npz;
+    struct cs_export_source source;
+    void *states[CS_N_EXPORT_FORMATS]; /* the arena's; NULL: not asked for */
     double *values, *scratch; /* (n), (3,n); NULL unless force or strain are asked for */
     uint32_t n_samples;
     struct cs_arena arena; /* owns the arrays */

@@ -1,4 +1,5 @@
-/* Joins the particles of all bodies to triangles and lines. */
+/* Joins the particles of all bodies to triangles and lines, and makes colliders of triangles:
+ * each in its own frame once, then placed at every sample. */
 #include "io/export/export_mesh.h"
 
 #include "base/little_endian.h"
@@ -7,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-enum cs_status cs_export_mesh_set_values(struct cs_export_mesh *skin, bool uv,
-                                         struct cs_arena *arena, struct cs_error *error) {
+static enum cs_status take(struct cs_export_mesh *skin, bool uv, struct cs_arena *arena,
+                           struct cs_error *error) {
     static const char *const positions[2] = {"position", "positions"};
     const size_t corners = 3 * (size_t)skin->n_triangles, items = skin->n_items;
     skin->triangles = cs_arena_alloc_array(arena, corners, sizeof *skin->triangles, error);
@@ -114,7 +115,7 @@ enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *skin,
         skin->n_lines += count_lines(system->bodies + b);
         uv = uv || has_uv(system->bodies + b);
     }
-    if (cs_export_mesh_set_values(skin, uv, arena, error))
+    if (take(skin, uv, arena, error))
         return error->status;
     for (uint32_t b = 0; b < n_bodies; b++) {
         const struct cs_body_range *body = system->bodies + b;
@@ -125,4 +126,76 @@ enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *skin,
         fill_body(skin, body, b);
     }
     return CS_OK;
+}
+
+static void fill_collider(struct cs_export_mesh *skin, uint32_t item,
+                          const struct cs_trimesh *mesh) {
+    const uint32_t first = skin->first_point[item];
+    for (size_t i = 0; i < mesh->n; i++)
+        for (size_t k = 0; k < 3; k++)
+            skin->local_positions[3 * (first + i) + k] = mesh->positions[k * mesh->n + i];
+    uint32_t *corner = skin->triangles + 3 * (size_t)skin->first_triangle[item];
+    for (size_t k = 0; k < 3 * (size_t)mesh->n_triangles; k++)
+        corner[k] = first + mesh->triangles[k];
+}
+
+/* meshes (colliders.n), in their own frames, of those that are visible */
+static enum cs_status join(struct cs_export_mesh *skin,
+                           const struct cs_posed_collider *obstacles,
+                           const struct cs_trimesh *meshes, struct cs_arena *arena,
+                           struct cs_error *error) {
+    skin->local_positions =
+        cs_arena_alloc_array(arena, skin->n, 3 * sizeof *skin->local_positions, error);
+    if (take(skin, false, arena, error))
+        return error->status;
+    for (uint32_t k = 0, item = 0; item < skin->n_items; k++) {
+        if (!obstacles[k].collider->visible)
+            continue;
+        skin->items[item] = k;
+        skin->first_point[item + 1] = skin->first_point[item] + meshes[k].n;
+        skin->first_triangle[item + 1] = skin->first_triangle[item] + meshes[k].n_triangles;
+        fill_collider(skin, item++, meshes + k);
+    }
+    return CS_OK;
+}
+
+enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *skin,
+                                           const struct cs_system *system,
+                                           struct cs_arena *arena, struct cs_error *error) {
+    const uint32_t n = system->scene->colliders.n;
+    struct cs_arena making = {0};
+    struct cs_posed_collider *obstacles =
+        cs_arena_alloc_array(&making, n, sizeof *obstacles, error);
+    struct cs_trimesh *meshes = cs_arena_alloc_array(&making, n, sizeof *meshes, error);
+    *skin = (struct cs_export_mesh){
+        .name = "colliders", .item = "collider", .is_moving = system->motions != NULL};
+    if (!error->status)
+        cs_posed_colliders_at(system, 0, obstacles);
+    for (uint32_t k = 0; k < n && !error->status; k++) {
+        if (!obstacles[k].collider->visible ||
+            obstacles[k].shape->triangles(obstacles + k, meshes + k, &making, error))
+            continue;
+        skin->n += meshes[k].n;
+        skin->n_triangles += meshes[k].n_triangles;
+        skin->n_items++;
+    }
+    if (!error->status)
+        join(skin, obstacles, meshes, arena, error);
+    cs_arena_finish(&making);
+    return error->status;
+}
+
+void cs_export_mesh_pose_colliders(struct cs_export_mesh *skin, const struct cs_system *system,
+                                   double t) {
+    uint64_t *out = skin->fields[0].words;
+    for (uint32_t item = 0; item < skin->n_items; item++) {
+        struct cs_posed_collider at;
+        cs_posed_collider_at(system, skin->items[item], t, &at);
+        for (size_t i = skin->first_point[item]; i < skin->first_point[item + 1]; i++) {
+            double place[3];
+            cs_obstacle_place(&at, skin->local_positions + 3 * i, place);
+            for (size_t c = 0; c < 3; c++)
+                out[3 * i + c] = cs_double_to_le64(place[c]);
+        }
+    }
 }

@@ -32,10 +32,6 @@ struct cs_export_mesh {
     struct cs_export_field fields[CS_EXPORT_FIELDS]; /* the first: positions in m */
 };
 
-/* Takes what every skin has; the counts are set, but for those in the lists of firsts. */
-enum cs_status cs_export_mesh_set_values(struct cs_export_mesh *skin, bool uv,
-                                         struct cs_arena *arena, struct cs_error *error);
-
 /* Takes a field of so many components a point. */
 struct cs_export_field *cs_export_mesh_add_field(struct cs_export_mesh *skin,
                                                  const char *const names[2],
@@ -46,6 +42,17 @@ struct cs_export_field *cs_export_mesh_add_field(struct cs_export_mesh *skin,
 enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *skin,
                                         const struct cs_system *system, struct cs_arena *arena,
                                         struct cs_error *error);
+
+/* The visible colliders: meshes as they are, planes and floors as the square that is drawn of
+ * them, spheres, boxes and capsules with points on their surface. Empty where no collider is
+ * visible. */
+enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *skin,
+                                           const struct cs_system *system,
+                                           struct cs_arena *arena, struct cs_error *error);
+
+/* Sets their positions at a time. */
+void cs_export_mesh_pose_colliders(struct cs_export_mesh *skin, const struct cs_system *system,
+                                   double t);
 
 /* uv (n): texture coordinates of each point, where skin->uv is there: those of its first
  * corner, which are all that it has but at seams; 0 where it has none. */

@@ -1,12 +1,23 @@
-/* Writes NumPy archives: samples into a file of their own first, then all arrays at once. */
-#include "io/export/npz.h"
-
+/* Writes one NumPy archive of a whole run: meshes, times and the values of all samples. How
+ * long its arrays are is known at the end only: until then samples lie one behind the other in
+ * a file of their own. */
 #include "base/little_endian.h"
+#include "io/export/append_file.h"
+#include "io/export/writer.h"
 #include "io/export/zip.h"
 #include "io/npy.h"
 
 #include <string.h>
 #include <unistd.h>
+
+struct archive {
+    struct cs_append_file part;
+    const char *folder;        /* borrowed */
+    uint32_t every, n_samples; /* frames from one sample to the next, samples there are */
+    uint64_t sample_bytes;
+};
+
+enum { WHOLE, PART }; /* of the names of files */
 
 static size_t word_size(const struct cs_export_mesh *skin, uint32_t f) {
     return (size_t)skin->n * skin->fields[f].components;
@@ -39,23 +50,26 @@ static enum cs_status count_field(void *ctx, const struct cs_export_mesh *skin, 
     return CS_OK;
 }
 
-enum cs_status cs_npz_open(struct cs_npz *npz, const struct cs_export_mesh *const skins[2],
-                           const struct cs_export_settings *settings, struct cs_error *error) {
+static enum cs_status open_part(void *state, const struct cs_export_source *source,
+                                struct cs_arena *arena, struct cs_error *error) {
+    const struct cs_export_settings *settings = &source->settings;
+    struct archive *npz = state;
     char path[CS_EXPORT_PATH];
-    *npz = (struct cs_npz){.folder = settings->folder,
-                           .frame_interval = settings->frame_interval,
-                           .n_samples = settings->n_samples_before,
-                           .sample_bytes = sizeof(uint64_t)};
-    each_field(skins, count_field, &npz->sample_bytes, error);
-    return cs_export_name(path, npz->folder, "run.npz.part", error)
+    (void)arena;
+    *npz = (struct archive){.folder = settings->folder,
+                            .every = settings->frame_interval,
+                            .n_samples = settings->n_samples_before,
+                            .sample_bytes = sizeof(uint64_t)};
+    each_field(source->skins, count_field, &npz->sample_bytes, error);
+    return cs_export_name(path, npz->folder, cs_export_npz.files[PART], error)
                ? error->status
-               : cs_append_file_open(&npz->part_file, path,
+               : cs_append_file_open(&npz->part, path,
                                      npz->sample_bytes * settings->n_samples_before, error);
 }
 
 /* where the next field of a sample goes, or comes from */
 struct place {
-    struct cs_npz *npz;
+    struct archive *npz;
     uint64_t at;
 };
 
@@ -65,18 +79,18 @@ static enum cs_status add_field(void *ctx, const struct cs_export_mesh *skin, ui
     const size_t bytes = word_size(skin, f) * sizeof(uint64_t);
     const uint64_t at = place->at;
     place->at += bytes;
-    return cs_append_file_write(&place->npz->part_file, at, skin->fields[f].words, bytes,
-                                error);
+    return cs_append_file_write(&place->npz->part, at, skin->fields[f].words, bytes, error);
 }
 
-enum cs_status cs_npz_add(struct cs_npz *npz, const struct cs_export_mesh *const skins[2],
-                          double t, struct cs_error *error) {
-    const uint64_t time = cs_double_to_le64(t);
+static enum cs_status add(void *state, const struct cs_export_source *source,
+                          const struct cs_export_sample *sample, struct cs_error *error) {
+    struct archive *npz = state;
+    const uint64_t time = cs_double_to_le64(sample->t);
     struct place place = {npz, npz->sample_bytes * npz->n_samples};
-    if (cs_append_file_write(&npz->part_file, place.at, &time, sizeof time, error))
+    if (cs_append_file_write(&npz->part, place.at, &time, sizeof time, error))
         return error->status;
     place.at += sizeof time;
-    if (!each_field(skins, add_field, &place, error))
+    if (!each_field(source->skins, add_field, &place, error))
         npz->n_samples++;
     return error->status;
 }
@@ -142,22 +156,21 @@ static void put_meshes(struct cs_zip *zip, const struct cs_export_mesh *const sk
                 0);
 }
 
-static void put_frames(const struct cs_npz *npz, struct cs_zip *zip) {
+static void put_frames(const struct archive *npz, struct cs_zip *zip) {
     begin_array(zip, &(struct array){"frames", "<i4", {npz->n_samples}, 1, 4});
     for (uint32_t k = 0; k < npz->n_samples; k++) {
-        const uint32_t frame = htole32(k * npz->frame_interval);
+        const uint32_t frame = htole32(k * npz->every);
         cs_zip_put(zip, &frame, sizeof frame);
     }
     cs_zip_end(zip);
 }
 
-static enum cs_status put_times(const struct cs_npz *npz, struct cs_zip *zip,
+static enum cs_status put_times(const struct archive *npz, struct cs_zip *zip,
                                 struct cs_error *error) {
     begin_array(zip, &(struct array){"times", "<f8", {npz->n_samples}, 1, 8});
     for (uint32_t k = 0; k < npz->n_samples; k++) {
         uint64_t time;
-        if (cs_append_file_read(&npz->part_file, npz->sample_bytes * k, &time, sizeof time,
-                                error))
+        if (cs_append_file_read(&npz->part, npz->sample_bytes * k, &time, sizeof time, error))
             return error->status;
         cs_zip_put(zip, &time, sizeof time);
     }
@@ -187,13 +200,13 @@ struct series {
 static enum cs_status put_field(void *ctx, const struct cs_export_mesh *skin, uint32_t f,
                                 struct cs_error *error) {
     struct series *series = ctx;
-    const struct cs_npz *npz = series->place.npz;
+    const struct archive *npz = series->place.npz;
     uint64_t *words = skin->fields[f].words;
     const size_t bytes = word_size(skin, f) * sizeof *words;
     begin_field(series->zip, skin, f, npz->n_samples);
     for (uint32_t k = 0; k < npz->n_samples; k++) {
-        if (cs_append_file_read(&npz->part_file, series->place.at + npz->sample_bytes * k,
-                                words, bytes, error))
+        if (cs_append_file_read(&npz->part, series->place.at + npz->sample_bytes * k, words,
+                                bytes, error))
             return error->status;
         cs_zip_put(series->zip, words, bytes);
     }
@@ -202,7 +215,7 @@ static enum cs_status put_field(void *ctx, const struct cs_export_mesh *skin, ui
     return CS_OK;
 }
 
-static enum cs_status put_samples(struct cs_npz *npz,
+static enum cs_status put_samples(struct archive *npz,
                                   const struct cs_export_mesh *const skins[2],
                                   struct cs_zip *zip, struct cs_error *error) {
     const struct cs_export_mesh *colliders = skins[1];
@@ -218,16 +231,25 @@ static enum cs_status put_samples(struct cs_npz *npz,
     return CS_OK;
 }
 
-enum cs_status cs_npz_finish(struct cs_npz *npz, const struct cs_export_mesh *const skins[2],
-                             bool goes_on, struct cs_error *error) {
+static enum cs_status sync_part(const void *state, struct cs_error *error) {
+    const struct archive *npz = state;
+    return cs_append_file_sync(&npz->part, error);
+}
+
+/* The fields of the skins are overwritten. The part goes unless the run may go on. */
+static enum cs_status finish(void *state, const struct cs_export_source *source, bool goes_on,
+                             struct cs_error *error) {
+    struct archive *npz = state;
     char path[CS_EXPORT_PATH];
     struct cs_file_out out;
-    if (cs_export_name(path, npz->folder, "run.npz", error) ||
+    if (!npz->part.file)
+        return CS_OK;
+    if (cs_export_name(path, npz->folder, cs_export_npz.files[WHOLE], error) ||
         cs_file_create(&out, path, error))
         return error->status;
     struct cs_zip zip = {.file = out.file};
-    put_meshes(&zip, skins);
-    if (put_samples(npz, skins, &zip, error)) {
+    put_meshes(&zip, source->skins);
+    if (put_samples(npz, source->skins, &zip, error)) {
         cs_file_abandon(&out);
         return error->status;
     }
@@ -235,6 +257,22 @@ enum cs_status cs_npz_finish(struct cs_npz *npz, const struct cs_export_mesh *co
     if (cs_file_finish(&out, error))
         return error->status;
     if (!goes_on)
-        unlink(npz->part_file.path);
+        unlink(npz->part.path);
     return CS_OK;
 }
+
+static void close_part(void *state) {
+    struct archive *npz = state;
+    cs_append_file_close(&npz->part);
+}
+
+const struct cs_export_writer cs_export_npz = {
+    .holds_values = true,
+    .files = {[WHOLE] = "run.npz", [PART] = "run.npz.part"},
+    .size = sizeof(struct archive),
+    .open = open_part,
+    .add = add,
+    .sync = sync_part,
+    .finish = finish,
+    .close = close_part,
+};

@@ -1,9 +1,11 @@
-/* Writes Wavefront OBJ files. */
-#include "io/export/obj.h"
-
+/* Writes Wavefront OBJ: one text file a sample, with the same faces in each, positions to nine
+ * digits.
+ */
 #include "base/file.h"
 #include "base/little_endian.h"
+#include "base/text.h"
 #include "io/export/export_name.h"
+#include "io/export/writer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -69,7 +71,8 @@ static void add_items(const struct cs_export_mesh *skin, struct uv_list *list,
     }
 }
 
-enum cs_status cs_obj_print_tail(const struct cs_export_mesh *skin, struct cs_text *tail,
+/* All that follows the points: texture coordinates, a group for each body, faces and lines. */
+static enum cs_status print_tail(const struct cs_export_mesh *skin, struct cs_text *tail,
                                  struct cs_error *error) {
     struct cs_text faces = {0};
     struct uv_list list = {.last = calloc(skin->n + 1, sizeof *list.last),
@@ -89,13 +92,15 @@ enum cs_status cs_obj_print_tail(const struct cs_export_mesh *skin, struct cs_te
     return error->status;
 }
 
-enum cs_status cs_obj_write(const struct cs_export_mesh *skin, const struct cs_text *tail,
-                            const char *folder, const struct cs_export_sample *sample,
-                            struct cs_error *error) {
+static enum cs_status write_sample(const struct cs_export_mesh *skin,
+                                   const struct cs_text *tail, const char *folder,
+                                   const struct cs_export_sample *sample,
+                                   struct cs_error *error) {
     char path[CS_EXPORT_PATH];
     struct cs_file_out out;
     const uint64_t *at = skin->fields[0].words;
-    if (cs_export_number(path, folder, skin->name, sample->number, "obj", error) ||
+    if (cs_export_number(path, folder, skin->name, sample->number, cs_export_obj.ending,
+                         error) ||
         cs_file_create(&out, path, error))
         return error->status;
     /* failures to write are seen by finish */
@@ -106,3 +111,37 @@ enum cs_status cs_obj_write(const struct cs_export_mesh *skin, const struct cs_t
     fwrite(tail->bytes, 1, tail->length, out.file);
     return cs_file_finish(&out, error);
 }
+
+static enum cs_status open_files(void *state, const struct cs_export_source *source,
+                                 struct cs_arena *arena, struct cs_error *error) {
+    struct cs_text *tails = state;
+    (void)arena;
+    for (int k = 0; k < 2; k++)
+        if (source->skins[k]->n > 0 && print_tail(source->skins[k], tails + k, error))
+            return error->status;
+    return CS_OK;
+}
+
+static enum cs_status add(void *state, const struct cs_export_source *source,
+                          const struct cs_export_sample *sample, struct cs_error *error) {
+    const struct cs_text *tails = state;
+    for (int k = 0; k < 2; k++)
+        if (cs_skin_has_sample(source->skins[k], sample) &&
+            write_sample(source->skins[k], tails + k, source->settings.folder, sample, error))
+            return error->status;
+    return CS_OK;
+}
+
+static void close_files(void *state) {
+    struct cs_text *tails = state;
+    for (int k = 0; k < 2; k++)
+        cs_text_finish(tails + k);
+}
+
+const struct cs_export_writer cs_export_obj = {
+    .ending = "obj",
+    .size = 2 * sizeof(struct cs_text), /* what follows the points of bodies, of colliders */
+    .open = open_files,
+    .add = add,
+    .close = close_files,
+};

@@ -1,7 +1,14 @@
-/* Writes PC2 point caches: a header of 32 bytes, then places as floats, sample by sample. */
-#include "io/export/pc2.h"
-
+/* Writes PC2 point caches: the points of all samples in one file, in the order of the OBJ. A
+ * header of 32 bytes, then places as floats, sample by sample. */
 #include "base/little_endian.h"
+#include "io/export/append_file.h"
+#include "io/export/writer.h"
+
+struct cache {
+    struct cs_append_file file;
+    uint32_t n_samples;
+    uint32_t *floats; /* (n, 3) of one sample, the arena's */
+};
 
 enum { HEADER = 32, AT_COUNT = 28 };
 
@@ -13,16 +20,16 @@ static void make_header(uint8_t header[HEADER], uint32_t n, uint32_t every, uint
     memcpy(header + 12, words, sizeof words);
 }
 
-enum cs_status cs_pc2_open(struct cs_pc2 *cache, const struct cs_export_mesh *skin,
-                           const struct cs_export_settings *settings, struct cs_arena *arena,
-                           struct cs_error *error) {
+static enum cs_status open_cache(struct cache *cache, const struct cs_export_mesh *skin,
+                                 const struct cs_export_settings *settings,
+                                 struct cs_arena *arena, struct cs_error *error) {
     char name[32], path[CS_EXPORT_PATH];
     uint8_t header[HEADER];
     const uint32_t kept = settings->n_samples_before;
     const uint64_t length = kept ? HEADER + 12 * (uint64_t)skin->n * kept : 0;
     cache->n_samples = kept;
     cache->floats = cs_arena_alloc_array(arena, skin->n, 3 * sizeof *cache->floats, error);
-    snprintf(name, sizeof name, "%s.pc2", skin->name);
+    snprintf(name, sizeof name, "%s.%s", skin->name, cs_export_pc2.cache_ending);
     make_header(header, skin->n, settings->frame_interval, kept);
     if (error->status || cs_export_name(path, settings->folder, name, error) ||
         cs_append_file_open(&cache->file, path, length, error))
@@ -30,8 +37,9 @@ enum cs_status cs_pc2_open(struct cs_pc2 *cache, const struct cs_export_mesh *sk
     return cs_append_file_write(&cache->file, 0, header, sizeof header, error);
 }
 
-enum cs_status cs_pc2_add(struct cs_pc2 *cache, const struct cs_export_mesh *skin,
-                          struct cs_error *error) {
+/* Adds a sample; then the file says that it has it. */
+static enum cs_status add_to(struct cache *cache, const struct cs_export_mesh *skin,
+                             struct cs_error *error) {
     const uint64_t *words = skin->fields[0].words;
     const size_t n = 3 * (size_t)skin->n;
     for (size_t k = 0; k < n; k++)
@@ -42,3 +50,47 @@ enum cs_status cs_pc2_add(struct cs_pc2 *cache, const struct cs_export_mesh *ski
     const uint32_t count = htole32(++cache->n_samples);
     return cs_append_file_write(&cache->file, AT_COUNT, &count, sizeof count, error);
 }
+
+static enum cs_status open_files(void *state, const struct cs_export_source *source,
+                                 struct cs_arena *arena, struct cs_error *error) {
+    struct cache *caches = state;
+    /* what never moves needs no cache */
+    for (int k = 0; k < 2; k++)
+        if (source->skins[k]->n > 0 && source->skins[k]->is_moving &&
+            open_cache(caches + k, source->skins[k], &source->settings, arena, error))
+            return error->status;
+    return CS_OK;
+}
+
+static enum cs_status add(void *state, const struct cs_export_source *source,
+                          const struct cs_export_sample *sample, struct cs_error *error) {
+    struct cache *caches = state;
+    (void)sample;
+    for (int k = 0; k < 2; k++)
+        if (caches[k].file.file && add_to(caches + k, source->skins[k], error))
+            return error->status;
+    return CS_OK;
+}
+
+static enum cs_status sync_files(const void *state, struct cs_error *error) {
+    const struct cache *caches = state;
+    for (int k = 0; k < 2; k++)
+        if (cs_append_file_sync(&caches[k].file, error))
+            return error->status;
+    return CS_OK;
+}
+
+static void close_files(void *state) {
+    struct cache *caches = state;
+    for (int k = 0; k < 2; k++)
+        cs_append_file_close(&caches[k].file);
+}
+
+const struct cs_export_writer cs_export_pc2 = {
+    .cache_ending = "pc2",
+    .size = 2 * sizeof(struct cache), /* of bodies, of colliders */
+    .open = open_files,
+    .add = add,
+    .sync = sync_files,
+    .close = close_files,
+};

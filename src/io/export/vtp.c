@@ -1,9 +1,29 @@
-/* Writes VTK's XML PolyData with raw appended data, each array behind its length. */
-#include "io/export/vtp.h"
-
+/* Writes VTK's XML PolyData, one file a sample, with raw appended data, each array behind its
+ * length; and the PVD file that says when each was. */
 #include "base/file.h"
 #include "base/little_endian.h"
+#include "base/text.h"
+#include "io/export/append_file.h"
 #include "io/export/export_name.h"
+#include "io/export/writer.h"
+
+/* What the files of all samples have in common. */
+struct common {
+    struct cs_text head; /* XML up to the appended data, owned */
+    uint8_t *fixed;      /* appended data that stay, which the arena owns */
+    size_t fixed_bytes;
+};
+
+/* The PVD file, whole after each sample. */
+struct list {
+    struct cs_append_file file;
+    uint64_t end; /* of its entries */
+};
+
+struct files {
+    struct common of[2]; /* bodies, colliders */
+    struct list list;
+};
 
 /* An array in the head, whose data follow those before. */
 struct array {
@@ -104,19 +124,19 @@ static void fill_fixed(const struct cs_export_mesh *skin, uint8_t *at) {
     fill_cells(&at, skin->triangles, skin->n_triangles, 3);
 }
 
-enum cs_status cs_vtp_make(struct cs_vtp *vtp, const struct cs_export_mesh *skin,
+static enum cs_status make(struct common *vtp, const struct cs_export_mesh *skin,
                            struct cs_arena *arena, struct cs_error *error) {
-    vtp->constant_bytes =
+    vtp->fixed_bytes =
         5 * sizeof(uint64_t) + sizeof(uint32_t) * (skin->n + 3 * (size_t)skin->n_lines +
                                                    4 * (size_t)skin->n_triangles);
     if (skin->uv)
-        vtp->constant_bytes += sizeof(uint64_t) + skin->n * sizeof(float[2]);
-    vtp->constant_part = cs_arena_alloc(arena, vtp->constant_bytes, error);
-    print_head(skin, &vtp->header);
-    if (vtp->header.failed)
+        vtp->fixed_bytes += sizeof(uint64_t) + skin->n * sizeof(float[2]);
+    vtp->fixed = cs_arena_alloc(arena, vtp->fixed_bytes, error);
+    print_head(skin, &vtp->head);
+    if (vtp->head.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for VTP files");
     if (!error->status)
-        fill_fixed(skin, vtp->constant_part);
+        fill_fixed(skin, vtp->fixed);
     return error->status;
 }
 
@@ -127,21 +147,115 @@ static void write_array(FILE *file, const uint64_t *words, size_t n) {
     fwrite(words, sizeof *words, n, file);
 }
 
-enum cs_status cs_vtp_write(const struct cs_vtp *vtp, const struct cs_export_mesh *skin,
-                            const char *folder, const struct cs_export_sample *sample,
-                            struct cs_error *error) {
+static enum cs_status write_sample(const struct common *vtp, const struct cs_export_mesh *skin,
+                                   const char *folder, const struct cs_export_sample *sample,
+                                   struct cs_error *error) {
     char path[CS_EXPORT_PATH];
     struct cs_file_out out;
     const uint64_t time = cs_double_to_le64(sample->t);
-    if (cs_export_number(path, folder, skin->name, sample->number, "vtp", error) ||
+    if (cs_export_number(path, folder, skin->name, sample->number, cs_export_vtp.ending,
+                         error) ||
         cs_file_create(&out, path, error))
         return error->status;
-    fwrite(vtp->header.bytes, 1, vtp->header.length, out.file);
+    fwrite(vtp->head.bytes, 1, vtp->head.length, out.file);
     write_array(out.file, &time, 1);
     for (uint32_t f = 0; f < skin->n_fields; f++)
         write_array(out.file, skin->fields[f].words,
                     (size_t)skin->n * skin->fields[f].components);
-    fwrite(vtp->constant_part, 1, vtp->constant_bytes, out.file);
+    fwrite(vtp->fixed, 1, vtp->fixed_bytes, out.file);
     fputs("\n</AppendedData>\n</VTKFile>\n", out.file);
     return cs_file_finish(&out, error);
 }
+
+static const char list_head[] = "<?xml version=\"1.0\"?>\n"
+                                "<VTKFile type=\"Collection\" version=\"0.1\" "
+                                "byte_order=\"LittleEndian\">\n<Collection>\n";
+static const char list_tail[] = "</Collection>\n</VTKFile>\n";
+
+/* Entries take the place of the file's end, which follows them again. */
+static enum cs_status put(struct list *pvd, struct cs_text *entries, struct cs_error *error) {
+    const size_t length = entries->length;
+    cs_text_add(entries, "%s", list_tail);
+    if (entries->failed)
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for \"%s\"", pvd->file.path);
+    else if (!cs_append_file_write(&pvd->file, pvd->end, entries->bytes, entries->length,
+                                   error))
+        pvd->end += length;
+    cs_text_finish(entries);
+    return error->status;
+}
+
+static enum cs_status begin_list(struct list *pvd, const char *folder, struct cs_error *error) {
+    char path[CS_EXPORT_PATH];
+    struct cs_text entries = {0};
+    if (cs_export_name(path, folder, cs_export_vtp.files[0], error) ||
+        cs_append_file_open(&pvd->file, path, 0, error))
+        return error->status;
+    cs_text_add(&entries, "%s", list_head);
+    return put(pvd, &entries, error);
+}
+
+/* Adds a sample of both skins, if they have points; one that never moves has one file, of
+ * number 0. */
+static enum cs_status list_sample(struct list *pvd, const struct cs_export_mesh *const skins[2],
+                                  uint32_t number, double t, struct cs_error *error) {
+    struct cs_text entries = {0};
+    for (uint32_t part = 0; part < 2; part++) {
+        const struct cs_export_mesh *skin = skins[part];
+        if (skin->n == 0)
+            continue;
+        cs_text_add(&entries, "<DataSet timestep=\"");
+        cs_text_add_real(&entries, t);
+        cs_text_add(&entries, "\" part=\"%u\" file=\"%s_%05u.vtp\"/>\n", part, skin->name,
+                    skin->is_moving ? number : 0);
+    }
+    return put(pvd, &entries, error);
+}
+
+/* The list of samples is written anew. */
+static enum cs_status open_list(struct list *list, const struct cs_export_source *source,
+                                struct cs_error *error) {
+    const struct cs_export_settings *settings = &source->settings;
+    if (begin_list(list, settings->folder, error))
+        return error->status;
+    for (uint32_t k = 0; k < settings->n_samples_before && !error->status; k++)
+        list_sample(list, source->skins, k, k * settings->frame_interval / source->fps, error);
+    return error->status;
+}
+
+static enum cs_status open_files(void *state, const struct cs_export_source *source,
+                                 struct cs_arena *arena, struct cs_error *error) {
+    struct files *files = state;
+    for (int k = 0; k < 2; k++)
+        if (source->skins[k]->n > 0 && make(files->of + k, source->skins[k], arena, error))
+            return error->status;
+    return open_list(&files->list, source, error);
+}
+
+static enum cs_status add(void *state, const struct cs_export_source *source,
+                          const struct cs_export_sample *sample, struct cs_error *error) {
+    struct files *files = state;
+    for (int k = 0; k < 2; k++)
+        if (cs_skin_has_sample(source->skins[k], sample) &&
+            write_sample(files->of + k, source->skins[k], source->settings.folder, sample,
+                         error))
+            return error->status;
+    return list_sample(&files->list, source->skins, sample->number, sample->t, error);
+}
+
+static void close_files(void *state) {
+    struct files *files = state;
+    for (int k = 0; k < 2; k++)
+        cs_text_finish(&files->of[k].head);
+    cs_append_file_close(&files->list.file);
+}
+
+const struct cs_export_writer cs_export_vtp = {
+    .holds_values = true,
+    .ending = "vtp",
+    .files = {"run.pvd"},
+    .size = sizeof(struct files),
+    .open = open_files,
+    .add = add,
+    .close = close_files,
+};

@@ -11,8 +11,9 @@ enum { ROW = 64 };
 bool cs_contact_rows_supported(const struct cs_posed_collider_law *near) {
     const struct cs_posed_collider *pose = &near->collider;
     const double *spin = pose->spin;
-    return (pose->kind == CS_COLLIDER_PLANE || pose->kind == CS_COLLIDER_SPHERE) &&
-           spin[0] == 0 && spin[1] == 0 && spin[2] == 0;
+    const enum cs_shape_bounds bounds = pose->shape->bounds;
+    return (bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE) && spin[0] == 0 &&
+           spin[1] == 0 && spin[2] == 0;
 }
 
 /* distances of one row, and what lies between the obstacle and its particles */
@@ -91,7 +92,7 @@ CS_INLINE void add(const struct cs_posed_collider_law *near, size_t n, const str
 CS_CLONES void cs_contact_rows_add(const struct cs_posed_collider_law *near, size_t n,
                                    const struct cs_eval *at,
                                    struct cs_contact_force_parts parts, double *f) {
-    if (near->collider.kind == CS_COLLIDER_SPHERE)
+    if (near->collider.shape->bounds == CS_BOUNDS_SPHERE)
         add(near, n, at, parts, true, f);
     else
         add(near, n, at, parts, false, f);
@@ -137,7 +138,7 @@ CS_INLINE void add_bounds(const struct cs_posed_collider_law *near, size_t n,
 CS_CLONES void cs_contact_rows_add_bounds(const struct cs_posed_collider_law *near, size_t n,
                                           const struct cs_eval *at,
                                           const struct cs_gershgorin *sums) {
-    if (near->collider.kind == CS_COLLIDER_SPHERE)
+    if (near->collider.shape->bounds == CS_BOUNDS_SPHERE)
         add_bounds(near, n, at, true, sums);
     else
         add_bounds(near, n, at, false, sums);

@@ -9,9 +9,9 @@
 enum { LOT = 128 };
 
 double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, double range) {
-    return obstacle->kind == CS_COLLIDER_PLANE || obstacle->kind == CS_COLLIDER_MESH
-               ? HUGE_VAL
-               : sqrt(range * (2 * obstacle->radius + 0.75 * range));
+    return cs_shape_needs_points(obstacle->shape)
+               ? sqrt(range * (2 * obstacle->radius + 0.75 * range))
+               : HUGE_VAL;
 }
 
 /* --- lengths --- */

@@ -25,7 +25,7 @@
 #define CS_CONTACT_PAIR_DISTANCE_H
 
 #include "base/vec3.h"
-#include "model/contact/smooth_positive.h"
+#include "scene/soft.h"
 
 #include <float.h>
 #include <stdbool.h>

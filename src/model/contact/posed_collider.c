@@ -4,82 +4,16 @@
 
 #include "base/portable_sine.h"
 #include "base/vec3.h"
-#include "scene/shape.h"
 
 #include <math.h>
 #include <string.h>
 
-/* axes[1] is there; the others at right angles to it, right-handed */
-static void complete_axes(double axes[3][3]) {
-    const double *along = axes[1];
-    const double other[3] = {fabs(along[0]) < 0.6, fabs(along[0]) >= 0.6, 0};
-    cs_vec3_cross(other, along, axes[2]);
-    cs_vec3_normalise(axes[2]);
-    cs_vec3_cross(along, axes[2], axes[0]);
-}
-
-static void pose_plane(struct cs_posed_collider *out, const double point[3],
-                       const double normal[3]) {
-    out->kind = CS_COLLIDER_PLANE;
-    memcpy(out->centre, point, sizeof out->centre);
-    memcpy(out->axes[1], normal, sizeof out->axes[1]);
-    complete_axes(out->axes);
-}
-
-static void pose_box(struct cs_posed_collider *out, const struct cs_cuboid *box) {
-    double r[9];
-    out->kind = CS_COLLIDER_BOX;
-    out->radius = box->radius;
-    memcpy(out->centre, box->centre, sizeof out->centre);
-    cs_quaternion_matrix(box->rotate, r);
-    for (int k = 0; k < 3; k++) {
-        out->half_sizes[k] = fmax(0.5 * box->size[k] - box->radius, 0);
-        for (int c = 0; c < 3; c++)
-            out->axes[k][c] = r[3 * c + k];
-    }
-}
-
-static void pose_capsule(struct cs_posed_collider *out, const struct cs_capsule *capsule) {
-    out->kind = CS_COLLIDER_CAPSULE;
-    out->radius = capsule->radius;
-    for (int c = 0; c < 3; c++) {
-        out->centre[c] = 0.5 * (capsule->from[c] + capsule->to[c]);
-        out->axes[1][c] = capsule->to[c] - capsule->from[c];
-    }
-    out->half_sizes[1] = 0.5 * sqrt(cs_vec3_dot(out->axes[1], out->axes[1]));
-    cs_vec3_normalise(out->axes[1]);
-    complete_axes(out->axes);
-}
-
-static void pose_mesh(struct cs_posed_collider *out, const struct cs_mesh_source *mesh) {
-    double r[9];
-    out->kind = CS_COLLIDER_MESH;
-    memcpy(out->centre, mesh->place.translate, sizeof out->centre);
-    cs_pose_rotation(&mesh->place, r);
-    for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 3; c++)
-            out->axes[k][c] = r[3 * c + k];
-}
-
 /* as the scene has it */
 static void pose(struct cs_posed_collider *out, const struct cs_collider *collider) {
-    static const double up[3] = {0, 1, 0};
-    const double height[3] = {0, collider->floor.height, 0};
-    *out = (struct cs_posed_collider){.collider = collider,
+    *out = (struct cs_posed_collider){.shape = cs_collider_shape(collider),
+                                      .collider = collider,
                                       .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    if (collider->sphere.present) {
-        out->radius = collider->sphere.radius;
-        memcpy(out->centre, collider->sphere.centre, sizeof out->centre);
-    } else if (collider->plane.present)
-        pose_plane(out, collider->plane.point, collider->plane.normal);
-    else if (collider->box.present)
-        pose_box(out, &collider->box);
-    else if (collider->capsule.present)
-        pose_capsule(out, &collider->capsule);
-    else if (collider->mesh.present)
-        pose_mesh(out, &collider->mesh);
-    else
-        pose_plane(out, height, up);
+    out->shape->pose(collider, out);
 }
 
 /* out = a b */

@@ -1,38 +1,12 @@
 /* posed_collider.h - colliders as geometry: where one is at a time, how far a point is from it,
- * and how fast its surface moves there. Contact, visibility and pictures share this.
- *
- * Every obstacle but planes and meshes is a core - a point, a segment or a box - and all points
- * within `radius` of it: sphere, capsule, box with rounded edges. A floor is a plane. A mesh
- * has no distance here: bodies meet its parts in pairs (model/pair), and where its vertices are
- * surface_points.h says.
+ * and how fast its surface moves there. Contact, visibility and pictures share this. The shapes
+ * are in scene/collider.h.
  */
 #ifndef CS_POSED_COLLIDER_H
 #define CS_POSED_COLLIDER_H
 
 #include "model/system/system.h"
-
-enum cs_collider_kind {
-    CS_COLLIDER_SPHERE,
-    CS_COLLIDER_PLANE,
-    CS_COLLIDER_BOX,
-    CS_COLLIDER_CAPSULE,
-    CS_COLLIDER_MESH
-};
-
-/* One collider as it is at one time. */
-struct cs_posed_collider {
-    enum cs_collider_kind kind;
-    const struct cs_collider *collider; /* borrowed from the system's scene: friction, ... */
-    double centre[3];  /* m; of a plane: a point on it; of a mesh: the origin of its places */
-    double axes[3][3]; /* unit vectors of its own frame, right-handed; a plane's normal and a
-                          capsule's axis are axes[1] */
-    double half_sizes[3]; /* m, half sizes of the core along the axes: 0 of a sphere, core[1] of
-                       a capsule */
-    double radius;        /* m, of what lies about the core; 0 of a plane */
-    double velocity[3];   /* m/s, of the pivot */
-    double spin[3];       /* rad/s */
-    double rotation_centre[3]; /* m, what it turns about: the centre */
-};
+#include "scene/collider.h"
 
 /* How an event moves one collider until the next turn of its path: the shift is
  * from + rate (t - since), and it turns at `spin` on from `turn`. Beyond `until` both go on, so
@@ -62,13 +36,17 @@ void cs_posed_collider_rotate(const struct cs_collider_motion *motion, double t,
  * surface point that is nearest. Negative inside, where it is exact too. In the centre of a
  * sphere, or on the axis of a capsule, n points up. Not finite where p is not, and of a mesh.
  */
-double cs_posed_collider_distance(const struct cs_posed_collider *obstacle, const double p[3],
-                                  double n[3]);
+static inline double cs_posed_collider_distance(const struct cs_posed_collider *obstacle,
+                                                const double p[3], double n[3]) {
+    return obstacle->shape->distance(obstacle, 0, p, n);
+}
 
 /* The same from the surface moved out by the collider's thickness, which is where projection
  * puts a particle. */
-double cs_posed_collider_signed_distance(const struct cs_posed_collider *obstacle,
-                                         const double p[3], double n[3]);
+static inline double cs_posed_collider_signed_distance(const struct cs_posed_collider *obstacle,
+                                                       const double p[3], double n[3]) {
+    return obstacle->shape->distance(obstacle, obstacle->collider->thickness, p, n);
+}
 
 /* true if p may be nearer to the surface than `reach` (m, 0 or more) or inside: a test of a few
  * nanoseconds before a distance is asked for. False only where the distance, exact or smooth,
@@ -79,18 +57,22 @@ static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *obs
                          p[2] - obstacle->centre[2]};
     // far above the rounding of either side
     const double all = (obstacle->radius + reach) * (1 + 1e-9);
-    if (obstacle->kind == CS_COLLIDER_SPHERE)
-        return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= all * all;
-    if (obstacle->kind == CS_COLLIDER_MESH)
-        return false;
+    const double *normal = obstacle->axes[1];
     double squared = 0;
-    for (int k = 0; k < 3; k++) {
-        const double *axis = obstacle->axes[k];
-        const double x = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
-        const double out = (x < 0 ? -x : x) - obstacle->half_sizes[k];
-        if (obstacle->kind == CS_COLLIDER_PLANE && k == 1)
-            return x <= all + 1e-9;
-        squared += out > 0 ? out * out : 0;
+    switch (obstacle->shape->bounds) {
+    case CS_BOUNDS_SPHERE:
+        return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= all * all;
+    case CS_BOUNDS_HALF_SPACE:
+        return normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2] <= all + 1e-9;
+    case CS_BOUNDS_MESH:
+        return false;
+    case CS_BOUNDS_BOX:
+        for (int k = 0; k < 3; k++) {
+            const double *axis = obstacle->axes[k];
+            const double x = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
+            const double out = (x < 0 ? -x : x) - obstacle->half_sizes[k];
+            squared += out > 0 ? out * out : 0;
+        }
     }
     return squared <= all * all;
 }
@@ -105,13 +87,18 @@ static inline bool cs_posed_collider_is_near(const struct cs_posed_collider *obs
  * hessian   1/m, of that function: xx, xy, xz, yy, yz, zz; 0 where n points up by default
  * Inside the core of a box it goes on as the distance does, with the same bend where the
  * nearest face changes. */
-double cs_posed_collider_smooth_distance(const struct cs_posed_collider *obstacle,
-                                         const double p[3], double gradient[3],
-                                         double hessian[6]);
+static inline double cs_posed_collider_smooth_distance(const struct cs_posed_collider *obstacle,
+                                                       const double p[3], double gradient[3],
+                                                       double hessian[6]) {
+    return obstacle->shape->smooth(obstacle, p, gradient, hessian);
+}
 
 /* true if the line from `from` to from + share way comes into the obstacle. */
-bool cs_posed_collider_hits_segment(const struct cs_posed_collider *obstacle,
-                                    const double from[3], const double way[3], double share);
+static inline bool cs_posed_collider_hits_segment(const struct cs_posed_collider *obstacle,
+                                                  const double from[3], const double way[3],
+                                                  double share) {
+    return obstacle->shape->meets_line(obstacle, from, way, share);
+}
 
 /* v = velocity in m/s of the obstacle's matter at p. */
 void cs_posed_collider_velocity(const struct cs_posed_collider *obstacle, const double p[3],

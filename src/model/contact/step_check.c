@@ -61,7 +61,7 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, 
     const double *a = passing->x0 + begin, *b = passing->x1 + begin;
     const double *mass = passing->system->mass + begin, *c = after->centre;
     const double *g = after->axes[1], range = passing->params.range;
-    const bool sphere = after->kind == CS_COLLIDER_SPHERE;
+    const bool sphere = after->shape->bounds == CS_BOUNDS_SPHERE;
     const double ux = c[0] - before->centre[0], uy = c[1] - before->centre[1];
     const double uz = c[2] - before->centre[2];
     const double stiff = passing->params.k * passing->h * passing->h;
@@ -104,8 +104,8 @@ bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begi
 /* a row is looked at particle by particle only where something may happen in it */
 static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
                             size_t count) {
-    const enum cs_collider_kind kind = passing->at_t1.kind;
-    return kind == CS_COLLIDER_PLANE || kind == CS_COLLIDER_SPHERE
+    const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
+    return bounds == CS_BOUNDS_HALF_SPACE || bounds == CS_BOUNDS_SPHERE
                ? count_suspect(passing, begin, count) == 0
                : cs_collider_step_is_far(passing, begin, count);
 }

@@ -4,7 +4,6 @@
 
 #include "mesh/trimesh.h"
 #include "model/contact/posed_collider.h"
-#include "scene/body_pairs.h"
 
 #include <string.h>
 
@@ -21,10 +20,6 @@ struct cs_points {
     struct pose *posed; /* (ARRAYS, obstacles) as the arrays have them: what is at rest stays */
 };
 
-static size_t obstacles_of(const struct cs_scene *scene) {
-    return cs_scene_surfaces(scene) - scene->bodies.n;
-}
-
 static double *take(struct cs_system *system, struct cs_error *error) {
     return cs_arena_alloc_array(&system->arena, 3 * (size_t)system->surfaces->n_points,
                                 sizeof(double), error);
@@ -39,18 +34,11 @@ enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error
         return error->status;
     for (int k = 0; k < ARRAYS; k++)
         points->of[k] = take(system, error);
-    points->posed = cs_arena_alloc_array(&system->arena, ARRAYS * obstacles_of(system->scene),
-                                         sizeof *points->posed, error);
+    const size_t colliders = system->surfaces->n_bodies - system->scene->bodies.n;
+    points->posed =
+        cs_arena_alloc_array(&system->arena, ARRAYS * colliders, sizeof *points->posed, error);
     system->points = points;
     return error->status;
-}
-
-size_t cs_surface_points_bytes(const struct cs_scene *scene) {
-    const size_t points = cs_surfaces_points(scene);
-    const size_t colliders = obstacles_of(scene);
-    const size_t bytes = sizeof(struct cs_points) + ARRAYS * 3 * points * sizeof(double) +
-                         ARRAYS * colliders * sizeof(struct pose);
-    return cs_surfaces_bytes(scene) + (colliders ? bytes : 0);
 }
 
 static void copy_particles(const struct cs_system *system, const double *from, double *to) {

@@ -16,9 +16,6 @@ struct cs_points;
  * CS_ERR_MEMORY. */
 enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error *error);
 
-/* Bytes that both take, for a plan. */
-size_t cs_surface_points_bytes(const struct cs_scene *scene);
-
 /* Places of the points at t, with the particles at x (3,n). One place for each end of a step:
  * what it gives is good until it is asked for the same end again. */
 enum cs_points_end { CS_POINTS_BEGIN, CS_POINTS_END };

@@ -16,13 +16,11 @@ static bool any_without_mesh(const struct cs_scene *scene) {
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,
                built = asked && any_without_mesh(scene);
-    return (struct cs_plan_row){
-        .built = built,
-        .bytes = built ? scene->colliders.n * sizeof(struct cs_collider_params) : 0,
-        .reason = !asked               ? NULL
-                  : built              ? "contact.law is force"
-                  : scene->colliders.n ? "every collider is a mesh"
-                                       : "no colliders"};
+    return (struct cs_plan_row){.built = built,
+                                .reason = !asked               ? NULL
+                                          : built              ? "contact.law is force"
+                                          : scene->colliders.n ? "every collider is a mesh"
+                                                               : "no colliders"};
 }
 
 static const char *const ramps[] = {"colliders.friction", NULL};
@@ -156,6 +154,8 @@ const struct cs_term cs_term_contact = {
     .add_jvp = add_jvp,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
     .add_blocks = add_blocks,
     .add_state_bound = add_bound_at,
 };

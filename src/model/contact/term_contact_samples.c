@@ -7,22 +7,19 @@
 static bool any_round(const struct cs_scene *scene) {
     const struct cs_collider *colliders = cs_scene_colliders(scene);
     for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (colliders[c].sphere.present || colliders[c].box.present ||
-            colliders[c].capsule.present)
+        if (cs_shape_needs_points(cs_collider_shape(colliders + c)))
             return true;
     return false;
 }
 
-/* What depends on the number of points comes on top. Lengths are known to idle_why alone. */
+/* Lengths are known to idle_why alone. */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
                built = asked && any_round(scene);
-    return (struct cs_plan_row){
-        .built = built,
-        .bytes = built ? cs_surfaces_bytes(scene) + sizeof(struct cs_contact_samples) : 0,
-        .reason = !asked  ? NULL
-                  : built ? "colliders are finer than edges are long"
-                          : "every collider is flat"};
+    return (struct cs_plan_row){.built = built,
+                                .reason = !asked  ? NULL
+                                          : built ? "colliders are finer than edges are long"
+                                                  : "every collider is flat"};
 }
 
 static const char *idle_why(const struct cs_system *system) {
@@ -76,6 +73,8 @@ const struct cs_term cs_term_cover = {
     .add_jvp = add,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,

@@ -113,7 +113,7 @@ static double reach_of(const struct cs_system *system,
                        const struct cs_posed_collider *obstacle) {
     const double *core = obstacle->half_sizes, *x = system->state;
     const size_t n = system->view.n;
-    if (obstacle->kind != CS_COLLIDER_PLANE)
+    if (!cs_shape_is_endless(obstacle->shape))
         return sqrt(core[0] * core[0] + core[1] * core[1] + core[2] * core[2]) +
                obstacle->radius;
     double squared = 0;

@@ -31,17 +31,6 @@ static bool any(const struct cs_scene *scene, bool (*is)(const struct cs_event *
     return false;
 }
 
-size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n) {
-    const size_t vectors = (any(scene, pushes) ? 3 : 0) + (any(scene, grabs) ? 3 : 0);
-    return sizeof(struct cs_events) + cs_event_times_count(scene) * sizeof(double) +
-           scene->events.n * sizeof(struct cs_event_state) +
-           scene->bodies.n * sizeof(struct cs_body) +
-           scene->colliders.n * sizeof(struct cs_collider) +
-           (cs_event_moves_any(scene) ? scene->colliders.n : 0) *
-               (sizeof(struct cs_collider_motion) + 9 * sizeof(double)) +
-           n * (2 * sizeof(uint32_t) + sizeof(bool) + vectors * sizeof(double));
-}
-
 /* the list's items again, as the caller's own */
 static void copy_list(struct cs_system *system, struct cs_list *list, size_t size,
                       struct cs_error *error) {

@@ -11,9 +11,6 @@
 
 #include "model/event/event_state.h"
 
-/* Bytes that the events of a scene with n particles take. */
-size_t cs_events_bytes(const struct cs_scene *scene, uint32_t n);
-
 /* Makes the events of a system whose arrays are all there. CS_ERR_MEMORY. */
 enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error);
 

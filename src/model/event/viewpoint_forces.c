@@ -23,16 +23,11 @@ bool cs_viewpoint_forces_any(const struct cs_scene *scene) {
     return count(scene) > 0;
 }
 
-size_t cs_viewpoint_forces_bytes(const struct cs_scene *scene, uint32_t n) {
-    return sizeof(struct cs_viewpoint_forces) +
-           count(scene) * (sizeof(struct cs_viewpoint_force_state) + n * sizeof(bool)) +
-           cs_visibility_query_bytes(n);
-}
-
 enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_error *error) {
     const struct cs_scene *scene = system->scene;
     const uint32_t n = system->view.n;
     struct cs_arena *arena = &system->arena;
+    arena->part = &system->plan.rows[CS_FEATURE_VIEWPOINT_FORCES].bytes;
     struct cs_viewpoint_forces *viewpoint_forces =
         cs_arena_alloc(arena, sizeof *viewpoint_forces, error);
     if (!viewpoint_forces)

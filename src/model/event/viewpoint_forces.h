@@ -30,9 +30,6 @@ struct cs_viewpoint_forces {
 
 bool cs_viewpoint_forces_any(const struct cs_scene *scene);
 
-/* Bytes that the viewpoint forces of a scene with n particles take. */
-size_t cs_viewpoint_forces_bytes(const struct cs_scene *scene, uint32_t n);
-
 /* Makes the viewpoint forces of events that are built. CS_ERR_MEMORY. */
 enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_error *error);
 

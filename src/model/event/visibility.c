@@ -44,10 +44,6 @@ void cs_visibility_query_make(struct cs_visibility_query *visibility,
     visibility->high[1] = (1 - 2 * rectangle[1]) * slope;
 }
 
-size_t cs_visibility_query_bytes(uint32_t n) {
-    return 3 * (size_t)n * sizeof(double) + (3 * (size_t)n + 1) * sizeof(uint32_t);
-}
-
 enum cs_status cs_visibility_scratch_init(struct cs_visibility_scratch *work, uint32_t n,
                                           struct cs_arena *arena, struct cs_error *error) {
     work->projected =

@@ -27,7 +27,6 @@ struct cs_visibility_scratch {
 void cs_visibility_query_make(struct cs_visibility_query *visibility,
                               const struct cs_viewpoint_force *viewpoint_force);
 
-size_t cs_visibility_query_bytes(uint32_t n);
 enum cs_status cs_visibility_scratch_init(struct cs_visibility_scratch *work, uint32_t n,
                                           struct cs_arena *arena, struct cs_error *error);
 

@@ -7,17 +7,22 @@
 #include <math.h>
 #include <string.h>
 
+double cs_measure_kinetic(const struct cs_system *system, const double *v) {
+    const size_t n = system->view.n;
+    double energy = 0;
+    for (size_t i = 0; i < n; i++)
+        energy += 0.5 * system->mass[i] *
+                  (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+    return energy;
+}
+
 struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
                                        const double *x, const double *v) {
-    const size_t n = system->view.n;
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};
-    struct cs_energy energy = {0};
+    struct cs_energy energy = {.kinetic = cs_measure_kinetic(system, v)};
     double *const kinds[CS_ENERGIES] = {[CS_ENERGY_ELASTIC] = &energy.elastic,
                                         [CS_ENERGY_GRAVITY] = &energy.gravity,
                                         [CS_ENERGY_OTHER] = &energy.other};
-    for (size_t i = 0; i < n; i++)
-        energy.kinetic += 0.5 * system->mass[i] *
-                          (v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
     for (uint32_t k = 0; k < system->n_terms; k++)
         if (system->terms[k]->energy)
             *kinds[system->terms[k]->energy_kind] += system->terms[k]->energy(system, &at);
@@ -36,6 +41,23 @@ static double strain_of(const struct cs_spring_run *run, size_t n, const double 
 
 double cs_diagnostics_strain(const struct cs_system *system, const double *x) {
     return cs_springs_largest_strain(&system->springs, system->view.n, x);
+}
+
+double cs_measure_speed(const struct cs_system *system, const double *v, double limit,
+                        uint32_t *fastest, uint32_t *count) {
+    const size_t n = system->view.n;
+    double largest = -1;
+    *fastest = *count = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double speed =
+            sqrt(v[i] * v[i] + v[n + i] * v[n + i] + v[2 * n + i] * v[2 * n + i]);
+        *count += !(speed <= limit);
+        if (!(speed <= largest)) {
+            largest = speed;
+            *fastest = (uint32_t)i;
+        }
+    }
+    return largest;
 }
 
 void cs_diagnostics_particle_strain(const struct cs_system *system, const double *x,

@@ -8,6 +8,8 @@ struct cs_energy {
     double kinetic, elastic, gravity; /* J; gravity's potential is 0 at the origin */
     double other;                     /* J, potential of all other forces that have one */
 };
+/* J; the kinetic part alone. */
+double cs_measure_kinetic(const struct cs_system *system, const double *v);
 struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
                                        const double *x, const double *v);
 
@@ -25,6 +27,11 @@ double cs_diagnostics_strain(const struct cs_system *system, const double *x);
 /* The same per particle: the largest strain (signed) of the springs at it; out (n). */
 void cs_diagnostics_particle_strain(const struct cs_system *system, const double *x,
                                     double *out);
+
+/* Largest speed in m/s. *count: particles that are not at the limit or below it, *fastest: the
+ * first that is as fast as the fastest. */
+double cs_measure_speed(const struct cs_system *system, const double *v, double limit,
+                        uint32_t *fastest, uint32_t *count);
 
 /* Magnitude of the whole force on each particle, 0 on pinned ones; out (n), work (3,n). */
 void cs_diagnostics_particle_force(const struct cs_system *system, double t, const double *x,

@@ -58,6 +58,11 @@ struct cs_term {
     double (*energy)(const struct cs_system *system, const struct cs_eval *at); /* J */
     enum cs_energy_kind energy_kind;
 
+    /* --- its columns in the energy ledger (sim/energy_ledger.h) --- */
+    /* Of its energy, and of the work of its parts that have none: names of a list there, which
+     * forces may share. NULL: its own, by its name. */
+    const char *energy_column, *work_column;
+
     /* --- its share of the solver's matrix: with a bit of CS_PART_LINEARISED, one of three ---
      */
     /* A number times the identity at each particle: diagonal (n) += those of the particles

@@ -60,6 +60,7 @@ const struct cs_term cs_term_springs = {
     .add_jvp = add_jvp,
     .energy = energy,
     .energy_kind = CS_ENERGY_ELASTIC,
+    .work_column = "dampers",
     .add_diagonal = add_diagonal,
     .add_bound = add_bound,
 };

@@ -170,13 +170,6 @@ void cs_contact_start(struct cs_contact_projection *contact, double t, const dou
                              contact->state_after);
 }
 
-size_t cs_contact_projection_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
-                                   bool forced) {
-    return scene->colliders.n * sizeof(struct cs_posed_collider) + 12 * n * sizeof(double) +
-           n * sizeof(bool) + cs_static_friction_bytes(n) +
-           cs_projection_energy_bytes(scene, n, n_springs, forced);
-}
-
 enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
                                           struct cs_system *system, struct cs_arena *arena,
                                           struct cs_error *error) {

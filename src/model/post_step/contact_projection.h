@@ -28,11 +28,6 @@ enum cs_status cs_contact_projection_init(struct cs_contact_projection *contact,
                                           struct cs_system *system, struct cs_arena *arena,
                                           struct cs_error *error);
 
-/* Bytes that init takes, of a scene with n particles; forced: forces have blocks of their own
- * in the solver's matrix. */
-size_t cs_contact_projection_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
-                                   bool forced);
-
 /* The state that the next step starts from. resolved: it is what cs_contact_projection_resolve
  * left. */
 void cs_contact_projection_store(struct cs_contact_projection *contact, const double *x,

@@ -19,12 +19,6 @@ enum cs_status cs_elastic_response_init(struct cs_elastic_response *response,
     return cs_linear_init(&response->linear, system, arena, error);
 }
 
-size_t cs_elastic_response_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
-                                 bool forced) {
-    return n_springs > 0 ? cs_linear_bytes(scene, n, n_springs, forced) + n * sizeof(uint32_t)
-                         : 0;
-}
-
 bool cs_elastic_response_is_needed(const struct cs_elastic_response *response, double dt) {
     const struct cs_system *system = response->linear.system;
     return system && dt * system->view.omega > 1;

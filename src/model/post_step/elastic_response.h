@@ -16,10 +16,6 @@ enum cs_status cs_elastic_response_init(struct cs_elastic_response *response,
                                         struct cs_system *system, struct cs_arena *arena,
                                         struct cs_error *error);
 
-/* Bytes that init takes. */
-size_t cs_elastic_response_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
-                                 bool forced);
-
 /* Whether springs are so stiff against a step of dt that the push of a particle without its
  * neighbours can hold more energy than the step brought: dt omega > 1. */
 bool cs_elastic_response_is_needed(const struct cs_elastic_response *response, double dt);

@@ -223,11 +223,6 @@ static double gravity_scale(const struct cs_system *system) {
     return sum;
 }
 
-size_t cs_projection_energy_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
-                                  bool forced) {
-    return 3 * n * sizeof(double) + cs_elastic_response_bytes(scene, n, n_springs, forced);
-}
-
 enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
                                          struct cs_system *system, struct cs_arena *arena,
                                          struct cs_error *error) {

@@ -53,11 +53,6 @@ enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
                                          struct cs_system *system, struct cs_arena *arena,
                                          struct cs_error *error);
 
-/* Bytes that init takes, of a scene with n particles; forced: forces have blocks of their own
- * in the solver's matrix. */
-size_t cs_projection_energy_bytes(const struct cs_scene *scene, size_t n, size_t n_springs,
-                                  bool forced);
-
 /* Corrects blow->to as said above. false: particles are left behind a surface. */
 bool cs_projection_energy_limit(struct cs_projection_energy *balance,
                                 const struct cs_projection_step *blow);

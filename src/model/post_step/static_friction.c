@@ -13,10 +13,6 @@
 /* m: on a surface, as far as the scene's numbers tell */
 #define TOUCHING 1e-9
 
-size_t cs_static_friction_bytes(size_t n) {
-    return n * (2 * sizeof(uint32_t) + sizeof(bool) + 3 * sizeof(double));
-}
-
 enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
                                        struct cs_system *system, struct cs_arena *arena,
                                        struct cs_error *error) {

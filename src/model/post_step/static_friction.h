@@ -30,7 +30,6 @@ struct cs_static_friction {
 enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
                                        struct cs_system *system, struct cs_arena *arena,
                                        struct cs_error *error);
-size_t cs_static_friction_bytes(size_t n);
 
 /* Pins the held particles, and unpins them: pinned within steps, free for all that follows a
  * step and all that looks on. */

@@ -60,11 +60,6 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
     return error->status;
 }
 
-/* a block, and some numbers a cell: all levels have 4/3 cells a particle, and padding */
-size_t cs_coupling_bytes(size_t n_particles) {
-    return (6 * sizeof(double) + 9 * sizeof(float) + 4 * sizeof(uint32_t)) * n_particles;
-}
-
 /* --- from pairs --- */
 
 static bool is_own(const struct cs_hierarchy *hierarchy, uint32_t point) {

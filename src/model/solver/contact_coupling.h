@@ -23,9 +23,6 @@
 enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                 struct cs_error *error);
 
-/* About how many bytes that are for a body of so many particles, without lists. */
-size_t cs_coupling_bytes(size_t n_particles);
-
 /* A matrix of pairs on its way into the first level. */
 struct cs_coupling {
     struct cs_hierarchy *hierarchy;

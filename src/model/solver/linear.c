@@ -10,11 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-size_t cs_linear_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced) {
-    const size_t own = 4 * n_springs + 19 * n + (forced ? 6 * n : 0);
-    return own * sizeof(double) + cs_multigrid_bytes(scene, forced);
-}
-
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;

@@ -32,9 +32,6 @@ struct cs_linear {
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes that init takes, of a scene with n particles; forced: forces have blocks in A. */
-size_t cs_linear_bytes(const struct cs_scene *scene, size_t n, size_t n_springs, bool forced);
-
 /* Prepares A. cm > 0, cd <= 0, ck <= 0. false: a diagonal block is not positive definite (only
  * without psd). */
 bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix);

@@ -12,7 +12,7 @@
 
 enum { ROW = 4096 }; /* particles of a mesh that are handled as a row; cells of a block */
 
-static bool is_stiff_enough(const struct cs_scene *scene) {
+bool cs_multigrid_is_used(const struct cs_scene *scene) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         if (cs_shape_count(cs_scene_bodies(scene) + b) > CS_MULTIGRID_PARTICLES)
             return true;
@@ -57,7 +57,7 @@ static void load_contact(struct cs_multigrid *multigrid, struct cs_hierarchy *hi
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error) {
     *multigrid = (struct cs_multigrid){.system = system};
-    if (!is_stiff_enough(system->scene))
+    if (!cs_multigrid_is_used(system->scene))
         return CS_OK;
     const uint32_t n = system->scene->bodies.n;
     multigrid->hierarchies =
@@ -71,23 +71,6 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
             load_contact(multigrid, hierarchy, arena, error);
     }
     return error->status;
-}
-
-size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced) {
-    const struct cs_body *bodies = cs_scene_bodies(scene);
-    size_t bytes = 0;
-    for (uint32_t b = 0; b < scene->bodies.n && is_stiff_enough(scene); b++) {
-        uint32_t n_springs = 0;
-        cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &n_springs);
-        bytes += sizeof(struct cs_hierarchy);
-        if (meets_itself(scene, b))
-            bytes += cs_coupling_bytes((size_t)cs_shape_count(bodies + b));
-        bytes += bodies[b].mesh.present
-                     ? cs_hierarchy_mesh_bytes((uint32_t)cs_shape_count(bodies + b), n_springs)
-                     : cs_hierarchy_grid_bytes((uint32_t)bodies[b].cloth.grid[0],
-                                               (uint32_t)bodies[b].cloth.grid[1], forced);
-    }
-    return bytes;
 }
 
 /* Numbers that go to and fro between particles and the first level's cells. */

@@ -30,9 +30,8 @@ struct cs_multigrid {
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error);
 
-/* About how many bytes init takes for a scene, forced: with blocks at particles; of a mesh an
- * estimate. */
-size_t cs_multigrid_bytes(const struct cs_scene *scene, bool forced);
+/* Whether a body is large enough for it; else init takes nothing, and there are no levels. */
+bool cs_multigrid_is_used(const struct cs_scene *scene);
 
 /* The matrix: springs' factors, and at each particle a mass and a block. */
 struct cs_multigrid_matrix {

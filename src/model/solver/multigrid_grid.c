@@ -285,14 +285,3 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
     hierarchy->n_levels = (uint32_t)(level - hierarchy->levels) + 1;
     return error->status;
 }
-
-size_t cs_hierarchy_grid_bytes(uint32_t columns, uint32_t rows, bool forced) {
-    struct cs_level level =
-        level_of(forced ? CS_LEVEL_FACTORED_BLOCKS : CS_LEVEL_FACTORED, columns, rows);
-    size_t bytes = cs_level_bytes(&level, 4 * (size_t)CS_LEVEL_STEPS * level.n);
-    while (level.columns > 1 || level.rows > 1) {
-        level = next_of(&level);
-        bytes += cs_level_bytes(&level, 6 * (size_t)level.n_neighbour_offsets * level.n);
-    }
-    return bytes;
-}

@@ -52,11 +52,6 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
 enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
 
-/* Bytes of the numbers: of a grid with all six kinds of springs; of a mesh about, as what its
- * aggregates have is known only when they are made. */
-size_t cs_hierarchy_grid_bytes(uint32_t columns, uint32_t rows, bool forced);
-size_t cs_hierarchy_mesh_bytes(uint32_t n, uint32_t n_springs);
-
 /* s and w of a spring from the solver's factors, whose rows have `count` numbers; root is
  * 1 / sqrt(scale). A spring with s < 0 loses its transverse part and keeps its stiffness along
  * itself: the preconditioner is positive definite even where the matrix is not. */

@@ -19,11 +19,6 @@ enum {
     BIG = 1 << 14    /* cells that are not all in that cache */
 };
 
-size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers) {
-    const size_t own = level->form == CS_LEVEL_FACTORED ? 1 : 6;
-    return sizeof(float) * (n_numbers + (own + 6 + 4 * 3) * level->n);
-}
-
 enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                               struct cs_error *error) {
     const size_t n = level->n, own = level->form == CS_LEVEL_FACTORED ? 1 : 6;

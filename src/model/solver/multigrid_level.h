@@ -70,9 +70,8 @@ struct cs_level {
         *correction_next; /* (3,n): residual, solution, last move and the next */
 };
 
-/* Takes the numbers of a level whose form and n are set, n_numbers of springs: so many bytes.
+/* Takes the numbers of a level whose form and n are set, n_numbers of springs.
  * CS_ERR_MEMORY. */
-size_t cs_level_bytes(const struct cs_level *level, size_t n_numbers);
 enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                               struct cs_error *error);
 

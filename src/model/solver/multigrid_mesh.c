@@ -210,12 +210,3 @@ enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_ar
     cs_arena_finish(&work);
     return error->status;
 }
-
-/* lists a quarter longer than the springs they hold, and half for all coarse levels */
-size_t cs_hierarchy_mesh_bytes(uint32_t n, uint32_t n_springs) {
-    const struct cs_level level = {.form = CS_LEVEL_MESH, .n = n};
-    const size_t slots = 5 * (size_t)n_springs / 2;
-    const size_t first = cs_level_bytes(&level, 6 * slots) +
-                         sizeof(uint32_t) * (n + 2 * slots + 9 * (size_t)n_springs);
-    return first + first / 2;
-}

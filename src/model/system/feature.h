@@ -34,7 +34,7 @@ enum cs_feature {
 
 struct cs_plan_row {
     bool built;
-    size_t bytes;       /* of arrays that exist for this feature alone */
+    size_t bytes;       /* taken when it was built; 0 before */
     const char *reason; /* why it is built, or why it is left out */
 };
 
@@ -44,7 +44,7 @@ struct cs_plan {
     uint32_t n, n_springs, n_bodies;
     uint32_t n_surface_springs,
         n_network_springs; /* springs on the surfaces of meshes, of networks in them */
-    size_t state_bytes;    /* state, masses, start and ranges of bodies */
+    size_t state_bytes;    /* of all arrays that no row has: state, masses, pins */
     struct cs_plan_row rows[CS_FEATURES];
     struct cs_plan_row forces[CS_TERMS_MAX]; /* of the list in terms.h; why NULL: not printed */
 };

@@ -154,8 +154,8 @@ enum cs_status cs_shape_clusters_make(const struct cs_body *body,
     return error->status;
 }
 
-void cs_shape_clusters_count(const struct cs_scene *scene, size_t *n_clusters,
-                             size_t *n_items) {
+/* clusters and items of all bodies */
+static void count_all(const struct cs_scene *scene, size_t *n_clusters, size_t *n_items) {
     *n_clusters = *n_items = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const struct cs_shape_clusters *parts = cs_scene_bodies(scene)[b].shape_matching.parts;
@@ -184,7 +184,7 @@ static void put_clusters(struct place *at, const struct cs_shape_matching *of, u
 
 enum cs_status cs_shape_clusters_build(struct cs_system *system, struct cs_error *error) {
     size_t n, n_items;
-    cs_shape_clusters_count(system->scene, &n, &n_items);
+    count_all(system->scene, &n, &n_items);
     struct place at = {
         .begin = cs_arena_alloc_array(&system->arena, n + 1, sizeof *at.begin, error),
         .items = cs_arena_alloc_array(&system->arena, n_items, sizeof *at.items, error),

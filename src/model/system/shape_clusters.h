@@ -27,9 +27,6 @@ enum cs_status cs_shape_clusters_make(const struct cs_body *body,
                                       struct cs_shape_clusters *clusters,
                                       struct cs_arena *arena, struct cs_error *error);
 
-/* Clusters and items of all bodies of a scene. */
-void cs_shape_clusters_count(const struct cs_scene *scene, size_t *n_clusters, size_t *n_items);
-
 /* Gives the system's view the clusters of its bodies, in the arena. CS_ERR_MEMORY. */
 enum cs_status cs_shape_clusters_build(struct cs_system *system, struct cs_error *error);
 

@@ -5,13 +5,12 @@
 #include "model/system/faces.h"
 #include "scene/body_pairs.h"
 
-/* edges of a grid: along rows, along columns, one across each cell */
-static size_t grid_edges(size_t columns, size_t rows) {
-    return (columns - 1) * rows + columns * (rows - 1) + (columns - 1) * (rows - 1);
-}
-
+/* of a grid: along rows, along columns, one across each cell */
 static uint32_t count_edges(const struct cs_body_range *body) {
-    return body->mesh ? body->mesh->n_edges : (uint32_t)grid_edges(body->columns, body->rows);
+    const uint32_t columns = body->columns, rows = body->rows;
+    return body->mesh
+               ? body->mesh->n_edges
+               : (columns - 1) * rows + columns * (rows - 1) + (columns - 1) * (rows - 1);
 }
 
 static void add_edge(uint32_t *edges, uint32_t *n, uint32_t a, uint32_t b) {
@@ -143,36 +142,6 @@ enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *erro
         fill_body(system, b, surfaces);
     system->surfaces = surfaces;
     return CS_OK;
-}
-
-struct cs_surface_counts cs_surface_counts_of(const struct cs_scene *scene, uint32_t body) {
-    const struct cs_collider *collider = cs_scene_obstacle(scene, body);
-    const struct cs_body *of = collider ? NULL : cs_scene_bodies(scene) + body;
-    const struct cs_trimesh *mesh = collider ? collider->mesh.geometry : of->mesh.geometry;
-    if (mesh)
-        return (struct cs_surface_counts){mesh->n, mesh->n_triangles, mesh->n_edges};
-    if (collider)
-        return (struct cs_surface_counts){0, 0, 0};
-    const size_t columns = (size_t)of->cloth.grid[0], rows = (size_t)of->cloth.grid[1];
-    return (struct cs_surface_counts){columns * rows, 2 * (columns - 1) * (rows - 1),
-                                      grid_edges(columns, rows)};
-}
-
-size_t cs_surfaces_points(const struct cs_scene *scene) {
-    size_t points = 0;
-    for (uint32_t b = 0; b < cs_scene_surfaces(scene); b++)
-        points += cs_surface_counts_of(scene, b).points;
-    return points;
-}
-
-size_t cs_surfaces_bytes(const struct cs_scene *scene) {
-    const uint32_t n_bodies = cs_scene_surfaces(scene);
-    size_t words = 3 * ((size_t)n_bodies + 1);
-    for (uint32_t b = 0; b < n_bodies; b++) {
-        const struct cs_surface_counts size = cs_surface_counts_of(scene, b);
-        words += 3 * size.triangles + 4 * size.edges;
-    }
-    return words * sizeof(uint32_t) + sizeof(struct cs_surfaces);
 }
 
 void cs_surfaces_print_point(const struct cs_system *system, uint32_t point,

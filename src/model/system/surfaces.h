@@ -26,18 +26,6 @@ struct cs_surfaces {
 /* Takes and fills system->surfaces; does nothing where it is there. CS_ERR_MEMORY. */
 enum cs_status cs_surfaces_build(struct cs_system *system, struct cs_error *error);
 
-/* What a body or an obstacle of a scene has, by its number. */
-struct cs_surface_counts {
-    size_t points, triangles, edges;
-};
-struct cs_surface_counts cs_surface_counts_of(const struct cs_scene *scene, uint32_t body);
-
-/* Points of all of them. */
-size_t cs_surfaces_points(const struct cs_scene *scene);
-
-/* Bytes that it takes, for a plan. */
-size_t cs_surfaces_bytes(const struct cs_scene *scene);
-
 /* Adds "particle 312 (body 0, column 24, row 4)", or "vertex 5 of colliders[1]". */
 void cs_surfaces_print_point(const struct cs_system *system, uint32_t point,
                              struct cs_text *out);

@@ -159,6 +159,12 @@ struct cs_json *cs_json_find(const struct cs_json *value, const char *key) {
     return cJSON_IsObject(node) ? value_of(cJSON_GetObjectItemCaseSensitive(node, key)) : NULL;
 }
 
+const struct cs_json *cs_json_find_kind(const struct cs_json *value, const char *key,
+                                        enum cs_json_kind kind) {
+    const struct cs_json *member = cs_json_find(value, key);
+    return member && cs_json_kind_of(member) == kind ? member : NULL;
+}
+
 struct cs_json *cs_json_at(const struct cs_json *value, uint32_t index) {
     const cJSON *node = const_node_of(value);
     if (!cJSON_IsArray(node) || index >= cs_json_count(value))

@@ -36,9 +36,14 @@ const struct cs_json *cs_json_first(const struct cs_json *value);
 const struct cs_json *cs_json_next(const struct cs_json *member);
 const char *cs_json_key(const struct cs_json *member); /* NULL: not in an object */
 
-/* Member of an object by its exact key, of a list by its index: NULL if there is none. */
+/* Member of an object by its exact key, of a list by its index: NULL if there is none, or if
+ * value is NULL or of another kind. */
 struct cs_json *cs_json_find(const struct cs_json *value, const char *key);
 struct cs_json *cs_json_at(const struct cs_json *value, uint32_t index);
+
+/* The same by key, but NULL for a member of another kind. */
+const struct cs_json *cs_json_find_kind(const struct cs_json *value, const char *key,
+                                        enum cs_json_kind kind);
 
 /* Offset in the parsed text of a value, or of its key; false if it did not come from there. */
 bool cs_json_position(const struct cs_json *value, const char *text, bool of_key,

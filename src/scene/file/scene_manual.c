@@ -1,7 +1,6 @@
 /* Prints the scene tables as scdoc text for clothsim-scene(5). */
 #include "base/options.h"
 #include "scene/file/scene_write.h"
-#include "scene/file/table_required.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -18,23 +17,16 @@ static void add_need(const struct cs_option *row, struct cs_text *out) {
         cs_text_add(out, "; must be given");
     } else if (cs_option_is_optional(row)) {
         cs_text_add(out, "; may be absent");
-    } else if (row->type == CS_CHOICE) {
-        cs_text_add(out, "; default %s", row->choices[(int)row->def]);
-    } else if (row->type == CS_BOOL) {
-        cs_text_add(out, "; default %s", row->def != 0 ? "true" : "false");
     } else if (row->type != CS_TABLE) {
         cs_text_add(out, "; default ");
-        for (uint32_t i = 0; i < row->count; i++) {
-            cs_text_add(out, "%s", i ? ", " : "");
-            cs_text_add_real(out, row->defs ? row->defs[i] : row->def);
-        }
+        cs_option_print_plain(row, NULL, out);
     }
 }
 
 /* one key: what it takes, and what it means */
 static void add_row(const struct cs_option *row, struct cs_text *out) {
     struct cs_text takes = {0};
-    cs_table_add_expected(row, &takes);
+    cs_option_print_expected(row, &takes);
     add_need(row, &takes);
     cs_text_add(out, "*%s*: ", row->name);
     add_escaped(out, cs_text_get(&takes));

@@ -2,7 +2,7 @@
 #include "scene/file/table_read.h"
 
 #include "base/options.h"
-#include "scene/file/table_required.h"
+#include "base/value_kind.h"
 
 #include <string.h>
 
@@ -13,7 +13,7 @@ static void *field_of(const struct cs_option *row, void *object) {
 static enum cs_status fail_row(struct cs_json_context *context, const struct cs_json *value,
                                const struct cs_option *row) {
     struct cs_text expected = {0};
-    cs_table_add_expected(row, &expected);
+    cs_option_print_expected(row, &expected);
     const enum cs_status status =
         cs_json_context_fail_type(context, value, cs_text_get(&expected));
     cs_text_finish(&expected);
@@ -27,13 +27,35 @@ static enum cs_status pass_on(struct cs_json_context *context, const struct cs_j
                         : CS_OK;
 }
 
+/* a number as component i; index -1 below: the reader's path names the component already */
+static enum cs_status read_component(struct cs_json_context *context,
+                                     const struct cs_json *value, const struct cs_option *row,
+                                     uint32_t i, void *object) {
+    struct cs_error said = {0};
+    const double number = cs_json_number(value);
+    if (!cs_option_check_range(row, number, -1, "", CS_ERR_SCENE, &said))
+        cs_value_kind_of(row)->set(field_of(row, object), i, number);
+    return pass_on(context, value, &said);
+}
+
 static enum cs_status read_number(struct cs_json_context *context, const struct cs_json *value,
                                   const struct cs_option *row, void *object) {
-    struct cs_error said = {0};
-    if (cs_json_kind_of(value) != CS_JSON_NUMBER)
+    if (!cs_value_kind_of(row)->several)
+        return cs_json_kind_of(value) == CS_JSON_NUMBER
+                   ? read_component(context, value, row, 0, object)
+                   : fail_row(context, value, row);
+    if (cs_json_kind_of(value) != CS_JSON_LIST || cs_json_count(value) != row->count)
         return fail_row(context, value, row);
-    cs_option_set_number(row, object, cs_json_number(value), "", CS_ERR_SCENE, &said);
-    return pass_on(context, value, &said);
+    uint32_t i = 0;
+    for (const struct cs_json *c = cs_json_first(value); c; c = cs_json_next(c), i++) {
+        const size_t outside = cs_json_context_enter_at(context, i);
+        if (cs_json_kind_of(c) != CS_JSON_NUMBER)
+            return cs_json_context_fail_type(context, c, "a number");
+        if (read_component(context, c, row, i, object))
+            return context->error->status;
+        cs_json_context_leave(context, outside);
+    }
+    return CS_OK;
 }
 
 static enum cs_status read_choice(struct cs_json_context *context, const struct cs_json *value,
@@ -66,32 +88,6 @@ static enum cs_status read_text(struct cs_json_context *context, const struct cs
     return CS_OK;
 }
 
-/* VECTOR and COUNTS */
-static enum cs_status read_components(struct cs_json_context *context,
-                                      const struct cs_json *value, const struct cs_option *row,
-                                      void *object) {
-    if (cs_json_kind_of(value) != CS_JSON_LIST || cs_json_count(value) != row->count)
-        return fail_row(context, value, row);
-    uint32_t i = 0;
-    for (const struct cs_json *c = cs_json_first(value); c; c = cs_json_next(c), i++) {
-        struct cs_error said = {0};
-        const size_t outside = cs_json_context_enter_at(context, i);
-        if (cs_json_kind_of(c) != CS_JSON_NUMBER)
-            return cs_json_context_fail_type(context, c, "a number");
-        const double number = cs_json_number(c);
-        /* index -1: the reader's path names the component already */
-        cs_option_check_range(row, number, -1, "", CS_ERR_SCENE, &said);
-        if (pass_on(context, c, &said))
-            return context->error->status;
-        if (row->type == CS_VECTOR)
-            ((double *)field_of(row, object))[i] = number;
-        else
-            ((int64_t *)field_of(row, object))[i] = (int64_t)number;
-        cs_json_context_leave(context, outside);
-    }
-    return CS_OK;
-}
-
 static enum cs_status read_list(struct cs_json_context *context, const struct cs_json *value,
                                 const struct cs_option *row, void *object) {
     if (cs_json_kind_of(value) != CS_JSON_LIST)
@@ -119,28 +115,19 @@ static enum cs_status read_list(struct cs_json_context *context, const struct cs
     return CS_OK;
 }
 
+static enum cs_status read_table(struct cs_json_context *context, const struct cs_json *value,
+                                 const struct cs_option *row, void *object) {
+    return cs_table_read(context, value, row->table, field_of(row, object));
+}
+
 static enum cs_status read_row(struct cs_json_context *context, const struct cs_json *value,
                                const struct cs_option *row, void *object) {
-    /* no default case, so that the compiler reports a type that is missing here */
-    switch (row->type) {
-    case CS_REAL:
-    case CS_INT:
-        return read_number(context, value, row, object);
-    case CS_BOOL:
-        return read_bool(context, value, row, object);
-    case CS_CHOICE:
-        return read_choice(context, value, row, object);
-    case CS_VECTOR:
-    case CS_COUNTS:
-        return read_components(context, value, row, object);
-    case CS_TEXT:
-        return read_text(context, value, row, object);
-    case CS_TABLE:
-        return cs_table_read(context, value, row->table, field_of(row, object));
-    case CS_LIST:
-        return read_list(context, value, row, object);
-    }
-    return CS_OK;
+    static enum cs_status (*const readers[CS_VALUE_FORMS])(
+        struct cs_json_context *, const struct cs_json *, const struct cs_option *,
+        void *) = {[CS_FORM_NUMBER] = read_number, [CS_FORM_BOOL] = read_bool,
+                   [CS_FORM_CHOICE] = read_choice, [CS_FORM_TEXT] = read_text,
+                   [CS_FORM_TABLE] = read_table,   [CS_FORM_LIST] = read_list};
+    return readers[cs_value_kind_of(row)->form](context, value, row, object);
 }
 
 /* the row that a plain text, number or list stands for, or NULL */
@@ -202,6 +189,56 @@ static enum cs_status read_member(struct cs_json_context *context, const struct 
     return status;
 }
 
+/* exactly one of the optional rows */
+static enum cs_status check_one_of(struct cs_json_context *context, const struct cs_json *value,
+                                   const struct cs_table *table, const void *object) {
+    struct cs_text given = {0}, choices = {0};
+    uint32_t n = 0;
+    for (uint32_t r = table->n_always_optional; r < table->n; r++) {
+        const struct cs_option *row = table->rows + r;
+        if (!cs_option_is_optional(row))
+            continue;
+        cs_text_add(&choices, "%s%s", choices.length ? ", " : "", row->name);
+        if (cs_option_is_set(row, object))
+            cs_text_add(&given, "%s%s", n++ ? " and " : "", row->name);
+    }
+    if (n != 1)
+        cs_json_context_fail(context, value, false, "found %s, expected exactly one of %s",
+                             n ? cs_text_get(&given) : "none", cs_text_get(&choices));
+    cs_text_finish(&given);
+    cs_text_finish(&choices);
+    return n == 1 ? CS_OK : context->error->status;
+}
+
+/* What must be given, was: in a table that is absent too, unless it may be (value is then the
+ * nearest value that is there). */
+static enum cs_status check_complete(struct cs_json_context *context,
+                                     const struct cs_json *value, bool absent,
+                                     const struct cs_table *table, const void *object) {
+    for (uint32_t r = 0; r < table->n; r++) {
+        const struct cs_option *row = table->rows + r;
+        if (!cs_table_needs_row(row) || (!absent && cs_json_find(value, row->name)))
+            continue;
+        const size_t outside = cs_json_context_enter(context, row->name);
+        /* a row without a default is a list of numbers or a table that holds one */
+        if (row->type != CS_TABLE) {
+            struct cs_text expected = {0};
+            cs_option_print_expected(row, &expected);
+            cs_json_context_fail(context, value, false, "missing, expected %s",
+                                 cs_text_get(&expected));
+            cs_text_finish(&expected);
+        } else {
+            /* the table itself may be absent: the message names the value that it lacks */
+            check_complete(context, value, true, row->table,
+                           (const char *)object + row->offset);
+        }
+        if (context->error->status)
+            return context->error->status;
+        cs_json_context_leave(context, outside);
+    }
+    return table->one_of ? check_one_of(context, value, table, object) : CS_OK;
+}
+
 enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_json *value,
                              const struct cs_table *table, void *object) {
     if (table->optional)
@@ -219,5 +256,5 @@ enum cs_status cs_table_read(struct cs_json_context *context, const struct cs_js
     for (const struct cs_json *m = cs_json_first(value); m; m = cs_json_next(m))
         if (read_member(context, m, table, object))
             return context->error->status;
-    return cs_table_check_complete(context, value, table, object);
+    return check_complete(context, value, false, table, object);
 }

@@ -120,8 +120,7 @@ enum cs_status cs_cell_list_parse(struct cs_cell_list *sweep,
     struct cs_registry registry = {0};
     char *list = settings->list ? strdup(settings->list) : NULL;
     *sweep = (struct cs_cell_list){0};
-    for (uint32_t k = 0; k < settings->n_plugins && !error->status; k++)
-        cs_registry_add_file(&registry, settings->plugins[k], error);
+    cs_registry_add_files(&registry, settings->plugins, settings->n_plugins, error);
     if (settings->list && !list)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of methods");
     for (char *rest = list; rest && !error->status;)

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json_writer.h"
 #include "model/event/events.h"
 #include "scene/body_pairs.h"
 #include "scene/file/scene_write.h"
@@ -73,8 +74,8 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     if (cs_scene_read(&scene, cs_data_find(asked->scene, found, sizeof found), asked->overrides,
                       asked->n_overrides, error))
         return error->status;
-    cs_text_add(out, "{\n  \"versions\": {\"clothsim\": \"%s\"},\n  \"frames\": %u,\n",
-                CS_VERSION, recording->frames);
+    cs_json_write(out, "{\n  'versions': {'clothsim': %s},\n  'frames': %u,\n", CS_VERSION,
+                  recording->frames);
     cs_provenance_out_print_scene(&scene, out, error);
     cs_text_add(out, ",\n  \"scene\": ");
     cs_scene_print(&scene, NULL, NULL, 2, out);

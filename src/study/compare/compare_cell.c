@@ -3,7 +3,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum { FIELDS_MAX = 128 };
 
 #define TEXT(field)                                                                            \
     {                                                                                          \
@@ -107,7 +110,7 @@ void cs_cell_init(struct cs_cell *cell, const char *method) {
     *cell = (struct cs_cell){0};
     for (uint32_t c = 0; c < cs_n_columns; c++)
         if (cs_columns[c].type == CS_CELL_NUMBER)
-            memcpy((char *)cell + cs_columns[c].offset, &(double){(double)NAN}, sizeof(double));
+            cs_column_parse(cs_columns + c, cell, "");
     snprintf(cell->method, sizeof cell->method, "%s", method);
     snprintf(cell->series, sizeof cell->series, "%s", method);
 }
@@ -127,4 +130,50 @@ bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b) {
 
 bool cs_cell_is_finished(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_RUNNING));
+}
+
+/* Which column each field of a line belongs to; NULL: none that is known. */
+static uint32_t find_columns(char *names, const struct cs_column *columns[FIELDS_MAX]) {
+    char *fields[FIELDS_MAX];
+    const uint32_t n = names ? cs_csv_cut(names, ',', fields, FIELDS_MAX) : 0;
+    for (uint32_t c = 0; c < n; c++)
+        columns[c] = cs_column_find(fields[c]);
+    return n;
+}
+
+static void read_cells(struct cs_rows *rows, const struct cs_column *const *columns,
+                       uint32_t n_columns, struct cs_cell *cells, uint32_t *n) {
+    char *fields[FIELDS_MAX];
+    for (char *line; (line = cs_rows_next(rows));) {
+        struct cs_cell *cell = cells + *n;
+        const uint32_t n_fields = cs_csv_cut(line, ',', fields, FIELDS_MAX);
+        cs_cell_init(cell, "");
+        for (uint32_t c = 0; c < n_fields && c < n_columns; c++)
+            if (columns[c])
+                cs_column_parse(columns[c], cell, fields[c]);
+        // files of before there were series
+        if (!*cell->series)
+            memcpy(cell->series, cell->method, sizeof cell->method);
+        *n += n_fields == n_columns;
+    }
+}
+
+enum cs_status cs_csv_read(const char *path, struct cs_cell **cells, uint32_t *n,
+                           struct cs_error *error) {
+    const struct cs_column *columns[FIELDS_MAX];
+    struct cs_rows rows;
+    *cells = NULL;
+    *n = 0;
+    if (cs_rows_open(&rows, path, 0, error))
+        return error->status;
+    const uint32_t n_columns = find_columns(cs_rows_next(&rows), columns);
+    if (!n_columns || !columns[0])
+        cs_fail(error, CS_ERR_FILE,
+                "%s: the first line does not name the columns of a comparison", path);
+    else if (!(*cells = calloc(rows.n, sizeof **cells)))
+        cs_fail(error, CS_ERR_MEMORY, "out of memory for %u cells", rows.n);
+    else
+        read_cells(&rows, columns, n_columns, *cells, n);
+    cs_rows_close(&rows);
+    return error->status;
 }

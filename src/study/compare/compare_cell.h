@@ -3,8 +3,7 @@
 #define CS_CELL_H
 
 #include "base/hash.h"
-#include "base/status.h"
-#include "base/text.h"
+#include "base/table.h"
 #include "sim/energy_ledger.h"
 #include "sim/run.h"
 #include "sim/series.h"
@@ -48,17 +47,14 @@ struct cs_cell {
     double ledger[CS_WORKS];       /* J, where it was asked for: see sim/energy_ledger.h */
 };
 
-enum cs_cell_type { CS_CELL_TEXT, CS_CELL_NUMBER, CS_CELL_FLAG };
-
-/* A column of compare.csv; every writer and the reader work by this table. */
-struct cs_column {
-    const char *name;  /* as in the file */
-    const char *label; /* of an axis, with its unit; NULL: cannot be drawn */
-    enum cs_cell_type type;
-    size_t offset, size;
-};
+/* The columns of compare.csv; every writer and the reader work by this table. */
 extern const struct cs_column cs_columns[];
 extern const uint32_t cs_n_columns;
+
+/* Reads a file into malloc'd cells; columns are found by name, absent ones are empty, others
+ * are ignored, and a last line without its end is dropped. CS_ERR_FILE, CS_ERR_MEMORY. */
+enum cs_status cs_csv_read(const char *path, struct cs_cell **cells, uint32_t *n,
+                           struct cs_error *error);
 
 /* Kinds of methods, closed by NULL: in the order of the legend. */
 extern const char *const cs_family_names[];

@@ -38,11 +38,9 @@ static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_resul
     cell->outliers = 0;
     cell->crossings =
         end->crossings.is_counted ? (double)end->crossings.max_count : (double)NAN;
-    cell->time = end->time;
-    cell->step =
-        end->outcome == CS_RUNNING && !end->failed ? end->time / cell->steps : (double)NAN;
-    snprintf(cell->outcome, sizeof cell->outcome, "%s",
-             end->failed ? "failed" : cs_outcome_text(end->outcome));
+    cell->time = end->result.time;
+    cell->step = end->result.outcome == CS_RUNNING ? cell->time / cell->steps : (double)NAN;
+    snprintf(cell->outcome, sizeof cell->outcome, "%s", cs_outcome_text(end->result.outcome));
     snprintf(cell->note, sizeof cell->note, "%s", end->note);
 }
 

@@ -3,6 +3,7 @@
 #include "study/compare/compare_report.h"
 
 #include "base/file.h"
+#include "base/json_writer.h"
 #include "study/compare/compare_html.h"
 #include "study/compare/compare_plot.h"
 #include "study/compare/compare_table.h"
@@ -15,74 +16,41 @@
 
 /* --- compare.json --- */
 
-static void add_json_text(struct cs_text *out, const char *key, const char *value) {
-    cs_text_add(out, "\"%s\": ", key);
-    cs_text_add_json(out, value);
-}
-
-static void add_json_real(struct cs_text *out, const char *key, double value) {
-    cs_text_add(out, "\"%s\": ", key);
-    cs_text_add_real(out, value);
-}
-
 static void add_machine(struct cs_text *out) {
     struct cs_machine machine;
     cs_machine_detect(&machine);
-    cs_text_add(out, "  \"machine\": {");
-    add_json_text(out, "processor", machine.processor);
-    cs_text_add(out, ", \"processors\": %ld, ", machine.processors);
-    add_json_real(out, "load", machine.load);
-    cs_text_add(out, ", ");
-    add_json_text(out, "version", machine.version);
-    cs_text_add(out, ", ");
-    add_json_text(out, "compiler", machine.compiler);
-    cs_text_add(out, ", ");
-    add_json_text(out, "flags", machine.flags);
-    cs_text_add(out, "},\n");
+    cs_json_write(
+        out,
+        "  'machine': {'processor': %s, 'processors': %ld, 'load': %g, 'version': %s, "
+        "'compiler': %s, 'flags': %s},\n",
+        machine.processor, machine.processors, machine.load, machine.version, machine.compiler,
+        machine.flags);
 }
 
 static void add_reference(const struct cs_compare_reference *reference, struct cs_text *out) {
-    const struct {
-        const char *key;
-        double value;
-    } numbers[] = {{"bar", reference->error_bar},
-                   {"bar_max", reference->error_bar_max},
-                   {"motion", reference->motion_scale},
-                   {"kinetic_energy", reference->kinetic},
-                   {"strain", reference->strain},
-                   {"accuracy", reference->accuracy},
-                   {"amplification", reference->horizon.growth},
-                   {"horizon", reference->horizon.time}};
-    cs_text_add(out, "  \"reference\": {\"methods\": [");
+    cs_json_write(out, "  'reference': {'methods': [");
     /* a family, its tighter twin, the other family, its tighter twin */
-    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++) {
-        cs_text_add(out, "%s", k ? ", " : "");
-        cs_text_add_json(out, reference->methods[k]);
-    }
-    cs_text_add(out, "], \"agree\": %s, \"pointwise\": %s, ",
-                reference->families_agree ? "true" : "false",
-                reference->pointwise ? "true" : "false");
-    add_json_text(out, "reason", reference->reason);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-        cs_text_add(out, ", ");
-        add_json_real(out, numbers[k].key, numbers[k].value);
-    }
-    cs_text_add(out, "},\n");
+    for (int k = 0; k < CS_COMPARE_REFERENCE_RUNS; k++)
+        cs_json_write(out, ", %s", reference->methods[k]);
+    cs_json_write(out, "], 'agree': %d, 'pointwise': %d, 'reason': %s",
+                  reference->families_agree, reference->pointwise, reference->reason);
+    cs_json_write(
+        out, ", 'bar': %g, 'bar_max': %g, 'motion': %g, 'kinetic_energy': %g, 'strain': %g",
+        reference->error_bar, reference->error_bar_max, reference->motion_scale,
+        reference->kinetic, reference->strain);
+    cs_json_write(out, ", 'accuracy': %g, 'amplification': %g, 'horizon': %g},\n",
+                  reference->accuracy, reference->horizon.growth, reference->horizon.time);
 }
 
 static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
                      struct cs_text *out) {
-    cs_text_add(out, "{\"best\": %td", rank->best - cells);
-    if (rank->runner_up) {
-        cs_text_add(out, ", \"next\": %td, ", rank->runner_up - cells);
-        add_json_real(out, "factor", rank->ratio.median);
-        cs_text_add(out, ", \"interval\": [");
-        cs_text_add_real(out, rank->ratio.low);
-        cs_text_add(out, ", ");
-        cs_text_add_real(out, rank->ratio.high);
-        cs_text_add(out, "], \"pairs\": %u, \"told_apart\": %s", rank->ratio.pairs,
-                    rank->is_significant ? "true" : "false");
-    }
+    cs_json_write(out, "{'best': %ld", (long)(rank->best - cells));
+    if (rank->runner_up)
+        cs_json_write(out,
+                      ", 'next': %ld, 'factor': %g, 'interval': [%g, %g], 'pairs': %u, "
+                      "'told_apart': %d",
+                      (long)(rank->runner_up - cells), rank->ratio.median, rank->ratio.low,
+                      rank->ratio.high, rank->ratio.pairs, rank->is_significant);
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++)
         if (rank->better_by_norm[norm])
             cs_text_add(out, ", \"by_%s\": %td", cs_norm_names[norm],
@@ -93,13 +61,13 @@ static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
 static void add_verdict(const struct cs_ranking *ranking, const struct cs_compare *compare,
                         struct cs_text *out) {
     const struct cs_cell *cells = compare->cells.cells;
-    cs_text_add(out, "  \"rank\": \"%s\",\n  \"verdict\": [", cs_norm_names[ranking->norm]);
+    cs_json_write(out, "  'rank': %s,\n  'verdict': [", cs_norm_names[ranking->norm]);
     for (uint32_t k = 0; k < ranking->n; k++) {
-        cs_text_add(out, "%s\n    ", k ? "," : "");
+        cs_json_write(out, ",\n    ");
         add_rank(ranking->ranks + k, cells, out);
         cs_text_add(out, ", \"error\": 1e%d}", ranking->ranks[k].exponent);
     }
-    cs_text_add(out, "],\n  \"stable_at_frame_step\": ");
+    cs_json_write(out, "],\n  'stable_at_frame_step': ");
     if (ranking->frame.best) {
         add_rank(&ranking->frame, cells, out);
         cs_text_add(out, "},\n");
@@ -108,45 +76,34 @@ static void add_verdict(const struct cs_ranking *ranking, const struct cs_compar
 }
 
 static void add_json_cell(const struct cs_cell *cell, bool front, struct cs_text *out) {
-    cs_text_add(out, "{\"front\": %s", front ? "true" : "false");
+    cs_json_write(out, ",\n    {'front': %d", front);
     for (uint32_t c = 0; c < cs_n_columns; c++) {
         const struct cs_column *column = cs_columns + c;
         const char *field = (const char *)cell + column->offset;
-        cs_text_add(out, ", ");
         if (column->type == CS_CELL_TEXT)
-            add_json_text(out, column->name, field);
+            cs_json_write(out, ", %s: %s", column->name, field);
         else if (column->type == CS_CELL_FLAG)
-            cs_text_add(out, "\"%s\": %s", column->name,
-                        *(const bool *)field ? "true" : "false");
+            cs_json_write(out, ", %s: %d", column->name, *(const bool *)field);
         else
-            add_json_real(out, column->name, cs_cell_number(cell, column));
+            cs_json_write(out, ", %s: %g", column->name, cs_cell_number(cell, column));
     }
     cs_text_add(out, "}");
 }
 
 static void print_json(const struct cs_compare *compare, const struct cs_ranking *ranking,
                        struct cs_text *out) {
-    cs_text_add(out, "{\n  \"schema\": 1,\n  ");
-    add_json_text(out, "scene", compare->scene);
-    cs_text_add(out, ",\n  \"particles\": %u, \"springs\": %u, ", compare->particles,
-                compare->springs);
-    add_json_real(out, "time", compare->time);
-    cs_text_add(out, ", ");
-    add_json_real(out, "fps", compare->fps);
-    cs_text_add(out, ",\n  ");
-    add_json_text(out, "contact", compare->contact ? "force" : "");
-    cs_text_add(out, ", ");
-    add_json_text(out, "switched_off", cs_text_get(&compare->switched_off));
-    cs_text_add(out, ",\n");
+    cs_json_write(out, "{\n  'schema': 1,\n  'scene': %s,\n", compare->scene);
+    cs_json_write(out, "  'particles': %u, 'springs': %u, 'time': %g, 'fps': %g,\n",
+                  compare->particles, compare->springs, compare->time, compare->fps);
+    cs_json_write(out, "  'contact': %s, 'switched_off': %s,\n",
+                  compare->contact ? "force" : "", cs_text_get(&compare->switched_off));
     add_machine(out);
     add_reference(&compare->reference, out);
     add_verdict(ranking, compare, out);
     /* in the order of the sweep: the verdict above refers to cells by index */
-    cs_text_add(out, "  \"cells\": [");
-    for (uint32_t k = 0; k < compare->cells.n; k++) {
-        cs_text_add(out, "%s\n    ", k ? "," : "");
+    cs_json_write(out, "  'cells': [");
+    for (uint32_t k = 0; k < compare->cells.n; k++)
         add_json_cell(compare->cells.cells + k, ranking->on_pareto_front[k], out);
-    }
     cs_text_add(out, "\n  ]\n}\n");
 }
 
@@ -260,15 +217,10 @@ static enum cs_status draw(const struct cs_compare *compare, const char *name, c
 }
 
 static enum cs_status write_text(const struct cs_compare *compare, const char *name,
-                                 const struct cs_text *text, struct cs_error *error) {
-    struct cs_text path = {0};
-    cs_text_add(&path, "%s/%s", compare->settings->folder, name);
-    if (text->failed || path.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", name);
-    else
-        cs_file_write(cs_text_get(&path), cs_text_get(text), text->length, error);
-    cs_text_finish(&path);
-    return error->status;
+                                 struct cs_text *text, struct cs_error *error) {
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s", compare->settings->folder, name);
+    return cs_file_write_text(path, text, error);
 }
 
 enum cs_status cs_compare_write_report(const struct cs_compare *compare,

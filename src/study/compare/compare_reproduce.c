@@ -2,7 +2,6 @@
 #include "study/compare/compare_reproduce.h"
 
 #include "study/compare/cell_list.h"
-#include "study/compare/compare_csv.h"
 #include "study/provenance_write.h"
 #include "study/recorded_run.h"
 
@@ -77,9 +76,8 @@ static void compare_texts(struct cs_reproduction *again, const char *what, const
 
 static void compare_ends(struct cs_reproduction *again, const struct cs_cell *cell,
                          const struct cs_recorded_run_result *end) {
-    compare_texts(again, "the outcome", cell->outcome,
-                  end->failed ? "failed" : cs_outcome_text(end->outcome));
-    compare_numbers(again, "the time", cell->time, end->time);
+    compare_texts(again, "the outcome", cell->outcome, cs_outcome_text(end->result.outcome));
+    compare_numbers(again, "the time", cell->time, end->result.time);
     compare_numbers(again, "the number of steps", cell->steps, (double)end->counts.steps);
     compare_texts(again, "the state at the end", cell->state_hash, end->hash);
     if (!again->first_difference.length)

@@ -2,13 +2,13 @@
 #include "study/compare/compare_results.h"
 
 #include "base/file.h"
-#include "base/lock.h"
-#include "study/compare/compare_csv.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+static const char *const NAME = "compare.csv";
 
 static struct cs_cell *find(const struct cs_cell_list *sweep, const struct cs_cell *cell) {
     for (uint32_t k = 0; k < sweep->n; k++)
@@ -23,39 +23,39 @@ static enum cs_status write_rows(const struct cs_compare_results *ledger,
                                  const struct cs_compare *compare, bool others,
                                  struct cs_error *error) {
     struct cs_text text = {0};
-    cs_csv_add_head(&text);
+    cs_columns_print_names(cs_columns, cs_n_columns, &text);
     for (uint32_t k = 0; k < compare->cells.n; k++)
         if (*compare->cells.cells[k].outcome)
-            cs_csv_add_cell(&text, compare->cells.cells + k);
+            cs_columns_print_row(cs_columns, cs_n_columns, compare->cells.cells + k, &text);
     for (uint32_t k = 0; k < ledger->n_old_rows && others; k++)
         if (!find(&compare->cells, ledger->old_rows + k))
-            cs_csv_add_cell(&text, ledger->old_rows + k);
-    if (text.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for %s", ledger->path);
-    else
-        cs_file_write(ledger->path, cs_text_get(&text), text.length, error);
-    cs_text_finish(&text);
-    return error->status;
+            cs_columns_print_row(cs_columns, cs_n_columns, ledger->old_rows + k, &text);
+    return cs_file_write_text(ledger->table.path, &text, error);
 }
 
-static enum cs_status read_rows(struct cs_compare_results *ledger,
-                                const struct cs_compare *compare, struct cs_error *error) {
-    free(ledger->old_rows);
-    ledger->old_rows = NULL;
-    ledger->n_old_rows = 0;
-    if (access(ledger->path, F_OK))
-        return CS_OK;
-    if (cs_csv_read(ledger->path, &ledger->old_rows, &ledger->n_old_rows, error))
+/* The rows of a file, where there is one. */
+static enum cs_status read_rows(const char *path, const char *machine, struct cs_cell **cells,
+                                uint32_t *n, struct cs_error *error) {
+    *cells = NULL;
+    *n = 0;
+    if (access(path, F_OK) || cs_csv_read(path, cells, n, error))
         return error->status;
-    for (uint32_t i = 0; i < ledger->n_old_rows; i++)
-        cs_cell_name_machine(ledger->old_rows + i, compare->machine);
+    for (uint32_t i = 0; i < *n; i++)
+        cs_cell_name_machine(*cells + i, machine);
     return CS_OK;
+}
+
+static enum cs_status read_again(struct cs_compare_results *ledger,
+                                 const struct cs_compare *compare, struct cs_error *error) {
+    free(ledger->old_rows);
+    return read_rows(ledger->table.path, compare->machine, &ledger->old_rows,
+                     &ledger->n_old_rows, error);
 }
 
 /* A file that is none of ours, or of another comparison, is not written over. */
 static enum cs_status read_old(struct cs_compare_results *ledger,
                                const struct cs_compare *compare, struct cs_error *error) {
-    if (read_rows(ledger, compare, error))
+    if (read_again(ledger, compare, error))
         return error->status;
     if (compare->settings->overwrite)
         ledger->n_old_rows = 0;
@@ -65,7 +65,7 @@ static enum cs_status read_old(struct cs_compare_results *ledger,
             return cs_fail(error, CS_ERR_USAGE,
                            "%s is of another scene, time or reference: give another folder "
                            "with --out, or --fresh to write over it",
-                           ledger->path);
+                           ledger->table.path);
     return CS_OK;
 }
 
@@ -102,55 +102,46 @@ static enum cs_status reuse_row(struct cs_compare_results *ledger, struct cs_com
 
 enum cs_status cs_compare_results_open(struct cs_compare_results *ledger,
                                        struct cs_compare *compare, struct cs_error *error) {
-    struct cs_lock lock;
     *ledger = (struct cs_compare_results){0};
-    snprintf(ledger->path, sizeof ledger->path, "%s/compare.csv", compare->settings->folder);
-    snprintf(ledger->lock_path, sizeof ledger->lock_path, "%s/.lock",
-             compare->settings->folder);
-    if (cs_folder_create(compare->settings->folder, error) ||
-        cs_lock_acquire(&lock, ledger->lock_path, error))
+    if (cs_row_table_open(&ledger->table, compare->settings->folder, NAME, ".lock", 0, error) ||
+        cs_row_table_lock(&ledger->table, error))
         return error->status;
     if (!read_old(ledger, compare, error) && !reuse_row(ledger, compare, error))
         write_rows(ledger, compare, false, error);
-    cs_lock_release(&lock);
+    cs_row_table_unlock(&ledger->table);
     return error->status;
 }
 
 enum cs_status cs_compare_results_append(struct cs_compare_results *ledger,
                                          const struct cs_cell *cell, struct cs_error *error) {
     struct cs_text line = {0};
-    struct cs_lock lock;
-    cs_csv_add_cell(&line, cell);
+    cs_columns_print_row(cs_columns, cs_n_columns, cell, &line);
     if (line.failed)
         cs_fail(error, CS_ERR_MEMORY, "out of memory for a row");
-    else if (!cs_lock_acquire(&lock, ledger->lock_path, error)) {
-        cs_file_append(ledger->path, line.bytes, line.length, error);
-        cs_lock_release(&lock);
-    }
+    else
+        cs_row_table_append(&ledger->table, line.bytes, line.length, error);
     cs_text_finish(&line);
     return error->status;
 }
 
 enum cs_status cs_compare_results_refresh(struct cs_compare_results *ledger,
                                           struct cs_compare *compare, struct cs_error *error) {
-    struct cs_lock lock;
-    if (cs_lock_acquire(&lock, ledger->lock_path, error))
+    if (cs_row_table_lock(&ledger->table, error))
         return error->status;
-    if (!read_rows(ledger, compare, error))
+    if (!read_again(ledger, compare, error))
         reuse_row(ledger, compare, error);
-    cs_lock_release(&lock);
+    cs_row_table_unlock(&ledger->table);
     return error->status;
 }
 
 enum cs_status cs_compare_results_rewrite(struct cs_compare_results *ledger,
                                           const struct cs_compare *compare,
                                           struct cs_error *error) {
-    struct cs_lock lock;
-    if (cs_lock_acquire(&lock, ledger->lock_path, error))
+    if (cs_row_table_lock(&ledger->table, error))
         return error->status;
-    if (!read_rows(ledger, compare, error))
+    if (!read_again(ledger, compare, error))
         write_rows(ledger, compare, true, error);
-    cs_lock_release(&lock);
+    cs_row_table_unlock(&ledger->table);
     return error->status;
 }
 
@@ -160,20 +151,20 @@ void cs_compare_results_close(struct cs_compare_results *ledger) {
 }
 
 /* Adds the rows of one file. */
-static enum cs_status add_file(struct cs_cell_list *sweep, const char *path, const char *here,
+static enum cs_status add_file(struct cs_compare *compare, const char *folder,
                                struct cs_error *error) {
+    struct cs_cell_list *sweep = &compare->cells;
     struct cs_cell *cells;
+    char path[4200];
     uint32_t n;
-    if (access(path, F_OK) || cs_csv_read(path, &cells, &n, error))
-        return error->status;
-    for (uint32_t k = 0; k < n && !error->status; k++) {
-        cs_cell_name_machine(cells + k, here);
+    snprintf(path, sizeof path, "%s/%s", folder, NAME);
+    read_rows(path, compare->machine, &cells, &n, error);
+    for (uint32_t k = 0; k < n && !error->status; k++)
         if (strncmp(cells[k].key, sweep->n ? sweep->cells[0].key : cells[k].key,
                     CS_COMPARE_DIGITS) != 0)
             cs_fail(error, CS_ERR_USAGE, "%s is of another scene, time or reference", path);
         else
             cs_cell_list_add(sweep, cells + k, error);
-    }
     free(cells);
     return error->status;
 }
@@ -182,15 +173,12 @@ enum cs_status cs_compare_results_merge(const char *const *folders, uint32_t n_f
                                         const char *out, uint32_t *n, struct cs_error *error) {
     struct cs_compare_results ledger = {0};
     struct cs_compare compare = {0};
-    char path[4096];
     cs_machine_name(compare.machine);
-    snprintf(ledger.path, sizeof ledger.path, "%s/compare.csv", out);
     // what is in the whole already is a part of it
-    add_file(&compare.cells, ledger.path, compare.machine, error);
-    for (uint32_t k = 0; k < n_folders && !error->status; k++) {
-        snprintf(path, sizeof path, "%s/compare.csv", folders[k]);
-        add_file(&compare.cells, path, compare.machine, error);
-    }
+    if (!cs_row_table_open(&ledger.table, out, NAME, ".lock", 0, error))
+        add_file(&compare, out, error);
+    for (uint32_t k = 0; k < n_folders && !error->status; k++)
+        add_file(&compare, folders[k], error);
     *n = compare.cells.n;
     if (!error->status && *n > 0)
         write_rows(&ledger, &compare, false, error);

@@ -2,12 +2,13 @@
 #ifndef CS_COMPARE_RESULTS_H
 #define CS_COMPARE_RESULTS_H
 
+#include "base/table.h"
 #include "study/compare/compare_state.h"
 
-/* The table's file. It is locked for each look at it and each change, so that several processes
- * can fill one folder. */
+/* It is locked for each look at it and each change, so that several processes can fill one
+ * folder. */
 struct cs_compare_results {
-    char path[4096], lock_path[4096];
+    struct cs_row_table table;
     struct cs_cell *old_rows; /* (n_old) rows of the file, owned */
     uint32_t n_old_rows;
 };

@@ -210,9 +210,7 @@ static enum cs_status write_sheet(struct sheet *sheet, const struct cs_compare *
     print_script(sheet, compare, &script);
     snprintf(name, sizeof name, "%s.gp", sheet->kind);
     snprintf(path, sizeof path, "%s/%s", compare->settings->folder, name);
-    if (script.failed)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for a script");
-    if (!error->status && !cs_file_write(path, cs_text_get(&script), script.length, error))
+    if (!error->status && !cs_file_write_text(path, &script, error))
         cs_gnuplot_run(compare->settings->folder, name, &drawn, error);
     cs_text_finish(&script);
     return error->status;

@@ -2,11 +2,11 @@
 #ifndef CS_COMPARE_STATE_H
 #define CS_COMPARE_STATE_H
 
+#include "base/table.h"
 #include "study/compare/cell_list.h"
 #include "study/compare/compare_norm.h"
 #include "study/compare/timing_rounds.h"
 #include "study/reference/compare_reference_state.h"
-#include "study/shard.h"
 
 /* The default budget: s of processor time for the cells of a comparison and for their rounds,
  * without its reference, and the most that a run may take. */

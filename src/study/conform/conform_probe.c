@@ -4,6 +4,7 @@
 #include "base/options.h"
 #include "model/force/diagnostics.h"
 #include "study/conform/conform_checks.h"
+#include "study/follow.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -132,12 +133,13 @@ bool cs_probe_run(struct cs_probe *probe, uint32_t frames) {
     struct cs_run *run = &probe->session.run;
     if (!probe->has_ended && !run->host)
         probe->has_ended = cs_session_begin(&probe->session, NULL, &probe->error);
-    for (uint32_t k = 0; k < frames && !probe->has_ended; k++) {
-        if (!cs_run_frame(run, &probe->error) && run->outcome != CS_RUNNING)
-            cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s",
-                    cs_outcome_text(run->outcome), run->blow_up.time);
-        probe->has_ended = probe->error.status;
-    }
+    struct cs_follow follow = {.run = run, .last = run->frame + frames};
+    if (!probe->has_ended)
+        cs_follow_next(&follow, &probe->error);
+    if (run->outcome != CS_RUNNING)
+        cs_fail(&probe->error, CS_ERR_CHECK, "%s at t = %.6g s", cs_outcome_text(run->outcome),
+                run->blow_up.time);
+    probe->has_ended = probe->error.status;
     return !probe->has_ended;
 }
 

@@ -2,67 +2,54 @@
 #include "study/golden/golden.h"
 
 #include "base/file.h"
+#include "base/table.h"
 #include "study/golden/golden_image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TABLE_BYTES_MAX = 1 << 20, HASH_FIELDS = 6, IMAGE_FIELDS = 7 };
+enum { HASH_FIELDS = 6, IMAGE_FIELDS = 7 };
 
 struct table {
     char path[1024];
     const char *head; /* first line, without its end */
-    int n_fields;
-    char *text; /* owned; rows point into it */
+    uint32_t n_fields;
+    struct cs_rows lines; /* rows point into them */
     struct cs_golden_row *rows;
     uint32_t n;
 };
 
-static char *next_field(char **line) {
-    char *field = *line, *tab = field ? strchr(field, '\t') : NULL;
-    if (tab)
-        *tab++ = 0;
-    *line = tab;
-    return field;
-}
-
 static enum cs_status read_row(const struct table *table, struct cs_golden_row *row, char *line,
                                struct cs_error *error) {
-    row->line = line;
-    row->run.scene = next_field(&line);
-    row->run.integrator = next_field(&line);
-    row->run.overrides = next_field(&line);
-    const char *frames = next_field(&line);
-    if (table->n_fields == IMAGE_FIELDS)
-        row->image = next_field(&line);
-    row->hash = next_field(&line);
-    row->note = next_field(&line);
-    row->run.frames = frames ? (uint32_t)strtoul(frames, NULL, 10) : 0;
-    if (!row->note || row->run.frames == 0)
-        return cs_fail(error, CS_ERR_FILE, "%s: a row has less than %d fields or no frames: %s",
-                       table->path, table->n_fields, row->line);
+    char *fields[IMAGE_FIELDS];
+    const uint32_t n = cs_csv_cut(line, '\t', fields, table->n_fields);
+    const uint32_t frames = n == table->n_fields ? (uint32_t)strtoul(fields[3], NULL, 10) : 0;
+    if (frames == 0)
+        return cs_fail(error, CS_ERR_FILE, "%s: a row has less than %u fields or no frames: %s",
+                       table->path, table->n_fields, line);
+    row->run = (struct cs_golden_run){fields[0], fields[1], fields[2], frames};
+    row->image = n == IMAGE_FIELDS ? fields[4] : NULL;
+    row->hash = fields[n - 2];
+    row->note = fields[n - 1];
     return CS_OK;
 }
 
 static enum cs_status read_table(struct table *table, const char *folder, const char *name,
                                  struct cs_error *error) {
     snprintf(table->path, sizeof table->path, "%s/%s", folder, name);
-    size_t length;
-    if (cs_file_read(table->path, TABLE_BYTES_MAX, &table->text, &length, error))
+    if (cs_rows_open(&table->lines, table->path, 0, error))
         return error->status;
-    uint32_t lines = 0;
-    for (size_t k = 0; k < length; k++)
-        lines += table->text[k] == '\n';
-    table->rows = calloc(lines + 1, sizeof *table->rows);
+    // a table that was edited by hand may lack the end of its last line
+    table->lines.bytes[table->lines.length++] = '\n';
+    table->rows = calloc(table->lines.n + 1, sizeof *table->rows);
     if (!table->rows)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    /* the text is cut up at its line ends, since rows point into it */
-    char *rest = table->text, *line = strsep(&rest, "\n");
-    if (strcmp(line, table->head))
+    char *line = cs_rows_next(&table->lines);
+    if (strcmp(line, table->head) != 0)
         return cs_fail(error, CS_ERR_FILE, "%s: the first line is not \"%s\"", table->path,
                        table->head);
-    while ((line = strsep(&rest, "\n")) && !error->status)
+    while (!error->status && (line = cs_rows_next(&table->lines)))
         if (*line)
             read_row(table, table->rows + table->n++, line, error);
     return error->status;
@@ -85,18 +72,14 @@ static enum cs_status write_table(const struct table *table, struct cs_error *er
         if (table->rows[k].added)
             add_line(table->rows + k, table->rows[k].found, table->rows[k].library, &text);
     }
-    const enum cs_status status =
-        text.failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory")
-                    : cs_file_write(table->path, cs_text_get(&text), text.length, error);
-    cs_text_finish(&text);
-    return status;
+    return cs_file_write_text(table->path, &text, error);
 }
 
 static void free_table(struct table *table) {
     for (uint32_t k = 0; k < table->n; k++)
         cs_text_finish(&table->rows[k].message);
     free(table->rows);
-    free(table->text);
+    cs_rows_close(&table->lines);
 }
 
 /* A row of a method whose bits are those of a library may hold for one version of it. */
@@ -169,7 +152,7 @@ static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
 
 /* one table; check handles a row */
 static enum cs_status
-check_table(struct cs_golden *golden, const char *name, const char *head, int n_fields,
+check_table(struct cs_golden *golden, const char *name, const char *head, uint32_t n_fields,
             enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,
                                     struct cs_error *error),
             struct cs_error *error) {

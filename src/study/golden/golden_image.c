@@ -4,7 +4,7 @@
 
 #include "draw/image_diff.h"
 #include "io/png.h"
-#include "study/snapshot.h"
+#include "study/frame_picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,7 +92,7 @@ static enum cs_status check_with(const struct cs_golden *golden, enum cs_rendere
                                  struct cs_error *error) {
     struct cs_image found = {0};
     struct cs_text renderer = {0};
-    if (!cs_snapshot_draw(session, kind, &found, &renderer, error)) {
+    if (!cs_snapshot_draw(&session->run, kind, &found, &renderer, error)) {
         cs_hash_bytes(found.rgb, cs_image_bytes(&found), row->found);
         if (golden->accept_all)
             accept_image(golden, row, &found, &renderer, error);

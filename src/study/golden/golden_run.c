@@ -1,6 +1,8 @@
 /* Opens the session of a golden row and steps it to the row's frame. */
 #include "study/golden/golden_run.h"
 
+#include "study/follow.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -37,12 +39,9 @@ enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_go
     };
     if (cs_session_open(session, &settings, error))
         return error->status;
-    while (session->run.frame < run->frames && session->run.outcome == CS_RUNNING)
-        if (cs_run_frame(&session->run, error))
-            break;
-    if (session->run.outcome == CS_INTERRUPTED)
-        cs_fail(error, CS_ERR_INTERRUPT, "interrupted");
-    if (error->status)
+    struct cs_follow follow = {.run = &session->run, .last = run->frames};
+    cs_follow_next(&follow, error);
+    if (cs_follow_check(&session->run, "", error))
         cs_session_close(session);
     return error->status;
 }

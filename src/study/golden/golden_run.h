@@ -12,10 +12,9 @@ struct cs_golden_run {
     uint32_t frames;
 };
 
-/* A line of a table: a run, and what belongs to it. Fields are owned by the row. */
+/* A line of a table: a run, and what belongs to it. Fields are the table's. */
 struct cs_golden_row {
     struct cs_golden_run run;
-    char *line; /* the fields above point into it */
     char *hash; /* of the state (hash.tsv) or of the pixels (image.tsv) */
     /* "any", or the library and version that the bits are of ("SUNDIALS 6.4.1"), or the image's
      * renderer */

@@ -36,10 +36,10 @@ static enum cs_status run_one(struct cs_compare_reference *reference, int k,
     if (!cs_recorded_run_open(&recording, settings->run, reference->methods[k], error) &&
         !cs_trajectory_init(track, &recording, error))
         cs_recorded_run_execute(&recording, 0, track, &end, error);
-    *good = !error->status && !end.failed && end.outcome == CS_RUNNING;
+    *good = !error->status && end.result.outcome == CS_RUNNING;
     if (!error->status && !*good)
         snprintf(reference->reason, sizeof reference->reason, "%.100s: %.200s",
-                 reference->methods[k], end.failed ? end.note : cs_outcome_text(end.outcome));
+                 reference->methods[k], end.result.message);
     cs_recorded_run_close(&recording);
     return error->status;
 }

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "sim/install_paths.h"
+#include "study/follow.h"
 #include "study/frame_picture.h"
 
 #include <math.h>
@@ -58,32 +59,24 @@ static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
                                  struct cs_soft_row *row, struct cs_error *error) {
     double samples[FRAMES_MAX];
     const uint32_t least = row->series == CS_SOFT_IMPLICIT ? FRAMES_MAX : 1;
-    const double begin = cs_clock_cpu();
+    struct cs_follow follow = {.run = run, .last = 1};
     uint32_t n = 0;
-    uint64_t steps = 0;
-    for (bool warm = false; n < FRAMES_MAX && run->outcome == CS_RUNNING;) {
-        const uint64_t before = run->counts.steps;
-        const double start = cs_clock_cpu();
-        if (cs_run_frame(run, error))
-            return error->status;
-        const double now = cs_clock_cpu();
-        if (run->outcome != CS_RUNNING)
-            break;
-        if (warm) {
-            samples[n++] = (now - start) / (double)(run->counts.steps - before);
-            steps += run->counts.steps - before;
-        }
-        /* after a frame, so that there is one sample however short the time */
-        if (n >= least && now - begin > soft->seconds)
-            break;
-        warm = true;
+    cs_follow_next(&follow, error);
+    double cpu = follow.cpu;
+    const uint64_t warm = run->counts.steps;
+    uint64_t steps = warm;
+    follow = (struct cs_follow){.run = run, .last = 1 + FRAMES_MAX, .every = 1, .cpu = cpu};
+    while (!(n >= least && cpu > soft->seconds) && cs_follow_next(&follow, error)) {
+        samples[n++] = (follow.cpu - cpu) / (double)(run->counts.steps - steps);
+        steps = run->counts.steps;
+        cpu = follow.cpu;
     }
     row->outcome = run->outcome;
     if (n) {
-        row->steps = (double)steps / n;
+        row->steps = (double)(steps - warm) / n;
         row->step_seconds = median(samples, n);
     }
-    return CS_OK;
+    return error->status;
 }
 
 static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_row *row,

@@ -5,8 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { SAMPLES = 32, HALVINGS = 6 };
 #define PERTURBATION 1e-4 /* of the shortest spring */
@@ -31,12 +29,12 @@ static enum cs_status try_safe(struct cs_advice *row,
     if (cs_sampled_run_execute(&trial, &asked, error))
         return error->status;
     row->verdict = cs_stability_judge(&trial, &reference->run, true);
-    row->checked_seconds = trial.end_time;
-    if (trial.failed)
-        snprintf(row->message, sizeof row->message, "%s", trial.message);
-    if (trial.end_time > 0) {
-        row->frame_cost = trial.seconds / trial.end_time * frame;
-        row->steps = (double)trial.steps / trial.end_time * frame;
+    row->checked_seconds = trial.result.reached;
+    if (trial.result.outcome == CS_FAILED)
+        snprintf(row->message, sizeof row->message, "%.300s", trial.result.message);
+    if (row->checked_seconds > 0) {
+        row->frame_cost = trial.seconds / row->checked_seconds * frame;
+        row->steps = (double)trial.steps / row->checked_seconds * frame;
     }
     return CS_OK;
 }
@@ -212,43 +210,33 @@ static void report(void *ctx, uint32_t ticks) {
 }
 
 static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *error) {
-    for (uint32_t k = 0; k < advise->session.n_plugins; k++)
-        if (cs_registry_add_file(&advise->registry, advise->session.plugins[k], error))
-            return error->status;
-    if (!advise->n_methods && cs_registry_open_all(&advise->registry, error))
-        return error->status;
-    advise->names = calloc(advise->n_methods + advise->registry.n + 1, sizeof(char *));
-    if (!advise->names)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    for (uint32_t k = 0; k < advise->n_methods; k++)
-        advise->names[advise->n++] = advise->methods[k];
-    for (uint32_t k = 0; k < advise->registry.n && !advise->n_methods; k++)
-        if (advise->registry.entries[k].integrator)
-            advise->names[advise->n++] = advise->registry.entries[k].integrator->name;
-    return CS_OK;
+    advise->names = advise->methods;
+    advise->n = advise->n_methods;
+    if (!cs_registry_add_files(&advise->registry, advise->session.plugins,
+                               advise->session.n_plugins, error) &&
+        !advise->n_methods)
+        advise->names = cs_registry_names(&advise->registry, true, &advise->n, error);
+    return error->status;
 }
 
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error) {
-    struct work work = {advise, {.task = advise_task, .progress = report}};
+    struct work work = {advise,
+                        {.n_workers = advise->workers,
+                         .task = advise_task,
+                         .progress = report,
+                         .progress_ctx = advise,
+                         .stop = advise->stop}};
     if (cs_session_open_system(&advise->was_opened, &advise->session, error) ||
         list_methods(advise, error))
         return error->status;
     work.workers.ctx = &work;
-    work.workers.progress_ctx = advise;
-    work.workers.n_workers = advise->workers;
     work.workers.n_tasks = advise->n;
-    work.workers.stop = advise->stop;
     advise->rows = cs_process_pool_shared_alloc(advise->n * sizeof *advise->rows, error);
-    work.workers.ticks = cs_process_pool_shared_alloc(sizeof(uint32_t), error);
-    if (!error->status)
-        cs_process_pool_run(&work.workers, error);
-    cs_process_pool_shared_free(work.workers.ticks, sizeof(uint32_t));
-    return error->status;
+    return advise->rows ? cs_process_pool_run(&work.workers, error) : error->status;
 }
 
 void cs_advise_finish(struct cs_advise *advise) {
     cs_process_pool_shared_free(advise->rows, advise->n * sizeof *advise->rows);
-    free(advise->names);
     cs_registry_finish(&advise->registry);
     cs_session_close(&advise->was_opened);
     *advise = (struct cs_advise){0};

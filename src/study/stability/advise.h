@@ -49,7 +49,7 @@ struct cs_advise {
     /* out */
     struct cs_session was_opened; /* the scene as it is given */
     struct cs_registry registry;
-    const char **names;
+    const char *const *names;
     struct cs_advice *rows; /* (n) by method; workers see them */
     uint32_t n;
 };

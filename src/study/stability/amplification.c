@@ -1,6 +1,7 @@
 /* Measures the amplification matrix of a method's step on a damped oscillator. */
 #include "study/stability/amplification.h"
 
+#include "study/follow.h"
 #include "study/session.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ enum { STEPS_BEFORE = 8, STEPS_BETWEEN = 16 };
 /* one run from (s, h w) = start; looks[k] = (s, h w) after steps[k]; false: it blew up */
 static bool run_once(struct cs_session *session, const double start[2], const uint32_t steps[2],
                      double looks[2][2], struct cs_error *error) {
-    struct cs_run *run = &session->run;
+    struct cs_follow follow = {.run = &session->run};
     struct cs_error refused = {0};
     const double *x = session->system.state, *v = x + 6;
     const double state[12] = {[0] = -1, [1] = SMALL * start[0], [7] = SMALL * start[1] / FRAME};
@@ -36,12 +37,12 @@ static bool run_once(struct cs_session *session, const double start[2], const ui
         return false;
     }
     for (uint32_t k = 0; k < 2; k++) {
-        while (run->frame < steps[k] && !refused.status && run->outcome == CS_RUNNING)
-            cs_run_frame(run, &refused);
+        follow.last = steps[k];
+        cs_follow_next(&follow, &refused);
         looks[k][0] = x[1] / SMALL;
         looks[k][1] = v[1] * FRAME / SMALL;
     }
-    return !refused.status && run->outcome == CS_RUNNING;
+    return !refused.status && session->run.outcome == CS_RUNNING;
 }
 
 /* Spectral radius of the 2x2 matrix of trace and determinant. */

@@ -2,6 +2,7 @@
 #include "study/stability/extreme.h"
 
 #include "base/clock.h"
+#include "study/follow.h"
 #include "study/perturb.h"
 #include "study/process_pool.h"
 #include "study/stability/extreme_scene.h"
@@ -29,33 +30,25 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
     struct cs_run *run = &session->run;
     struct cs_energy_monitor monitor;
     struct cs_energy_monitor_row look;
-    struct cs_error failure = {0};
+    struct cs_run_result result;
     struct cs_text text = {0};
-    const double frames = ceil(seconds * session->scene.time.fps * (1 - 1e-9));
+    struct cs_follow follow = {
+        .run = run, .last = cs_follow_frames(&session->scene, seconds), .every = 1};
     if (cs_energy_monitor_begin(&monitor, run, error))
         return;
-    while (run->frame < frames && run->outcome == CS_RUNNING && !cs_run_frame(run, &failure))
-        if (run->outcome == CS_RUNNING) {
-            cs_energy_monitor_sample(&monitor, run, &look);
-            ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
-        }
-    row->verdict = monitor.worst_verdict;
+    while (cs_follow_next(&follow, error)) {
+        cs_energy_monitor_sample(&monitor, run, &look);
+        ending->silent |= look.verdict == CS_STABILITY_NOT_FINITE;
+    }
+    cs_follow_result(run, "", &result, error);
     cs_energy_monitor_print(&monitor, run->system, &text);
-    /* the method's own error is an outcome, any other one ends the study */
-    if (failure.status == CS_ERR_MODULE) {
-        ending->refused = true;
-        row->verdict = CS_STABILITY_FAILED;
-        say(row, failure.message);
-    } else if (failure.status)
-        *error = failure;
-    else if (run->outcome == CS_OVER_BUDGET)
-        row->verdict = CS_STABILITY_OVER_BUDGET;
-    else if (run->outcome == CS_NOT_FINITE)
-        row->verdict = CS_STABILITY_NOT_FINITE;
-    else if (run->outcome == CS_UNBOUNDED)
-        row->verdict = CS_STABILITY_GLOBAL;
-    if (!*row->message)
-        say(row, cs_text_get(&text));
+    ending->refused = result.outcome == CS_FAILED;
+    row->verdict = result.outcome == CS_FAILED        ? CS_STABILITY_FAILED
+                   : result.outcome == CS_OVER_BUDGET ? CS_STABILITY_OVER_BUDGET
+                   : result.outcome == CS_NOT_FINITE  ? CS_STABILITY_NOT_FINITE
+                   : result.outcome == CS_UNBOUNDED   ? CS_STABILITY_GLOBAL
+                                                      : monitor.worst_verdict;
+    say(row, ending->refused ? result.message : cs_text_get(&text));
     cs_text_finish(&text);
 }
 
@@ -149,9 +142,8 @@ struct catalogue {
     struct cs_extreme_scene *scenes;
     uint32_t reported;
     struct cs_extreme_row *rows; /* (n_scenes, n_methods), seen by all workers */
-    const char **methods;
+    const char *const *methods;
     uint32_t n_scenes, n_methods;
-    struct cs_process_pool workers;
 };
 
 static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error) {
@@ -164,21 +156,12 @@ static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error)
 static enum cs_status list_methods(struct catalogue *catalogue, struct cs_registry *registry,
                                    struct cs_error *error) {
     const struct cs_extreme *extreme = catalogue->extreme;
-    for (uint32_t k = 0; k < extreme->n_plugins; k++)
-        if (cs_registry_add_file(registry, extreme->plugins[k], error))
-            return error->status;
-    if (!extreme->n_methods && cs_registry_open_all(registry, error))
-        return error->status;
-    catalogue->methods = calloc(extreme->n_methods + registry->n + 1, sizeof(char *));
-    if (!catalogue->methods)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory");
-    for (uint32_t k = 0; k < extreme->n_methods; k++)
-        catalogue->methods[catalogue->n_methods++] = extreme->methods[k];
-    for (uint32_t k = 0; k < registry->n && !extreme->n_methods; k++)
-        if (registry->entries[k].integrator &&
-            registry->entries[k].integrator->fidelity != CS_FIDELITY_OTHER)
-            catalogue->methods[catalogue->n_methods++] = registry->entries[k].integrator->name;
-    return CS_OK;
+    catalogue->methods = extreme->methods;
+    catalogue->n_methods = extreme->n_methods;
+    if (!cs_registry_add_files(registry, extreme->plugins, extreme->n_plugins, error) &&
+        !extreme->n_methods)
+        catalogue->methods = cs_registry_names(registry, false, &catalogue->n_methods, error);
+    return error->status;
 }
 
 /* keeps the scenes whose name holds the text */
@@ -212,12 +195,10 @@ static void progress(void *ctx, uint32_t ticks) {
     report_rows(ctx, false);
 }
 
-static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
-                              struct cs_error *error) {
+static enum cs_status run_all(struct catalogue *catalogue, struct cs_error *error) {
     const uint32_t n = catalogue->n_scenes * catalogue->n_methods;
     catalogue->rows = cs_process_pool_shared_alloc(n * sizeof *catalogue->rows, error);
-    catalogue->workers.ticks = cs_process_pool_shared_alloc(sizeof(uint32_t), error);
-    if (!catalogue->rows || !catalogue->workers.ticks)
+    if (!catalogue->rows)
         return error->status;
     /* these texts are from before the fork: their addresses hold in every worker */
     for (uint32_t k = 0; k < n; k++) {
@@ -225,16 +206,17 @@ static enum cs_status run_all(struct catalogue *catalogue, uint32_t n_workers,
         catalogue->rows[k].method = catalogue->methods[k % catalogue->n_methods];
         catalogue->rows[k].expected = "";
     }
-    catalogue->workers.n_workers = n_workers;
-    catalogue->workers.n_tasks = n;
-    catalogue->workers.task = run_task;
-    catalogue->workers.ctx = catalogue;
-    catalogue->workers.progress = progress;
-    catalogue->workers.progress_ctx = catalogue;
-    /* a run ends itself at its budget: only a step that never ends is cut off */
-    catalogue->workers.task_seconds_max = 2 * catalogue->extreme->budget + 1;
-    catalogue->workers.stop = catalogue->extreme->stop;
-    return cs_process_pool_run(&catalogue->workers, error);
+    struct cs_process_pool workers = {
+        .n_workers = catalogue->extreme->n_workers,
+        .n_tasks = n,
+        .task = run_task,
+        .ctx = catalogue,
+        .progress = progress,
+        .progress_ctx = catalogue,
+        /* a run ends itself at its budget: only a step that never ends is cut off */
+        .task_seconds_max = 2 * catalogue->extreme->budget + 1,
+        .stop = catalogue->extreme->stop};
+    return cs_process_pool_run(&workers, error);
 }
 
 enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error) {
@@ -248,7 +230,7 @@ enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error
     if (!catalogue.n_scenes)
         cs_fail(error, CS_ERR_USAGE, "no scene of the catalogue has \"%.60s\" in its name",
                 extreme->only_scene);
-    else if (!run_all(&catalogue, extreme->n_workers, error)) {
+    else if (!run_all(&catalogue, error)) {
         /* rows that no worker finished are reported too */
         report_rows(&catalogue, true);
         if (extreme->n_missed)
@@ -258,8 +240,6 @@ enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error
 done:
     cs_process_pool_shared_free(catalogue.rows, catalogue.n_scenes * catalogue.n_methods *
                                                     sizeof *catalogue.rows);
-    cs_process_pool_shared_free(catalogue.workers.ticks, sizeof(uint32_t));
-    free(catalogue.methods);
     free(catalogue.scenes);
     cs_registry_finish(&registry);
     return error->status;

@@ -84,11 +84,11 @@ const char *cs_extreme_expected(const struct cs_extreme_scene *scene,
 
 static enum cs_status take_values(struct cs_extreme_scene *scene, const struct cs_json *root,
                                   struct cs_error *error) {
-    const struct cs_json *values = root ? cs_json_find(root, "x-extreme") : NULL;
-    const struct cs_json *seconds = values ? cs_json_find(values, "seconds") : NULL;
-    const struct cs_json *dt = values ? cs_json_find(values, "dt") : NULL;
-    if (!seconds || cs_json_kind_of(seconds) != CS_JSON_NUMBER ||
-        !(cs_json_number(seconds) > 0) || (dt && cs_json_kind_of(dt) != CS_JSON_NUMBER))
+    const struct cs_json *values = cs_json_find(root, "x-extreme");
+    const struct cs_json *seconds = cs_json_find_kind(values, "seconds", CS_JSON_NUMBER);
+    const struct cs_json *dt = cs_json_find(values, "dt");
+    if (!seconds || !(cs_json_number(seconds) > 0) ||
+        (dt && cs_json_kind_of(dt) != CS_JSON_NUMBER))
         return cs_fail(error, CS_ERR_SCENE,
                        "%s: x-extreme: expected seconds above 0, and dt a "
                        "number",
@@ -97,8 +97,9 @@ static enum cs_status take_values(struct cs_extreme_scene *scene, const struct c
     scene->dt = dt ? cs_json_number(dt) : 0;
     /* no class may be left out: what is not expected could never fail */
     for (int c = 0; c < CS_CLASSES; c++) {
-        const struct cs_json *expected = cs_json_find(values, cs_class_names[c]);
-        if (!expected || cs_json_kind_of(expected) != CS_JSON_TEXT)
+        const struct cs_json *expected =
+            cs_json_find_kind(values, cs_class_names[c], CS_JSON_TEXT);
+        if (!expected)
             return cs_fail(error, CS_ERR_SCENE, "%s: x-extreme.%s: expected a text",
                            scene->path, cs_class_names[c]);
         snprintf(scene->expected[c], sizeof scene->expected[c], "%s", cs_json_text(expected));

@@ -129,11 +129,7 @@ static enum cs_status distribute(struct cs_stability *map, struct cs_error *erro
                          .progress_ctx = map,
                          .stop = map->settings->session.run.stop}};
     work.workers.ctx = &work;
-    work.workers.ticks = cs_process_pool_shared_alloc(sizeof *work.workers.ticks, error);
-    if (work.workers.ticks)
-        cs_process_pool_run(&work.workers, error);
-    cs_process_pool_shared_free(work.workers.ticks, sizeof *work.workers.ticks);
-    return error->status;
+    return cs_process_pool_run(&work.workers, error);
 }
 
 /* under the name that was given, or its own: dt is what the map varies */
@@ -242,12 +238,11 @@ enum cs_status cs_stability_run(struct cs_stability *map,
                                                              : "has no option dt");
     if (name_series(map, error) || cs_session_build(&map->session, error) ||
         lay_out(map, error) || cs_journal_open(map, error) || distribute(map, error) ||
-        check_references(map, error)) {
-        cs_journal_close(map, false);
+        check_references(map, error))
         return error->status;
-    }
     map->is_complete = is_complete(map);
-    cs_journal_close(map, map->is_complete);
+    if (map->is_complete)
+        cs_journal_remove(map);
     map->wall = cs_clock_wall() - begin;
     return CS_OK;
 }

@@ -24,17 +24,15 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
         .verdict =
             cs_stability_judge(&trial, &reference->run, asked.seconds >= reference->seconds),
         .drift = (double)NAN,
-        .time = trial.end_time,
+        .time = trial.result.time,
         .particles = trial.speed_excess.particles,
         .crossings =
             trial.crossings.is_counted ? (double)trial.crossings.max_count : (double)NAN,
     };
     /* drift compares the energies at the end, which both runs must have reached */
-    if (trial.outcome == CS_RUNNING && !trial.failed && asked.seconds >= reference->seconds)
+    if (trial.result.outcome == CS_RUNNING && asked.seconds >= reference->seconds)
         cell->drift = cs_stability_drift(&trial, &reference->run);
     /* the time that is told is that of the first sign, not that of the end */
-    if (trial.outcome == CS_UNBOUNDED || trial.outcome == CS_NOT_FINITE)
-        cell->time = trial.blow_up.time;
     if (cell->verdict == CS_STABILITY_GLOBAL && trial.exceeded_limit)
         cell->time = trial.exceeded_time;
     else if (cell->verdict == CS_STABILITY_LOCAL)

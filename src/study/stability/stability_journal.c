@@ -1,21 +1,20 @@
 /* Appends what is found of a map to a file, and reads it back. */
 #include "study/stability/stability_journal.h"
 
-#include "base/file.h"
 #include "base/hash.h"
 #include "scene/file/scene_hash.h"
 
+#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { FILE_BYTES_MAX = 1 << 30 };
+#define ENDING ".partial"
+
 enum kind { REFERENCE, CELL, BORDER };
 
-/* All records are of one size: one that was cut off, or is of another map, is passed over. */
+/* One that is of another map is passed over. */
 struct record {
     char key[CS_HASH_DIGITS];
     uint32_t kind, column, row;
@@ -68,55 +67,41 @@ static void take(struct cs_stability *map, const struct record *record) {
 }
 
 static enum cs_status read_back(struct cs_stability *map, struct cs_error *error) {
-    char *bytes;
-    size_t length;
-    struct cs_error unread = {0};
-    struct record *record = malloc(sizeof *record);
-    if (!record)
-        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the records of a map");
-    if (!cs_file_read(map->journal.path, FILE_BYTES_MAX, &bytes, &length, &unread)) {
-        for (size_t at = 0; at + sizeof *record <= length; at += sizeof *record) {
-            memcpy(record, bytes + at, sizeof *record);
-            take(map, record);
-        }
-        free(bytes);
-        // what was cut off is taken away, or all that follows would be out of step
-        if (length % sizeof *record &&
-            truncate(map->journal.path, (off_t)(length - length % sizeof *record)))
-            cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", map->journal.path,
-                    strerror(errno));
+    struct cs_rows rows;
+    struct record record;
+    if (cs_rows_open(&rows, map->journal.table.path, sizeof record, error))
+        return error->status;
+    for (const char *row; (row = cs_rows_next(&rows));) {
+        memcpy(&record, row, sizeof record);
+        take(map, &record);
     }
-    free(record);
-    return error->status;
+    cs_rows_close(&rows);
+    return CS_OK;
 }
 
 enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error) {
-    struct cs_journal *journal = &map->journal;
-    const char *folder = map->settings->folder;
-    char name[CS_SERIES_BYTES];
-    journal->descriptor = -1;
-    if (!folder)
+    struct cs_row_table *table = &map->journal.table;
+    char name[CS_SERIES_BYTES], file[CS_SERIES_BYTES + sizeof ENDING];
+    if (!map->settings->folder)
         return CS_OK;
     cs_series_file_name(map->series, name);
-    snprintf(journal->path, sizeof journal->path, "%s/%s.partial", folder, name);
-    if (cs_folder_create(folder, error) || make_key(map, journal->key, error) ||
-        read_back(map, error))
-        return error->status;
-    journal->descriptor = open(journal->path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-    if (journal->descriptor < 0)
-        cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", journal->path, strerror(errno));
+    snprintf(file, sizeof file, "%s%s", name, ENDING);
+    if (!make_key(map, map->journal.key, error) &&
+        !cs_row_table_open(table, map->settings->folder, file, file, sizeof(struct record),
+                           error) &&
+        !cs_row_table_lock(table, error)) {
+        read_back(map, error);
+        cs_row_table_unlock(table);
+    }
     return error->status;
 }
 
-/* In one call: nothing of another process comes in between. */
 static enum cs_status append(const struct cs_stability *map, struct record *record,
                              struct cs_error *error) {
-    if (map->journal.descriptor < 0)
+    if (!*map->journal.table.path)
         return CS_OK;
     memcpy(record->key, map->journal.key, sizeof record->key);
-    if (write(map->journal.descriptor, record, sizeof *record) != sizeof *record)
-        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", map->journal.path, strerror(errno));
-    return error->status;
+    return cs_row_table_append(&map->journal.table, record, sizeof *record, error);
 }
 
 enum cs_status cs_journal_append_reference(const struct cs_stability *map, uint32_t column,
@@ -140,10 +125,45 @@ enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32
     return append(map, &record, error);
 }
 
-void cs_journal_close(struct cs_stability *map, bool complete) {
-    if (map->journal.descriptor > 0)
-        close(map->journal.descriptor);
-    map->journal.descriptor = -1;
-    if (complete && *map->journal.path)
-        unlink(map->journal.path);
+void cs_journal_remove(const struct cs_stability *map) {
+    if (*map->journal.table.path)
+        unlink(map->journal.table.path);
+}
+
+static bool is_journal(const char *name) {
+    const size_t length = strlen(name);
+    return length >= sizeof ENDING && !strcmp(name + length + 1 - sizeof ENDING, ENDING);
+}
+
+/* Records say themselves what they are of: those of two files may stand behind each other. */
+static enum cs_status append_file(const char *folder, const char *name, const char *out,
+                                  struct cs_error *error) {
+    struct cs_row_table table;
+    struct cs_rows rows;
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (!cs_row_table_open(&table, out, name, name, sizeof(struct record), error) &&
+        !cs_rows_open(&rows, path, sizeof(struct record), error)) {
+        cs_row_table_append(&table, rows.bytes,
+                            rows.length - rows.length % sizeof(struct record), error);
+        cs_rows_close(&rows);
+    }
+    return error->status;
+}
+
+enum cs_status cs_journal_merge(const char *const *folders, uint32_t n_folders, const char *out,
+                                uint32_t *n, struct cs_error *error) {
+    *n = 0;
+    for (uint32_t k = 0; k < n_folders && !error->status; k++) {
+        DIR *directory = opendir(folders[k]);
+        if (!directory)
+            return cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", folders[k],
+                           strerror(errno));
+        for (const struct dirent *entry; !error->status && (entry = readdir(directory));)
+            if (is_journal(entry->d_name) &&
+                !append_file(folders[k], entry->d_name, out, error))
+                ++*n;
+        closedir(directory);
+    }
+    return error->status;
 }

@@ -17,7 +17,12 @@ enum cs_status cs_journal_append_cell(const struct cs_stability *map, uint32_t c
 enum cs_status cs_journal_append_boundary(const struct cs_stability *map, uint32_t column,
                                           struct cs_error *error);
 
-/* Closes it; a map that is complete needs none. */
-void cs_journal_close(struct cs_stability *map, bool complete);
+/* A map that is complete needs none. */
+void cs_journal_remove(const struct cs_stability *map);
+
+/* Appends the journals of folders to those of the folder out; *n: journals. CS_ERR_FILE,
+ * CS_ERR_MEMORY. */
+enum cs_status cs_journal_merge(const char *const *folders, uint32_t n_folders, const char *out,
+                                uint32_t *n, struct cs_error *error);
 
 #endif

@@ -48,7 +48,7 @@ static bool run_once(struct cs_reference *reference,
     reference->smallest_limit = reference->start_limit;
     reference->gershgorin_limit = way->gershgorin;
     return !cs_sampled_run_execute(&reference->run, &asked, error) && !way->error->status &&
-           reference->run.outcome == CS_RUNNING && !reference->run.failed;
+           reference->run.result.outcome == CS_RUNNING;
 }
 
 static void run_reference(struct cs_reference *reference,
@@ -56,14 +56,13 @@ static void run_reference(struct cs_reference *reference,
                           struct way *way, struct cs_error *error) {
     for (int k = 0; k < MOST_HALVINGS && !reference->exists && !error->status; k++) {
         reference->exists = run_once(reference, settings, dt, way, error);
-        if (reference->run.outcome == CS_OVER_BUDGET)
+        if (reference->run.result.outcome == CS_OVER_BUDGET)
             break;
         dt /= 2;
     }
     if (!reference->exists)
         snprintf(reference->message, sizeof reference->message, "velocity-verlet: %.280s",
-                 reference->run.failed ? reference->run.message
-                                       : cs_outcome_text(reference->run.outcome));
+                 reference->run.result.message);
 }
 
 /* Growth that a run cannot show: from the perturbation to the length of a spring in its time.

@@ -2,6 +2,8 @@
  * JSON, and as a gnuplot script (cells coloured by verdict, theoretical limits drawn in). */
 #include "study/stability/stability_report.h"
 
+#include "base/json_writer.h"
+#include "base/table.h"
 #include "study/stability/contact_note.h"
 
 #include <math.h>
@@ -172,13 +174,6 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
 
 /* --- CSV and JSON --- */
 
-/* a number; an empty field for one that is not there */
-static void add_field(struct cs_text *out, double value) {
-    cs_text_add(out, ",");
-    if (isfinite(value))
-        cs_text_add_real(out, value);
-}
-
 /* the middle between two neighbours on a logarithmic scale, and as far beyond the ends; without
  * neighbours so many times the value */
 static double edge(double before, double here, double after, double alone) {
@@ -202,16 +197,16 @@ static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
     const double right = value_at(map, c + 1), below = r ? dt_at(map, r - 1) : 0;
     const double above = dt_at(map, r + 1);
     cs_text_add_real(out, value);
-    add_field(out, cell->dt);
+    cs_csv_add_number(out, cell->dt);
     cs_text_add(out, ",%s,%d", cs_stability_word(cell->verdict), (int)cell->verdict);
-    add_field(out, cell->drift);
-    add_field(out, cell->time);
+    cs_csv_add_number(out, cell->drift);
+    cs_csv_add_number(out, cell->time);
     cs_text_add(out, ",%u", cell->particles);
-    add_field(out, edge(left, value, right, 1 / ALONE));
-    add_field(out, edge(right, value, left, ALONE));
-    add_field(out, edge(below, cell->dt, above, 1 / ALONE));
-    add_field(out, edge(above, cell->dt, below, ALONE));
-    add_field(out, cell->crossings);
+    cs_csv_add_number(out, edge(left, value, right, 1 / ALONE));
+    cs_csv_add_number(out, edge(right, value, left, ALONE));
+    cs_csv_add_number(out, edge(below, cell->dt, above, 1 / ALONE));
+    cs_csv_add_number(out, edge(above, cell->dt, below, ALONE));
+    cs_csv_add_number(out, cell->crossings);
     cs_text_add(out, "\n");
 }
 
@@ -238,57 +233,46 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
         cs_text_add_real(out, column->value);
         /* 0 stands for no stable step, which no logarithmic scale shows */
         for (int k = 0; k < 4; k++)
-            add_field(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
-        add_field(out, mode->omega_squared > 0 ? sqrt(mode->omega_squared) : 0);
-        add_field(out, mode->damping_rate);
+            cs_csv_add_number(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
+        cs_csv_add_number(out, mode->omega_squared > 0 ? sqrt(mode->omega_squared) : 0);
+        cs_csv_add_number(out, mode->damping_rate);
         cs_text_add(out, ",%u", mode->particle);
-        add_field(out, mode->participation);
+        cs_csv_add_number(out, mode->participation);
         cs_text_add(out, "\n");
     }
-}
-
-static void add_member(struct cs_text *out, const char *before, double value) {
-    cs_text_add(out, "%s", before);
-    cs_text_add_real(out, value);
 }
 
 static void add_json_column(const struct cs_stability *map, uint32_t c, struct cs_text *out) {
     const struct cs_stability_column *column = map->columns + c;
     const struct cs_reference *reference = &column->reference;
     /* limits that do not exist are NAN or infinite, which are written as null */
-    add_member(out, "    {\"value\": ", column->value);
-    add_member(out, ", \"seconds\": ", reference->seconds);
-    add_member(out, ", \"border\": ", column->boundary);
-    add_member(out, ", \"worst_on_way\": ", reference->smallest_limit.dt);
-    add_member(out, ", \"at_start\": ", reference->start_limit.dt);
-    add_member(out, ", \"gershgorin\": ", reference->gershgorin_limit);
-    add_member(out, ", \"reference_step\": ", reference->run.mean_step);
-    cs_text_add(out, ", \"cells\": [");
+    cs_json_write(out,
+                  ",\n    {'value': %g, 'seconds': %g, 'border': %g, 'worst_on_way': %g, "
+                  "'at_start': %g, 'gershgorin': %g, 'reference_step': %g, 'cells': [",
+                  column->value, reference->seconds, column->boundary,
+                  reference->smallest_limit.dt, reference->start_limit.dt,
+                  reference->gershgorin_limit, reference->run.mean_step);
     for (uint32_t r = 0; r < map->n_rows; r++) {
         const struct cs_stability_cell *cell = column->cells + r;
-        add_member(out, r ? ",\n      {\"dt\": " : "\n      {\"dt\": ", cell->dt);
-        cs_text_add(out, ", \"verdict\": \"%s\"", cs_stability_word(cell->verdict));
-        add_member(out, ", \"energy_drift\": ", cell->drift);
-        add_member(out, ", \"time\": ", cell->time);
-        cs_text_add(out, ", \"particles\": %u", cell->particles);
-        add_member(out, ", \"crossings\": ", cell->crossings);
-        cs_text_add(out, "}");
+        cs_json_write(out,
+                      ",\n      {'dt': %g, 'verdict': %s, 'energy_drift': %g, 'time': %g, "
+                      "'particles': %u, 'crossings': %g}",
+                      cell->dt, cs_stability_word(cell->verdict), cell->drift, cell->time,
+                      cell->particles, cell->crossings);
     }
-    cs_text_add(out, "]}%s\n", c + 1 < map->n_columns ? "," : "");
+    cs_text_add(out, "]}");
 }
 
 void cs_stability_print_json(const struct cs_stability *map, struct cs_text *out) {
     const struct cs_stability_settings *settings = map->settings;
-    cs_text_add(out, "{\n  \"scene\": ");
-    cs_text_add_json(out, map->session.scene.path);
-    cs_text_add(out, ",\n  \"series\": \"%s\",\n  \"integrator\": \"%s\",\n", map->series,
-                map->integrator->name);
-    cs_text_add(out, "  \"axis\": \"%s\",\n", cs_axis_names[settings->axis]);
-    add_member(out, "  \"seconds\": ", settings->seconds);
-    cs_text_add(out, ",\n  \"columns\": [\n");
+    cs_json_write(out,
+                  "{\n  'scene': %s,\n  'series': %s,\n  'integrator': %s,\n  'axis': %s,\n"
+                  "  'seconds': %g,\n  'columns': [",
+                  map->session.scene.path, map->series, map->integrator->name,
+                  cs_axis_names[settings->axis], settings->seconds);
     for (uint32_t c = 0; c < map->n_columns; c++)
         add_json_column(map, c, out);
-    cs_text_add(out, "  ]\n}\n");
+    cs_text_add(out, "\n  ]\n}\n");
 }
 
 /* --- the diagram --- */

@@ -3,8 +3,8 @@
 #define CS_STABILITY_STATE_H
 
 #include "base/hash.h"
+#include "base/table.h"
 #include "sim/series.h"
-#include "study/shard.h"
 #include "study/stability/stability_axis.h"
 #include "study/stability/stability_boundary.h"
 
@@ -33,10 +33,10 @@ struct cs_stability_column {
     struct cs_stability_cell *cells; /* (rows), by rising dt; dt 0: not tried yet */
 };
 
-/* The file of an unfinished map; descriptor below 0: none. */
+/* The file of an unfinished map; an empty path: none. */
 struct cs_journal {
-    char path[4096], key[CS_HASH_DIGITS];
-    int descriptor;
+    struct cs_row_table table;
+    char key[CS_HASH_DIGITS];
 };
 
 struct cs_stability {

@@ -83,25 +83,15 @@ static void add_nodes(struct cs_bvh *tree, const uint32_t *groups, uint32_t n_gr
     add_nodes(tree, groups, n_groups, cut, end);
 }
 
-/* a cut leaves leaves of two items and more, but where groups end */
-static size_t nodes_max(size_t n, size_t n_groups) {
-    return n + 2 * n_groups + 1;
-}
-
-size_t cs_bvh_bytes(size_t n, size_t n_groups) {
-    return nodes_max(n, n_groups) * sizeof(struct cs_bvh_node) +
-           n * (sizeof(uint32_t) + sizeof(struct cs_swept_aabb)) +
-           CS_BVH_PAIRS_MAX * sizeof(struct cs_bvh_pair);
-}
-
 enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uint32_t *first,
                            uint32_t n_groups, struct cs_arena *arena, struct cs_error *error) {
     const uint32_t n = first[n_groups];
+    /* a cut leaves leaves of two items and more, but where groups end */
+    const size_t nodes_most = n + 2 * (size_t)n_groups + 1;
     *tree = (struct cs_bvh){.n = n};
     struct placed *placed = calloc(n ? n : 1, sizeof *placed);
     tree->items = cs_arena_alloc_array(arena, n, sizeof *tree->items, error);
-    tree->nodes =
-        cs_arena_alloc_array(arena, nodes_max(n, n_groups), sizeof *tree->nodes, error);
+    tree->nodes = cs_arena_alloc_array(arena, nodes_most, sizeof *tree->nodes, error);
     tree->boxes = cs_arena_alloc_array(arena, n, sizeof *tree->boxes, error);
     tree->jobs = cs_arena_alloc_array(arena, CS_BVH_PAIRS_MAX, sizeof *tree->jobs, error);
     if (!placed)

@@ -42,9 +42,6 @@ struct cs_bvh {
 enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uint32_t *first,
                            uint32_t n_groups, struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes of a tree over n items. */
-size_t cs_bvh_bytes(size_t n, size_t n_groups);
-
 /* Sets the boxes from tree->swept boxes, which the caller has filled, and shares the work out.
  */
 void cs_bvh_update(struct cs_bvh *tree, double reach);

@@ -32,29 +32,19 @@ static void list_nonadjacent(const struct cs_scene *scene, bool *apart) {
             apart[(size_t)a * n + b] = cs_scene_bodies_collide(scene, a, b, &friction);
 }
 
-static size_t pairs_of_bodies(const struct cs_scene *scene) {
-    const size_t n = cs_scene_surfaces(scene);
-    return cs_scene_crossings_by_pairs(scene) ? n * n : 0;
-}
-
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error) {
     struct cs_crossings *crossings = cs_arena_alloc(&system->arena, sizeof *crossings, error);
     if (error->status)
         return error->status;
     crossings->found =
         cs_arena_alloc_array(&system->arena, CS_BVH_PAIRS_MAX, sizeof *crossings->found, error);
-    const size_t pairs = pairs_of_bodies(system->scene);
-    if (pairs &&
-        (crossings->apart = cs_arena_alloc_array(&system->arena, pairs, sizeof(bool), error)))
+    const size_t n = cs_scene_surfaces(system->scene);
+    if (cs_scene_crossings_by_pairs(system->scene) &&
+        (crossings->apart = cs_arena_alloc_array(&system->arena, n * n, sizeof(bool), error)))
         list_nonadjacent(system->scene, crossings->apart);
     if (!error->status && !cs_representative_triangles_build(system, &crossings->parts, error))
         system->crossings = crossings;
     return error->status;
-}
-
-size_t cs_crossings_bytes(const struct cs_scene *scene) {
-    return sizeof(struct cs_crossings) + CS_BVH_PAIRS_MAX * sizeof(struct found) +
-           pairs_of_bodies(scene) * sizeof(bool) + cs_representative_triangles_bytes(scene);
 }
 
 /* One question to all pairs, and where the job at work puts its answer. */

@@ -16,9 +16,6 @@ struct cs_crossings;
 /* Makes system->crossings in the system's arena. CS_ERR_MEMORY. */
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error);
 
-/* Bytes for a scene, without their surfaces. */
-size_t cs_crossings_bytes(const struct cs_scene *scene);
-
 /* Counts the edges that go through triangles at x (3,n) and t: pairs of an edge and a triangle
  * without a particle in common, not both of obstacles, exactly as edge_triangle.h says. The
  * same on every machine and for every number of threads. */

@@ -3,7 +3,6 @@
 
 #include "base/vector.h"
 #include "model/contact/surface_points.h"
-#include "scene/body_pairs.h"
 
 #include <stdlib.h>
 
@@ -163,19 +162,6 @@ enum cs_status cs_representative_triangles_build(struct cs_system *system,
     free(centres);
     free(work);
     return error->status;
-}
-
-size_t cs_representative_triangles_bytes(const struct cs_scene *scene) {
-    const uint32_t n_bodies = cs_scene_surfaces(scene);
-    size_t n = 0, edges = 0;
-    for (uint32_t b = 0; b < n_bodies; b++) {
-        const struct cs_surface_counts size = cs_surface_counts_of(scene, b);
-        // a rope is all edges
-        n += size.triangles ? size.triangles : size.edges;
-        edges += size.edges;
-    }
-    const size_t points = cs_surfaces_points(scene);
-    return (4 * n + 2 + edges + points) * sizeof(uint32_t) + cs_bvh_bytes(n, n_bodies);
 }
 
 struct placing {

@@ -26,9 +26,6 @@ enum cs_status cs_representative_triangles_build(struct cs_system *system,
                                                  struct cs_representative_triangles *parts,
                                                  struct cs_error *error);
 
-/* Bytes for the bodies of a scene, without their surfaces. */
-size_t cs_representative_triangles_bytes(const struct cs_scene *scene);
-
 /* Sets where the parts are during the move from x0 to x1 (3,n_points); x1 NULL: they stay at
  * x0. Then cs_bvh_visit over parts->tree has all pairs that may come as near as reach. */
 void cs_representative_triangles_update(struct cs_representative_triangles *parts,

@@ -1,8 +1,6 @@
 /* How the triangles of surfaces hang together. */
 #include "model/contact/narrow_phase/feature_weights.h"
 
-#include "scene/body_pairs.h"
-
 static uint32_t corner_opposite(const uint32_t *corners, const uint32_t *edge) {
     uint32_t k = 0;
     while (k < 2 && (corners[k] == edge[0] || corners[k] == edge[1]))
@@ -60,14 +58,4 @@ enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
         features->vertex_edges[i + 1] += features->vertex_edges[i];
     share_corners(features, inner);
     return CS_OK;
-}
-
-size_t cs_feature_weights_bytes(const struct cs_scene *scene) {
-    size_t bytes = sizeof(uint32_t);
-    for (uint32_t b = 0; b < cs_scene_surfaces(scene); b++) {
-        const struct cs_surface_counts size = cs_surface_counts_of(scene, b);
-        bytes += 3 * size.triangles * sizeof(uint32_t) +
-                 size.points * (sizeof(double) + 2 * sizeof(uint32_t));
-    }
-    return bytes;
 }

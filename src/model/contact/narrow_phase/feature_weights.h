@@ -20,9 +20,6 @@ enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
                                        const struct cs_surfaces *surfaces,
                                        struct cs_arena *arena, struct cs_error *error);
 
-/* Bytes that it takes, for a plan. */
-size_t cs_feature_weights_bytes(const struct cs_scene *scene);
-
 /* A feature in range, as the first rim of its triangle. */
 struct cs_weighted_feature {
     uint32_t points[4];

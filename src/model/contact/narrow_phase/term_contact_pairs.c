@@ -1,24 +1,13 @@
 /* Contact of bodies with themselves, each other and meshes: the pairs of model/pair as a term.
  */
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "model/contact/surface_points.h"
 #include "model/force/term.h"
 #include "scene/body_pairs.h"
 
-static size_t bytes_of(const struct cs_scene *scene) {
-    const size_t bodies = cs_scene_surfaces(scene);
-    return cs_surface_points_bytes(scene) + cs_feature_weights_bytes(scene) +
-           sizeof(struct cs_pairs) +
-           cs_surfaces_points(scene) * sizeof(struct cs_point_motion) +
-           bodies * bodies * sizeof(struct cs_body_pair_params);
-}
-
-/* what depends on how much is in range comes on top */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool built = cs_scene_has_body_contact(scene);
     return (struct cs_plan_row){
         .built = built,
-        .bytes = built ? bytes_of(scene) : 0,
         .reason = built ? "self_contact, pairs of bodies, or a mesh collider" : NULL};
 }
 
@@ -67,6 +56,8 @@ const struct cs_term cs_term_pairs = {
     .add_jvp = add,
     .energy = energy,
     .energy_kind = CS_ENERGY_OTHER,
+    .energy_column = "other",
+    .work_column = "friction",
     .prepare_matrix = prepare_matrix,
     .add_blocks = add_blocks,
     .add_matrix_product = add_product,

@@ -1,0 +1,56 @@
+/* sundials.h - a library of SUNDIALS and the state of a method on it.
+ *
+ * Steps, the passing of frames and the linear solver stand on it, each in its own file.
+ */
+#ifndef SUNDIALS_H
+#define SUNDIALS_H
+
+#include "sundials_vector.h"
+
+#include <sundials/sundials_context.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_version.h>
+
+struct sundials;
+
+/* The calls of a library; all return its codes, of which those below 0 are failures. */
+struct sundials_library {
+    const char *name;
+    char *(*code_name)(long code); /* to be freed */
+    int (*set_stop)(void *memory, sunrealtype t);
+    int (*evolve)(void *memory, sunrealtype t, N_Vector y, sunrealtype *reached, int task);
+    int one_step;   /* the task */
+    bool can_retry; /* from a right-hand side that fails at a stage: by a smaller step */
+    /* the k-th derivative of the last step's interpolant at t; NULL: never asked */
+    int (*interpolate)(void *memory, sunrealtype t, int k, N_Vector y);
+    /* where the nonlinear solver stands, and its g: see sundials_solver.c */
+    int (*system)(void *memory, double *t, N_Vector *y, double *g);
+    /* the state was moved at t after a step of dt; 0: from outside, forget all */
+    int (*on_state_changed)(struct sundials *self, double t, double dt);
+};
+
+struct sundials {
+    const struct cs_host *host;
+    const struct sundials_library *library;
+    SUNContext context; /* owned */
+    void *memory;       /* owned by the method */
+    struct sundials_vectors vectors;
+    N_Vector state;        /* wraps the host's x and v, unless steps pass frames */
+    N_Vector interpolated; /* that wraps them then; NULL: steps end at frames */
+    double t_internal;     /* s, where the state is then */
+    struct _generic_SUNLinearSolver solver;
+    struct _generic_SUNLinearSolver_Ops solver_ops;
+    double linear_rtol; /* relative residual of the linear solves */
+    double *b;          /* (3,n), right-hand side of the reduced system */
+    int64_t max_steps;  /* in a frame */
+    double
+        *y_before; /* (6n) the state before the step; NULL: no step is refused for its move */
+    bool equal_steps;    /* without error control: no step is cut but to meet a frame */
+    enum cs_step status; /* of the host's solver within the running call */
+    char message[256];   /* the library's last */
+};
+
+/* The library's code as the method's failure, unless the host's solver has failed before. */
+enum cs_step sundials_fail(struct sundials *self, int code, double t);
+
+#endif

@@ -1,0 +1,186 @@
+/* Prints and cuts rows of tables; reads and appends them, one process at a time. */
+#include "base/table.h"
+
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+enum { FILE_BYTES_MAX = 1 << 30 };
+
+static void add_comma(struct cs_text *out) {
+    if (out->length && out->bytes[out->length - 1] != '\n')
+        cs_text_add(out, ",");
+}
+
+void cs_csv_add_text(struct cs_text *out, const char *text) {
+    add_comma(out);
+    if (!strpbrk(text, ",\"\r\n")) {
+        cs_text_add(out, "%s", text);
+        return;
+    }
+    cs_text_add(out, "\"");
+    for (; *text; text++)
+        cs_text_add(out, "%s%c", *text == '"' ? "\"" : "",
+                    *text == '\n' || *text == '\r' ? ' ' : *text);
+    cs_text_add(out, "\"");
+}
+
+void cs_csv_add_number(struct cs_text *out, double value) {
+    add_comma(out);
+    if (isfinite(value))
+        cs_text_add_real(out, value);
+}
+
+void cs_columns_print_names(const struct cs_column *columns, uint32_t n, struct cs_text *out) {
+    for (uint32_t c = 0; c < n; c++)
+        cs_csv_add_text(out, columns[c].name);
+    cs_text_add(out, "\n");
+}
+
+void cs_columns_print_row(const struct cs_column *columns, uint32_t n, const void *row,
+                          struct cs_text *out) {
+    for (uint32_t c = 0; c < n; c++) {
+        const char *member = (const char *)row + columns[c].offset;
+        double value;
+        if (columns[c].type == CS_CELL_NUMBER) {
+            memcpy(&value, member, sizeof value);
+            cs_csv_add_number(out, value);
+        } else if (columns[c].type == CS_CELL_FLAG)
+            cs_csv_add_text(out, *(const bool *)member ? "1" : "0");
+        else
+            cs_csv_add_text(out, member);
+    }
+    cs_text_add(out, "\n");
+}
+
+void cs_column_parse(const struct cs_column *column, void *row, const char *field) {
+    char *member = (char *)row + column->offset;
+    double value = (double)NAN;
+    if (column->type == CS_CELL_TEXT)
+        snprintf(member, column->size, "%s", field);
+    else if (column->type == CS_CELL_FLAG)
+        *(bool *)member = !strcmp(field, "1");
+    else {
+        cs_parse_real(field, &value);
+        memcpy(member, &value, sizeof value);
+    }
+}
+
+uint32_t cs_csv_cut(char *line, char separator, char **fields, uint32_t max) {
+    for (uint32_t n = 0;; line++) {
+        /* in place: a field without its quotes is never longer */
+        char *out = line;
+        const bool quoted = *line == '"' && separator == ',';
+        if (n < max)
+            fields[n++] = out;
+        if (quoted)
+            line++;
+        while (*line && (quoted ? *line != '"' || line[1] == '"' : *line != separator)) {
+            if (quoted && *line == '"')
+                line++;
+            *out++ = *line++;
+        }
+        if (quoted && *line == '"')
+            line++;
+        const char end = *line;
+        *out = 0;
+        if (end != separator)
+            return n;
+    }
+}
+
+enum cs_status cs_row_table_open(struct cs_row_table *table, const char *folder,
+                                 const char *name, const char *lock, size_t row_bytes,
+                                 struct cs_error *error) {
+    *table = (struct cs_row_table){.row_bytes = row_bytes};
+    snprintf(table->path, sizeof table->path, "%s/%s", folder, name);
+    snprintf(table->lock_path, sizeof table->lock_path, "%s/%s", folder, lock);
+    return cs_folder_create(folder, error);
+}
+
+/* The descriptor of a lock that is held; below 0: a failure. */
+static int take_lock(const char *path, struct cs_error *error) {
+    const int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock < 0)
+        cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", path, strerror(errno));
+    // a signal interrupts the wait, not the lock: who is told to stop looks at that once it is
+    // held, and no owner waits long. A file system without locks has no owners.
+    while (lock >= 0 && flock(lock, LOCK_EX) && errno == EINTR)
+        ;
+    return lock;
+}
+
+enum cs_status cs_row_table_lock(struct cs_row_table *table, struct cs_error *error) {
+    const int lock = take_lock(table->lock_path, error);
+    table->lock = lock < 0 ? 0 : lock;
+    return error->status;
+}
+
+void cs_row_table_unlock(struct cs_row_table *table) {
+    if (table->lock > 0)
+        close(table->lock);
+    table->lock = 0;
+}
+
+/* Where the last whole row ends; below 0: errno says why that cannot be found. */
+static off_t end_of_rows(int file, size_t row_bytes) {
+    off_t end = lseek(file, 0, SEEK_END);
+    if (end > 0 && row_bytes)
+        return end - end % (off_t)row_bytes;
+    for (char last; end > 0 && pread(file, &last, 1, end - 1) == 1 && last != '\n';)
+        end--;
+    return end;
+}
+
+enum cs_status cs_row_table_append(const struct cs_row_table *table, const void *rows,
+                                   size_t length, struct cs_error *error) {
+    const int lock = take_lock(table->lock_path, error);
+    if (lock < 0)
+        return error->status;
+    const int file = open(table->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const off_t end = file >= 0 ? end_of_rows(file, table->row_bytes) : -1;
+    if (end < 0 || ftruncate(file, end) || pwrite(file, rows, length, end) != (ssize_t)length)
+        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", table->path, strerror(errno));
+    if (file >= 0 && close(file) && !error->status)
+        cs_fail(error, CS_ERR_FILE, "cannot write %s: %s", table->path, strerror(errno));
+    close(lock);
+    return error->status;
+}
+
+enum cs_status cs_rows_open(struct cs_rows *rows, const char *path, size_t row_bytes,
+                            struct cs_error *error) {
+    *rows = (struct cs_rows){.row_bytes = row_bytes};
+    if (cs_file_read(path, FILE_BYTES_MAX, &rows->bytes, &rows->length, error))
+        return error->status;
+    for (size_t k = 0; k < rows->length; k++)
+        rows->n += rows->bytes[k] == '\n';
+    return CS_OK;
+}
+
+char *cs_rows_next(struct cs_rows *rows) {
+    const size_t left = rows->length - rows->at;
+    char *row = rows->bytes + rows->at;
+    size_t length = rows->row_bytes;
+    if (!length) {
+        char *end = left ? memchr(row, '\n', left) : NULL;
+        if (!end)
+            return NULL;
+        *end = 0;
+        length = (size_t)(end - row) + 1;
+    }
+    if (length > left)
+        return NULL;
+    rows->at += length;
+    return row;
+}
+
+void cs_rows_close(struct cs_rows *rows) {
+    free(rows->bytes);
+    *rows = (struct cs_rows){0};
+}

@@ -1,0 +1,110 @@
+/* Holds the list of a run's outputs and walks it. */
+#include "cli/run/run_outputs.h"
+
+#include "cli/manifest.h"
+#include "io/file_conflicts.h"
+#include "study/provenance_write.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* In the order in which a frame is handed to them: the report's row is there before a picture
+ * notes in it what it shows. */
+static const struct cs_run_output *const outputs[] = {
+    &cs_run_output_trail,  &cs_run_output_json,   &cs_run_output_watch,
+    &cs_run_output_ledger, &cs_run_output_states, &cs_run_output_pictures,
+    &cs_run_output_export, &cs_run_output_hash,
+};
+enum { OUTPUTS = sizeof outputs / sizeof *outputs };
+_Static_assert((int)OUTPUTS <= (int)CS_RUN_OUTPUTS_MAX,
+               "a run has no room for so many outputs");
+
+/* its file or folder; NULL: none */
+static const char *path_of(const struct cs_job *job, const struct cs_run_output *output) {
+    const char *path = NULL;
+    if (output->option)
+        memcpy(&path, (const char *)job->settings + output->path, sizeof path);
+    return path && !output->is_ours && !strcmp(path, "-") ? NULL : path;
+}
+
+static void claim_input(void *ctx, const char *path, const char *what) {
+    cs_file_conflicts_input(ctx, path, what);
+}
+
+static void claim_inputs(const struct cs_session *session,
+                         struct cs_file_conflicts *conflicts) {
+    cs_scene_each_file(&session->scene, claim_input, conflicts);
+    for (uint32_t k = 0; k < session->settings.n_plugins; k++)
+        cs_file_conflicts_input(conflicts, session->settings.plugins[k], "a module");
+}
+
+static enum cs_status check_claims(const struct cs_job *job, struct cs_error *error) {
+    struct cs_file_conflicts *conflicts = calloc(1, sizeof *conflicts);
+    if (!conflicts)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the list of files");
+    claim_inputs(&job->session, conflicts);
+    for (int k = 0; k < OUTPUTS && !error->status; k++) {
+        const char *path = path_of(job, outputs[k]);
+        if (path && outputs[k]->is_ours)
+            cs_file_conflicts_folder(conflicts, path, outputs[k]->is_ours, outputs[k]->option,
+                                     error);
+        else if (path)
+            cs_file_conflicts_output(conflicts, path, outputs[k]->option, error);
+    }
+    free(conflicts);
+    return error->status;
+}
+
+enum cs_status cs_run_outputs_check(const struct cs_job *job, struct cs_error *error) {
+    if (check_claims(job, error) || job->settings->overwrite || job->settings->resume)
+        return error->status;
+    /* the pictures of an earlier run are named before other files of it */
+    cs_output_check(job->settings->folder, cs_output_is_result, error);
+    for (int k = 0; k < OUTPUTS && !error->status; k++) {
+        const char *path = path_of(job, outputs[k]);
+        if (path && outputs[k]->is_ours)
+            cs_output_check(path, outputs[k]->is_ours, error);
+        else if (path)
+            cs_output_check_file(path, error);
+    }
+    return error->status;
+}
+
+enum cs_status cs_run_outputs_at(struct cs_job *job, enum cs_run_stage stage,
+                                 struct cs_error *error) {
+    for (int k = 0; k < OUTPUTS && (!error->status || stage == CS_RUN_END); k++)
+        if (outputs[k]->at[stage])
+            outputs[k]->at[stage](job, error);
+    return error->status;
+}
+
+enum cs_status cs_run_outputs_open(struct cs_job *job, struct cs_error *error) {
+    const struct cs_job_settings *settings = job->settings;
+    const enum cs_output_earlier earlier = settings->resume      ? CS_OUTPUT_KEEP
+                                           : settings->overwrite ? CS_OUTPUT_REMOVE
+                                                                 : CS_OUTPUT_REFUSE;
+    const struct cs_output *other = NULL;
+    cs_run_outputs_at(job, CS_RUN_OPEN, error);
+    for (int k = 0; k < OUTPUTS && !error->status; k++) {
+        const char *path = path_of(job, outputs[k]);
+        if (!path || !outputs[k]->is_ours)
+            continue;
+        cs_output_lock_folders(&job->folders[k], other, path, outputs[k]->is_ours, earlier,
+                               error);
+        other = &job->folders[k];
+    }
+    return error->status;
+}
+
+void cs_run_outputs_record(struct cs_job *job, struct cs_serialiser *record) {
+    for (int k = 0; k < OUTPUTS; k++)
+        if (outputs[k]->record)
+            outputs[k]->record(job, record);
+}
+
+enum cs_status cs_run_outputs_sign(const struct cs_job *job, struct cs_error *error) {
+    for (int k = 0; k < OUTPUTS && !error->status; k++)
+        if (job->folders[k].folder_lock)
+            cs_manifest_write(path_of(job, outputs[k]), error);
+    return error->status;
+}

@@ -1,0 +1,67 @@
+/* The sphere. */
+#include "scene/shape_core.h"
+#include "scene/table_rows.h"
+
+#include <string.h>
+
+/* parts of an edge of the icosahedron that its triangles are made from */
+enum { DETAIL = 8 };
+
+static const struct cs_option sphere_rows[] = {
+    VECTOR(struct cs_sphere, centre, 3, "m", NULL, -BIG, BIG, "centre"),
+    REAL(struct cs_sphere, radius, "m", 0.3, 1e-9, BIG, "radius"),
+};
+const struct cs_table cs_sphere_keys = {ROWS(sphere_rows), .size = sizeof(struct cs_sphere),
+                                        .optional = true};
+
+static void pose(const struct cs_collider *collider, struct cs_posed_collider *out) {
+    out->radius = collider->sphere.radius;
+    memcpy(out->centre, collider->sphere.centre, sizeof out->centre);
+}
+
+static double distance(const struct cs_posed_collider *sphere, double skin, const double p[3],
+                       double n[3]) {
+    return cs_core_from_point(p, sphere->centre, n) - sphere->radius - skin;
+}
+
+/* exact: there are no features to blend */
+static double smooth(const struct cs_posed_collider *sphere, const double p[3], double g[3],
+                     double h[6]) {
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    const double length = cs_core_from_point(p, sphere->centre, g);
+    memset(h, 0, 6 * sizeof *h);
+    for (int e = 0; e < 6 && length > 0; e++)
+        h[e] = ((row[e] == column[e]) - g[row[e]] * g[column[e]]) / length;
+    return length - sphere->radius;
+}
+
+/* the line comes nearer to the centre than the radius */
+static bool meets_line(const struct cs_posed_collider *sphere, const double from[3],
+                       const double way[3], double share) {
+    const double to[3] = {sphere->centre[0] - from[0], sphere->centre[1] - from[1],
+                          sphere->centre[2] - from[2]};
+    const double at = fmin(fmax(cs_vec3_dot(to, way) / cs_vec3_dot(way, way), 0), share);
+    double squared = 0;
+    for (int c = 0; c < 3; c++)
+        squared += (at * way[c] - to[c]) * (at * way[c] - to[c]);
+    return squared < sphere->radius * sphere->radius;
+}
+
+static enum cs_status triangles(const struct cs_posed_collider *sphere, struct cs_trimesh *mesh,
+                                struct cs_arena *arena, struct cs_error *error) {
+    if (cs_trimesh_make(mesh, CS_MESH_SPHERE, DETAIL, arena, error))
+        return error->status;
+    for (size_t k = 0; k < 3 * (size_t)mesh->n; k++)
+        mesh->positions[k] *= 2 * sphere->radius;
+    return CS_OK;
+}
+
+const struct cs_shape cs_shape_sphere = {
+    .bounds = CS_BOUNDS_SPHERE,
+    .pose = pose,
+    .distance = distance,
+    .smooth = smooth,
+    .meets_line = meets_line,
+    .chord_depth = cs_core_chord_depth,
+    .triangles = triangles,
+};

@@ -1,0 +1,46 @@
+/* Steps a run from frame to frame, and says how it ended. */
+#include "study/follow.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdio.h>
+
+bool cs_follow_next(struct cs_follow *follow, struct cs_error *error) {
+    struct cs_run *run = follow->run;
+    const uint32_t from = run->frame, every = follow->every;
+    const uint64_t stop = every ? ((uint64_t)(from / every) + 1) * every : UINT64_MAX;
+    const double cpu = cs_clock_cpu(), wall = cs_clock_wall();
+    while (run->frame < stop && run->frame < follow->last && run->outcome == CS_RUNNING &&
+           !error->status)
+        cs_run_frame(run, error);
+    follow->cpu += cs_clock_cpu() - cpu;
+    follow->wall += cs_clock_wall() - wall;
+    return run->frame == stop && run->outcome == CS_RUNNING && !error->status;
+}
+
+enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted,
+                               struct cs_error *error) {
+    if (run->outcome == CS_INTERRUPTED)
+        cs_fail(error, CS_ERR_INTERRUPT, "interrupted%s", interrupted);
+    return error->status;
+}
+
+enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupted,
+                                struct cs_run_result *result, struct cs_error *error) {
+    const bool failed = error->status == CS_ERR_MODULE;
+    *result = (struct cs_run_result){
+        .outcome = failed ? CS_FAILED : run->outcome,
+        .reached = run->t,
+        .time = cs_outcome_is_blow_up(run->outcome) ? run->blow_up.time : run->t};
+    snprintf(result->message, sizeof result->message, "%s",
+             failed ? error->message : cs_outcome_text(run->outcome));
+    if (failed)
+        *error = (struct cs_error){0};
+    return cs_follow_check(run, interrupted, error);
+}
+
+double cs_follow_frames(const struct cs_scene *scene, double seconds) {
+    // a product that is whole but for rounding takes no frame more
+    return ceil(seconds * scene->time.fps * (1 - 1e-9));
+}

@@ -1,0 +1,44 @@
+/* follow.h - the loop over the frames of a run, and how the run ended.
+ *
+ *   struct cs_follow follow = {.run = &session.run, .last = frames, .every = 1};
+ *   while (cs_follow_next(&follow, error))
+ *       ...                          here follow.run stands at the end of a frame
+ *   cs_follow_result(&follow, "", &result, error);
+ */
+#ifndef CS_FOLLOW_H
+#define CS_FOLLOW_H
+
+#include "sim/run.h"
+
+/* A begun run on its way to a frame. */
+struct cs_follow {
+    struct cs_run *run; /* borrowed */
+    double last;        /* the frame to stop at */
+    uint32_t every;     /* stops at multiples of it on the way; 0: at none */
+    double cpu, wall;   /* s, out: of all steps, without what is done between them */
+};
+
+/* Steps to the next multiple of `every`, or to the last frame. Returns false if no such
+ * multiple was reached: at the last frame, after the end of the run, and after a failure. */
+bool cs_follow_next(struct cs_follow *follow, struct cs_error *error);
+
+/* How a run ended. */
+struct cs_run_result {
+    enum cs_outcome outcome; /* CS_RUNNING: at its last frame; CS_FAILED: the method gave up */
+    double reached;          /* s, of the last frame */
+    double time;             /* s, of the blow-up if there was one, else as reached */
+    char message[1024];      /* why the method gave up, else the outcome as text */
+};
+
+/* Fills the result. A method that gave up is a result, and *error is cleared. An interrupted
+ * run is CS_ERR_INTERRUPT: "interrupted" followed by the text. Other errors stay. */
+enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupted,
+                                struct cs_run_result *result, struct cs_error *error);
+/* The same of a run whose method must not give up: its failure stays an error. */
+enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted,
+                               struct cs_error *error);
+
+/* Whole frames that cover a time in s. */
+double cs_follow_frames(const struct cs_scene *scene, double seconds);
+
+#endif

@@ -1,0 +1,139 @@
+/* Methods by their traits, and the exceptions of single tests. */
+#include "methods.h"
+
+#include "sim/registry.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Options beside the query's, or in place of them; NULL: the method is left out. */
+static const struct {
+    const char *test, *method, *options, *reason;
+} exceptions[] = {
+    {"bounce", "averaged-euler", NULL, "gains energy without damping"},
+    {"bounce", "explicit-euler", NULL, "gains energy without damping"},
+    {"bounce", "midpoint", NULL, "gains energy without damping"},
+    {"box", "fast-mass-spring", "iterations=30", "by then its passes have settled"},
+    {"box", "xpbd", "iterations=30", "by then its passes have settled"},
+    {"crossings", "averaged-euler", "dt=1e-3", "gains energy at longer steps"},
+    {"crossings", "explicit-euler", "dt=1e-3", "gains energy at longer steps"},
+    {"crossings", "fast-mass-spring", NULL, "does not ask whether a step crosses"},
+    {"crossings", "midpoint", NULL, "does not ask whether a step crosses"},
+    {"drum", "gauss", "rtol=1e-13", "of order 4: its errors are as small as that"},
+    {"drop", "midpoint", NULL, "gains energy at the step that suits the others"},
+    {"events", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"events", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"let go", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
+    {"lift", "explicit-euler", NULL, "moves first: the floor meets it in the step after"},
+    {"momentum", "cvode-bdf", "linear_rtol=1e-12", "by default its solver may stop earlier"},
+    {"moves", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"moves", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"one solution", "ark-dirk", "rtol=1e-11", "tighter than that its solver fails"},
+    {"one solution", "ark-imex", "rtol=1e-11", "tighter than that its solver fails"},
+    {"one solution", "cvode-bdf", "rtol=1e-12,max_order=5,linear_rtol=1e-8",
+     "by default its order is lower and its solver looser"},
+    {"one solution", "xpbd", NULL, "comes no nearer than 1e-8 by extrapolation"},
+    {"pairs", "bdf2", NULL, "its slope is 1.8 yet at steps of 1 ms"},
+    {"pairs", "symplectic-euler", NULL, "its slope is 1.3 yet at steps of 0.25 ms"},
+    {"pins", "averaged-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"pins", "cvode-bdf", "rtol=1e-2", "takes long steps then"},
+    {"pins", "explicit-euler", "dt=1e-3", "its own step follows the damping alone"},
+    {"slide", "implicit-block", NULL, "h K_ii v is a drag that a sliding sheet feels"},
+    {"threads", "averaged-euler", "dt=2e-4", "its own step follows the damping alone"},
+    {"threads", "explicit-euler", "dt=1e-4", "its own step follows the damping alone"},
+    {"turning mesh", "gauss", NULL, "its slope is 4.2 yet at steps of 1/600 s"},
+};
+
+double methods_step(uint32_t order) {
+    return order == 1 ? 2.5e-4 : order == 2 ? 1e-3 : 4e-3;
+}
+
+void methods_set(char text[120], const char *name, const char *key, double value) {
+    const int length =
+        snprintf(text, 120, "%s%c%s=%.15g", name, strchr(name, ':') ? ',' : ':', key, value);
+    ck_assert_int_lt(length, 120);
+}
+
+bool methods_is(const char *text, const char *name) {
+    const size_t length = strlen(name);
+    return !strncmp(text, name, length) && (!text[length] || text[length] == ':');
+}
+
+static bool has_option(const struct cs_integrator *integrator, const char *name) {
+    for (uint32_t k = 0; k < integrator->n_options; k++)
+        if (!strcmp(integrator->options[k].name, name))
+            return true;
+    return false;
+}
+
+/* Sets an option that the method has and that its exception does not name. */
+static void set_option(struct method_asked *method, const struct cs_integrator *integrator,
+                       const char *key, double value) {
+    char before[sizeof method->text], named[32];
+    snprintf(named, sizeof named, "%s=", key);
+    if (!(value > 0) || !has_option(integrator, key) || strstr(method->text, named))
+        return;
+    memcpy(before, method->text, sizeof before);
+    methods_set(method->text, before, key, value);
+}
+
+/* false: an exception leaves it out */
+static bool set_options(struct method_asked *method, const struct cs_integrator *integrator,
+                        const struct methods_query *query) {
+    const bool adaptive = integrator->traits & CS_ADAPTIVE;
+    const bool given = !adaptive && (integrator->traits & query->dt_for) == query->dt_for;
+    snprintf(method->text, sizeof method->text, "%s", integrator->name);
+    for (size_t k = 0; query->test && k < LENGTH(exceptions); k++)
+        if (!strcmp(exceptions[k].test, query->test) &&
+            !strcmp(exceptions[k].method, integrator->name)) {
+            if (!exceptions[k].options)
+                return false;
+            snprintf(method->text, sizeof method->text, "%s:%s", integrator->name,
+                     exceptions[k].options);
+        }
+    set_option(method, integrator, "dt", given ? query->dt : 0);
+    set_option(method, integrator, "rtol", adaptive ? query->rtol : query->residual);
+    return true;
+}
+
+static bool is_asked(const struct cs_integrator *integrator,
+                     const struct methods_query *query) {
+    return integrator && integrator->fidelity != CS_FIDELITY_OTHER &&
+           (integrator->traits & query->with) == query->with &&
+           !(integrator->traits & query->without);
+}
+
+static void add(struct methods *methods, const struct cs_integrator *integrator,
+                const struct method_asked *method) {
+    ck_assert_uint_lt(methods->n, METHODS_MAX);
+    struct method_asked *added = methods->list + methods->n++;
+    *added = *method;
+    added->order = integrator->order;
+    added->order_damped = integrator->order_damped;
+    added->traits = integrator->traits;
+}
+
+struct methods methods_find(const struct methods_query *query) {
+    struct cs_registry registry = {0};
+    struct cs_error error = {0};
+    struct methods methods = {0};
+    cs_registry_open_all(&registry, &error);
+    ck_assert_msg(!error.status, "%s", error.message);
+    for (uint32_t k = 0; k < registry.n; k++) {
+        const struct cs_integrator *integrator = registry.entries[k].integrator;
+        struct method_asked method;
+        if (is_asked(integrator, query) && set_options(&method, integrator, query))
+            add(&methods, integrator, &method);
+    }
+    for (const char *const *more = query->more; more && *more; more++)
+        for (uint32_t k = 0; k < registry.n; k++) {
+            const struct cs_integrator *integrator = registry.entries[k].integrator;
+            struct method_asked method;
+            snprintf(method.text, sizeof method.text, "%s", *more);
+            if (integrator && methods_is(*more, integrator->name))
+                add(&methods, integrator, &method);
+        }
+    ck_assert_uint_gt(methods.n, 0);
+    cs_registry_finish(&registry);
+    return methods;
+}

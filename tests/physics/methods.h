@@ -1,0 +1,46 @@
+/* methods.h - the methods that a physics test runs: those of the registry with the traits that
+ * it asks for. A new method is in each test that its traits qualify it for.
+ *
+ * Methods of another model (CS_FIDELITY_OTHER) are in none. methods.c lists the exceptions,
+ * each with its reason. */
+#ifndef METHODS_H
+#define METHODS_H
+
+#include "fixture.h"
+
+/* Zeroed: every method with its own defaults. */
+struct methods_query {
+    const char *test;       /* its name in the list of exceptions; NULL: it has none */
+    uint32_t with, without; /* sets of enum cs_trait: has all of these, none of those */
+    double dt;              /* s: the step of methods without error control; 0: their own */
+    uint32_t dt_for;        /* enum cs_trait: all others keep their own step; 0: none does */
+    double rtol;            /* of methods with error control; 0: their own */
+    double residual; /* rtol of the solver in methods without error control; 0: their own */
+    const char *const *more; /* methods with other options, closed by NULL; or NULL */
+};
+
+enum { METHODS_MAX = 64 };
+
+struct methods {
+    size_t n;
+    struct method_asked {
+        char text[120]; /* "NAME:key=value,..." */
+        uint32_t order, order_damped, traits;
+    } list[METHODS_MAX];
+};
+
+/* The methods in the order of their names, then the ones with other options, which have the
+ * traits of their NAME. Fails the test if there is none. */
+struct methods methods_find(const struct methods_query *query);
+
+/* A step in s at which the soft sheets of these tests show an order: small enough for the
+ * slope, large enough to stay above rounding. */
+double methods_step(uint32_t order);
+
+/* Adds ",key=value" or ":key=value" to a method. */
+void methods_set(char text[120], const char *name, const char *key, double value);
+
+/* Whether the text names this method, with any options. */
+bool methods_is(const char *text, const char *name);
+
+#endif

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""planted.py - the tests of this folder that read sources find what they are for.
+
+Each row plants one fault in an empty tree and names the line that the tool must print; beside it
+stands what is close to the fault and none.
+"""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import sources
+
+HERE = Path(__file__).resolve().parent
+TEN = "".join(f"    total += part[{i}];\n" for i in range(10))
+TORN = "one two three four five six seven eight nine ten eleven twelve thirteen\n"
+PARTS = {"tests/tools/retired_words.txt": "lot chunk\n"}
+EXCEPTIONS, ALLOWED = "tests/tools/retired_exceptions.txt", "tests/tools/english_allowed.txt"
+PUBLIC = {"include/clothsim/c.h": ""}
+UNIT = {f"src/base/u{i}.h": "int a;\n" for i in range(301)}
+HEADER = {f"src/base/h{i}.h": "int a;\n" for i in range(181)}
+ROOMS = [f"r{i}" for i in range(8)]
+ARROWS = {f"src/{room}/a.c": "".join(f'#include "{other}/a.h"\n' for other in ROOMS)
+          for room in ROOMS}
+# tool, files of the tree, what it says (None: nothing is wrong), its options
+FAULTS = (
+    ("tree.py", {"src/base/a.h": "struct cs_a { int i; };\n", "plugins/b.h": "enum cs_a { B };\n"},
+     "tag cs_a is defined 2 times: src/base/a.h:1, plugins/b.h:1"),
+    ("tree.py", {"src/base/a.h": "struct cs_a { int i; };\nvoid cs_a(int i);\n"},
+     "cs_a is a tag (src/base/a.h:1) and a function (src/base/a.h)"),
+    ("tree.py", {"src/base/a.h": "struct job { int i; };\n",
+                 "src/base/b.c": "struct job { int k; };\n"},
+     "tag job is defined 2 times: src/base/a.h:1, src/base/b.c:1"),
+    ("tree.py", {"src/base/a.c": "struct job { int i; };\n/* text */\n",
+                 "src/base/b.c": "/* struct cs_b { */\nstruct job { int k; }; // cs_job(\n"}, None),
+    ("tree.py", {"src/base/a.h": "/* a */\n", "include/clothsim/a.h": "/* a */\n"},
+     "header a.h stands 2 times: src/base/a.h, include/clothsim/a.h"),
+    ("tree.py", UNIT, "301 units in src (NAME.c, NAME.h or both), expected at most 300"),
+    ("tree.py", HEADER, "181 headers in src, expected at most 180"),
+    ("tree.py", ARROWS, "56 arrows between rooms, expected at most 45"),
+    ("tree.py", {"src/base/a.c": "int a;\n" * 48001},
+     "48001 lines of code in src, expected at most 48000"),
+    ("tree.py", {"src/base/a.c": "/* a\n\n */\n" + "int a; /* b */\n" * 18},
+     "10 % of the lines of code and comment in src are comment, expected at least 15"),
+    ("floors.sh", {"plugins/a.h": '#include "b.h"\n', "plugins/b.h": '#include "a.h"\n', **PUBLIC},
+     "circle: plugins/a includes b.h, plugins/b includes a.h"),
+    ("floors.sh", {"plugins/a.h": "int make_a(int i);\n",
+                   "plugins/b.h": '#include "a.h"\nint make_b(int i);\n',
+                   "plugins/a.c": "int make_a(int i) {\n    return make_b(i);\n}\n",
+                   "plugins/b.c": "int make_b(int i) {\n    return make_a(i);\n}\n", **PUBLIC},
+     "circle: plugins/a names make_b of plugins/b, plugins/b includes a.h"),
+    ("retired.py", {"src/base/a.c": "int cs_lot_size;\n", **PARTS},
+     "src/base/a.c:1: cs_lot_size: 'lot' is retired, say chunk"),
+    ("retired.py", {"src/base/a.c": "enum { CS_LOT };\n", **PARTS},
+     "src/base/a.c:1: CS_LOT: 'lot' is retired, say chunk"),
+    ("retired.py", {"src/base/a_lot.c": "", **PARTS},
+     "src/base/a_lot.c: a_lot.c: 'lot' is retired, say chunk"),
+    ("retired.py", {"src/base/a.c": "int cs_slot, lot, cs_lots; /* cs_lot */\n", **PARTS}, None),
+    ("retired.py", {"src/base/a.c": "int cs_lot;\n", EXCEPTIONS: "cs_lot\n", **PARTS}, None),
+    ("retired.py", {"src/base/a.c": "", EXCEPTIONS: "cs_lot\n", **PARTS},
+     "tests/tools/retired_exceptions.txt: cs_lot is no longer needed: "
+     "retired.py ROOT --accept takes it out"),
+    ("english.py", {"src/base/a.c": "/* How the width\n * is to\n * be read. */\n"},
+     "src/base/a.c: 1 where 0 are allowed: line 2: is to be"),
+    ("english.py", {"src/base/a.h": "/* a.h - what a width is. */\n"},
+     "src/base/a.h: 1 where 0 are allowed: line 1: a comment that begins with what"),
+    ("english.py", {"man/a.1.scd": "It ends, and\nso does this.\n"},
+     "man/a.1.scd: 1 where 0 are allowed: line 1: , and so"),
+    ("english.py", {"src/base/a.c": 'const char *a = "is to be"; /* somewhat it was */\n'
+                                    "int b; /* what a */\n"}, None),
+    ("english.py", {"README.md": "anew\n", ALLOWED: "2 README.md\n"},
+     "tests/tools/english_allowed.txt: '2 README.md' must become '1 README.md'"),
+    ("english.py", {ALLOWED: "2 README.md\n"},
+     "tests/tools/english_allowed.txt: no file README.md: take out '2 README.md'"),
+    ("english.py", {"README.md": "anew\n", "docs/a.md": "anew\n", ALLOWED: "1 README.md\n"},
+     "1 more in docs/a.md", "--accept"),
+    ("english.py", {"docs/a.md": "anew\n", ALLOWED: "1 README.md\n"}, None, "--accept"),
+    ("repeats.py", {"man/a.1.scd": TORN * 2},
+     "man/a.1.scd:2: as line 1: "
+     "one two three four five six seven eight nine ten eleven twelve ..."),
+    ("repeats.py", {"man/a.1.scd": TORN + "```\n" + TORN + "```\n" + "\n" * 9 + TORN}, None),
+    ("twins.py", {"src/base/a.c": TEN, "src/base/b.c": "{\n" + TEN.replace("\n", "\n\n")},
+     "src/base/a.c:1 and src/base/b.c:2 share 10 lines"),
+    ("twins.py", {"src/base/a.c": TEN, "src/base/b.c": TEN.replace("[5]", "[6]")}, None),
+)
+# lists that a tool reads, and that must be there
+LISTS = ("retired_words.txt", "retired_exceptions.txt", "english_allowed.txt")
+
+
+def run(tool, files, options):
+    """Exit code and lines of the tool on a tree of these files alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name, text in {**{f"tests/tools/{name}": "" for name in LISTS}, **files}.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text)
+        for tree in sources.PRODUCT:
+            (root / tree).mkdir(exist_ok=True)
+        ended = subprocess.run([HERE / tool, root, *options], text=True, capture_output=True,
+                               check=False)
+        return ended.returncode, (ended.stdout + ended.stderr).split("\n")
+
+
+def main():
+    checks = sources.Checks()
+    for tool, files, line, *options in FAULTS:
+        code, lines = run(tool, files, options)
+        said = f"{tool} on {', '.join(list(files)[:3])}: "
+        if line is None:
+            checks.check(code == 0, said + "expected nothing wrong, got " + " | ".join(lines))
+        else:
+            checks.check(code != 0 and line in lines,
+                         said + f"expected '{line}', got " + " | ".join(lines)[:400])
+    return checks.end()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
