@@ -1,7 +1,7 @@
 /* float_lanes.h - 16 floats at a time, and vectors and symmetric 3x3 blocks of them.
  *
- * The compiler makes of them what the processor has; each lane has its own arithmetic, so the
- * bits are the same in each. */
+ * The compiler maps them to the vectors that the processor has. Each lane has its own
+ * arithmetic, so the bits are the same in each. */
 #ifndef CS_FLOAT_LANES_H
 #define CS_FLOAT_LANES_H
 
@@ -11,17 +11,20 @@
 
 enum { CS_LANES = 16 };
 
-/* every function that takes or gives them is inlined, so that how they are passed, which
- * depends on the instruction set, does not matter */
+/* The calling convention for such vectors depends on the instruction set. That does not matter,
+ * because every function that takes or returns them is inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
+/* One number of each of 16 cells. */
 typedef float lanes __attribute__((vector_size(4 * CS_LANES)));
-/* the same anywhere in an array of floats */
+/* The same at any address in an array of floats. */
 typedef float unaligned_lanes __attribute__((vector_size(4 * CS_LANES), aligned(4), may_alias));
 
+/* 16 vectors, component by component. */
 struct vectors {
     lanes x, y, z;
 };
+/* 16 symmetric 3x3 blocks. */
 struct blocks {
     lanes xx, xy, xz, yy, yz, zz;
 };
@@ -33,7 +36,7 @@ CS_INLINE void put(float *to, lanes value) {
     *(unaligned_lanes *)to = value;
 }
 
-/* three and six rows, which begin n floats apart */
+/* Read and write three or six rows that begin n floats apart. */
 CS_INLINE struct vectors get3(const float *from, size_t n) {
     return (struct vectors){get(from), get(from + n), get(from + 2 * n)};
 }
@@ -51,6 +54,7 @@ CS_INLINE void put6(float *to, size_t n, struct blocks b) {
     for (size_t c = 0; c < 6; c++)
         put(to + c * n, rows[c]);
 }
+/* Reads the vectors of 16 cells anywhere in an array (3,n). */
 CS_INLINE struct vectors gather3(const float *from, size_t n, const uint32_t *places) {
     float rows[3 * CS_LANES];
     for (size_t l = 0; l < CS_LANES; l++) {
@@ -61,6 +65,7 @@ CS_INLINE struct vectors gather3(const float *from, size_t n, const uint32_t *pl
     return get3(rows, CS_LANES);
 }
 
+/* Arithmetic lane by lane; sums run from left to right. */
 CS_INLINE struct vectors plus(struct vectors a, struct vectors b) {
     return (struct vectors){a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -74,6 +79,7 @@ CS_INLINE struct blocks plus6(struct blocks a, struct blocks b) {
     return (struct blocks){a.xx + b.xx, a.xy + b.xy, a.xz + b.xz,
                            a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
 }
+/* Symmetric block times vector. */
 CS_INLINE struct vectors times(struct blocks b, struct vectors p) {
     return (struct vectors){b.xx * p.x + b.xy * p.y + b.xz * p.z,
                             b.xy * p.x + b.yy * p.y + b.yz * p.z,

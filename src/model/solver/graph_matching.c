@@ -1,16 +1,19 @@
-/* Joins the nodes of a weighted graph in pairs, each with its heaviest free neighbour. */
+/* Heavy-edge matching of a weighted graph. Two passes of it make aggregates of four nodes, as
+ * in the double pairwise aggregation of Notay (2010). Time is proportional to the number of
+ * edges. */
 #include "model/solver/graph_matching.h"
 
 #include <stdbool.h>
 
-/* edges, or ends of edges, by node: those of node i are list[starts[i]] to
- * list[starts[i + 1] - 1] */
+/* Edges, or ends of edges, sorted by node: those of node i are list[starts[i]..starts[i + 1]).
+ * End k belongs to edge k / 2, and the other end of that edge is k ^ 1. */
 struct stars {
     uint32_t *starts, *list;
 };
 
-/* Sorts by node, in the order of before. nodes (n_ends): those of edges, or of the ends of
- * edges; CS_GRAPH_NONE is left out. starts goes one behind until all are in. */
+/* Counting sort by node, stable. nodes (n_ends) are the nodes of edges or of ends;
+ * CS_GRAPH_NONE is left out. Counts are stored two places further on, so that the second loop,
+ * which advances each start, leaves every start where it belongs. */
 static enum cs_status sort_edges(uint32_t n, uint32_t n_ends, const uint32_t *nodes,
                                  struct stars *stars, struct cs_arena *work,
                                  struct cs_error *error) {
@@ -29,8 +32,10 @@ static enum cs_status sort_edges(uint32_t n, uint32_t n_ends, const uint32_t *no
     return CS_OK;
 }
 
-/* the neighbour of i to which its edges weigh most together, of those that are joined or of
- * those that are alone; CS_GRAPH_NONE: there is none. sums (n) is 0, and is again after */
+/* Returns the neighbour of i with the largest total weight, among the joined or the free ones,
+ * the lowest-numbered of equals; CS_GRAPH_NONE if there is none. sums (n) is 0 before and
+ * afterwards: only the entries of i's neighbours are touched, so a call costs the degree of i.
+ */
 static uint32_t heaviest(const struct cs_graph *graph, const struct stars *stars, uint32_t i,
                          const uint32_t *parents, bool joined, double *sums) {
     uint32_t best = CS_GRAPH_NONE;
@@ -48,7 +53,8 @@ static uint32_t heaviest(const struct cs_graph *graph, const struct stars *stars
     return best;
 }
 
-/* returns the number of new nodes */
+/* Sets the parents and returns the number of new nodes. The first loop matches. The second
+ * assigns the nodes left over, all of whose neighbours have a parent by then. */
 static uint32_t join(const struct cs_graph *graph, const struct stars *stars, double *sums,
                      uint32_t *parents) {
     uint32_t n = 0;
@@ -69,9 +75,10 @@ static uint32_t join(const struct cs_graph *graph, const struct stars *stars, do
     return n;
 }
 
-/* Edges between the same two new nodes become one, in the order of the lower node and of the
- * first of them. by_low: edges by their lower new node, without those inside one. known
- * (coarse->n) is work. */
+/* Makes the coarse edges. Edges between the same two new nodes become one; the new edges are
+ * ordered by their lower node, and then by their first old edge. by_low lists the edges by
+ * their lower new node, without those inside a node. known (coarse->n) is work: the last new
+ * edge to each node, valid for the current lower node if its number is at least `before`. */
 static void merge(const struct cs_graph *fine, struct cs_graph *coarse, const uint32_t *parents,
                   const struct stars *by_low, uint32_t *known, uint32_t *targets) {
     for (uint32_t i = 0; i < coarse->n; i++)
@@ -108,6 +115,7 @@ enum cs_status cs_graph_match(const struct cs_graph *fine, struct cs_graph *coar
     coarse->n = join(fine, &stars, sums, parents);
     for (uint32_t e = 0; e < fine->n_edges; e++) {
         const uint32_t a = parents[fine->ends[2 * e]], b = parents[fine->ends[2 * e + 1]];
+        // the lower node first, as the key of the sort; merge replaces it by the edge
         targets[e] = a == b ? CS_GRAPH_NONE : a < b ? a : b;
     }
     if (!sort_edges(coarse->n, fine->n_edges, targets, &by_low, work, error))

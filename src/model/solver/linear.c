@@ -1,4 +1,17 @@
-/* Preconditioned conjugate gradients on (cm M + cd df/dv + ck df/dx) u = b, matrix-free. */
+/* Preconditioned conjugate gradients on (cm M + cd df/dv + ck df/dx) u = b, without a stored
+ * matrix (Hestenes, Stiefel 1952; Saad 2003, algorithm 9.1).
+ *
+ * With the preconditioner B, one iteration is
+ *
+ *   z = B^-1 r,   p = z + (r.z / r'.z') p     (r', z' of the iteration before)
+ *   q = A p,      a = r.z / p.q,   u += a p,   r -= a q
+ *
+ * Exact arithmetic makes successive p conjugate in A. Changing B breaks that, so the iteration
+ * restarts from p = z after a fall-back.
+ *
+ * The product A p is summed from three parts in a fixed order: masses and diagonal blocks,
+ * springs (springs_matrix.c), and the forces with entries between arbitrary particles (contact
+ * pairs). */
 #include "model/solver/linear.h"
 
 #include "base/vector.h"
@@ -10,6 +23,8 @@
 #include <math.h>
 #include <string.h>
 
+/* blocks are only allocated if a force has a 3x3 part; a scene without contact multiplies by
+ * scalars. */
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error) {
     const size_t n = system->view.n;
@@ -27,7 +42,7 @@ enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *
                          : cs_multigrid_init(&linear->multigrid, system, arena, error);
 }
 
-/* inverts the block of particle i in place; false if it is not positive definite */
+/* Inverts the block of particle i in place. Returns false if it is not positive definite. */
 static bool invert(double *blocks, size_t n, size_t i) {
     double block[6];
     cs_sym3_read(n, blocks, i, block);
@@ -37,6 +52,7 @@ static bool invert(double *blocks, size_t n, size_t i) {
     return true;
 }
 
+/* Fills mass and blocks for particles [begin, end): cm m_i, and the forces' diagonal parts. */
 static void set_mass(void *arg, size_t begin, size_t end) {
     struct cs_linear *linear = arg;
     const struct cs_system *system = linear->system;
@@ -47,7 +63,7 @@ static void set_mass(void *arg, size_t begin, size_t end) {
     cs_terms_add_matrix(system, &linear->matrix, begin, end, linear->mass, linear->blocks);
 }
 
-/* how many blocks are not positive definite */
+/* Counts the blocks of a range that are not positive definite, and inverts the others. */
 static double invert_part(const void *arg, size_t begin, size_t end) {
     const struct cs_linear *linear = arg;
     double indefinite = 0;
@@ -56,13 +72,17 @@ static double invert_part(const void *arg, size_t begin, size_t end) {
     return indefinite;
 }
 
-/* false: a diagonal block is not positive definite */
+/* Sets the block Jacobi preconditioner: inverse = (mass I + blocks + springs' diagonal)^-1.
+ * Contact pairs are in `blocks` with their diagonal blocks only. Returns false if a block of
+ * A's diagonal is not positive definite; then A is not either, because a principal submatrix of
+ * it is not. */
 static bool invert_blocks(struct cs_linear *linear) {
     const size_t n = linear->system->view.n;
     if (linear->blocks)
         memcpy(linear->inverse, linear->blocks, 6 * n * sizeof(double));
     else
         memset(linear->inverse, 0, 6 * n * sizeof(double));
+    /* xx, yy and zz are the rows 0, 3 and 5 */
     for (size_t c = 0; c < 6; c += c ? 2 : 3)
         for (size_t i = 0; i < n; i++)
             linear->inverse[c * n + i] += linear->mass[i];
@@ -71,6 +91,7 @@ static bool invert_blocks(struct cs_linear *linear) {
     return cs_vector_sum(n, invert_part, linear) == 0;
 }
 
+/* Mean mass of a particle in kg, the unit of the scales below. */
 static double mean_mass(const struct cs_system *system) {
     double sum = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
@@ -78,10 +99,14 @@ static double mean_mass(const struct cs_system *system) {
     return sum / system->view.n;
 }
 
-/* pairs that hold less than a tenth of what masses do are left to the diagonal */
+/* A contact pair gets springs in the multigrid if the trace of its block exceeds this fraction
+ * of cm times the mean mass. Weaker pairs stay in the diagonal, where mass dominates them.
+ * Chosen by trial. */
 #define LEAST 0.1
 
-/* stiffness: the largest ratio to mass */
+/* Computes the levels' numbers. stiffness is the bound of stiffness over mass, with the unit of
+ * cm: mass (cm + stiffness) is about the largest entry of A, and the scale for single
+ * precision. Lack of memory is noted in the pairs, whose owner reports it. */
 static void set_multigrid(struct cs_linear *linear, double stiffness) {
     struct cs_pairs *pairs = linear->system->pairs;
     const double mass = mean_mass(linear->system), cm = linear->matrix.cm;
@@ -95,6 +120,10 @@ static void set_multigrid(struct cs_linear *linear, double stiffness) {
         pairs->failed = true;
 }
 
+/*   1. Take the springs' factors at the matrix's state.
+ *   2. Let each force prepare its part; contact stores its pairs for products.
+ *   3. Fill masses and diagonal blocks.
+ *   4. Set the preconditioner: levels if the matrix is stiff, else the inverse blocks. */
 bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     const struct cs_system *system = linear->system;
     const struct cs_view *view = &system->view;
@@ -107,24 +136,27 @@ bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix) {
     cs_vector_parallel_for(view->n, set_mass, linear);
     if (linear->stiff)
         set_multigrid(linear, stiffness);
-    /* an exact matrix shows in its blocks whether it is definite, mostly */
+    /* An exact matrix that is indefinite mostly has an indefinite block, so test the blocks
+     * even if multigrid makes them unnecessary. */
     return (linear->stiff && matrix->psd) || invert_blocks(linear);
 }
 
+/* Restricts a vector to the free particles. Pinned rows and columns of A are thereby left out.
+ */
 static void clear_pinned(const struct cs_system *system, double *p) {
     for (size_t c = 0; c < 3; c++)
         for (uint32_t k = 0; k < system->n_pinned; k++)
             p[c * system->view.n + system->pinned[k]] = 0;
 }
 
-/* the solver between two arrays of 3-vectors */
+/* Arguments of a loop that multiplies from one array (3,n) into another. */
 struct product {
     const struct cs_linear *linear;
     const double *from;
     double *to;
 };
 
-/* to += blocks times from, of symmetric blocks (6,n) */
+/* to += blocks times from, for symmetric blocks (6,n) in the order xx, xy, xz, yy, yz, zz. */
 CS_INLINE void add_blocks(const struct product *product, const double *b, size_t begin,
                           size_t end) {
     const size_t n = product->linear->system->view.n;
@@ -139,6 +171,7 @@ CS_INLINE void add_blocks(const struct product *product, const double *b, size_t
     }
 }
 
+/* to = (mass I + blocks) from: the first part of A p, which overwrites the result. */
 CS_CLONES static void mul_mass(void *arg, size_t begin, size_t end) {
     const struct product *product = arg;
     const double *mass = product->linear->mass;
@@ -159,7 +192,7 @@ void cs_linear_mul(const struct cs_linear *linear, const double *p, double *y) {
     clear_pinned(linear->system, y);
 }
 
-/* inverse blocks times what it comes from */
+/* z = D^-1 r with the inverse diagonal blocks. */
 CS_CLONES static void mul_inverse(void *arg, size_t begin, size_t end) {
     const struct product *product = arg;
     const size_t n = product->linear->system->view.n;
@@ -182,19 +215,29 @@ void cs_linear_precondition(struct cs_linear *linear, const double *r, double no
         cs_vector_parallel_for(linear->system->view.n, mul_inverse, &product);
 }
 
-/* Single precision may be too little for a matrix: masses that differ by more than it has. */
+/* Falls back to block Jacobi until the next setup. Single precision has 24 bits: it cannot
+ * represent a matrix whose masses differ by more, and the V-cycle then loses positive
+ * definiteness or stalls. The blocks' definiteness is known here: psd makes all definite, and
+ * without psd setup tested them. */
 static void give_up_multigrid(struct cs_linear *linear) {
     linear->stiff = false;
     invert_blocks(linear);
 }
 
+/* Ways out of the loop, in the order of the tests:
+ *   1. norm <= goal: done. The residual is the recurrence's, not recomputed from u.
+ *   2. The iteration limit: rounding or the condition number prevents convergence.
+ *   3. r.z <= 0 with multigrid, or 500 iterations with it: fall back to blocks and restart.
+ *   4. p.A p <= 0, or not a number: A is indefinite, or overflowed.
+ *
+ * The start u counts: Newton and multistep methods pass a good guess and save iterations. */
 enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, double rtol,
                                    double *u, uint64_t *iterations, double *residual) {
     const size_t n3 = 3 * (size_t)linear->system->view.n;
     const uint64_t limit = 10 * (uint64_t)linear->system->view.n + 100;
     double *r = linear->r, *z = linear->z, *p = linear->p, *q = linear->q;
 
-    /* r = b - A u without the pinned rows */
+    /* r = b - A u on the free particles; |b| there is the unit of the residual */
     clear_pinned(linear->system, u);
     cs_linear_mul(linear, u, q);
     memcpy(r, b, n3 * sizeof *r);
@@ -209,7 +252,7 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
     cs_vector_kernels.linear_sum(n3, 1, r, -1, q, r);
     double norm = sqrt(cs_vector_dot(n3, r, r)), rz = 0;
 
-    bool fresh = true; // the direction does not lean on the last one
+    bool fresh = true; // restart: the direction does not depend on the last one
     while (norm > goal) {
         if (*iterations == limit) {
             *residual = norm / size;
@@ -230,6 +273,7 @@ enum cs_linear_end cs_linear_solve(struct cs_linear *linear, const double *b, do
         rz = next;
         cs_linear_mul(linear, p, q);
         const double curvature = cs_vector_dot(n3, p, q);
+        // negated, to catch a NaN too
         if (!(curvature > 0))
             return CS_LINEAR_INDEFINITE;
         const double step = rz / curvature;

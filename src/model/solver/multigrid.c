@@ -1,4 +1,12 @@
-/* Aggregation multigrid as a preconditioner: one V-cycle for each body, in single precision. */
+/* Aggregation multigrid as a preconditioner: one V-cycle for each body, in single precision.
+ *
+ * Setup copies the matrix over `scale` into the first level and coarsens level by level; an
+ * application scales the residual by its norm, runs the cycle and scales back:
+ *
+ *   (A / scale) x = r / size,   z = (size / scale) x
+ *
+ * Conjugate gradients in double precision correct the rounding of the cycle, whose only duty is
+ * to be symmetric and positive definite up to rounding. */
 #include "model/solver/multigrid.h"
 
 #include "base/pool.h"
@@ -10,7 +18,9 @@
 
 #include <clothsim/clones.h>
 
-enum { ROW = 4096 }; /* particles of a mesh that are handled as a row; cells of a block */
+/* Particles of a mesh that one row holds, and particles per block of a loop. A grid's rows are
+ * its own; a mesh has no rows, so it is cut into artificial ones to share the loops below. */
+enum { ROW = 4096 };
 
 bool cs_multigrid_is_used(const struct cs_scene *scene) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
@@ -19,11 +29,15 @@ bool cs_multigrid_is_used(const struct cs_scene *scene) {
     return false;
 }
 
+/* Tells whether contact by force acts between parts of this body. The friction is not needed
+ * here. */
 static bool meets_itself(const struct cs_scene *scene, uint32_t body) {
     double friction;
     return cs_scene_bodies_collide(scene, body, body, &friction);
 }
 
+/* Describes a body to its hierarchy: its range of particles and its range of runs of springs.
+ * Runs of one body stand together, in the order of the bodies. */
 static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t body) {
     const struct cs_body_range *range = system->bodies + body;
     const struct cs_springs *springs = &system->springs;
@@ -42,6 +56,8 @@ static struct cs_hierarchy hierarchy_of(const struct cs_system *system, uint32_t
                                  .has_self_contact = meets_itself(system->scene, body)};
 }
 
+/* Allocates what self-contact needs: arrays shared by all bodies, once, and those of this
+ * body's levels. */
 static void load_contact(struct cs_multigrid *multigrid, struct cs_hierarchy *hierarchy,
                          struct cs_arena *arena, struct cs_error *error) {
     if (!multigrid->internal_blocks) {
@@ -73,7 +89,8 @@ enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs
     return error->status;
 }
 
-/* Numbers that go to and fro between particles and the first level's cells. */
+/* Arguments of a loop that copies numbers between particles, in double precision, and the first
+ * level's cells, in single precision. gain multiplies every number. */
 struct exchange {
     const struct cs_multigrid *multigrid;
     const struct cs_hierarchy *hierarchy;
@@ -82,27 +99,32 @@ struct exchange {
     double gain;
 };
 
+/* Arguments of a loop that loads the matrix. */
 struct loading {
-    struct exchange exchange; /* first: loops take it for the whole */
+    struct exchange exchange; /* first member: run() passes its address */
     const struct cs_multigrid_matrix *matrix;
-    const double *inner; /* (6,n) what blocks have of links; NULL: nothing */
+    const double *inner; /* (6,n) parts of `blocks` that extra springs replace; NULL: none */
 };
 
+/* Rows of one block of a loop: about ROW particles, and whole rows, so that no two blocks share
+ * one. */
 static uint32_t rows_of_block(const struct cs_hierarchy *hierarchy) {
     return (ROW + hierarchy->columns - 1) / hierarchy->columns;
 }
 
+/* Runs a task over blocks of whole rows with all threads. */
 static void run(struct exchange *exchange, void (*task)(void *exchange, uint32_t block)) {
     const struct cs_hierarchy *hierarchy = exchange->hierarchy;
     const uint32_t particles = rows_of_block(hierarchy) * hierarchy->columns;
     cs_pool_run((hierarchy->count + particles - 1) / particles, task, exchange);
 }
 
-/* row k of a block: particles from `particle` on, in cells from `cell` on */
+/* Row k of a block: `count` particles from `particle` on, in cells from `cell` on. */
 struct row {
     size_t particle, cell, count;
 };
 
+/* count is 0 beyond the body's last row. */
 static struct row row_of(const struct cs_hierarchy *hierarchy, uint32_t block, uint32_t k) {
     const size_t row = (size_t)block * rows_of_block(hierarchy) + k;
     const size_t before = row * hierarchy->columns;
@@ -112,7 +134,9 @@ static struct row row_of(const struct cs_hierarchy *hierarchy, uint32_t block, u
                         left < hierarchy->columns ? left : hierarchy->columns};
 }
 
-/* own of the first level from the matrix's mass and blocks, 0 where a particle is pinned */
+/* Sets the first level's diagonal from masses and blocks, 0 where a particle is pinned. Blocks
+ * of pairs that become extra springs are subtracted, because springs bring their own diagonal.
+ * A level of form CS_LEVEL_FACTORED has one number per cell, and its matrix has no blocks. */
 CS_CLONES static void load_diagonal(void *arg, uint32_t block) {
     static const bool on_diagonal[6] = {true, false, false, true, false, true};
     const struct loading *loading = arg;
@@ -139,6 +163,7 @@ CS_CLONES static void load_diagonal(void *arg, uint32_t block) {
     }
 }
 
+/* Copies the scaled residual into the first level. */
 CS_CLONES static void load_r(void *arg, uint32_t block) {
     const struct exchange *exchange = arg;
     const struct cs_hierarchy *hierarchy = exchange->hierarchy;
@@ -154,6 +179,7 @@ CS_CLONES static void load_r(void *arg, uint32_t block) {
     }
 }
 
+/* Copies the first level's solution back, scaled. */
 CS_CLONES static void store_x(void *arg, uint32_t block) {
     const struct exchange *exchange = arg;
     const struct cs_hierarchy *hierarchy = exchange->hierarchy;
@@ -170,7 +196,9 @@ CS_CLONES static void store_x(void *arg, uint32_t block) {
     }
 }
 
-/* false: there was no memory */
+/* Makes the first level's extra springs from the stored contact pairs, if the body has
+ * self-contact. Sets loading->inner to the blocks that they replace. Returns false if out of
+ * memory. */
 static bool load_links(struct loading *loading, struct cs_hierarchy *hierarchy) {
     const struct cs_multigrid *multigrid = loading->exchange.multigrid;
     const struct cs_pairs *pairs = loading->matrix->pairs;
@@ -190,7 +218,8 @@ static bool load_links(struct loading *loading, struct cs_hierarchy *hierarchy) 
     return cs_coupling_load(&coupling);
 }
 
-/* the numbers of all levels; false: there was no memory for links */
+/* Computes the numbers of all levels of a body. Extra springs come first: they decide which
+ * blocks the diagonal must not contain. Returns false if out of memory for extra springs. */
 static bool load_levels(struct loading *loading, struct cs_hierarchy *hierarchy) {
     struct cs_level *level = hierarchy->levels;
     bool done = load_links(loading, hierarchy);
@@ -206,6 +235,7 @@ static bool load_levels(struct loading *loading, struct cs_hierarchy *hierarchy)
     return done;
 }
 
+/* Lists the pairs by particle once, for all bodies, and then loads body by body. */
 bool cs_multigrid_setup(struct cs_multigrid *multigrid,
                         const struct cs_multigrid_matrix *matrix) {
     bool done = true;
@@ -221,7 +251,12 @@ bool cs_multigrid_setup(struct cs_multigrid *multigrid,
     return done;
 }
 
-/* x of the first level for its r */
+/* One V-cycle: sets the first level's solution for its residual.
+ *   1. Down: smooth from 0, compute the residual, sum it over aggregates.
+ *   2. On the last level, which has no springs, D^-1 is the exact solution.
+ *   3. Up: add the aggregates' solution to their cells, and smooth again.
+ *
+ * The smoother is the same symmetric map both times, which makes the cycle symmetric. */
 static void cycle(struct cs_hierarchy *hierarchy) {
     struct cs_level *first = hierarchy->levels, *last = first + hierarchy->n_levels - 1;
     for (struct cs_level *level = first; level < last; level++) {
@@ -235,6 +270,8 @@ static void cycle(struct cs_hierarchy *hierarchy) {
     }
 }
 
+/* Bodies are independent: springs never join two of them, and contact between bodies is
+ * diagonal. */
 void cs_multigrid_apply(struct cs_multigrid *multigrid, const double *r, double size,
                         double *z) {
     for (uint32_t k = 0; k < multigrid->n; k++) {

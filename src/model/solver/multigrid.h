@@ -1,11 +1,19 @@
-/* multigrid.h - an approximate inverse of the solver's matrix: aggregation multigrid in single
- * precision, one V-cycle an application, body by body.
+/* multigrid.h - the preconditioner of stiff steps: aggregation multigrid in single precision,
+ * one V-cycle per application, body by body.
  *
- * It is symmetric and positive definite whatever the coarse levels do. With S the smoother (S A
- * has its eigenvalues in (0, 2), see multigrid_level.h, so that 2 S - S A S is positive) and C
- * >= 0 the answer of the coarse levels, a cycle is 2 S - S A S + (I - S A) C (I - A S).
- * Aggregates and their halved springs: multigrid_hierarchy.h; contact of a body with itself:
- * contact_coupling.h. */
+ * The cycle is symmetric and positive definite for any coarse levels. Let S be the smoother's
+ * linear map from residual to correction and C >= 0 that of the coarse levels. Smoothing before
+ * and after the coarse correction gives
+ *
+ *   x1 = S r,   x2 = x1 + C (r - A x1),   x = x2 + S (r - A x2)
+ *   x = (2 S - S A S + (I - S A) C (I - A S)) r
+ *
+ * S A has its eigenvalues in (0, 2), see multigrid_level.h, so 2 S - S A S = S (2 S^-1 - A) S
+ * is positive definite. The last term is symmetric and not negative.
+ *
+ * Aggregates and their halved springs: multigrid_hierarchy.h. Contact of a body with itself:
+ * contact_coupling.h. Contact with other bodies and with colliders is in the diagonal blocks
+ * alone. */
 #ifndef CS_MULTIGRID_H
 #define CS_MULTIGRID_H
 
@@ -13,42 +21,46 @@
 #include "model/solver/pair_vertices.h"
 #include "model/system/system.h"
 
-/* Scenes have levels where one body has more particles than this. */
+/* A scene has levels if one of its bodies has more particles than this. On smaller sheets
+ * coarse levels do not pay: block Jacobi took about as long (measured with square sheets). */
 enum { CS_MULTIGRID_PARTICLES = 24 * 24 };
 
+/* The levels of all bodies. The arena of init owns the arrays. */
 struct cs_multigrid {
     const struct cs_system *system;   /* borrowed */
-    struct cs_hierarchy *hierarchies; /* (n) one a body, or none */
+    struct cs_hierarchy *hierarchies; /* (n) one per body; NULL: no body is large enough */
     uint32_t n;
-    double *internal_blocks; /* (6,n) blocks of pairs that are links (contact_coupling.h); NULL:
-                      no body meets itself */
-    struct cs_pair_vertices pair_vertices; /* of these pairs */
-    double scale; /* what the matrix is divided by for single precision */
+    double *internal_blocks; /* (6, particles) diagonal blocks of the pairs that extra springs
+                                represent (contact_coupling.h); NULL: no self-contact */
+    struct cs_pair_vertices pair_vertices; /* those pairs, indexed by particle */
+    double scale;                          /* divides the matrix, to fit single precision */
 };
 
-/* Makes the structure. CS_ERR_MEMORY. */
+/* Makes the levels' structure from the bodies' springs; numbers follow in setup. Returns
+ * CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_multigrid_init(struct cs_multigrid *multigrid, const struct cs_system *system,
                                  struct cs_arena *arena, struct cs_error *error);
 
-/* Whether a body is large enough for it; else init takes nothing, and there are no levels. */
+/* Tells whether a body is large enough. If none is, init allocates nothing and n stays 0. */
 bool cs_multigrid_is_used(const struct cs_scene *scene);
 
-/* The matrix: springs' factors, and at each particle a mass and a block. */
+/* The matrix to approximate: the springs' factors, and a mass and a block per particle. */
 struct cs_multigrid_matrix {
-    const double *factors;        /* (4 doubles a spring) */
-    const double *mass;           /* (n) */
-    const double *blocks;         /* (6,n) positive semidefinite; NULL: 0 */
-    const struct cs_pairs *pairs; /* whose diagonal blocks are in `blocks`; NULL: none */
-    double trace_min; /* of the trace of a pair's block that is worth springs of its own */
-    double scale;     /* about its largest number */
+    const double *factors;        /* 4 doubles per spring, as cs_springs_factor makes them */
+    const double *mass;           /* (n) a number times the identity */
+    const double *blocks;         /* (6,n) positive semi-definite; NULL: 0 */
+    const struct cs_pairs *pairs; /* their diagonal blocks are in `blocks`; NULL: none */
+    double trace_min;             /* smallest trace of a pair's block that gets extra springs */
+    double scale;                 /* about the largest entry of the matrix */
 };
 
-/* Makes the numbers. false: there was no memory for pairs. */
+/* Computes the numbers of all levels. Returns false if out of memory for contact pairs: the
+ * levels then miss some extra springs, but may still be applied. */
 bool cs_multigrid_setup(struct cs_multigrid *multigrid,
                         const struct cs_multigrid_matrix *matrix);
 
-/* z = one V-cycle for r. size is about that of r, so that its parts fit single precision. z is
- * 0 where particles are pinned. */
+/* z = one V-cycle for r. size is about |r|, by which r is scaled to fit single precision. z
+ * (3,n) is 0 on pinned particles. */
 void cs_multigrid_apply(struct cs_multigrid *multigrid, const double *r, double size,
                         double *z);
 

@@ -1,5 +1,14 @@
-/* Multigrid levels of a grid: 2 x 2 cells become one, springs between them are summed and
- * halved. */
+/* Multigrid levels of a grid: 2 x 2 cells become one; the springs between them are summed and
+ * halved.
+ *
+ * Cells lie row by row, `pitch` apart, with two dead cells after each row and two dead rows and
+ * more at both ends. A spring is stored at the cell where it begins, by its kind: a step of +1,
+ * +2, pitch, pitch + 1, pitch - 1 or 2 pitch cells. Loops therefore run over all cells with
+ * constant offsets and without tests for borders: springs that leave the grid end in dead cells
+ * and have the factor 0.
+ *
+ * Every coarse level has four kinds of springs: right, down, and the two diagonals. A spring
+ * over two fine cells joins neighbouring aggregates and becomes one of these. */
 #include "model/solver/multigrid_hierarchy.h"
 
 #include "base/pool.h"
@@ -7,17 +16,20 @@
 
 #include <string.h>
 
-/* the longest step to the side: rows are that far apart, and the dead cells between them serve
- * both */
+/* Longest step of a spring along a row. As many dead cells separate two rows, for the end of
+ * the one and the beginning of the next. */
 enum { PADDING = 2 };
 
-enum { ROW_CELLS = 1024 }; /* coarse cells of one block of a loop, about */
+/* Coarse cells of one block of a loop, about; blocks are whole rows. */
+enum { ROW_CELLS = 1024 };
 
+/* Rounds up to whole vectors of CS_LANES cells. */
 static uint32_t round_up(uint32_t n) {
     return (n + CS_LANES - 1) / CS_LANES * CS_LANES;
 }
 
-/* dead cells enough at both ends for the longest step, which is two rows */
+/* Lays out a level. The dead cells at either end cover the longest step, two rows and two
+ * cells. */
 static struct cs_level level_of(enum cs_level_form form, uint32_t columns, uint32_t rows) {
     struct cs_level level = {
         .form = form, .columns = columns, .rows = rows, .pitch = columns + PADDING};
@@ -27,16 +39,19 @@ static struct cs_level level_of(enum cs_level_form form, uint32_t columns, uint3
     return level;
 }
 
+/* Index of the cell at a row and a column. */
 static size_t cell(const struct cs_level *level, size_t row, size_t column) {
     return level->begin + row * level->pitch + column;
 }
 
+/* Index of a particle's cell on the first level. */
 static size_t cell_of(const struct cs_hierarchy *hierarchy, uint32_t particle) {
     const uint32_t i = particle - hierarchy->first;
     return cell(hierarchy->levels, i / hierarchy->columns, i % hierarchy->columns);
 }
 
-/* the number of a step, or of a new one */
+/* Returns the number of a spring's step, and adds the step if it is new. The first level has at
+ * most six: those of enum cs_spring_direction. */
 static uint32_t step_number(struct cs_level *level, size_t step) {
     uint32_t s = 0;
     while (s < level->n_neighbour_offsets && level->neighbour_offsets[s] != step)
@@ -46,20 +61,24 @@ static uint32_t step_number(struct cs_level *level, size_t step) {
     return s;
 }
 
+/* Step number of a run: all its springs lead equally far through the cells. */
 static uint32_t run_step(struct cs_hierarchy *hierarchy, const struct cs_spring_run *run) {
     return step_number(hierarchy->levels,
                        cell_of(hierarchy, run->first_b) - cell_of(hierarchy, run->first_a));
 }
 
-/* factors on their way into the first level; a block of the loop is some runs */
+/* Arguments of the loop that copies factors into the first level; one block is RUNS runs. */
 struct loading {
     struct cs_hierarchy *hierarchy;
     const double *factors;
     double root;
 };
 
+/* Runs per block of that loop. Runs write to different springs, so their order does not matter.
+ */
 enum { RUNS = 64 };
 
+/* Copies s and w of a run's springs to the rows of its step, cell by cell. */
 static void load_runs(void *arg, uint32_t block) {
     const struct loading *loading = arg;
     struct cs_hierarchy *hierarchy = loading->hierarchy;
@@ -78,31 +97,45 @@ static void load_runs(void *arg, uint32_t block) {
     }
 }
 
+/* Springs that no run has stay 0 since allocation. */
 static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
     struct loading loading = {hierarchy, factors, 1 / sqrt(scale)};
     cs_pool_run((hierarchy->n_runs + RUNS - 1) / RUNS, load_runs, &loading);
 }
 
-/* between two levels; a block of the loops is some rows of the coarse one */
+/* Arguments of a loop between two levels; one block is `rows` rows of the coarse level. */
 struct transfer {
     const struct cs_level *fine, *coarse; /* one of them is written */
     uint32_t rows;
 };
 
+/* Runs a task over blocks of coarse rows. A block writes only to its own coarse rows, or to the
+ * two fine rows of each. */
 static void run_rows(const struct cs_level *fine, const struct cs_level *coarse,
                      void (*task)(void *transfer, uint32_t block)) {
     struct transfer transfer = {fine, coarse, ROW_CELLS / coarse->columns + 1};
     cs_pool_run((coarse->rows + transfer.rows - 1) / transfer.rows, task, &transfer);
 }
 
+/* End of a block's coarse rows. */
 static uint32_t rows_end(const struct transfer *transfer, uint32_t block) {
     const uint32_t end = (block + 1) * transfer->rows;
     return end < transfer->coarse->rows ? end : transfer->coarse->rows;
 }
 
-/* Adds to a row of coarse springs what begins in the cells (row, 2 j + right) of the fine level
- * and goes by step s, unless it stays inside an aggregate. A coarse spring begins at the lower
- * of its cells; only a diagonal to the left within two rows begins at the other one. */
+/* Adds to a row of coarse springs those that begin in the cells (row, 2 j + right) of the fine
+ * level and lead by step s. They are dropped if they stay inside an aggregate or have a dead
+ * end.
+ *
+ * Let the step be `down` rows and `across` columns, -1 <= across <= 2. From column 2 j + right
+ * the other end is in the aggregate `beside` columns and `below` rows away:
+ *
+ *   below  = floor((row + down) / 2) - floor(row / 2)
+ *   beside = floor((right + across) / 2)
+ *
+ * A coarse spring begins at the lower-numbered of its two cells. Only a spring that leads to
+ * the left within one coarse row (`turned`) has its lower cell at the other end; it is stored
+ * there. */
 CS_INLINE void add_springs(const struct cs_level *fine, const struct cs_level *coarse,
                            size_t row, size_t right, uint32_t s) {
     const size_t n = fine->n, m = coarse->n, step = fine->neighbour_offsets[s];
@@ -137,7 +170,8 @@ CS_INLINE void add_springs(const struct cs_level *fine, const struct cs_level *c
     }
 }
 
-/* own of a row of coarse cells += that of the fine cells (row, 2 j + right) */
+/* Adds the diagonal of the fine cells (row, 2 j + right) to a row of coarse cells. A fine level
+ * of form FACTORED has one mass per cell, which goes to xx, yy and zz. */
 CS_INLINE void add_own(const struct cs_level *fine, const struct cs_level *coarse, size_t row,
                        size_t right) {
     const float *from = fine->diagonal + cell(fine, row, right);
@@ -151,6 +185,8 @@ CS_INLINE void add_own(const struct cs_level *fine, const struct cs_level *coars
     }
 }
 
+/* Coarsens blocks of rows. The order of the sums is fixed: rows, then left and right, then
+ * steps. */
 CS_CLONES static void coarsen_rows(void *arg, uint32_t block) {
     const struct transfer *transfer = arg;
     const struct cs_level *fine = transfer->fine;
@@ -163,7 +199,8 @@ CS_CLONES static void coarsen_rows(void *arg, uint32_t block) {
         }
 }
 
-/* springs (s, i) to dead cells tie the living end's aggregate; i dead or the cell behind it */
+/* Adds spring (s, i), one end of which is dead, to the diagonal of the aggregate of its living
+ * end `alive`. Does nothing if `alive` is dead too. */
 static void add_dirichlet_spring(const struct cs_level *fine, struct cs_level *coarse,
                                  uint32_t s, size_t i, size_t alive) {
     const size_t n = fine->n, k = alive - fine->begin;
@@ -182,7 +219,8 @@ static void add_dirichlet_spring(const struct cs_level *fine, struct cs_level *c
         own[c * coarse->n] += CS_HIERARCHY_SOFTNESS * block[c];
 }
 
-/* one after the other, as two aggregates may share a row: there are few dead cells */
+/* Visits the springs of all dead cells, in both directions. Serial, because aggregates of two
+ * blocks may meet at one dead cell, and because dead cells are few. */
 static void add_dirichlet_springs(const struct cs_level *fine, struct cs_level *coarse) {
     for (size_t row = 0; row < fine->rows; row++)
         for (size_t i = cell(fine, row, 0); i < cell(fine, row, fine->columns); i++)
@@ -194,6 +232,7 @@ static void add_dirichlet_springs(const struct cs_level *fine, struct cs_level *
             }
 }
 
+/* P^T A P with halved springs. Springs to dead cells follow after the loop. */
 static void coarsen(const struct cs_level *fine, struct cs_level *coarse) {
     memset(coarse->springs, 0, 6 * coarse->n_neighbour_offsets * sizeof(float) * coarse->n);
     memset(coarse->diagonal, 0, 6 * sizeof(float) * coarse->n);
@@ -201,6 +240,8 @@ static void coarsen(const struct cs_level *fine, struct cs_level *coarse) {
     add_dirichlet_springs(fine, coarse);
 }
 
+/* Sums the residual of the four cells of an aggregate, in pairs by row. Dead cells count as 0:
+ * their residual is not meaningful. */
 CS_CLONES static void restrict_rows(void *arg, uint32_t block) {
     const struct transfer *transfer = arg;
     const struct cs_level *fine = transfer->fine, *coarse = transfer->coarse;
@@ -223,6 +264,8 @@ static void restrict_r(const struct cs_level *fine, struct cs_level *coarse) {
     run_rows(fine, coarse, restrict_rows);
 }
 
+/* Gives the coarse solution to the living cells of each aggregate: as the correction, whose
+ * product the next sweep subtracts, and added to the solution. */
 CS_CLONES static void prolong_rows(void *arg, uint32_t block) {
     const struct transfer *transfer = arg;
     const struct cs_level *fine = transfer->fine, *coarse = transfer->coarse;
@@ -252,7 +295,8 @@ static void prolong_x(const struct cs_level *coarse, struct cs_level *fine) {
 
 static const struct cs_hierarchy_kind grid = {load, coarsen, restrict_r, prolong_x};
 
-/* the four forward neighbours among aggregates */
+/* Lays out the next level: half the cells per axis, rounded up, and up to four steps to forward
+ * neighbours. */
 static struct cs_level next_of(const struct cs_level *fine) {
     struct cs_level level =
         level_of(CS_LEVEL_GRID_BLOCKS, (fine->columns + 1) / 2, (fine->rows + 1) / 2);
@@ -271,12 +315,14 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
                                     struct cs_error *error) {
     struct cs_level *level = hierarchy->levels;
     hierarchy->kind = &grid;
+    /* the first level's steps come from the springs that the body has */
     *level =
         level_of(hierarchy->has_particle_blocks ? CS_LEVEL_FACTORED_BLOCKS : CS_LEVEL_FACTORED,
                  hierarchy->columns, hierarchy->count / hierarchy->columns);
     for (uint32_t r = 0; r < hierarchy->n_runs; r++)
         run_step(hierarchy, hierarchy->runs + r);
     cs_level_alloc(level, 4 * (size_t)level->n_neighbour_offsets * level->n, arena, error);
+    /* coarsen until one cell is left, or none has a spring */
     for (; !error->status && level->n_neighbour_offsets; level++) {
         level[1] = next_of(level);
         cs_level_alloc(level + 1, 6 * (size_t)level[1].n_neighbour_offsets * level[1].n, arena,

@@ -1,15 +1,29 @@
-/* multigrid_hierarchy.h - the levels of one body's multigrid: their structure is made once,
- * their numbers for every matrix.
+/* multigrid_hierarchy.h - the levels of one body: their structure is made once, their numbers
+ * for every matrix.
  *
- * A grid is coarsened by 2 x 2 cells; a mesh by joining cells in pairs, twice
- * (graph_matching.h). Which particles are pinned does not matter for that, as events change it:
- * they are dead cells, and what ties a living cell to them becomes part of `own` of its
- * aggregate.
+ * A grid is coarsened by 2 x 2 cells. A mesh is coarsened by joining cells in pairs, twice, as
+ * in double pairwise aggregation (Notay 2010), along the heaviest springs (graph_matching.h).
+ * Pinned particles do not influence the aggregates, because events may pin and release them:
+ * they are dead cells. A spring from a living to a dead cell (a Dirichlet spring) adds its
+ * block to the diagonal of the living cell's aggregate.
  *
- * On the next level a cell has the mass of its parts, and springs have the sum of those between
- * two aggregates, halved: Galerkin's product for piecewise constant functions, whose stiffness
- * is about twice too large because a smooth motion becomes steps (Braess 1995). Halving the
- * springs, and not doubling the whole correction, leaves rigid motions right. */
+ * With P the prolongation, constant on each aggregate, Galerkin's product P^T A P is again a
+ * matrix of masses and springs. A coarse cell has the sum of its cells' masses; two coarse
+ * cells are joined by the sum of the springs between them; springs inside an aggregate vanish.
+ *
+ * That matrix is too stiff. A smooth displacement of slope g becomes steps: over an aggregate
+ * of two cells, one spring between aggregates sees the difference 2 g and none sees the other
+ * g:
+ *
+ *   fine    2 springs k g^2 / 2 = k g^2
+ *   coarse  1 spring  k (2 g)^2 / 2 = 2 k g^2
+ *
+ * The same holds for 2 x 2 cells and both diagonals. The coarse correction is therefore about
+ * half of the right one (Braess 1995, who scales the correction). Here the springs are
+ * multiplied by CS_HIERARCHY_SOFTNESS = 1/2 and the masses are not, which leaves rigid motions
+ * right: a translation meets mass alone. Springs over two cells (bending) would need the factor
+ * 1 on the first level; half of it only makes that level too soft, which costs iterations and
+ * no accuracy. */
 #ifndef CS_MULTIGRID_HIERARCHY_H
 #define CS_MULTIGRID_HIERARCHY_H
 
@@ -18,43 +32,56 @@
 
 #include <math.h>
 
+/* Enough for 2^32 cells: each level has at most half the cells, rounded up per axis of a grid,
+ * which makes 33 levels at most. */
 enum { CS_HIERARCHY_LEVELS_MAX = 34 };
 
+/* Factor of springs from level to level; derivation above. */
 #define CS_HIERARCHY_SOFTNESS 0.5F
 
+/* The levels of one body, from the particles (levels[0]) to cells without springs. The arena of
+ * cs_hierarchy_of_grid or cs_hierarchy_of_mesh owns the levels' arrays. */
 struct cs_hierarchy {
-    uint32_t first, count;            /* particles */
-    uint32_t columns;                 /* of particles a row; rows are cells apart, see pitch */
+    uint32_t first, count;            /* the body's particles [first, first + count) */
+    uint32_t columns;                 /* particles per row; rows begin `pitch` cells apart */
     const struct cs_spring_run *runs; /* (n_runs) the body's, borrowed */
     uint32_t n_runs;
-    bool has_particle_blocks; /* the matrix has blocks at single particles, not numbers alone */
-    bool has_self_contact;    /* the body meets itself */
+    bool has_particle_blocks; /* the matrix has 3x3 blocks at particles, not only numbers */
+    bool has_self_contact;    /* contact acts between parts of the body */
     const struct cs_hierarchy_kind *kind;
     uint32_t n_levels;
     struct cs_level levels[CS_HIERARCHY_LEVELS_MAX];
 };
 
-/* What grids and meshes do in their own way. */
+/* Operations that differ between grids and meshes. */
 struct cs_hierarchy_kind {
-    /* the first level's springs from the solver's factors (4 doubles a spring) over scale */
+    /* sets the first level's springs from the solver's factors (4 doubles per spring), over
+     * scale */
     void (*load)(struct cs_hierarchy *hierarchy, const double *factors, double scale);
-    /* springs and own of the next level */
+    /* sets the springs and the diagonal of the next level: P^T A P with halved springs */
     void (*coarsen)(const struct cs_level *fine, struct cs_level *coarse);
-    /* r of the next level: sums of the living cells' r */
+    /* residual of the next level: P^T r, sums over the living cells of each aggregate */
     void (*restrict_r)(const struct cs_level *fine, struct cs_level *coarse);
-    /* d of the living cells: x of their aggregates, and x += d */
+    /* correction of the living cells: P times the coarse solution; added to the solution */
     void (*prolong_x)(const struct cs_level *coarse, struct cs_level *fine);
 };
 
-/* Make the levels; first, count, columns, runs and forced are set. CS_ERR_MEMORY. */
+/* Make the structure of all levels. The members above `kind` are set by the caller. Return
+ * CS_ERR_MEMORY if out of memory. */
 enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
 enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
 
-/* s and w of a spring from the solver's factors, whose rows have `count` numbers; root is
- * 1 / sqrt(scale). A spring with s < 0 loses its transverse part and keeps its stiffness along
- * itself: the preconditioner is positive definite even where the matrix is not. */
+/* Reads s and w of one spring from the solver's factors, whose rows have `count` numbers, and
+ * divides the spring's block B = s I + w w^T by the scale; root is 1 / sqrt(scale).
+ *
+ * s < 0 means a compressed spring in an exact matrix. Its transverse part s (I - u u^T) is
+ * dropped and its axial stiffness s + |w|^2 is preserved, if that is positive:
+ *
+ *   s' = 0,   w' = w sqrt(max(0, 1 + s / |w|^2))
+ *
+ * The preconditioner is thereby positive definite even if the matrix is not. */
 static inline void cs_hierarchy_spring(const double *factors, size_t count, double root,
                                        float spring[4]) {
     const double s = factors[0];

@@ -1,5 +1,11 @@
 /* Kernels of one multigrid level in single precision: product, Chebyshev smoother and inverse
- * diagonal blocks. */
+ * diagonal blocks.
+ *
+ * A sweep fuses product, residual and smoother: one pass over the springs, which are most of
+ * the memory traffic. The sweeps of a smoother run as a wavefront (wavefront.h), so that a
+ * level which does not fit the cache is fetched about once per smoother and not once per sweep.
+ * With CS_LANES = 16 cells at a time, each lane has its own arithmetic, and results do not
+ * depend on the vector width. */
 #include "model/solver/multigrid_level.h"
 
 #include "base/pool.h"
@@ -10,15 +16,17 @@
 #include <clothsim/small.h>
 
 enum {
-    /* of one block of a loop at least, a whole number of lanes: so few that the blocks of all
-     * loops of a smoother stay in a processor's own cache, up to 256 cells a row */
+    /* Smallest block of a loop, in cells, a multiple of CS_LANES. Up to 256 cells per row, the
+     * blocks at work in all loops of a smoother fit a processor's own cache (measured with
+     * 1 MiB per processor, docs/speed.md). */
     CELLS = 512,
-    CELLS_FEW = 128, /* where threads would else have no blocks to share */
-    LOOPS = 4,       /* of a smoother and what follows it at most */
-    AHEAD = 256,     /* cells after which numbers are asked for */
-    BIG = 1 << 14    /* cells that are not all in that cache */
+    CELLS_FEW = 128, /* the same on levels that would have too few blocks for the threads */
+    LOOPS = 4,       /* most loops of a smoother, with its last product */
+    AHEAD = 256,     /* distance of prefetches in cells; chosen by trial */
+    BIG = 1 << 14    /* levels with more cells do not fit that cache, and prefetch */
 };
 
+/* Vectors and numbers are zeroed by the arena; dead cells stay 0 ever after. */
 enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct cs_arena *arena,
                               struct cs_error *error) {
     const size_t n = level->n, own = level->form == CS_LEVEL_FACTORED ? 1 : 6;
@@ -32,23 +40,25 @@ enum cs_status cs_level_alloc(struct cs_level *level, size_t n_numbers, struct c
     return error->status;
 }
 
-/* A loop over the cells of a level: d is the last move, e the next one. */
+/* One loop over the cells of a level. d is the last correction, e the next one. */
 struct loop {
     struct cs_level *level;
     void (*task)(const struct loop *loop, size_t begin, size_t end);
     const float *d;
-    float *e; /* NULL: r alone changes */
-    float a, b;
-    bool fetches; /* the first loop to look at a block's springs */
+    float *e;     /* NULL: only the residual changes */
+    float a, b;   /* gains: e = a d + b D^-1 r */
+    bool fetches; /* the first loop to read a block's springs, which prefetches them */
 };
 
-/* loops one after another, each of which looks at the cells around its own */
+/* Dependent loops in their order: each reads what its predecessor wrote in the neighbouring
+ * blocks. */
 struct loops {
     struct loop loops[LOOPS];
-    uint32_t n, at;
-    size_t cells; /* of a block */
+    uint32_t n, at; /* number of loops; the one that runs, if they run one by one */
+    size_t cells;   /* per block */
 };
 
+/* Runs one loop on one block of cells. */
 static void run_block(void *arg, uint32_t number, uint32_t block) {
     const struct loops *loops = arg;
     const struct loop *loop = loops->loops + number;
@@ -56,11 +66,14 @@ static void run_block(void *arg, uint32_t number, uint32_t block) {
     loop->task(loop, begin, end < loop->level->end ? end : loop->level->end);
 }
 
+/* The same for loops that run one by one. */
 static void run_block_of_one(void *arg, uint32_t block) {
     run_block(arg, ((const struct loops *)arg)->at, block);
 }
 
-/* so many that no spring of a grid reaches beyond the next block */
+/* Cells per block. No spring of a grid may reach beyond the next block, because a wavefront
+ * only guarantees the two neighbours. Small levels get small blocks if there are threads to
+ * share them. */
 static size_t cells_of_block(const struct cs_level *level) {
     const uint32_t threads = cs_pool_threads();
     const bool few = threads > 1 && level->end - level->begin < 2 * LOOPS * threads * CELLS;
@@ -70,13 +83,13 @@ static size_t cells_of_block(const struct cs_level *level) {
     return (cells + CS_LANES - 1) / CS_LANES * CS_LANES;
 }
 
-/* a mesh, and a body that meets itself */
+/* Tells whether springs may join any two cells: in a mesh, and with extra springs. */
 static bool has_neighbours_anywhere(const struct cs_level *level) {
     return level->form == CS_LEVEL_MESH ||
            (level->extra_springs && level->extra_springs->is_nonempty);
 }
 
-/* where neighbours are anywhere, one loop after the other */
+/* Runs the loops as a wavefront if springs are short, else one after the other. */
 static void run(struct loops *loops) {
     const struct cs_level *level = loops->loops->level;
     loops->cells = cells_of_block(level);
@@ -89,11 +102,12 @@ static void run(struct loops *loops) {
             cs_pool_run(blocks, run_block_of_one, loops);
 }
 
+/* Runs a single loop over all blocks. */
 static void run_one(struct loop loop) {
     run(&(struct loops){.loops = {loop}, .n = 1});
 }
 
-/* (s I + w w^T) p */
+/* (s I + w w^T) p for 16 springs, whose numbers lie n floats apart. */
 CS_INLINE struct vectors factored_times(const float *spring, size_t n, struct vectors p) {
     const lanes s = get(spring);
     const struct vectors w = get3(spring + n, n);
@@ -102,6 +116,7 @@ CS_INLINE struct vectors factored_times(const float *spring, size_t n, struct ve
                             s * p.z + along * w.z};
 }
 
+/* y += the products of a mesh's springs at the cells i to i + 15, slot by slot. */
 CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const float *p,
                                    struct vectors here, struct vectors y) {
     const uint32_t *starts = level->starts + i / CS_LANES;
@@ -113,8 +128,8 @@ CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const
     return y;
 }
 
-/* Asks for the springs of cells to come: a row of a kind is a stream of its own, and so many
- * streams at once are more than processors follow by themselves. */
+/* Prefetches the springs of cells to come. Each step and component is a stream of its own, up
+ * to 24 or 36 of them, which is more than the processor's prefetcher follows. */
 CS_INLINE void fetch_springs(const struct cs_level *level, size_t i) {
     const size_t at = i + AHEAD < level->n ? i + AHEAD : i;
     const size_t rows = level->n_neighbour_offsets * (cs_level_is_factored(level) ? 4 : 6);
@@ -122,7 +137,9 @@ CS_INLINE void fetch_springs(const struct cs_level *level, size_t i) {
         __builtin_prefetch(level->springs + c * level->n + at);
 }
 
-/* springs that begin here, and springs that end here */
+/* y += the products of a grid's springs at the cells i to i + 15. Every step gives two: the
+ * spring that begins here (offset +step) and the one that ends here, which is stored at cell i
+ * - step. */
 CS_INLINE struct vectors add_steps(const struct cs_level *level, const bool factored, size_t i,
                                    const float *p, struct vectors here, struct vectors y) {
     const size_t n = level->n;
@@ -143,7 +160,8 @@ CS_INLINE struct vectors add_steps(const struct cs_level *level, const bool fact
     return y;
 }
 
-/* A p of the 16 cells from i on, where p is `here` */
+/* Returns A p of the cells i to i + 15, where p is `here`. The form is a constant of every
+ * caller, so the compiler removes the tests. */
 CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_level_form form,
                                  size_t i, const float *p, struct vectors here) {
     if (form == CS_LEVEL_FACTORED) {
@@ -157,7 +175,8 @@ CS_INLINE struct vectors product(const struct cs_level *level, const enum cs_lev
                : add_steps(level, form == CS_LEVEL_FACTORED_BLOCKS, i, p, here, y);
 }
 
-/* r -= A d, and where that is not all: e = a d + b D^-1 r, x += e */
+/* One sweep: residual -= A d, and, unless e is NULL, e = a d + b D^-1 residual, solution += e.
+ */
 CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form, size_t begin,
                           size_t end) {
     struct cs_level *level = loop->level;
@@ -179,7 +198,9 @@ CS_INLINE void sweep_form(const struct loop *loop, const enum cs_level_form form
     }
 }
 
-/* r -= the links' share of A d, of those cells that have any */
+/* Subtracts the extra springs' part of A d from the residual of 16 cells at a time, where there
+ * are any. It runs before the sweep of the same block, which then reads the updated residual.
+ */
 CS_INLINE void alloc_links(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;
@@ -199,7 +220,7 @@ CS_INLINE void alloc_links(const struct loop *loop, size_t begin, size_t end) {
     }
 }
 
-/* a copy of the loop for every form */
+/* Dispatches to a copy of the sweep for each form. */
 CS_CLONES static void sweep(const struct loop *loop, size_t begin, size_t end) {
     const enum cs_level_form form = loop->level->form;
     if (loop->level->extra_springs && loop->level->extra_springs->is_nonempty)
@@ -219,7 +240,7 @@ void cs_level_subtract_product(struct cs_level *level) {
         (struct loop){.level = level, .task = sweep, .d = level->correction, .fetches = true});
 }
 
-/* x = e = b D^-1 r */
+/* The first move of a smoother from 0: solution = e = b D^-1 residual. No product is needed. */
 CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;
@@ -231,14 +252,19 @@ CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
     }
 }
 
-/* Chebyshev's iteration (Saad 2003, alg. 12.1): with t = 7/6 and h = 5/6 the centre and half
- * the length of [1/3, 2] and c = t / h, the first move is D^-1 r / t, and the next ones are
- * q' q d + 2 q' / h D^-1 r with q' = 1 / (2 c - q) after q, from q = 1 / c on. */
+/* Gains of Chebyshev's iteration (Saad 2003, algorithm 12.1). Let t = 7/6 be the centre and h =
+ * 5/6 half the length of [1/3, 2], and c = t / h = 7/5. The first move is D^-1 r / t. The next
+ * ones are
+ *
+ *   d' = q' q d + (2 q' / h) D^-1 r,   q' = 1 / (2 c - q),   q0 = 1 / c
+ *
+ * which gives q = 5/7, 35/73, 365/847, and from them the fractions below. */
 static const float first_gain = 6 / 7.0F;
 static const struct {
     float a, b;
 } gains[2] = {{25 / 73.0F, 84 / 73.0F}, {350 / 1694.0F, 1752 / 1694.0F}};
 
+/* Three moves from the start 0, and the product that makes the residual for the next level. */
 void cs_level_smooth_down(struct cs_level *level) {
     float *d = level->correction, *e = level->correction_next;
     run(&(struct loops){.loops = {{level, start, NULL, d, 0, first_gain, false},
@@ -248,6 +274,8 @@ void cs_level_smooth_down(struct cs_level *level) {
                         .n = 4});
 }
 
+/* The first sweep subtracts the product with the coarse correction and makes the first move (a
+ * = 0: Chebyshev's iteration starts again). The last residual is not needed. */
 void cs_level_smooth_up(struct cs_level *level) {
     float *d = level->correction, *e = level->correction_next;
     run(&(struct loops){.loops = {{level, sweep, d, e, 0, first_gain, true},
@@ -256,10 +284,12 @@ void cs_level_smooth_up(struct cs_level *level) {
                         .n = 3});
 }
 
+/* `start` with the gain 1. */
 void cs_level_solve_diagonal(struct cs_level *level) {
     run_one((struct loop){.level = level, .task = start, .e = level->correction, .b = 1});
 }
 
+/* s I + w w^T of 16 springs. */
 CS_INLINE struct blocks expanded(const float *spring, size_t n) {
     const lanes s = get(spring);
     const struct vectors w = get3(spring + n, n);
@@ -267,7 +297,7 @@ CS_INLINE struct blocks expanded(const float *spring, size_t n) {
                            s + w.y * w.y, w.y * w.z, s + w.z * w.z};
 }
 
-/* the springs' blocks of the 16 cells from i on, added up */
+/* Sums the springs' blocks at the cells i to i + 15: their part of D. */
 CS_INLINE struct blocks sum_springs(const struct cs_level *level, size_t i) {
     const size_t n = level->n;
     struct blocks sum = {0};
@@ -288,8 +318,9 @@ CS_INLINE struct blocks sum_springs(const struct cs_level *level, size_t i) {
     return sum;
 }
 
-/* the 16 blocks at m, in double: a flat sheet has only its mass across, and the determinant is
- * a small difference. 0 where a cell is dead */
+/* Inverts 16 blocks in place, in double precision: a flat sheet has only its mass across it,
+ * and the determinant is a small difference of large products. Dead cells, and blocks that are
+ * not positive definite, get 0 and are then left alone by the smoother. */
 CS_INLINE void invert_blocks(float *m, size_t n, const float *own) {
     for (size_t l = 0; l < CS_LANES; l++) {
         double block[6], cofactors[6];
@@ -303,6 +334,8 @@ CS_INLINE void invert_blocks(float *m, size_t n, const float *own) {
     }
 }
 
+/* Sets the inverses of a range of cells. loop->b is the fraction of the trace that D gets on
+ * top. */
 CS_CLONES static void invert(const struct loop *loop, size_t begin, size_t end) {
     struct cs_level *level = loop->level;
     const size_t n = level->n;

@@ -1,5 +1,8 @@
-/* Multigrid levels of a mesh: cells are joined in pairs, twice, by the stiffness between them.
- */
+/* Multigrid levels of a mesh: cells are joined in pairs, twice, along the stiffest springs.
+ *
+ * The structure depends on the bodies' stiffness alone, not on the state, so it is made once.
+ * Each level has its springs twice: by number (`blocks`), to be summed into the next level, and
+ * by slots (`springs`), for the kernels, 16 cells at a time. */
 #include "model/solver/multigrid_hierarchy.h"
 
 #include "base/pool.h"
@@ -8,14 +11,16 @@
 
 #include <string.h>
 
-/* joins the numbers of two coarsenings: where[i] = then[where[i]] */
+/* Composes the maps of two coarsenings: where[i] = then[where[i]]. Vanished items stay
+ * CS_GRAPH_NONE. */
 static void compose_maps(uint32_t n, uint32_t *where, const uint32_t *then) {
     for (uint32_t i = 0; i < n; i++)
         if (where[i] != CS_GRAPH_NONE)
             where[i] = then[where[i]];
 }
 
-/* springs of the body by number, stiffness as weight */
+/* Makes the graph of a body: particles are nodes, springs edges in their order, stiffness in
+ * N/m is the weight. */
 static enum cs_status body_graph(const struct cs_hierarchy *hierarchy, struct cs_graph *graph,
                                  struct cs_arena *work, struct cs_error *error) {
     graph->n = hierarchy->count;
@@ -36,7 +41,7 @@ static enum cs_status body_graph(const struct cs_hierarchy *hierarchy, struct cs
     return CS_OK;
 }
 
-/* the longest list of springs of each 16 cells, as starts */
+/* Gives each 16 cells as many slots as the longest of their spring lists; sets `starts`. */
 static void count_slots(const struct cs_graph *graph, struct cs_level *level,
                         uint32_t *degrees) {
     memset(degrees, 0, level->n * sizeof *degrees);
@@ -50,7 +55,8 @@ static void count_slots(const struct cs_graph *graph, struct cs_level *level,
     }
 }
 
-/* gives every end of every edge the next slot of its cell */
+/* Gives every end of every edge the next slot of its cell. Unused slots join a cell to itself,
+ * with the block 0: their difference is 0, and the kernels need no test. */
 static void fill_slots(const struct cs_graph *graph, struct cs_level *level, uint32_t *filled) {
     for (uint32_t i = 0; i < level->n; i++) {
         filled[i] = 0;
@@ -68,6 +74,7 @@ static void fill_slots(const struct cs_graph *graph, struct cs_level *level, uin
     }
 }
 
+/* Makes the structure of one level from its graph. */
 static enum cs_status level_of(const struct cs_graph *graph, uint32_t pitch,
                                struct cs_level *level, struct cs_arena *arena,
                                struct cs_arena *work, struct cs_error *error) {
@@ -97,8 +104,10 @@ static enum cs_status level_of(const struct cs_graph *graph, uint32_t pitch,
     return cs_level_alloc(level, n_slots * 6 * CS_LANES, arena, error);
 }
 
-enum { SLOTS = 256 }; /* of one block of a loop */
+/* Slots of one block of the loop below. */
+enum { SLOTS = 256 };
 
+/* Copies each spring's block to its two slots, component by component across the 16 lanes. */
 static void scatter_slots(void *arg, uint32_t block) {
     const struct cs_level *level = arg;
     const size_t n_slots = level->starts[level->n / CS_LANES];
@@ -111,11 +120,12 @@ static void scatter_slots(void *arg, uint32_t block) {
         }
 }
 
-/* the blocks to both ends of every spring */
+/* Fills the slots of all springs from their blocks. */
 static void scatter_blocks(struct cs_level *level) {
     cs_pool_run((level->starts[level->n / CS_LANES] + SLOTS - 1) / SLOTS, scatter_slots, level);
 }
 
+/* Sets the blocks of the first level's springs: those of the matrix over scale. */
 static void load(struct cs_hierarchy *hierarchy, const double *factors, double scale) {
     const double root = 1 / sqrt(scale);
     float *block = hierarchy->levels->blocks;
@@ -131,6 +141,7 @@ static void load(struct cs_hierarchy *hierarchy, const double *factors, double s
     scatter_blocks(hierarchy->levels);
 }
 
+/* Sums the diagonal over the cells of each aggregate. */
 static void sum_diagonal(const struct cs_level *fine, struct cs_level *coarse) {
     memset(coarse->diagonal, 0, 6 * sizeof(float) * coarse->n);
     for (size_t i = 0; i < fine->n; i++)
@@ -139,6 +150,9 @@ static void sum_diagonal(const struct cs_level *fine, struct cs_level *coarse) {
                 fine->diagonal[c * fine->n + i];
 }
 
+/* P^T A P with halved springs. A spring whose one end is dead goes to the living end's
+ * diagonal; one inside an aggregate, or between two dead cells, vanishes. Serial, because
+ * springs of one aggregate lie anywhere. */
 static void coarsen(const struct cs_level *fine, struct cs_level *coarse) {
     sum_diagonal(fine, coarse);
     memset(coarse->blocks, 0, 6 * sizeof(float) * coarse->n_springs);
@@ -158,6 +172,7 @@ static void coarsen(const struct cs_level *fine, struct cs_level *coarse) {
     scatter_blocks(coarse);
 }
 
+/* Sums the residual of the living cells of each aggregate. */
 static void restrict_r(const struct cs_level *fine, struct cs_level *coarse) {
     memset(coarse->residual, 0, 3 * sizeof(float) * coarse->n);
     for (size_t i = 0; i < fine->n; i++)
@@ -166,6 +181,8 @@ static void restrict_r(const struct cs_level *fine, struct cs_level *coarse) {
                 fine->residual[c * fine->n + i];
 }
 
+/* Gives the coarse solution to the living cells of each aggregate, as correction and on top of
+ * the solution. */
 static void prolong_x(const struct cs_level *coarse, struct cs_level *fine) {
     for (size_t i = 0; i < fine->n; i++)
         for (size_t c = 0; c < 3 && cs_level_is_alive(fine, i); c++) {
@@ -177,8 +194,8 @@ static void prolong_x(const struct cs_level *coarse, struct cs_level *fine) {
 
 static const struct cs_hierarchy_kind mesh = {load, coarsen, restrict_r, prolong_x};
 
-/* parents and targets of a level, and the graph of the next one; n and n_edges of *graph are 0
- * after failure */
+/* Coarsens by two matchings: sets the parents and coarse springs of a level, and replaces the
+ * graph by the next level's. n and n_edges of *graph are 0 after failure. */
 static void aggregate(struct cs_graph *graph, struct cs_level *level, struct cs_arena *arena,
                       struct cs_arena *work, struct cs_error *error) {
     struct cs_graph pairs, fours = {0};
@@ -202,6 +219,7 @@ enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_ar
     struct cs_graph graph = {0};
     struct cs_level *level = hierarchy->levels;
     hierarchy->kind = &mesh;
+    /* ends, because every matching at least halves the nodes that have edges */
     body_graph(hierarchy, &graph, &work, error);
     while (!error->status &&
            !level_of(&graph, hierarchy->columns, level, arena, &work, error) && graph.n_edges)
