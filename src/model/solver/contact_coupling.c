@@ -1,4 +1,5 @@
-/* Springs between the cells of a body that meets itself, from pairs and from level to level. */
+/* Extra springs of a body with self-contact: from contact pairs to the first level, and from
+ * level to level. */
 #include "model/solver/contact_coupling.h"
 
 #include "model/contact/narrow_phase/contact_pairs.h"
@@ -8,7 +9,8 @@
 
 #include <string.h>
 
-/* the next level's cell of each of a grid's */
+/* Sets the next level's cell of each cell of a grid; CS_GRAPH_NONE in the padding. A mesh has
+ * them from its matching. */
 static void find_parents(struct cs_level *fine, const struct cs_level *coarse) {
     memset(fine->parents, 0xff, fine->n * sizeof *fine->parents);
     for (uint32_t row = 0; row < fine->rows; row++)
@@ -17,8 +19,8 @@ static void find_parents(struct cs_level *fine, const struct cs_level *coarse) {
                 coarse->begin + row / 2 * coarse->pitch + column / 2;
 }
 
-/* the cells of each parent one behind the other: counted two places on, so that filling moves
- * the starts to where they belong */
+/* Lists the cells of each parent: a counting sort. Counts are stored two places further on, so
+ * that filling moves the starts to where they belong. */
 static void find_children(struct cs_level *fine, const struct cs_level *coarse) {
     uint32_t *starts = fine->children_begin;
     for (uint32_t i = 0; i < fine->n; i++)
@@ -31,6 +33,7 @@ static void find_children(struct cs_level *fine, const struct cs_level *coarse) 
             fine->children[starts[fine->parents[i] + 1]++] = i;
 }
 
+/* Allocates and fills parents (of a grid) and children of a level. */
 static void add_pair_springs(struct cs_level *fine, const struct cs_level *coarse,
                              struct cs_arena *arena, struct cs_error *error) {
     const bool grid = fine->form != CS_LEVEL_MESH;
@@ -46,6 +49,7 @@ static void add_pair_springs(struct cs_level *fine, const struct cs_level *coars
     find_children(fine, coarse);
 }
 
+/* The lists themselves are empty until the first matrix with contact. */
 enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                 struct cs_error *error) {
     for (uint32_t k = 0; k < hierarchy->n_levels && !error->status; k++) {
@@ -62,10 +66,12 @@ enum cs_status cs_coupling_init(struct cs_hierarchy *hierarchy, struct cs_arena 
 
 /* --- from pairs --- */
 
+/* Tells whether a point is a particle of this body. */
 static bool is_own(const struct cs_hierarchy *hierarchy, uint32_t point) {
     return point >= hierarchy->first && point - hierarchy->first < hierarchy->count;
 }
 
+/* Tells whether all four points of a pair are particles of this body. */
 static bool is_inner(const struct cs_hierarchy *hierarchy, const uint32_t at[4]) {
     bool inner = true;
     for (uint32_t k = 0; k < 4; k++)
@@ -73,12 +79,13 @@ static bool is_inner(const struct cs_hierarchy *hierarchy, const uint32_t at[4])
     return inner;
 }
 
+/* The first level's cell of a particle. */
 static uint32_t cell_of(const struct cs_hierarchy *hierarchy, uint32_t particle) {
     const uint32_t i = particle - hierarchy->first, row = i / hierarchy->columns;
     return hierarchy->levels->begin + row * hierarchy->levels->pitch + i % hierarchy->columns;
 }
 
-/* UINT32_MAX: padding */
+/* The particle of a cell; UINT32_MAX in the padding. Inverse of cell_of. */
 static uint32_t particle_of(const struct cs_hierarchy *hierarchy, uint32_t cell) {
     const struct cs_level *level = hierarchy->levels;
     if (cell < level->begin || cell >= level->end)
@@ -90,7 +97,7 @@ static uint32_t particle_of(const struct cs_hierarchy *hierarchy, uint32_t cell)
                                                                : UINT32_MAX;
 }
 
-/* inner += factor times a block */
+/* internal_blocks of a particle += factor times a block. */
 static void count_in(const struct cs_coupling *coupling, uint32_t particle,
                      const double block[6], double factor) {
     const size_t n = coupling->pairs->system->view.n;
@@ -98,8 +105,10 @@ static void count_in(const struct cs_coupling *coupling, uint32_t particle,
         coupling->internal_blocks[c * n + particle] += factor * block[c];
 }
 
-/* The springs of one corner of a pair to the others. Pinned ones are ground, where springs
- * below 0 are left out: what a cell has alone must stay above. */
+/* Adds the springs from one vertex of a pair to the others: -w_i w_k C to each free particle k.
+ * A pinned particle does not move, so its spring stays in the diagonal block; it is not counted
+ * as internal. A negative spring to a pinned particle is left out: the diagonal must stay
+ * positive. */
 static void add_springs(const struct cs_coupling *coupling,
                         struct cs_extra_springs_chunk *piece,
                         const struct cs_pair_vertex_terms *share) {
@@ -118,7 +127,9 @@ static void add_springs(const struct cs_coupling *coupling,
     }
 }
 
-/* What takes away must not stay where what it takes away from does not. */
+/* Adds one vertex of a pair: its diagonal block to the internal blocks, and its springs. Weak
+ * pairs are skipped, except those that are subtracted (negative trace): they must not remain
+ * where the pairs that they are subtracted from do not. */
 static void add_corner(const struct cs_coupling *coupling, struct cs_extra_springs_chunk *piece,
                        const struct cs_pair_vertex *corner) {
     struct cs_pair_vertex_terms share;
@@ -132,6 +143,8 @@ static void add_corner(const struct cs_coupling *coupling, struct cs_extra_sprin
     add_springs(coupling, piece, &share);
 }
 
+/* Finds the springs of one cell of the first level. Each vertex of a pair is visited from its
+ * own particle, so a thread writes to its own cells alone. Pinned particles have none. */
 static void find_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
     const struct cs_coupling *coupling = arg;
     const struct cs_pair_vertices *corners = coupling->pair_vertices;
@@ -147,6 +160,7 @@ static void find_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t
         add_corner(coupling, piece, corners->items + e);
 }
 
+/* By all threads, cell by cell. */
 bool cs_coupling_load(struct cs_coupling *coupling) {
     return cs_extra_springs_make(coupling->hierarchy->levels->extra_springs, find_links,
                                  coupling);
@@ -154,11 +168,14 @@ bool cs_coupling_load(struct cs_coupling *coupling) {
 
 /* --- from level to level --- */
 
+/* Arguments of the loop that sums springs into the next level. */
 struct coarsening {
     const struct cs_level *fine, *coarse;
 };
 
-/* what leads out of the parent's cells */
+/* Sums the springs that leave the aggregate of a coarse cell, by the aggregates of their other
+ * ends. Springs inside it vanish. Unused slots, where a cell is its own neighbour, are skipped.
+ */
 static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell) {
     const struct coarsening *coarsening = arg;
     const struct cs_level *fine = coarsening->fine;
@@ -179,6 +196,7 @@ static void sum_links(void *arg, struct cs_extra_springs_chunk *piece, uint32_t 
     }
 }
 
+/* Without springs on the fine level, the coarse one has none either. */
 bool cs_coupling_coarsen(const struct cs_level *fine, struct cs_level *coarse) {
     struct coarsening coarsening = {fine, coarse};
     coarse->extra_springs->is_nonempty = false;

@@ -1,4 +1,7 @@
-/* Lists of springs that are made anew for every matrix. */
+/* Builds the lists of extra springs of a level, cell by cell, for every matrix.
+ *
+ * A chunk of blocks is filled in the order of its cells, so its slots are contiguous and the
+ * result does not depend on threads. */
 #include "model/solver/extra_springs.h"
 
 #include "base/pool.h"
@@ -9,6 +12,7 @@
 
 enum { LANES = CS_EXTRA_SPRINGS_LANES };
 
+/* Frees the chunks' arrays, which outgrow the arena. */
 static void finish(void *object) {
     struct cs_extra_springs *links = object;
     for (uint32_t p = 0; p < links->n_pieces; p++) {
@@ -34,7 +38,8 @@ enum cs_status cs_extra_springs_init(struct cs_extra_springs *links, uint32_t n_
     return error->status;
 }
 
-/* the place of a spring in the list, a new one at its end; NULL: no memory */
+/* Finds the spring to a cell in the list, or appends one. A linear search, because a cell has
+ * few partners. Returns NULL if out of memory. */
 static struct cs_extra_spring *link_to(struct cs_extra_springs_chunk *piece, uint32_t to) {
     uint32_t k = 0;
     while (k < piece->n_list && piece->list[k].cell != to)
@@ -51,6 +56,7 @@ static struct cs_extra_spring *link_to(struct cs_extra_springs_chunk *piece, uin
     return list + k;
 }
 
+/* The sign of the trace decides. Blocks of contact pairs have eigenvalues of one sign only. */
 void cs_extra_springs_add(struct cs_extra_springs_chunk *piece, uint32_t to,
                           const float block[6], float factor) {
     struct cs_extra_spring *link = link_to(piece, to);
@@ -59,7 +65,9 @@ void cs_extra_springs_add(struct cs_extra_springs_chunk *piece, uint32_t to,
         *((less ? link->negative : link->positive) + c) += factor * block[c];
 }
 
-/* but for rounding: a spring may well hold one direction alone */
+/* Tells whether a block is positive semi-definite up to rounding. A spring may be stiff in one
+ * direction alone, so 1e-6 of the trace is added before the test of the minors: the rounding of
+ * a sum of floats is below that. */
 static bool is_positive(const float block[6]) {
     double sum[6], cofactors[6];
     for (int c = 0; c < 6; c++)
@@ -71,7 +79,8 @@ static bool is_positive(const float block[6]) {
     return cs_sym3_is_definite(sum, cofactors, determinant);
 }
 
-/* a slot without springs for the block of 16 cells; false: no memory, now or before */
+/* Appends an empty slot for a block of 16 cells: each cell is its own neighbour, with the block
+ * 0. Returns false if out of memory, now or before. */
 static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t block) {
     const size_t n = (size_t)piece->slots_used + 1, slot = piece->slots_used;
     uint32_t *cells =
@@ -90,8 +99,9 @@ static bool open_slot(struct cs_extra_springs_chunk *piece, uint32_t block) {
     return true;
 }
 
-/* Into the slot of its block, and into the diagonal. A sum that is neither above nor below 0
- * has all there that is above. */
+/* Stores a spring in its slot and adds its part to the diagonal. A sum of both signs that is
+ * positive semi-definite is its own part. If it is indefinite with a positive trace, the sum of
+ * the positive contributions is taken instead. A sum of negative trace adds nothing. */
 static void put_link(struct cs_extra_springs *links, struct cs_extra_springs_chunk *piece,
                      uint32_t cell, const struct cs_extra_spring *link, size_t slot) {
     const size_t n = (size_t)links->n_blocks * LANES;
@@ -107,7 +117,8 @@ static void put_link(struct cs_extra_springs *links, struct cs_extra_springs_chu
     }
 }
 
-/* from `slot` on */
+/* Stores the list of a cell from `slot` on, opening slots as needed, and sets its part of the
+ * diagonal. */
 static void put_list(struct cs_extra_springs *links, struct cs_extra_springs_chunk *piece,
                      uint32_t cell, size_t slot) {
     const size_t n = (size_t)links->n_blocks * LANES;
@@ -118,12 +129,14 @@ static void put_list(struct cs_extra_springs *links, struct cs_extra_springs_chu
             put_link(links, piece, cell, piece->list + k, slot);
 }
 
+/* Arguments of the loop over chunks. */
 struct making {
     struct cs_extra_springs *links;
     void (*find)(void *arg, struct cs_extra_springs_chunk *piece, uint32_t cell);
     void *arg;
 };
 
+/* Builds one chunk. Blocks follow one another, so slots of a block are contiguous in it. */
 static void make_piece(void *arg, uint32_t number) {
     const struct making *making = arg;
     struct cs_extra_springs *links = making->links;
@@ -143,6 +156,7 @@ static void make_piece(void *arg, uint32_t number) {
     }
 }
 
+/* After failure is_nonempty is false, and the kernels skip the lists. */
 bool cs_extra_springs_make(struct cs_extra_springs *links,
                            void (*find)(void *arg, struct cs_extra_springs_chunk *piece,
                                         uint32_t cell),

@@ -1,12 +1,12 @@
 /* Aggregation multigrid as a preconditioner: one V-cycle for each body, in single precision.
  *
- * Setup copies the matrix over `scale` into the first level and coarsens level by level; an
+ * Setup copies the matrix over `scale` into the first level and coarsens level by level. An
  * application scales the residual by its norm, runs the cycle and scales back:
  *
  *   (A / scale) x = r / size,   z = (size / scale) x
  *
- * Conjugate gradients in double precision correct the rounding of the cycle, whose only duty is
- * to be symmetric and positive definite up to rounding. */
+ * Conjugate gradients in double precision correct the cycle's rounding. The cycle only needs to
+ * stay symmetric and positive definite up to rounding. */
 #include "model/solver/multigrid.h"
 
 #include "base/pool.h"

@@ -1,4 +1,5 @@
-/* Corners counted and put by particles, of either kind of matrix. */
+/* Indexes the stored contact matrix by particle and reads its blocks, for both kinds of matrix:
+ * the positive semi-definite operator (solver_psd) and the exact one (solver_exact). */
 #include "model/solver/pair_vertices.h"
 
 #include "model/contact/narrow_phase/contact_pairs.h"
@@ -6,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Frees the arrays, which outgrow the arena. */
 static void finish(void *object) {
     struct cs_pair_vertices *corners = object;
     free(corners->starts);
@@ -25,17 +27,19 @@ size_t cs_pair_vertices_count(const struct cs_pairs *pairs) {
 
 /* --- by particles --- */
 
+/* Number of pairs in a chunk. */
 static size_t count_in(const struct cs_pairs *pairs, uint32_t chunk) {
     return pairs->solver_psd.contacts ? pairs->solver_psd.contacts->chunks[chunk].n
                                       : pairs->solver_exact.chunks[chunk].n;
 }
 
+/* The four points of a pair; numbers from view.n on belong to colliders. */
 static const uint32_t *points_of(const struct cs_pairs *pairs, uint32_t chunk, size_t pair) {
     return pairs->solver_psd.contacts ? pairs->solver_psd.contacts->chunks[chunk].points[pair]
                                       : pairs->solver_exact.chunks[chunk].pairs[pair].particles;
 }
 
-/* false: no memory */
+/* Makes room for all vertices and zeroes the starts. Returns false if out of memory. */
 static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
     const size_t n = pairs->system->view.n + (size_t)2;
     uint32_t *starts =
@@ -49,13 +53,14 @@ static bool reserve(struct cs_pair_vertices *corners, const struct cs_pairs *pai
     return starts && of;
 }
 
-/* counts at `to`, or puts where it says */
+/* Visits all vertices: counts them at `to`, and, unless `of` is NULL, stores them where `to`
+ * points. */
 static void visit(const struct cs_pairs *pairs, uint32_t *to, struct cs_pair_vertex *of) {
     for (uint32_t chunk = 0; chunk < pairs->candidates.n_chunks; chunk++)
         for (size_t pair = 0; pair < count_in(pairs, chunk); pair++) {
             const uint32_t *at = points_of(pairs, chunk, pair);
             for (uint32_t k = 0; k < 4; k++) {
-                // obstacles have no place in the matrix
+                // colliders are not unknowns of the matrix
                 if (at[k] >= pairs->system->view.n)
                     continue;
                 if (of)
@@ -65,7 +70,8 @@ static void visit(const struct cs_pairs *pairs, uint32_t *to, struct cs_pair_ver
         }
 }
 
-/* Counted two places on, so that filling moves the starts to where they belong. */
+/* A counting sort. Counts are stored two places further on, so that filling moves the starts to
+ * where they belong. */
 bool cs_pair_vertices_find(struct cs_pair_vertices *corners, const struct cs_pairs *pairs) {
     if (!reserve(corners, pairs))
         return false;
@@ -79,7 +85,8 @@ bool cs_pair_vertices_find(struct cs_pair_vertices *corners, const struct cs_pai
 
 /* --- the blocks --- */
 
-/* block = along g g^T + rub, line by line for speed */
+/* block = along g g^T + rub C, with C = `of` the friction block. Component by component, for
+ * speed. */
 static void set_block(const double g[3], double along, double rub, const double of[6],
                       double block[6]) {
     block[0] = along * (g[0] * g[0]) + rub * of[0];
@@ -90,6 +97,12 @@ static void set_block(const double g[3], double along, double rub, const double 
     block[5] = along * (g[2] * g[2]) + rub * of[5];
 }
 
+/* Sets both blocks of the terms. With gradients g_k, normal stiffness c and friction block F:
+ *
+ *   diagonal     c g_v g_v^T + w_v^2 F      at the vertex v
+ *   unit weight  c g_m g_m^T / w_m^2 + F    at the vertex m of the largest weight
+ *
+ * Where the distance is not bent, g_k = w_k n with one normal n, and both agree up to w_v^2. */
 static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
                        struct cs_pair_vertex_terms *share) {
     const double *weight = part->weight, own = weight[share->vertex];
@@ -103,7 +116,8 @@ static void set_blocks(double g[4][3], const struct cs_pair_matrix_terms *part,
               share->unit_weight_block);
 }
 
-/* and how the gradient turns */
+/* Adds the second derivative of the distance, which an exact matrix has, to the diagonal block.
+ */
 static void add_turn(const struct cs_contact_hessian *full,
                      struct cs_pair_vertex_terms *share) {
     static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -112,6 +126,7 @@ static void add_turn(const struct cs_contact_hessian *full,
         share->diagonal_block[e] += full->m[first + row[e]][first + column[e]];
 }
 
+/* Reads a pair of the exact matrix. */
 static void read_exact(const struct cs_contact_chunk *chunk, size_t pair,
                        struct cs_pair_vertex_terms *share) {
     struct cs_pair_matrix_terms part = {.gradient_weight = chunk->parts[pair].gradient_weight};

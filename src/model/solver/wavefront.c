@@ -3,7 +3,7 @@
  * In the plane of blocks (across) and loops (up), a stretch is a trapezium and a wedge the
  * triangle between two of them, standing on its tip:
  *
- *   loop 2   ___ww w___      _: done by the stretches
+ *   loop 2   ___wwww___      _: done by the stretches
  *   loop 1   ____ww____      w: done by the wedge, after them
  *   loop 0   __________ */
 #include "model/solver/wavefront.h"

@@ -1,4 +1,13 @@
-/* spring_law.h - what one spring does: its force, and the blocks of its derivative. */
+/* spring_law.h - the law of one spring: force, and diagonal blocks of its derivative.
+ *
+ * Notation: d = x_b - x_a with length l and unit vector u, w = v_b - v_a, rest length L,
+ * stiffness k, damping c. The force on the first end is
+ *
+ *   f_a = k (1 - L / l) d + c (w.u) u    axial damping
+ *   f_a = k (1 - L / l) d + c w          relative damping
+ *
+ * and -f_a acts on the second end. All spring kernels use these functions, so that force,
+ * derivative and matrix belong to one law. */
 #ifndef CS_SPRING_LAW_H
 #define CS_SPRING_LAW_H
 
@@ -7,13 +16,15 @@
 #include <float.h>
 #include <math.h>
 
-/* Copies of the loops over springs, so that a scene without damping never reads v. */
+/* Which damper a kernel has; 0 is none. Each value is a compiled copy of the loop, and a scene
+ * without damping never reads v. */
 enum damper_form { AXIAL = 1, RELATIVE = 2 };
 
-/* symmetric blocks: xx, xy, xz, yy, yz, zz */
+/* Components of a symmetric block: xx, xy, xz, yy, yz, zz. */
 enum { SYM = 6 };
 
-/* Of one spring, on its first end: d and w are the differences of places and speeds. */
+/* f_a of the law above, for the differences d of positions and w of velocities. `how` is a
+ * constant of every caller. */
 CS_INLINE struct difference force_of(const struct difference d, const struct difference w,
                                      double length, double k, double c, const unsigned how) {
     /* DBL_MIN keeps two particles in one place from dividing by zero */
@@ -27,19 +38,20 @@ CS_INLINE struct difference force_of(const struct difference d, const struct dif
     return (struct difference){pull * d.x, pull * d.y, pull * d.z};
 }
 
-/* a spring's unit direction and ratio of its rest length to its length */
+/* Unit vector u of a spring, and L / l. */
 struct rotated_damper {
     struct difference u;
     double force_over_length;
 };
 
+/* L = 0 gives u alone, which is what damper blocks need. */
 CS_INLINE struct rotated_damper turned_of(const struct difference d, double length) {
     const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
     return (struct rotated_damper){{d.x * inverse, d.y * inverse, d.z * inverse},
                                    length * inverse};
 }
 
-/* a I + b u u^T */
+/* out = a I + b u u^T, for a number a, a number b and a vector u. */
 CS_INLINE void set_block(double a, double b, const struct difference u, double *out) {
     out[0] = a + b * u.x * u.x;
     out[1] = b * u.x * u.y;
@@ -49,7 +61,9 @@ CS_INLINE void set_block(double a, double b, const struct difference u, double *
     out[5] = a + b * u.z * u.z;
 }
 
-/* of df/dx */
+/* Block of df/dx, the same at both ends: df_a/dx_a = -k ((1 - L/l) I + (L/l) u u^T). Along u
+ * its eigenvalue is -k; across u it is -k (1 - L/l), which is positive for a compressed spring.
+ */
 CS_INLINE void stiff_block(const struct rotated_damper spring, double k, double *out) {
     set_block(-(k * (1 - spring.force_over_length)), -(k * spring.force_over_length), spring.u,
               out);

@@ -1,12 +1,14 @@
 /* spring_runs.h - springs as runs, and how threads share them.
  *
- * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. The
- * 12 neighbours of a grid are six runs a row, which stand together, and kernels do them at once
- * (grid_stencil.h). A mesh has a run a kind, with lists of ends, lengths and stiffnesses; its
- * ends are gathered into rows, and then kernels of the same formulas work on them. The order of
- * runs, of springs in a run, and of the ways of a row, is the order of every sum, and the state
- * hash depends on it.
- */
+ * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. No
+ * list of ends is stored or read for it. The 12 neighbours of a grid's particle are six runs
+ * per row, one for each forward direction; they stand together, and a kernel evaluates them at
+ * once (grid_stencil.h). A mesh has one run per kind, with lists of ends, lengths and
+ * stiffnesses; their differences are gathered into rows, and kernels with the same formulas
+ * work on them.
+ *
+ * The order of runs, of springs in a run, and of the directions of a row is the order of every
+ * sum. The state hash depends on it. */
 #ifndef CS_SPRING_RUNS_H
 #define CS_SPRING_RUNS_H
 
@@ -15,24 +17,26 @@
 
 #include <clothsim/system.h>
 
-/* a grid's diagonals are shear springs, and so are the inner springs of a network */
+/* Kinds of springs. A grid's diagonals are shear springs; so are the inner springs of a
+ * network. */
 enum cs_spring_kind { CS_SPRING_STRETCH, CS_SPRING_SHEAR, CS_SPRING_BEND, CS_SPRING_KINDS };
 
-/* Where the springs of a grid's row lead, in the order in which a particle sums those that it
- * begins: beside it, then to the next row, then to the one after. */
+/* Forward directions of the springs that begin at a grid's particle, in the order in which the
+ * particle sums them: along its row, then to the next row, then to the one after. */
 enum cs_spring_direction {
-    CS_DIRECTION_RIGHT,
-    CS_DIRECTION_RIGHT_TWO,
-    CS_DIRECTION_DOWN,
+    CS_DIRECTION_RIGHT,      /* stretch, along the row */
+    CS_DIRECTION_RIGHT_TWO,  /* bend, over one particle */
+    CS_DIRECTION_DOWN,       /* stretch, to the next row */
     CS_DIRECTION_DOWN_RIGHT, /* down and right */
     CS_DIRECTION_DOWN_LEFT,  /* down and left */
     CS_DIRECTION_DOWN_TWO,
     CS_DIRECTIONS
 };
 
+/* A run of springs. Lists belong to the mesh or the system; the run borrows them. */
 struct cs_spring_run {
-    uint32_t first_a, first_b, count;
-    uint32_t kind; /* enum cs_spring_kind */
+    uint32_t first_a, first_b, count; /* first particles at either end; springs */
+    uint32_t kind;                    /* enum cs_spring_kind */
     uint32_t body;
     uint32_t first;   /* number of the run's first spring */
     double stiffness; /* N/m; with lists: the law's, N/m or N, that they were made of */
@@ -49,7 +53,8 @@ struct cs_spring_run {
     const double *lengths, *stiffnesses; /* (count) m, N/m, instead of those above */
 };
 
-/* Ends and law of spring i of a run, of either kind. */
+/* Particles at the ends, rest length in m and stiffness in N/m of spring i of a run, of either
+ * form. */
 static inline uint32_t cs_spring_a(const struct cs_spring_run *run, uint32_t i) {
     return run->first_a + (run->ends ? run->ends[2 * (size_t)i] : i);
 }
@@ -63,57 +68,64 @@ static inline double cs_spring_stiffness(const struct cs_spring_run *run, uint32
     return run->stiffnesses ? run->stiffnesses[i] : run->stiffness;
 }
 
-/* Particles [begin, end) to which one thread adds forces: whole rows of grids, any part of a
- * mesh. Runs [first_run, end_run) hold all that have an end there, and some that have none. A
- * row of springs across the border of two blocks is computed for both. */
+/* Particles [begin, end) to which one thread adds forces: whole rows of grids, any range of a
+ * mesh. Runs [first_run, end_run) contain all that have an end there, and some that have none.
+ * A row of springs across the border of two blocks is computed for both, and each thread adds
+ * its own side. */
 struct cs_block {
     uint32_t begin, end, first_run, end_run;
 };
 
-/* One evaluation of the forces, or with dx or dv of their derivative along it. */
+/* One evaluation of the forces; with dx or dv, of their derivative along that direction. All
+ * arrays are borrowed. */
 struct cs_eval {
     double t;
     const double *x, *v;               /* (3,n) in m and m/s */
     uint32_t parts;                    /* set of enum cs_part */
     const double *dx, *dv;             /* (3,n) directions; NULL: 0 */
-    double *dfdx_blocks, *dfdv_blocks; /* (6,n) diagonal blocks that a force of grids adds too;
-                                          NULL: not asked */
-    const struct cs_block *block;      /* where to add; NULL: not said yet */
+    double *dfdx_blocks, *dfdv_blocks; /* (6,n) output: diagonal blocks of grids' springs, in
+                                          the same pass as the force; NULL: not wanted */
+    const struct cs_block *block;      /* particles to add to; NULL in prepare */
 };
 
-/* What a linear solver works with: A = cm M + cd df/dv + ck df/dx at a state, cd and ck at most
- * 0 as in implicit methods. */
+/* The matrix of a linear solver, A = cm M + cd df/dv + ck df/dx at a state. cd and ck are at
+ * most 0, as in implicit methods: backward Euler has cm = 1, cd = -h, ck = -h^2. */
 struct cs_matrix {
     double t;
     const double *x, *v; /* (3,n) in m and m/s */
     double cm, cd, ck;
-    bool psd;   /* each force's part is made positive semidefinite */
+    bool psd;   /* each force's part is made positive semi-definite */
     bool bound; /* friction by an upper bound (CS_SOLVE_BOUND) */
 };
 
-/* Springs [begin, end) of a mesh's run whose forces one thread computes. As their ends lie
- * anywhere, each force is buffered in a slot of its own, and a thread adds to the particles of
- * its block from there, in the order of the springs. */
+/* Springs [begin, end) of a mesh's run, whose forces one thread computes. Their ends lie
+ * anywhere, so two threads could want the same particle. Each force is therefore stored in a
+ * slot of its own; in a second pass the thread of a block adds to its particles from the slots,
+ * in the order of the springs. */
 struct cs_spring_chunk {
     uint32_t run, begin, end;
 };
+/* Most springs per chunk: a multiple of PIECE, few enough to balance the threads. Chosen by
+ * trial. */
 enum { CS_SPRING_CHUNK_MAX = 2048 };
 
-/* Of a mesh's run; all 0 of a grid's. At particle i of the body, 0..n-1, end the springs
- * around[starts[i]..starts[i + 1]) >> 1 of the run, ascending; the last bit is 1 at their
- * second ends. */
+/* Slots of a mesh's run; all 0 for a grid's. At particle i of the body, 0..n-1, end the springs
+ * particle_springs[particle_begin[i]..particle_begin[i + 1]) >> 1 of the run, ascending; the
+ * last bit is 1 at their second ends. */
 struct cs_spring_slots {
     uint32_t n;
     const uint32_t *particle_begin, *particle_springs; /* (n + 1), (2 count) */
     double *forces;                                    /* (3, count) */
 };
 
+/* All springs of a system, and their partition among threads. The system's arena owns the
+ * arrays. */
 struct cs_springs {
     const struct cs_spring_run *runs;
     uint32_t n_runs, n; /* runs; springs */
 
-    /* how threads share them (thread_partition.h); with one thread NULL, and one block of
-     * everything */
+    /* Partition among threads (thread_partition.h). With one thread the pointers are NULL, and
+     * one block has all particles. */
     const struct cs_block *blocks; /* (n_blocks) ascending */
     uint32_t n_blocks;
     const struct cs_spring_chunk *chunks;
@@ -122,6 +134,7 @@ struct cs_springs {
     double *energies;                    /* (n_runs) work of cs_springs_energy */
 };
 
+/* Block number `block` of n_blocks, for a system of n particles. */
 static inline struct cs_block cs_springs_block(const struct cs_springs *springs, uint32_t n,
                                                uint32_t block) {
     return springs->blocks ? springs->blocks[block]

@@ -1,17 +1,20 @@
-/* Kernels over spring runs: force, alone and with diagonal blocks. What is made of springs
- * waits in a small buffer on the stack; within it no spring depends on another, so the loops
- * vectorise. */
+/* Force kernels over spring runs: the force alone, with diagonal blocks, or the blocks alone.
+ *
+ * Results of a piece or tile of springs go to a small buffer on the stack. Within it no spring
+ * depends on another, so the loops vectorise; the buffer is then added to the particles. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
 #include "model/spring/grid_stencil.h"
 #include "model/spring/spring_law.h"
 
-/* What kernels of grids make: the force, and the diagonal blocks that methods ask for beside
- * it, of one square root and quotient. DAMPED of axial dampers, which turn with the spring;
- * those of relative ones are one number, STEADY. */
+/* Results of a grid's kernel: the force, and diagonal blocks that share its square root and
+ * quotient. Blocks of axial dampers turn with the spring (DAMPED, 6 numbers); those of relative
+ * dampers are one number times the identity (STEADY). */
 enum what { FORCE = 4, STIFF = 8, DAMPED = 16, STEADY = 32 };
 
+/* Computes the results of one spring, one after the other in `out`. `what` is a constant of
+ * each kernel. */
 CS_INLINE void make_spring(const struct stencil_input *in, const struct stencil_direction *way,
                            size_t i, const unsigned what, double *out) {
     const struct difference d = fan_across(in->x, in->n, i, way->offset);
@@ -32,6 +35,7 @@ CS_INLINE void make_spring(const struct stencil_input *in, const struct stencil_
         out[0] = -in->c;
 }
 
+/* A kernel for one set of results, with how many numbers it makes of force, df/dx and df/dv. */
 #define KERNEL(name, what, forces, stiff, damped)                                              \
     CS_INLINE void name##_spring(const struct stencil_input *in,                               \
                                  const struct stencil_direction *way, size_t i, double *out) { \
@@ -49,6 +53,7 @@ KERNEL(undamped_both, FORCE | STIFF, 3, SYM, 0);
 KERNEL(axial_both, FORCE | AXIAL | STIFF | DAMPED, 3, SYM, SYM);
 KERNEL(relative_both, FORCE | RELATIVE | STIFF | STEADY, 3, SYM, 1);
 
+/* The kernel for a row's damper and for the results that the evaluation wants. */
 static const struct stencil_kernel *choose(const struct job *job,
                                            const struct cs_spring_run *first) {
     static const struct stencil_kernel *const kernels[3][3] = {
@@ -60,7 +65,7 @@ static const struct stencil_kernel *choose(const struct job *job,
     return kernels[what][damped ? 1 + !first->axial : 0];
 }
 
-/* forces of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
+/* Forces of a piece of a mesh, whose lengths and stiffnesses are the springs' own. */
 CS_INLINE void force_rows(const struct job *job, const struct piece *piece, const unsigned how,
                           double *restrict fx, double *restrict fy, double *restrict fz) {
     struct gather_buffer places, speeds;
@@ -78,6 +83,8 @@ CS_INLINE void force_rows(const struct job *job, const struct piece *piece, cons
     }
 }
 
+/* Dispatches to a copy for the run's damper. A run without damping does not gather velocities.
+ */
 CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
                            double *restrict fx, double *restrict fy, double *restrict fz) {
     if (active_constants_of(piece->run, job->at.parts).c == 0)
@@ -88,12 +95,14 @@ CS_INLINE void force_piece(const struct job *job, const struct piece *piece,
         force_rows(job, piece, RELATIVE, fx, fy, fz);
 }
 
+/* Adds runs in their order; see add_runs. */
 CS_CLONES void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                                     const struct cs_eval *at, double *f) {
     const struct job job = {.springs = springs, .n = n, .at = *at, .to = f};
     add_runs(&job, at->block, has_force, choose, force_piece);
 }
 
+/* Forces of one chunk of a mesh into its slots. */
 CS_CLONES static void wait_force_chunk(void *job, uint32_t chunk) {
     compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk, has_force,
                            force_piece);

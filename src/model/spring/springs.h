@@ -1,19 +1,24 @@
-/* springs.h - the kernels over runs of springs: forces, energies, products, matrix. */
+/* springs.h - the kernels over runs of springs: forces, energies, derivatives and the solver's
+ * matrix.
+ *
+ * Kernels that add to particles come in two calls. `..._to_slots` computes the springs of
+ * meshes, by all threads; `cs_springs_add_...` then adds to the particles of one block. With
+ * one thread the first does nothing, and the second computes meshes too. */
 #ifndef CS_SPRINGS_H
 #define CS_SPRINGS_H
 
 #include "model/spring/spring_runs.h"
 
-/* Runs of one body whose particles start at `first`, appended at runs[0..]: of a cloth's rows,
- * or one a kind of a mesh. lists takes the lengths and stiffnesses of a mesh, 2 doubles a
- * spring. Both may be NULL to count. Kinds of stiffness 0 have no springs, nor has a
- * body that shape matching holds instead. Returns the number of runs and adds the springs to
- * *n_springs. */
+/* Appends the runs of one body, whose particles start at `first`, at runs[0..]: those of a
+ * cloth's rows, or one per kind of a mesh. lists receives the lengths and stiffnesses of a
+ * mesh, 2 doubles per spring. Both may be NULL to count. Kinds of stiffness 0 have no springs,
+ * nor has a body with shape matching instead. Returns the number of runs and adds that of
+ * springs to *n_springs. */
 uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uint32_t first,
                             struct cs_spring_run *runs, double *lists, uint32_t *n_springs);
 
-/* Sets a run's stiffness, and the list of them if it has one, by the law that its body has now;
- * the lengths are there. A list that is right already is left alone. */
+/* Sets a run's stiffness, and its list if it has one, by the law that its body has now. Rest
+ * lengths must be set. A list that is up to date is not written. */
 void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
 
 /* Adds the spring and damper forces of the chosen parts to f (3,n) at the particles of one of
@@ -29,22 +34,24 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
  * are added too, and f may be NULL; cs_springs_finish_diagonal adds the rest. */
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                           const struct cs_eval *at, double *f);
-/* By all threads, before any block; does nothing where they do not share meshes. */
+/* Computes the forces of meshes into slots, by all threads, before any block. Does nothing if
+ * meshes are not shared. */
 void cs_springs_force_to_slots(const struct cs_springs *springs, uint32_t n,
                                const struct cs_eval *at);
 
-/* Smallest rest length in m; 0 without springs. */
+/* Returns the smallest rest length in m; 0 without springs. */
 double cs_springs_shortest(const struct cs_springs *springs);
 
-/* Elastic energy in J of the springs of `parts`. */
+/* Elastic energy in J of the springs of `parts`: the sum of k (l - L)^2 / 2. Summed run by run
+ * in their order, by all threads. */
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts);
 
-/* Largest magnitude of a length over the rest length, less 1; numbers that are none are passed
- * over. 0 without springs. */
+/* Largest |l / L - 1| over all springs; NaNs are skipped. 0 without springs. */
 double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n, const double *x);
 
-/* Elastic energy in J that all springs would hold at twice their rest lengths. */
+/* Elastic energy in J that all springs would hold at twice their rest lengths: the sum of k L^2
+ * / 2. */
 double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
 /* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df at the particles of a block; dx or dv
@@ -60,13 +67,14 @@ void cs_springs_jvp_to_slots(const struct cs_springs *springs, uint32_t n,
 void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
                                 const struct cs_eval *at);
 
-/* The springs' part of the matrix in factored form: A p = sum over springs of (s I + w w^T)(p_a
- * - p_b), added at a and taken at b. factors has 4 doubles a spring, by run: s, wx, wy, wz,
- * each (count). With psd the transverse part of a compressed spring is dropped (Teran et al.
- * 2005); else s may be negative. The position derivative of axial damping is left out. */
+/* The springs' part of the matrix in factored form: A p is the sum over the springs of (s I + w
+ * w^T) (p_a - p_b), added at a and subtracted at b. factors has 4 doubles per spring, by run:
+ * s, wx, wy, wz, each (count). With psd the transverse part of a compressed spring is dropped
+ * (Choi, Ko 2002; Teran et al. 2005); else s may be negative. The position derivative of axial
+ * damping, which is not symmetric, is left out. Derivation: springs_matrix.c. */
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
                        const struct cs_matrix *matrix, double *factors);
-/* By all threads. */
+/* y += the springs' part of A p, by all threads. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y);
 /* Diagonal blocks (6,n) of that matrix, added. */

@@ -1,10 +1,12 @@
-/* Springs of bodies: the 12 neighbours of a grid, edges and networks of a mesh. */
+/* Makes the springs of bodies: the 12 neighbours of a grid's particle, edges, hinges and
+ * networks of a mesh. */
 #include "mesh/trimesh.h"
 #include "model/spring/springs.h"
 
 #include <math.h>
 
-/* of a body's springs of one kind: in N/m or N */
+/* Stiffness of a body's springs of one kind, in N/m, or in N if it is per relative extension.
+ */
 static double stiffness_of(const struct cs_body *body, uint32_t kind) {
     const struct cs_spring_law *law = &body->springs;
     const double surface = body->network.present ? body->network.surface : 1;
@@ -16,6 +18,8 @@ static double stiffness_of(const struct cs_body *body, uint32_t kind) {
     return kind == CS_SPRING_STRETCH ? law->stretch : law->shear;
 }
 
+/* A stiffness in N is a tension per relative extension: k = stiffness / L in N/m (cloth
+ * article). */
 void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body) {
     const double k = stiffness_of(body, run->kind);
     const bool by_length = body->springs.stiffness_unit == CS_STIFFNESS_N;
@@ -30,6 +34,9 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body) {
     run->stiffness = k;
 }
 
+/* Runs of a cloth, row by row and direction by direction. The rest length is that of the flat
+ * cloth: sqrt((right dx)^2 + (down dy)^2). A direction is left out where it leads off the grid.
+ */
 static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint32_t first,
                           struct cs_spring_run *runs, uint32_t *n_springs) {
     const struct cs_spring_law *law = &body->springs;
@@ -83,7 +90,8 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
     return n_runs;
 }
 
-/* a run with lists; nothing where the stiffness is 0 */
+/* Adds a run with lists, or only counts it if run is NULL. Returns 0 if it has no spring or the
+ * stiffness is 0. */
 static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_body *body,
                            struct cs_spring_run *run, double *lists, uint32_t *n_springs) {
     const struct cs_trimesh *mesh = body->mesh.geometry;
@@ -96,7 +104,7 @@ static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_bod
     *run = *like;
     run->lengths = lengths;
     run->stiffnesses = lists + like->count;
-    /* of the mesh before its placement, whose rounding would change lengths */
+    /* rest lengths of the mesh before its placement, whose rounding would change them */
     for (uint32_t i = 0; i < like->count; i++) {
         double squared = 0;
         for (size_t c = 0; c < 3; c++) {
@@ -110,6 +118,7 @@ static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_bod
     return 1;
 }
 
+/* Runs of a mesh, one per kind. A mesh without a network has no shear springs. */
 static uint32_t mesh_runs(const struct cs_body *body, uint32_t body_index, uint32_t first,
                           struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
     const struct cs_spring_law *law = &body->springs;

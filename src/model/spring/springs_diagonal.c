@@ -1,4 +1,13 @@
-/* Diagonal blocks: of the springs' derivatives, and of the factored form of springs_matrix.c.
+/* Diagonal 3x3 blocks: of the springs' derivatives, and of the matrix in factored form.
+ *
+ * A spring adds the same block at both of its ends, because its part of the derivative is ((-B,
+ * B), (B, -B)):
+ *
+ *   df/dx     -k ((1 - L/l) I + (L/l) u u^T)
+ *   df/dv     -c I (relative) or -c u u^T (axial)
+ *   matrix    s I + w w^T      (springs_matrix.c)
+ *
+ * Grids' springs get their blocks in the pass of the force (springs.c); the rest is added here.
  */
 #include "model/spring/springs.h"
 
@@ -7,17 +16,18 @@
 
 #include <string.h>
 
-/* symmetric blocks of a piece of a mesh */
+/* Symmetric blocks of a piece of a mesh, component by component. */
 struct blocks {
     double rows[SYM][PIECE];
 };
 
+/* Stores the block of spring i. */
 CS_INLINE void put_block(const double *block, size_t i, struct blocks *blocks) {
     for (size_t c = 0; c < SYM; c++)
         blocks->rows[c][i] = block[c];
 }
 
-/* Adds them to both ends, sums (6,n). */
+/* Adds the blocks to both ends, sums (6,n), in the order of the springs. */
 CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks, size_t n,
                           double *sums) {
     double *a = sums + piece->run->first_a, *b = sums + piece->run->first_b;
@@ -29,7 +39,7 @@ CS_INLINE void add_blocks(const struct piece *piece, const struct blocks *blocks
         }
 }
 
-/* of a piece of a mesh */
+/* Blocks of df/dx of a piece of a mesh. */
 CS_INLINE void stiff_piece(const struct piece *piece, const struct ends e,
                            struct blocks *blocks) {
     const size_t count = piece->count;
@@ -41,6 +51,7 @@ CS_INLINE void stiff_piece(const struct piece *piece, const struct ends e,
     }
 }
 
+/* Blocks of df/dv of a piece of a mesh. */
 CS_INLINE void damped_piece(const struct piece *piece, const struct ends e,
                             struct blocks *blocks) {
     const double d = -piece->run->damping;
@@ -53,6 +64,7 @@ CS_INLINE void damped_piece(const struct piece *piece, const struct ends e,
     }
 }
 
+/* Adds the blocks of a mesh's run: kxx always, dvv if it has dampers. */
 CS_INLINE void run_diagonal(const struct cs_spring_run *run, size_t n, const double *x,
                             double *kxx, double *dvv) {
     struct gather_buffer places;
@@ -69,18 +81,21 @@ CS_INLINE void run_diagonal(const struct cs_spring_run *run, size_t n, const dou
     }
 }
 
-/* The rest of a number times the identity, which grids have in the first row of dvv. */
+/* Relative dampers have a multiple of the identity. Grids summed it in the row xx of dvv alone;
+ * this copies it to yy and zz. Mixed components are 0. */
 static void add_scalar_part(const struct cs_spring_run *first, size_t n, double *dvv) {
     const size_t particles = first->columns * ((size_t)first->rows_below + 1);
     for (size_t c = 3; c < SYM; c += 2)
         memcpy(dvv + c * n + first->row, dvv + first->row, particles * sizeof *dvv);
 }
 
+/* Tells whether run r is the first of a grid. */
 static bool begins_grid(const struct cs_springs *springs, uint32_t r) {
     const struct cs_spring_run *run = springs->runs + r;
     return run->columns && (r == 0 || run[-1].body != run->body);
 }
 
+/* Serial: a mesh's springs add to both ends in their order. */
 CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
                                           const struct cs_eval *at) {
     for (uint32_t r = 0; r < springs->n_runs; r++) {
@@ -92,6 +107,7 @@ CS_CLONES void cs_springs_finish_diagonal(const struct cs_springs *springs, uint
     }
 }
 
+/* The block of one spring of a grid in the matrix. */
 CS_INLINE void diagonal_block(const struct stencil_input *in,
                               const struct stencil_direction *way, size_t i, double *out) {
     const double *s = way->factors;
@@ -103,6 +119,8 @@ CS_INLINE void diagonal_block(const struct stencil_input *in,
 
 CS_STENCIL_KERNEL(own_blocks, diagonal_block, 0, SYM, 0);
 
+/* Row by row for grids, spring by spring for meshes; serial, so the order of the sums is fixed.
+ */
 CS_CLONES void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
                                           const double *factors, double *sums) {
     const struct job job = {

@@ -1,4 +1,5 @@
-/* The springs' derivative along a direction, exact: fans of grids and pieces of meshes. */
+/* The springs' derivative along a direction (Jacobian-vector product), exact: nothing is
+ * clamped or left out, unlike in springs_matrix.c. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
@@ -7,24 +8,29 @@
 #include <float.h>
 #include <math.h>
 
-/* Copies of the loops. MOVED: dx is given; TURNED: dv is given. */
+/* Compiled copies of the loops. MOVED: dx is given; TURNED: dv is given. A direction that is
+ * not given is 0, and its arrays are not read. */
 enum damper_form { MOVED = 1, TURNED = 2 };
 
-/* a spring's law */
+/* Constants of one spring: L in m, k in N/m, dampers in N s/m, one of which is 0. */
 struct law {
     double length, k, axial, relative;
 };
 
-/* its differences: of x, v, dx and dv */
+/* Differences over a spring, second end less first: of x, v, dx and dv. */
 struct bend {
     struct difference p, w, e, g;
 };
 
-/* What dx and dv at the ends do to the force of a spring: with u the unit direction, l the
- * length, e and g the differences of dx and dv, w that of v:
- *   elastic    k (1 - L/l) e + k L/l (u.e) u
- *   axial      d (g.u) u + d [(w.du) u + (w.u) du],  du = (e - (u.e) u) / l
- *   relative   d g */
+/* df_a along (dx, dv). With u the unit vector, l the length, and e, g, w the differences of dx,
+ * dv and v:
+ *
+ *   elastic    k (1 - L/l) e + k (L/l) (u.e) u
+ *   axial      c (g.u) u + c ((w.du) u + (w.u) du),   du = (e - (u.e) u) / l
+ *   relative   c g
+ *
+ * du is the change of u along dx: u stays a unit vector, so only the part of e across it
+ * counts. */
 CS_INLINE struct difference jvp_of(const struct law law, const struct bend at,
                                    const unsigned how) {
     const struct difference p = at.p, e = at.e, g = at.g, w = at.w;
@@ -32,7 +38,7 @@ CS_INLINE struct difference jvp_of(const struct law law, const struct bend at,
     const double inverse = 1 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z + DBL_MIN);
     const double ux = p.x * inverse, uy = p.y * inverse, uz = p.z * inverse;
     struct difference r = {0, 0, 0};
-    /* the spring changes its length and turns, and axial dampers turn with it */
+    /* dx changes the spring's length and direction; an axial damper turns with it */
     if (how & MOVED) {
         const double ue = ux * e.x + uy * e.y + uz * e.z;
         const double slack = law.k * (1 - law.length * inverse);
@@ -45,7 +51,7 @@ CS_INLINE struct difference jvp_of(const struct law law, const struct bend at,
         r.y = slack * e.y + along * uy + closing * ty;
         r.z = slack * e.z + along * uz + closing * tz;
     }
-    /* dv changes the speeds of the ends alone, which dampers feel */
+    /* dv changes velocities only, on which dampers depend */
     if (how & TURNED) {
         const double along = law.axial * (g.x * ux + g.y * uy + g.z * uz);
         r.x += law.relative * g.x + along * ux;
@@ -55,6 +61,7 @@ CS_INLINE struct difference jvp_of(const struct law law, const struct bend at,
     return r;
 }
 
+/* One spring of a grid, from particle i of the tile. */
 CS_INLINE void jvp_from(const struct stencil_input *in, const struct stencil_direction *way,
                         size_t i, const unsigned how, double *out) {
     const struct law law = {way->length, way->k, in->axial ? in->c : 0, in->axial ? 0 : in->c};
@@ -68,6 +75,7 @@ CS_INLINE void jvp_from(const struct stencil_input *in, const struct stencil_dir
     fan_put(jvp_of(law, at, how), out);
 }
 
+/* Kernels for dx alone, for dv alone, and for both. */
 CS_INLINE void moved(const struct stencil_input *in, const struct stencil_direction *way,
                      size_t i, double *out) {
     jvp_from(in, way, i, MOVED, out);
@@ -87,6 +95,7 @@ CS_STENCIL_KERNEL(moved_jvp, moved, 3, 0, 0);
 CS_STENCIL_KERNEL(turned_jvp, rotated, 3, 0, 0);
 CS_STENCIL_KERNEL(both_jvp, elastic_and_damping, 3, 0, 0);
 
+/* The kernel for the given directions. */
 static const struct stencil_kernel *choose_jvp(const struct job *job,
                                                const struct cs_spring_run *first) {
     (void)first;
@@ -95,7 +104,8 @@ static const struct stencil_kernel *choose_jvp(const struct job *job,
     return job->at.dx ? &moved_jvp : &turned_jvp;
 }
 
-/* of a piece of a mesh, whose lengths and stiffnesses are the springs' own */
+/* A piece of a mesh, with lengths and stiffnesses of its own. run->stiffness of a mesh is 1
+ * here, by active_constants_of. */
 CS_INLINE void jvp_rows(const struct job *job, const struct piece *piece, const unsigned how,
                         double *restrict fx, double *restrict fy, double *restrict fz) {
     struct gather_buffer places, speeds, moves, turns;
@@ -121,6 +131,7 @@ CS_INLINE void jvp_rows(const struct job *job, const struct piece *piece, const 
     }
 }
 
+/* Dispatches to a copy for the given directions. */
 CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, double *restrict fx,
                          double *restrict fy, double *restrict fz) {
     if (job->at.dx && job->at.dv)
@@ -131,17 +142,20 @@ CS_INLINE void jvp_piece(const struct job *job, const struct piece *piece, doubl
         jvp_rows(job, piece, TURNED, fx, fy, fz);
 }
 
+/* Tells whether a run contributes: with dv alone only its dampers do. */
 CS_INLINE bool asks_jvp(const struct job *job, const struct cs_spring_run *run) {
     return job->at.dx ? has_force(job, run)
                       : job->at.dv && active_constants_of(run, job->at.parts).c != 0;
 }
 
+/* Sums in the order of the force, of which it is the derivative. */
 CS_CLONES void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n,
                                   const struct cs_eval *at, double *df) {
     const struct job job = {.springs = springs, .n = n, .at = *at, .to = df};
     add_runs(&job, at->block, asks_jvp, choose_jvp, jvp_piece);
 }
 
+/* Products of one chunk of a mesh into its slots. */
 CS_CLONES static void wait_jvp_chunk(void *job, uint32_t chunk) {
     compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk, asks_jvp,
                            jvp_piece);

@@ -1,5 +1,24 @@
-/* The springs' Jacobian in the factored form y = sum of (s I + w w^T)(p_a - p_b) that the
- * linear solver multiplies by. */
+/* The springs' Jacobian in factored form, A p = sum of (s I + w w^T)(p_a - p_b): the matrix of
+ * the linear solver, never assembled.
+ *
+ * With d = x_b - x_a, length l, u = d / l and f_a = k (1 - L/l) d, the derivative of a spring
+ * is
+ *
+ *   df_a/dx_b = -df_a/dx_a = k ((1 - L/l)(I - u u^T) + u u^T) = k (1 - L/l) I + k (L/l) u u^T
+ *
+ * In A it is multiplied by -ck >= 0, and a damper adds -cd c I (relative) or -cd c u u^T
+ * (axial):
+ *
+ *   s     = -ck k (1 - L/l) + [-cd c]
+ *   |w|^2 = -ck k (L/l)     + [-cd c],   w = |w| u
+ *
+ * Across a compressed spring (L > l) the eigenvalue s is negative. Buckling makes A indefinite,
+ * and conjugate gradients fail. With psd the transverse part is dropped by L/l <- min(L/l, 1)
+ * (Choi, Ko 2002; Teran et al. 2005): s >= 0, and |w|^2 = -ck k, so that the axial eigenvalue s
+ * + |w|^2 = -ck k is exact in either case.
+ *
+ * Four numbers per spring instead of six for a block: the product is bound by memory, and its
+ * factors are most of what it reads. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
@@ -8,12 +27,13 @@
 #include <float.h>
 #include <math.h>
 
-/* factors of one piece, where they lie in the run's */
+/* Computes the factors of one piece, in place in the run's rows s, wx, wy, wz. There is no
+ * branch in the loop, so it vectorises. */
 CS_INLINE void factor_of(const struct piece *piece, struct ends e,
                          const struct cs_matrix *matrix, const bool listed, double *base) {
     const struct cs_spring_run *run = piece->run;
     const double cd = matrix->cd, ck = matrix->ck;
-    /* of a rest length to a length, in the matrix */
+    /* upper bound of L / l in the matrix */
     const double most = matrix->psd ? 1 : HUGE_VAL;
     const double gamma = run->axial ? 0 : -cd * run->damping;
     const double eta = run->axial ? -cd * run->damping : 0;
@@ -29,7 +49,7 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
         const struct difference d = across(e, i, listed);
         const double inverse = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z + DBL_MIN);
         const double ratio = length * inverse;
-        /* a compressed spring's axial stiffness is k: beta alone would exceed it */
+        /* for a compressed spring k L / l would exceed the axial stiffness k */
         const double clamped = ratio < most ? ratio : most;
         s[i] = gamma + stiffness * (1 - clamped);
         const double w = sqrt(stiffness * clamped + eta) * inverse;
@@ -39,6 +59,7 @@ CS_INLINE void factor_of(const struct piece *piece, struct ends e,
     }
 }
 
+/* Arguments of the loops that compute factors. */
 struct factoring {
     const struct cs_springs *springs;
     size_t n;
@@ -46,7 +67,7 @@ struct factoring {
     double *factors;
 };
 
-/* springs [begin, end) of a run, from a whole number of pieces on */
+/* Computes the factors of springs [begin, end) of a run; begin is a multiple of PIECE. */
 CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spring_run *run,
                               uint32_t begin, uint32_t end) {
     struct gather_buffer places;
@@ -61,6 +82,7 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
     }
 }
 
+/* Factors of RUNS runs. Runs that are cut into chunks are left to factor_chunk. */
 CS_CLONES static void factor_runs(void *arg, uint32_t block) {
     const struct factoring *made = arg;
     const struct cs_springs *springs = made->springs;
@@ -69,12 +91,14 @@ CS_CLONES static void factor_runs(void *arg, uint32_t block) {
             factor_springs(made, springs->runs + r, 0, springs->runs[r].count);
 }
 
+/* Factors of one chunk of a mesh's run. */
 CS_CLONES static void factor_chunk(void *arg, uint32_t number) {
     const struct factoring *made = arg;
     const struct cs_spring_chunk *chunk = made->springs->chunks + number;
     factor_springs(made, made->springs->runs + chunk->run, chunk->begin, chunk->end);
 }
 
+/* Springs are independent here; every factor is written by one thread. */
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
                        const struct cs_matrix *matrix, double *factors) {
     struct factoring made = {springs, n, matrix, factors};
@@ -82,7 +106,8 @@ void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
     cs_pool_run(springs->n_chunks, factor_chunk, &made);
 }
 
-/* w.(p_a - p_b), left to right: the sum order is part of the state hash */
+/* (s I + w w^T) d. The dot product runs from left to right: its order is part of the state
+ * hash. */
 CS_INLINE struct difference mul_of(double s, const struct difference w,
                                    const struct difference d) {
     const double along = w.x * d.x + w.y * d.y + w.z * d.z;
@@ -90,6 +115,7 @@ CS_INLINE struct difference mul_of(double s, const struct difference w,
                                s * d.z + along * w.z};
 }
 
+/* The product of one spring of a grid, for the particle where it begins. */
 CS_INLINE void mul(const struct stencil_input *in, const struct stencil_direction *way,
                    size_t i, double *out) {
     const double *p = in->x, *s = way->factors;
@@ -101,12 +127,14 @@ CS_INLINE void mul(const struct stencil_input *in, const struct stencil_directio
 
 CS_STENCIL_KERNEL(product, mul, 3, 0, 0);
 
+/* One kernel for all runs: the factors hide the law. */
 static const struct stencil_kernel *choose_mul(const struct job *job,
                                                const struct cs_spring_run *first) {
     (void)job, (void)first;
     return &product;
 }
 
+/* Products of a piece of a mesh. `reversed` makes the differences p_a - p_b. */
 CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, double *restrict fx,
                          double *restrict fy, double *restrict fz) {
     struct gather_buffer places;
@@ -123,17 +151,20 @@ CS_INLINE void mul_piece(const struct job *job, const struct piece *piece, doubl
     }
 }
 
+/* Products of one chunk into its slots. */
 CS_CLONES static void wait_mul_chunk(void *job, uint32_t chunk) {
     compute_chunk_to_slots(job, ((const struct job *)job)->springs->chunks + chunk,
                            has_anything, mul_piece);
 }
 
+/* Adds the products to the particles of one block. */
 CS_CLONES static void mul_add_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_block block = cs_springs_block(job->springs, (uint32_t)job->n, number);
     add_runs(job, &block, has_anything, choose_mul, mul_piece);
 }
 
+/* Meshes first, into slots; then each block sums its own particles. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y) {
     struct job job = {.springs = springs, .n = n, .at = {.x = p}, .factors = factors, .to = y};

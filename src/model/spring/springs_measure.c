@@ -1,6 +1,8 @@
-/* Elastic energy and largest strain of spring runs. What each spring has is made in vectors,
- * and goes to eight lanes a piece of a run, so that a sum does not depend on the width of
- * vectors. */
+/* Elastic energy and largest strain of spring runs.
+ *
+ * The values of a piece are computed in vectors and then go to eight lanes, whatever the width
+ * of the processor's vectors: the sum has one order, and its bits are the same on every
+ * machine. */
 #include "model/spring/springs.h"
 
 #include "base/pool.h"
@@ -8,10 +10,12 @@
 
 #include <math.h>
 
+/* Lanes of every sum; as in base/vector.c. */
 enum { LANES = 8 };
 _Static_assert(PIECE % LANES == 0, "a piece is of whole lanes");
 
-/* twice the energy of each spring of a piece, over the run's stiffness if it has one */
+/* Twice the energy of each spring of a piece, k (l - L)^2. For a grid's run k is a common
+ * factor and is left to run_energy. */
 CS_INLINE void square_stretches(const struct piece *piece, const struct ends e,
                                 const bool listed, double *restrict squares) {
     const double length = piece->run->length;
@@ -24,7 +28,7 @@ CS_INLINE void square_stretches(const struct piece *piece, const struct ends e,
     }
 }
 
-/* spring i to lane i modulo LANES; the lanes then pair by pair */
+/* Adds spring i to lane i modulo LANES, and then the lanes pair by pair. */
 CS_INLINE double sum_lanes(const double *squares, size_t count) {
     double s[LANES] = {0};
     for (size_t i = 0; i + LANES <= count; i += LANES)
@@ -35,6 +39,7 @@ CS_INLINE double sum_lanes(const double *squares, size_t count) {
     return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
 }
 
+/* Elastic energy of one run in J. */
 CS_CLONES static double run_energy(const struct cs_spring_run *run, size_t n, const double *x) {
     struct gather_buffer places;
     double squares[PIECE], sum = 0;
@@ -50,7 +55,7 @@ CS_CLONES static double run_energy(const struct cs_spring_run *run, size_t n, co
     return 0.5 * (run->ends ? 1 : run->stiffness) * sum;
 }
 
-/* of each spring, in magnitude */
+/* |l / L - 1| of each spring of a piece. */
 CS_INLINE void find_strains(const struct piece *piece, const struct ends e, const bool listed,
                             double *restrict strains) {
     const double length = piece->run->length;
@@ -62,7 +67,7 @@ CS_INLINE void find_strains(const struct piece *piece, const struct ends e, cons
     }
 }
 
-/* What is no number is passed over. */
+/* The largest of some values. NaNs are skipped, because a comparison with NaN is false. */
 CS_INLINE double find_largest(const double *values, size_t count) {
     double most[LANES] = {0};
     for (size_t i = 0; i + LANES <= count; i += LANES)
@@ -95,10 +100,12 @@ CS_CLONES double cs_springs_largest_strain(const struct cs_springs *springs, uin
     return largest;
 }
 
+/* Tells whether a run is of one of the chosen parts. */
 static bool has_energy(const struct cs_spring_run *run, uint32_t parts) {
     return parts & (CS_PART_STRETCH << run->kind);
 }
 
+/* Energies of RUNS runs, each into its own entry. */
 static void energy_of_runs(void *arg, uint32_t block) {
     const struct job *job = arg;
     const struct cs_springs *springs = job->springs;
@@ -107,6 +114,8 @@ static void energy_of_runs(void *arg, uint32_t block) {
             springs->energies[r] = run_energy(springs->runs + r, job->n, job->at.x);
 }
 
+/* Runs are computed by all threads if there are several, and summed in their order in any case.
+ */
 double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const double *x,
                          uint32_t parts) {
     struct job job = {.springs = springs, .n = n, .at = {.x = x, .parts = parts}};
