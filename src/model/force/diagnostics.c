@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+/* In the order of the particles, by one thread: the sum has one order. */
 double cs_measure_kinetic(const struct cs_system *system, const double *v) {
     const size_t n = system->view.n;
     double energy = 0;
@@ -29,6 +30,7 @@ struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
     return energy;
 }
 
+/* l / L - 1 of spring i of a run. */
 static double strain_of(const struct cs_spring_run *run, size_t n, const double *x,
                         uint32_t i) {
     double squared = 0;
@@ -43,6 +45,7 @@ double cs_diagnostics_strain(const struct cs_system *system, const double *x) {
     return cs_springs_largest_strain(&system->springs, system->view.n, x);
 }
 
+/* Comparisons are negated, to count a NaN as too fast. */
 double cs_measure_speed(const struct cs_system *system, const double *v, double limit,
                         uint32_t *fastest, uint32_t *count) {
     const size_t n = system->view.n;
@@ -96,7 +99,8 @@ void cs_diagnostics_range(const double *values, uint32_t n, double range[2]) {
     }
 }
 
-/* Magnitudes as floats, whose bits are ordered as they are. */
+/* Bits of a magnitude as a float. For numbers without sign, bits as integers are ordered as the
+ * numbers. */
 static uint32_t key_of(double value) {
     const float magnitude = (float)fabs(value);
     uint32_t key;
@@ -104,7 +108,9 @@ static uint32_t key_of(double value) {
     return key;
 }
 
-/* The bits from the highest on, by counting (radix selection): the same for any order. */
+/* Radix selection: eight bits at a time from the highest, counts the keys that share the bits
+ * found so far, and finds the digit of the wanted rank. Four passes, no memory, and the same
+ * result for any order of the values. 0x7f800000 is the key of infinity; NaNs are above it. */
 double cs_diagnostics_magnitude(const double *values, uint32_t n) {
     static const uint32_t infinite = 0x7f800000;
     uint32_t prefix = 0, known = 0, rank = 0;

@@ -1,5 +1,9 @@
-/* Normals of particles, from the neighbours in a grid or the triangles of a mesh, and how they
- * turn. */
+/* Normals of particles, from the neighbours in a grid or the triangles of a mesh, and their
+ * derivative.
+ *
+ * With N the vector product (or sum of products) and n = N / |N|, the derivative along dx is
+ *
+ *   dn = (I - n n^T) dN / |N|,   d(a x b) = da x b + a x db */
 #include "model/force/normals.h"
 
 #include "base/vector.h"
@@ -8,6 +12,7 @@
 #include <float.h>
 #include <math.h>
 
+/* Neighbours of a particle in its grid; the particle itself where there is none. */
 struct neighbours {
     uint32_t left, right, up, down;
 };
@@ -23,6 +28,7 @@ static struct neighbours neighbours_of(const struct cs_body_range *body, uint32_
     };
 }
 
+/* out = p_to - p_from. */
 static void difference(const double *p, uint32_t n, uint32_t from, uint32_t to, double out[3]) {
     for (size_t c = 0; c < 3; c++)
         out[c] = p[c * n + to] - p[c * n + from];
@@ -34,7 +40,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* (right - left) x (up - down) at particle i of a grid */
+/* N of particle i of a grid: (right - left) x (up - down). */
 static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
                          const double *x, double product[3]) {
     const struct neighbours at = neighbours_of(body, i);
@@ -44,7 +50,7 @@ static void grid_product(const struct cs_body_range *body, uint32_t i, size_t n,
     cross(across, upwards, product);
 }
 
-/* the sum of the normals of the triangles at particle i of a mesh */
+/* N of particle i of a mesh: the sum of the normals of its triangles. */
 static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
                          const double *x, double product[3]) {
     const struct cs_trimesh *mesh = body->mesh;
@@ -58,11 +64,14 @@ static void mesh_product(const struct cs_body_range *body, uint32_t i, size_t n,
     }
 }
 
+/* Arguments of the loop over particles. */
 struct update {
     const struct cs_system *system;
     const double *x;
 };
 
+/* Normals of particles [begin, end) of a body. DBL_MIN makes 0 of a vector N = 0 instead of
+ * dividing by 0. */
 static void update_range(const struct update *update, const struct cs_body_range *body,
                          uint32_t begin, uint32_t end) {
     const size_t n = update->system->view.n;
@@ -82,6 +91,7 @@ static void update_range(const struct update *update, const struct cs_body_range
     }
 }
 
+/* Cuts a range of all particles by bodies. */
 static void update_part(void *arg, size_t begin, size_t end) {
     const struct update *update = arg;
     const struct cs_system *system = update->system;
@@ -99,11 +109,12 @@ void cs_normals_update(const struct cs_system *system, const double *x) {
     cs_vector_parallel_for(system->view.n, update_part, &update);
 }
 
-/* a vector with its change along dx */
+/* A vector and its change along dx. */
 struct change {
     double of[3], by[3];
 };
 
+/* The vector from one particle to another. */
 static struct change change_of(const struct cs_eval *at, uint32_t n, uint32_t from,
                                uint32_t to) {
     struct change edge;
@@ -112,7 +123,7 @@ static struct change change_of(const struct cs_eval *at, uint32_t n, uint32_t fr
     return edge;
 }
 
-/* sum += a x b; d(a x b) = da x b + a x db */
+/* sum += a x b, with the product rule for its change. */
 static void add_product(const struct change *a, const struct change *b, struct change *sum) {
     double whole[3], first[3], second[3];
     cross(a->of, b->of, whole);
@@ -124,6 +135,7 @@ static void add_product(const struct change *a, const struct change *b, struct c
     }
 }
 
+/* N of particle i of a grid with its change. */
 static void grid_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
                         const struct cs_eval *at, struct change *sum) {
     const struct neighbours beside = neighbours_of(body, i);
@@ -132,6 +144,7 @@ static void grid_change(const struct cs_body_range *body, uint32_t i, uint32_t n
     add_product(&across, &upwards, sum);
 }
 
+/* N of particle i of a mesh with its change. */
 static void mesh_change(const struct cs_body_range *body, uint32_t i, uint32_t n,
                         const struct cs_eval *at, struct change *sum) {
     const struct cs_trimesh *mesh = body->mesh;
@@ -155,7 +168,7 @@ void cs_normal_derivative(const struct cs_system *system, const struct cs_body_r
         normal[c] = sum.of[c] * inverse;
         along += normal[c] * sum.by[c];
     }
-    // the unit normal turns: what goes along it is left out
+    // (I - n n^T) dN: a unit vector changes only across itself
     for (int c = 0; c < 3; c++)
         dn[c] = (sum.by[c] - along * normal[c]) * inverse;
 }

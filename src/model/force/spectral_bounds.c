@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+/* Largest row sum over mass, of stiffness, and half of that of damping. Pinned particles have
+ * the inverse mass 0 and do not count. */
 static void take_largest(const struct cs_system *system, const struct cs_gershgorin *sums,
                          double *squared, double *delta) {
     *squared = *delta = 0;
@@ -32,6 +34,7 @@ void cs_spectral_bounds_at(const struct cs_system *system, const struct cs_eval 
     *omega = sqrt(squared);
 }
 
+/* Tells whether a force has bounds only at a state. */
 static bool has_rate(const struct cs_term *term) {
     return term->add_state_bound && !term->add_bound;
 }
@@ -53,7 +56,7 @@ void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eva
         if (has_rate(system->terms[k]))
             system->terms[k]->add_state_bound(system, at, &sums);
     take_largest(system, &sums, &squared, delta);
-    // norms of sums are at most the sums of norms
+    // triangle inequality: the bounds of omega^2 and of delta add up
     *omega = sqrt(system->view.omega * system->view.omega + squared);
     *delta += system->view.delta;
 }

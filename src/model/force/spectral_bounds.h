@@ -1,25 +1,32 @@
-/* spectral_bounds.h - how stiff a system is, for automatic steps. */
+/* spectral_bounds.h - bounds on frequencies and damping rates, for automatic steps.
+ *
+ * Gershgorin's theorem with 3x3 blocks instead of numbers (Golub, Van Loan 2013): every
+ * eigenvalue of M^-1 K has a magnitude of at most
+ *
+ *   max over the particles i of (sum over j of |K_ij|) / m_i
+ *
+ * with the spectral norm of the blocks. omega^2 is that of K = df/dx, and delta is half of that
+ * of df/dv: the modes of M x'' = K x + D x' have angular frequencies of at most omega and
+ * damping rates of at most 2 delta. */
 #ifndef CS_SPECTRAL_BOUNDS_H
 #define CS_SPECTRAL_BOUNDS_H
 
 #include "model/system/system.h"
 
-/* Gershgorin bounds from the 3x3 blocks of all forces. Of the sums of their norms in the rows
- * of free particles, over the mass: omega^2 is the largest of df/dx, delta half the largest of
- * df/dv. at: at that state; NULL: what holds for the whole run, as far as forces can say:
- * springs that are not shorter than half their rest length, dampers, drag. work has 2n doubles.
- */
+/* Bounds from all forces, omega in 1/s and delta in 1/s. at: at that state; NULL: for the whole
+ * run, as far as forces have such bounds (springs of at least half their rest length, dampers,
+ * drag). work has 2n doubles. */
 void cs_spectral_bounds_at(const struct cs_system *system, const struct cs_eval *at,
                            double *work, double *omega, double *delta);
 
-/* The bounds of the view, and on top of them those of the forces that have bounds at a state
- * alone (struct cs_term: add_bound_at without add_bound). work as above. */
+/* The view's bounds, increased by those of forces that have bounds only at a state
+ * (add_state_bound without add_bound in struct cs_term), such as contact. work as above. */
 void cs_spectral_bounds_rate(const struct cs_system *system, const struct cs_eval *at,
                              double *work, double *omega, double *delta);
-/* Whether the scene has such forces. */
+/* Tells whether the scene has such forces. */
 bool cs_spectral_bounds_depend_on_state(const struct cs_system *system);
 
-/* Sets view.omega and view.delta to those of the whole run. */
+/* Sets view.omega and view.delta to the bounds for the whole run. */
 void cs_spectral_bounds_set(struct cs_system *system, double *work);
 
 #endif

@@ -1,12 +1,16 @@
 /* Air: drag f = -c v of still air, and wind f = s w |w.n| with unit direction w and the
- * particle's unit normal n (cloth thesis, eq. 5.34). Either is per particle, or times the
- * particle's share of the area. */
+ * particle's unit normal n (cloth thesis, eq. 5.34). Coefficients are per particle, or per
+ * area, times the particle's fraction of the surface.
+ *
+ * Drag is linear in v and in the solver's matrix. Wind depends on x through n; its derivative
+ * is exact in add_jvp but not symmetric, so the matrix leaves it out. */
 #include "model/force/normals.h"
 #include "model/force/term.h"
 #include "scene/event_key.h"
 
 #include <math.h>
 
+/* Area of particle i in m2, or 1 if the coefficient is per particle. */
 static double fraction_of(const struct cs_system *system, bool by_area, size_t i) {
     return by_area ? system->area[i] : 1;
 }
@@ -45,6 +49,7 @@ static void drag_jvp(const struct cs_system *system, const struct cs_eval *at, d
         add_drag(system, at->dv, at->block, df);
 }
 
+/* df/dv = -c I, so cd df/dv = -cd c I >= 0. */
 static void drag_scalar(const struct cs_system *system, const struct cs_matrix *matrix,
                         size_t begin, size_t end, double *diagonal) {
     for (size_t i = begin; i < end; i++)
@@ -70,6 +75,7 @@ const struct cs_term cs_term_drag = {
     .add_bound = drag_bound,
 };
 
+/* Tells whether an event brings wind. */
 static bool has_gust(const struct cs_scene *scene) {
     for (uint32_t e = 0; e < scene->events.n; e++)
         if (cs_scene_events(scene)[e].wind.present)
@@ -93,12 +99,13 @@ static uint32_t wind_uses(const struct cs_scene *scene) {
     return CS_USE_NORMALS | (by_area ? CS_USE_AREA : 0);
 }
 
-/* s of particle i in N, which is also the greatest force */
+/* s of particle i in N. |w.n| is at most 1, so this is also the greatest force. */
 static double strength_of(const struct cs_system *system, size_t i) {
     const struct cs_wind *wind = &system->scene->forces.wind;
     return wind->strength * fraction_of(system, wind->strength_unit == CS_WIND_PA, i);
 }
 
+/* Either side of the cloth catches the wind: |w.n|, along w. */
 static void wind_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
     const double *w = system->scene->forces.wind.direction;

@@ -1,6 +1,6 @@
-/* Impacts and viewpoint forces over an interval: f = m a, the same a for all particles of an
- * impact, the same f for all that a viewpoint force sees. Both are constant between two calls
- * of cs_events_apply. */
+/* Impacts and viewpoint forces over an interval: f = m a. An impact gives all its particles the
+ * same a; a viewpoint force gives all visible particles the same f. Both are constant between
+ * two calls of cs_events_apply. */
 #include "model/force/term.h"
 
 #include <math.h>
@@ -23,6 +23,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
             f[c * n + i] += system->mass[i] * push[c * n + i];
 }
 
+/* The present force, which no state changes. */
 static double max_acceleration(const struct cs_system *system, size_t i) {
     const size_t n = system->view.n;
     const double *a = system->event_force + i;

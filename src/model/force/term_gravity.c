@@ -1,4 +1,5 @@
-/* Gravity: f = m g; its potential -m g.x is 0 at the origin. */
+/* Gravity: f = m g, with the potential -m g.x, which is 0 at the origin. It has no derivative.
+ */
 #include "model/force/term.h"
 #include "scene/event_key.h"
 

@@ -1,4 +1,4 @@
-/* Springs with dampers: the kernels of springs.h as a term. */
+/* Springs with dampers as a term: the kernels of springs.h. */
 #include "model/force/term.h"
 
 /* the plan has a line for springs, with the bytes of their arrays */
@@ -32,8 +32,9 @@ static void add_diagonal(const struct cs_system *system, const struct cs_eval *a
     cs_springs_finish_diagonal(&system->springs, system->view.n, at);
 }
 
-/* A row has k u u^T of each spring at the particle, and the same again at its other ends; while
- * no spring is shorter than half its rest length neither part of it is above k. */
+/* Row sums of the springs at a particle. A spring with L / l <= 2 has a block with eigenvalues
+ * k and k (1 - L/l), both at most k in magnitude, at the particle and again at its other end: 2
+ * k. A damper has 2 c. The bound fails if a spring is shorter than half its rest length. */
 static void add_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;

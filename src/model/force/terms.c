@@ -11,20 +11,21 @@ const struct cs_term *const cs_terms[] = {CS_TERM_LIST(X)};
 const uint32_t cs_n_terms = sizeof cs_terms / sizeof *cs_terms;
 _Static_assert(sizeof cs_terms / sizeof *cs_terms <= CS_TERMS_MAX, "a plan has a row for each");
 
-/* what blocks are done with */
+/* Arguments of the loops over blocks. */
 struct job {
     const struct cs_system *system;
     struct cs_eval at;
     double *out;
 };
 
+/* Zeroes the particles of a block. */
 static void clear(const struct cs_system *system, const struct cs_block *block, double *f) {
     for (size_t c = 0; c < 3; c++)
         memset(f + c * system->view.n + block->begin, 0,
                sizeof *f * (block->end - block->begin));
 }
 
-/* the first pinned particle of a block, by its number in the list */
+/* Index in the list of pinned particles of the first one from `begin` on: binary search. */
 static uint32_t find_pinned(const struct cs_system *system, uint32_t begin) {
     uint32_t low = 0;
     for (uint32_t high = system->n_pinned; low < high;) {
@@ -37,6 +38,7 @@ static uint32_t find_pinned(const struct cs_system *system, uint32_t begin) {
     return low;
 }
 
+/* Zeroes the pinned particles of a block: they bear any force without moving. */
 static void clear_pinned(const struct cs_system *system, const struct cs_block *block,
                          double *f) {
     const uint32_t first = find_pinned(system, block->begin),
@@ -46,10 +48,12 @@ static void clear_pinned(const struct cs_system *system, const struct cs_block *
             f[c * system->view.n + system->pinned[p]] = 0;
 }
 
+/* Tells whether a term is among the chosen parts. */
 static bool is_asked(const struct cs_term *term, const struct cs_eval *at) {
     return term->part_bits & at->parts;
 }
 
+/* Prepares the chosen terms, one after the other; each uses all threads. */
 static void prepare(const struct job *job) {
     const struct cs_system *system = job->system;
     for (uint32_t k = 0; k < system->n_terms; k++)
@@ -57,6 +61,8 @@ static void prepare(const struct job *job) {
             system->terms[k]->prepare(system, &job->at);
 }
 
+/* Sums the forces at one block, term by term in the order of the list. A block is written by
+ * one thread. */
 static void force_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
@@ -77,6 +83,7 @@ void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, do
     cs_pool_run(system->springs.n_blocks, force_block, &job);
 }
 
+/* The same for the derivative. */
 static void jvp_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
@@ -96,7 +103,7 @@ void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, doub
     cs_pool_run(system->springs.n_blocks, jvp_block, &job);
 }
 
-/* a term's share of the matrix as blocks (6,n) */
+/* Adds a term's diagonal part of the matrix to blocks (6,n); a number goes to xx, yy and zz. */
 static void add_share(const struct cs_system *system, const struct cs_matrix *matrix,
                       const struct cs_term *term, double *blocks) {
     if (term->add_blocks)
@@ -118,7 +125,7 @@ void cs_terms_add_product(const struct cs_system *system, const double *p, doubl
             system->terms[k]->add_matrix_product(system, p, y);
 }
 
-/* of all terms that have one without the springs */
+/* Adds the diagonal parts of all terms but the springs. */
 static void add_shares(const struct cs_system *system, const struct cs_matrix *matrix,
                        double *blocks) {
     cs_terms_prepare_matrix(system, matrix, false);
@@ -126,6 +133,7 @@ static void add_shares(const struct cs_system *system, const struct cs_matrix *m
         add_share(system, matrix, system->terms[k], blocks);
 }
 
+/* Adds the diagonal blocks of grids' springs at one block, without a force. */
 static void diagonal_block(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_system *system = job->system;
@@ -137,13 +145,15 @@ static void diagonal_block(void *arg, uint32_t number) {
             system->terms[k]->add_force(system, &at, NULL);
 }
 
+/* Zeroes both arrays of blocks. */
 static void clear_diagonal(const struct cs_system *system, const struct cs_eval *at) {
     const size_t bytes = 6 * sizeof *at->dfdx_blocks * system->view.n;
     memset(at->dfdx_blocks, 0, bytes);
     memset(at->dfdv_blocks, 0, bytes);
 }
 
-/* what is left where forces have added their blocks */
+/* Adds the blocks that the pass over grids' springs did not: those of meshes and of the other
+ * forces. A matrix with ck = 1 alone is df/dx, and one with cd = 1 alone is df/dv. */
 static void finish_diagonal(const struct cs_system *system, const struct cs_eval *at) {
     const struct cs_matrix k = {.t = at->t, .x = at->x, .v = at->v, .ck = 1};
     const struct cs_matrix d = {.t = at->t, .x = at->x, .v = at->v, .cd = 1};
@@ -201,6 +211,7 @@ bool cs_terms_have_blocks(const struct cs_system *system) {
     return false;
 }
 
+/* Arrays that a term reads in a scene. */
 static uint32_t use_of(const struct cs_term *term, const struct cs_scene *scene) {
     return term->uses ? term->uses(scene) : 0;
 }

@@ -21,41 +21,45 @@ CS_TERM_LIST(X)
 extern const struct cs_term *const cs_terms[];
 extern const uint32_t cs_n_terms;
 
-/* f (3,n) = sum of the chosen parts, 0 on pinned particles; by all threads. What they use of
- * CS_USE_NORMALS must be fresh. */
+/* f (3,n) = sum of the chosen parts, 0 on pinned particles, by all threads. If a part uses
+ * normals (cs_terms_need_normals), they must be up to date. */
 void cs_terms_force(const struct cs_system *system, const struct cs_eval *at, double *f);
-/* df (3,n), 0 on pinned particles. Fresh normals as above. */
+/* df (3,n) = (df/dx) dx + (df/dv) dv of the chosen parts, 0 on pinned particles. Normals as
+ * above. */
 void cs_terms_jvp(const struct cs_system *system, const struct cs_eval *at, double *df);
-/* The diagonal blocks kxx, dvv (6,n) of CS_PART_LINEARISED: xx, xy, xz, yy, yz, zz. */
+/* The diagonal blocks kxx, dvv (6,n) of df/dx and df/dv of CS_PART_LINEARISED: xx, xy, xz, yy,
+ * yz, zz. */
 void cs_terms_diagonal(const struct cs_system *system, const struct cs_eval *at, double *kxx,
                        double *dvv);
-/* Both, to the same bits, in less time: blocks (12,n) is kxx and then dvv. The parts of at, for
- * f, must have the springs. */
+/* Force and diagonal blocks in one pass over the springs, with the same bits as the two calls
+ * above. blocks (12,n) is kxx and then dvv. The parts of at must include the springs. */
 void cs_terms_force_diagonal(const struct cs_system *system, const struct cs_eval *at,
                              double *f, double *blocks);
 
-/* blocks (6,n) = the shares in a matrix of the terms with one of these parts. */
+/* blocks (6,n) = the diagonal blocks in a matrix of the terms with one of these parts. */
 void cs_terms_blocks(const struct cs_system *system, const struct cs_matrix *matrix,
                      uint32_t parts, double *blocks);
 
-/* Adds the shares of all terms that have none between particles, at particles [begin, end):
- * numbers to diagonal (n), blocks to blocks (6,n), which is not used without
+/* Adds the diagonal parts of all terms but the springs to the matrix, at particles [begin,
+ * end): numbers to diagonal (n), blocks to blocks (6,n). blocks is not used unless
  * cs_terms_have_blocks. */
 void cs_terms_add_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                          size_t begin, size_t end, double *diagonal, double *blocks);
-/* Before them: what shares have to prepare at the matrix's state. kept: its products are asked
- * for until the next one that is kept. With all threads. */
+/* Lets terms prepare their parts at the matrix's state; must precede cs_terms_add_matrix. kept:
+ * products follow, until the next call with kept. With all threads. */
 void cs_terms_prepare_matrix(const struct cs_system *system, const struct cs_matrix *matrix,
                              bool kept);
-/* y (3,n) += the shares of those terms that have some between particles, without the diagonal
- * blocks, of the matrix kept last, times p. */
+/* y (3,n) += p times the entries between particles of the terms that have some, without their
+ * diagonal blocks, in the matrix kept last. */
 void cs_terms_add_product(const struct cs_system *system, const double *p, double *y);
+/* Tells whether a force of the scene has 3x3 blocks in the matrix, not only numbers. */
 bool cs_terms_have_blocks(const struct cs_system *system);
 
-/* true if the chosen parts need the particle normals in this scene */
+/* Tells whether the chosen parts need the particle normals in this scene. */
 bool cs_terms_need_normals(const struct cs_system *system, uint32_t parts);
 
-/* What the forces of a scene use together, by a plan whose rows of forces are made. */
+/* Arrays (set of enum cs_term_use) that the forces of a scene read, by a plan whose rows of
+ * forces are set. */
 uint32_t cs_terms_use(const struct cs_scene *scene, const struct cs_plan *plan);
 
 #endif

@@ -1,9 +1,10 @@
-/* The rows of a fan, made tile by tile and added; see grid_stencil.h. */
+/* Computes the springs of a grid's row tile by tile and adds them; scheme in grid_stencil.h. */
 #include "model/spring/grid_stencil.h"
 
 #include <string.h>
 
-/* one tile of a fan: particles [start, start + count) of the row */
+/* One tile: particles [start, start + count) of the row. rows holds the results, by direction
+ * and component, with a margin on either side. */
 struct tile {
     const struct job *job;
     const struct row_stencil *fan;
@@ -12,15 +13,19 @@ struct tile {
     _Alignas(64) double rows[CS_DIRECTIONS * NUMBERS_PER_SPRING_MAX * PADDED_TILE];
 };
 
+/* Results per spring. */
 CS_INLINE size_t parts_of(const struct tile *tile) {
     return tile->kernel->n_force + tile->kernel->n_dfdx + tile->kernel->n_dfdv;
 }
 
+/* Results of a direction; entry i belongs to particle i of the tile. */
 CS_INLINE double *rows_of(struct tile *tile, unsigned way) {
     return tile->rows + way * parts_of(tile) * PADDED_TILE + MARGIN;
 }
 
-/* particles of the row that have a spring of a way: [begin, end) */
+/* Particles of the row that begin a spring of a direction are [begin_of, end_of): the leftmost
+ * has none down left, the rightmost none right or down right, the last two none two to the
+ * right. */
 CS_INLINE size_t begin_of(unsigned way) {
     return way == CS_DIRECTION_DOWN_LEFT;
 }
@@ -28,9 +33,12 @@ CS_INLINE size_t begin_of(unsigned way) {
 CS_INLINE size_t end_of(unsigned way, size_t columns) {
     static const size_t short_of[CS_DIRECTIONS] = {
         [CS_DIRECTION_RIGHT] = 1, [CS_DIRECTION_RIGHT_TWO] = 2, [CS_DIRECTION_DOWN_RIGHT] = 1};
+    // a run exists only if its direction fits the grid, so this is not negative
     return columns - short_of[way];
 }
 
+/* Describes a direction to a kernel. Factors lie by spring, and a run's first spring may begin
+ * at the second particle of the row, hence `before`. */
 CS_INLINE struct stencil_direction direction_of(struct tile *tile, unsigned way) {
     const struct cs_spring_run *run = tile->fan->directions[way];
     const struct job *job = tile->job;
@@ -44,11 +52,12 @@ CS_INLINE struct stencil_direction direction_of(struct tile *tile, unsigned way)
         .out = rows_of(tile, way)};
 }
 
+/* Shifts an array, if there is one. */
 CS_INLINE const double *from(const double *array, size_t first) {
     return array ? array + first : NULL;
 }
 
-/* the arrays that a kernel reads, from the tile on */
+/* Input of a kernel for a tile. */
 CS_INLINE struct stencil_input in_of(const struct tile *tile) {
     const struct cs_spring_run *run = tile->fan->first;
     const struct cs_eval *at = &tile->job->at;
@@ -62,7 +71,8 @@ CS_INLINE struct stencil_input in_of(const struct tile *tile) {
                                   .axial = run->axial};
 }
 
-/* what is read beside a row, before its first particle and behind its last */
+/* Zeroes the margin entries that sums read: before the row's first particle, and after the
+ * tile's last one. Between tiles of a row, carry_over_overlap fills the former. */
 CS_INLINE void clear_margins(struct tile *tile) {
     static const unsigned before[] = {CS_DIRECTION_RIGHT, CS_DIRECTION_RIGHT_TWO,
                                       CS_DIRECTION_DOWN_RIGHT};
@@ -75,7 +85,7 @@ CS_INLINE void clear_margins(struct tile *tile) {
     }
 }
 
-/* Springs that are none, before the first and behind the last of a way, add 0. */
+/* Zeroes the results of springs that do not exist, at the ends of the row. */
 CS_INLINE void drop_none(struct tile *tile, unsigned way) {
     const size_t columns = tile->fan->first->columns, stop = tile->start + tile->count;
     const size_t begin = begin_of(way), end = end_of(way, columns);
@@ -88,7 +98,7 @@ CS_INLINE void drop_none(struct tile *tile, unsigned way) {
     }
 }
 
-/* Ways [first, last), those that are there, side by side. */
+/* Computes those of the directions [first, last) that exist, side by side. */
 CS_INLINE void make_directions(struct tile *tile, const struct stencil_input *in,
                                unsigned first, unsigned last) {
     struct stencil_direction ways[DIRECTIONS_AT_ONCE];
@@ -103,7 +113,7 @@ CS_INLINE void make_directions(struct tile *tile, const struct stencil_input *in
             drop_none(tile, way);
 }
 
-/* Those springs of a way that there are. */
+/* Computes the existing springs of one direction, and reads nothing else. */
 CS_INLINE void make_alone(struct tile *tile, const struct stencil_input *in, unsigned way) {
     const struct stencil_direction alone = direction_of(tile, way);
     const size_t end = end_of(way, tile->fan->first->columns);
@@ -113,7 +123,9 @@ CS_INLINE void make_alone(struct tile *tile, const struct stencil_input *in, uns
     drop_none(tile, way);
 }
 
-/* Makes the numbers of a tile's springs that rows in the block want. */
+/* Computes a tile's springs, as far as rows in the block need them. at[k] tells whether the row
+ * k rows below is in the block. Its own row needs all directions, the next one those down, the
+ * row after only down two. */
 CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
     const struct stencil_input in = in_of(tile);
     const bool alone = tile->fan->first->rows_below < 2;
@@ -129,7 +141,9 @@ CS_INLINE void make_tile(struct tile *tile, const bool at[3]) {
         make_directions(tile, &in, CS_DIRECTION_DOWN_TWO, CS_DIRECTIONS);
 }
 
-/* what the next tile wants of this one's last two particles */
+/* Copies the results of the tile's last two particles to the margin before the next tile, whose
+ * first two particles end these springs. Down two has no part in this: it stays in its column.
+ */
 CS_INLINE void carry_over_overlap(struct tile *tile) {
     for (unsigned way = 0; way < CS_DIRECTION_DOWN_TWO; way++) {
         double *rows = rows_of(tile, way);
@@ -141,7 +155,8 @@ CS_INLINE void carry_over_overlap(struct tile *tile) {
     }
 }
 
-/* row k of a way, moved back by some particles; zeros where the way is not there */
+/* Row k of a direction's results, moved back by some particles; zeros if the direction does not
+ * exist. */
 CS_INLINE const double *row_of(struct tile *tile, unsigned way, size_t k, size_t back) {
     static const _Alignas(64) double zeros[PADDED_TILE];
     return (tile->fan->directions[way] ? rows_of(tile, way) + k * PADDED_TILE
@@ -149,7 +164,8 @@ CS_INLINE const double *row_of(struct tile *tile, unsigned way, size_t k, size_t
            back;
 }
 
-/* what particles get from springs in their own row, and from those that they begin */
+/* Adds to the tile's own particles: the springs that they begin, and those of their row that
+ * end there. The order of the terms is the order of the sum; the state hash depends on it. */
 CS_INLINE void add_own(struct tile *tile, size_t k, const double sign, double *to) {
     const double *right = row_of(tile, CS_DIRECTION_RIGHT, k, 0);
     const double *two = row_of(tile, CS_DIRECTION_RIGHT_TWO, k, 0);
@@ -164,8 +180,9 @@ CS_INLINE void add_own(struct tile *tile, size_t k, const double sign, double *t
                  sign * ((right - 1)[i] + (two - 2)[i]);
 }
 
-/* What particles get from the row before; the last of a tile waits for what the next tile has
- * for it. */
+/* Adds to the next row. Its particle below the tile's last one also ends a spring down left of
+ * the next tile; it is therefore added with the next tile (early), which starts one particle
+ * sooner (late). */
 CS_INLINE void add_next(struct tile *tile, size_t k, const double sign, double *to) {
     const size_t late = tile->start > 0;
     const size_t early = tile->start + tile->count < tile->fan->first->columns;
@@ -179,6 +196,7 @@ CS_INLINE void add_next(struct tile *tile, size_t k, const double sign, double *
         from_late[i] += sign * (down[i] + (forth - 1)[i] + back[i + 1]);
 }
 
+/* Adds to the row after the next. */
 CS_INLINE void add_after(struct tile *tile, size_t k, const double sign, double *to) {
     const double *after = row_of(tile, CS_DIRECTION_DOWN_TWO, k, 0);
     const size_t count = tile->count;
@@ -187,7 +205,8 @@ CS_INLINE void add_after(struct tile *tile, size_t k, const double sign, double 
         to[i] += sign * after[i];
 }
 
-/* Adds part k of what was made of a tile to its row, the next and the one after. */
+/* Adds component k of the results to the three rows, as far as they are in the block and exist.
+ */
 CS_INLINE void add_part(struct tile *tile, const bool at[3], size_t k, const double sign,
                         double *array) {
     const struct cs_spring_run *first = tile->fan->first;
@@ -200,6 +219,8 @@ CS_INLINE void add_part(struct tile *tile, const bool at[3], size_t k, const dou
         add_after(tile, k, sign, to + 2 * (size_t)first->columns);
 }
 
+/* Adds all components: forces with the opposite sign at the other ends, blocks with the same
+ * sign. */
 CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
     const struct stencil_kernel *kernel = tile->kernel;
     const struct job *job = tile->job;
@@ -212,6 +233,7 @@ CS_INLINE void add_tile(struct tile *tile, const bool at[3]) {
                                     : job->at.dfdv_blocks + (k - kernel->n_dfdx) * job->n);
 }
 
+/* Tiles go from left to right, as the overlap requires. */
 CS_CLONES void cs_grid_stencil_add(const struct job *job, const struct cs_block *block,
                                    const struct row_stencil *stencil,
                                    const struct stencil_kernel *kernel) {

@@ -1,75 +1,82 @@
-/* grid_stencil.h - all springs that lead forward from one row of a grid, at once.
+/* grid_stencil.h - stencil kernels: evaluates all springs that start in one grid row, tile by
+ * tile.
  *
- * The springs of a row fan out in up to six ways: right, two to the right, down, both
- * diagonals, two down. A kernel does the ways of a tile of particles side by side, sums what
- * each particle gets from its own springs in registers, and the tile is then added to three
- * rows, once each:
+ * A particle begins springs in up to six directions: right, two to the right, down, both
+ * diagonals, two down. A kernel computes the directions of a tile side by side and stores the
+ * results in rows on the stack. The tile is then added to three rows of particles, once each:
  *
- *   own row      sum over the ways - (right[i - 1] + right two[i - 2])
- *   next row     - (down[i] + forth[i - 1] + back[i + 1])
- *   after next   - down two[i]
+ *   own row      sum over the directions - (right[i - 1] + right two[i - 2])
+ *   next row     - (down[i] + down right[i - 1] + down left[i + 1])
+ *   row after    - down two[i]
+ *
+ * The signs are those of forces; blocks are added with a plus at both ends. Six passes, one per
+ * direction, would load and store each row of particles up to six times.
  *
  * Tiles begin at multiples of TILE particles of the row, whatever block of particles is asked
- * for: so no sum depends on the number of threads. Loops run over whole tiles: what they read
- * beside the ends of a row belongs to other particles, and what they make of it is dropped. The
- * last two rows of a grid, where that would lie behind the arrays, are done way by way. */
+ * for. No sum therefore depends on the number of threads. Loops run over whole tiles: beside
+ * the ends of a row they read other particles, and those results are dropped. In the last two
+ * rows of a grid such reads could lie beyond the arrays; these rows are done direction by
+ * direction, without them. */
 #ifndef CS_GRID_STENCIL_H
 #define CS_GRID_STENCIL_H
 
 #include "model/spring/run_pieces.h"
 
 enum {
-    TILE = 64,  /* particles whose springs are done together */
-    MARGIN = 8, /* more than any way reaches along the row, and a whole vector */
+    TILE = 64,  /* particles per tile; 32 took 1.1 of the time at 64 x 64 (docs/speed.md) */
+    MARGIN = 8, /* more than any spring reaches along the row, and a whole vector */
     PADDED_TILE = MARGIN + TILE + MARGIN,
-    NUMBERS_PER_SPRING_MAX = 15, /* numbers that a kernel makes of a spring */
-    DIRECTIONS_AT_ONCE = 3       /* ways that are done side by side */
+    NUMBERS_PER_SPRING_MAX = 15, /* most results per spring: force 3, df/dx 6, df/dv 6 */
+    DIRECTIONS_AT_ONCE = 3       /* directions that one loop computes side by side */
 };
 
-/* One way of a fan, of numbers by particle of the tile. */
+/* One direction of a row's springs; numbers by particle of the tile. */
 struct stencil_direction {
-    double k, length;
-    size_t offset;         /* from a particle to the other end */
-    const double *factors; /* of the matrix; a row has `count` numbers */
+    double k, length;      /* N/m and m; the same for the whole run */
+    size_t offset;         /* from a particle to the other end of its spring */
+    const double *factors; /* of the matrix, s, wx, wy, wz in rows of `count`; NULL: not used */
     size_t count;
-    double *out; /* what the kernel makes, in rows of WIDE */
+    double *out; /* results, in rows of PADDED_TILE */
 };
 
-/* What a kernel reads: arrays from the tile's first particle on. */
+/* Input of a kernel: arrays from the tile's first particle on; NULL where a kernel does not
+ * read them. */
 struct stencil_input {
     const double *x, *v, *dx, *dv;
     size_t n;
-    double c;   /* of dampers, N s/m */
-    bool axial; /* along the springs only */
+    double c;   /* damping in N s/m */
+    bool axial; /* damping along the springs only */
 };
 
-/* Makes the numbers of the springs of one, two or three ways from particles [begin, end) of the
- * tile. */
+/* Computes the springs of one, two or three directions from particles [begin, end) of the tile.
+ */
 typedef void stencil_pass(const struct stencil_input *in, const struct stencil_direction *ways,
                           size_t begin, size_t end);
 
-/* A kernel of some numbers a spring, one after the other: those of its force, for job->to, of
- * df/dx for at.kxx and of df/dv for at.dvv. A particle gets those of the springs that it
- * begins; the other ends get the same of blocks, and the opposite of forces. */
+/* A kernel, compiled for one, two and three directions. Its results per spring follow one
+ * another: those of the force, for job->to; of df/dx, for at.dfdx_blocks; of df/dv, for
+ * at.dfdv_blocks. A particle gets those of the springs that it begins. The other ends get the
+ * same of blocks, and the opposite of forces. */
 struct stencil_kernel {
     stencil_pass *passes[DIRECTIONS_AT_ONCE];
     size_t n_force, n_dfdx, n_dfdv;
 };
 
-/* the runs of a row */
+/* The runs of one row, by direction. */
 struct row_stencil {
     const struct cs_spring_run
-        *directions[CS_DIRECTIONS];    /* NULL: none, or nothing is asked of them */
-    const struct cs_spring_run *first; /* gives row, columns and what lies below */
+        *directions[CS_DIRECTIONS];    /* NULL: no such springs, or they contribute nothing */
+    const struct cs_spring_run *first; /* any run of the row: gives row, columns, rows_below */
 };
 
-/* Adds what a kernel makes of a fan's springs at the particles of a block. */
+/* Adds a kernel's results for a row's springs to the particles of a block. Only the block is
+ * written, although a row of springs at its border is computed for both neighbours. */
 void cs_grid_stencil_add(const struct job *job, const struct cs_block *block,
                          const struct row_stencil *stencil,
                          const struct stencil_kernel *kernel);
 
-/* Finds the runs of a row, from its first on, and adds what a kernel makes of those that are
- * asked for. Returns how many there are. */
+/* Collects the runs of a row, from its first on, and adds a kernel's results for those that
+ * `asks` accepts. Returns the number of runs in the row. */
 CS_INLINE uint32_t add_row_stencil(const struct job *job, const struct cs_block *block,
                                    const struct cs_spring_run *first, run_test *asks,
                                    const struct stencil_kernel *kernel) {
@@ -86,12 +93,13 @@ CS_INLINE uint32_t add_row_stencil(const struct job *job, const struct cs_block 
     return (uint32_t)(run - first);
 }
 
-/* the kernel for a row's law, and what is asked of it */
+/* Chooses the kernel for a row's law and the results wanted. */
 typedef const struct stencil_kernel *stencil_choice(const struct job *job,
                                                     const struct cs_spring_run *first);
 
-/* Adds what kernels make of all runs to the particles of a block, in the order of the runs: of
- * fans, and, unless there is no job->to, of pieces of meshes. */
+/* Adds the results of all runs to the particles of a block, in the order of the runs. Grids go
+ * row by row. Meshes go by their slots if several threads share them, else directly. Without
+ * job->to only blocks are wanted, which meshes add elsewhere (cs_springs_finish_diagonal). */
 CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run_test *asks,
                         stencil_choice *choose, piece_kernel *kernel) {
     const struct cs_springs *springs = job->springs;
@@ -110,23 +118,25 @@ CS_INLINE void add_runs(const struct job *job, const struct cs_block *block, run
     }
 }
 
-/* between the ends of the spring of a way from particle i of the tile */
+/* Difference over the spring of a direction from particle i of the tile: other end less
+ * particle. */
 CS_INLINE struct difference fan_across(const double *p, size_t n, size_t i, size_t step) {
     return (struct difference){p[i + step] - p[i], p[n + i + step] - p[n + i],
                                p[2 * n + i + step] - p[2 * n + i]};
 }
 
+/* Stores a vector as the first three results. */
 CS_INLINE void fan_put(struct difference from, double *out) {
     out[0] = from.x;
     out[1] = from.y;
     out[2] = from.z;
 }
 
-/* makes the numbers of the spring of a way from particle i of the tile */
+/* Computes the results of the spring from particle i of the tile. */
 typedef void stencil_spring(const struct stencil_input *in, const struct stencil_direction *way,
                             size_t i, double *out);
 
-/* what is made of one spring, to row after row */
+/* Computes one spring and stores its results, each in its own row. */
 CS_INLINE void stencil_make(const struct stencil_input *in, const struct stencil_direction *way,
                             size_t i, stencil_spring *spring, const size_t parts) {
     double made[NUMBERS_PER_SPRING_MAX];
@@ -135,6 +145,7 @@ CS_INLINE void stencil_make(const struct stencil_input *in, const struct stencil
         way->out[k * PADDED_TILE + i] = made[k];
 }
 
+/* The loop of a pass. Iterations are independent: every direction writes to rows of its own. */
 CS_INLINE void stencil_springs(const struct stencil_input in, const struct stencil_direction p,
                                const struct stencil_direction q,
                                const struct stencil_direction r, const unsigned ways,
@@ -150,6 +161,8 @@ CS_INLINE void stencil_springs(const struct stencil_input in, const struct stenc
     }
 }
 
+/* Compiles the loop for n directions; `second` and `third` name those that exist, or repeat a
+ * valid one. */
 #define CS_STENCIL_PASS(name, spring, parts, n, second, third)                                 \
     CS_CLONES static void name(const struct stencil_input *in,                                 \
                                const struct stencil_direction *ways, size_t begin,             \
@@ -158,8 +171,8 @@ CS_INLINE void stencil_springs(const struct stencil_input in, const struct stenc
                         end);                                                                  \
     }
 
-/* The kernel `name` of what is made of single springs by spring(), an inline function: so many
- * numbers of the force, of df/dx and of df/dv. */
+/* Defines the kernel `name` from spring(), an inline function that computes one spring, and
+ * from the number of results of the force, of df/dx and of df/dv. */
 #define CS_STENCIL_KERNEL(name, spring, forces_, stiff_, damped_)                              \
     CS_STENCIL_PASS(name##_1, spring, forces_ + stiff_ + damped_, 1, 0, 0)                     \
     CS_STENCIL_PASS(name##_2, spring, forces_ + stiff_ + damped_, 2, 1, 1)                     \

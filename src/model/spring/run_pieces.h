@@ -1,9 +1,10 @@
-/* run_pieces.h - a run of springs in pieces: both ends' rows, and a mesh's forces added back to
- * them.
+/* run_pieces.h - runs of springs in pieces: differences over both ends, and the forces of
+ * meshes added back to particles.
  *
- * A grid's rows are read where they lie; what is added to them goes by fans (grid_stencil.h).
- * The ends of a mesh lie anywhere: their differences are gathered into rows on the stack, and
- * the forces are added back one by one. */
+ * A grid's rows are read where they lie; grid_stencil.h adds to them. The ends of a mesh lie
+ * anywhere: their differences are gathered into rows on the stack, kernels work on rows, and
+ * forces are added back one by one, directly (scatter) or through slots (gather). Both give the
+ * same bits, because the order of a particle's springs is the same. */
 #ifndef CS_RUN_PIECES_H
 #define CS_RUN_PIECES_H
 
@@ -12,20 +13,23 @@
 #include <clothsim/clones.h>
 #include <clothsim/integrator.h>
 
-enum { PIECE = 256 }; /* springs whose forces a buffer on the stack holds */
-enum { RUNS = 32 }; /* runs that one thread takes at a time where their order does not matter */
+/* Springs per piece: a row of a buffer on the stack takes 2 KiB. */
+enum { PIECE = 256 };
+/* Runs per task of loops over runs, where their order does not matter. */
+enum { RUNS = 32 };
 _Static_assert(CS_SPRING_CHUNK_MAX % PIECE == 0, "a lot is of whole pieces");
 
-/* What a kernel works on. */
+/* Arguments of a kernel: springs, state and destination. */
 struct job {
     const struct cs_springs *springs;
     size_t n;
-    struct cs_eval at;     /* of a product with the matrix: x alone, what it is taken of */
-    const double *factors; /* of the matrix */
-    double *to;            /* what is added to */
+    struct cs_eval at;     /* state; for products with the matrix only x, the vector */
+    const double *factors; /* of the matrix; NULL for other kernels */
+    double *to;            /* (3,n) destination; NULL: only blocks, or slots, are written */
 };
 
-/* what a part asks of a run: k is 0 without its elastic force, c without its dampers */
+/* Constants of a run for the chosen parts: k is 0 without its elastic force, c without its
+ * dampers. For a mesh k is 0 or 1, a factor of its list. */
 struct active_constants {
     double k, c;
 };
@@ -37,41 +41,44 @@ CS_INLINE struct active_constants active_constants_of(const struct cs_spring_run
         parts & CS_PART_DAMPING ? run->damping : 0};
 }
 
+/* Tells whether a run has a force of the chosen parts. */
 CS_INLINE bool has_force(const struct job *job, const struct cs_spring_run *run) {
     const struct active_constants asked = active_constants_of(run, job->at.parts);
     return asked.k != 0 || asked.c != 0;
 }
 
+/* For the matrix, which has all springs. */
 CS_INLINE bool has_anything(const struct job *job, const struct cs_spring_run *run) {
     (void)job, (void)run;
     return true;
 }
 
-/* one piece of a run: both ends' rows of an array of 3-vectors, or, of a mesh, the rows of the
- * differences in b* alone */
+/* Both ends of a piece: rows of an array of 3-vectors, or, for a mesh, the rows of the
+ * differences in b* alone. */
 struct ends {
     const double *ax, *ay, *az, *bx, *by, *bz;
 };
 
-/* where the differences of a mesh's piece are gathered */
+/* Buffer for the differences of a mesh's piece. */
 struct gather_buffer {
     double rows[3][PIECE];
 };
 
-/* one piece: its springs, and what stands in for the run's constants in a run with lists */
+/* One piece: springs [start, start + count) of a run, and its lists from there on. */
 struct piece {
     const struct cs_spring_run *run;
     uint32_t start, count;
     const double *lengths, *stiffnesses;
 };
 
-/* true where the run has something to add */
+/* Returns true if the run contributes. */
 typedef bool run_test(const struct job *job, const struct cs_spring_run *run);
 
-/* forces of one piece, in rows */
+/* Computes the forces of a mesh's piece into rows. */
 typedef void piece_kernel(const struct job *job, const struct piece *piece, double *restrict fx,
                           double *restrict fy, double *restrict fz);
 
+/* The piece from spring `start` on. */
 CS_INLINE struct piece piece_of(const struct cs_spring_run *run, uint32_t start) {
     const uint32_t left = run->count - start;
     return (struct piece){run, start, left < PIECE ? left : PIECE,
@@ -79,7 +86,8 @@ CS_INLINE struct piece piece_of(const struct cs_spring_run *run, uint32_t start)
                           run->stiffnesses ? run->stiffnesses + start : NULL};
 }
 
-/* reversed: from end b to end a */
+/* Finds both ends of a piece in an array p (3,n). reversed: differences are end a less end b.
+ * gathered is only used for meshes. */
 CS_INLINE struct ends ends_of(const struct piece *piece, const double *p, size_t n,
                               const bool reversed, struct gather_buffer *gathered) {
     const double *a = p + piece->run->first_a, *b = p + piece->run->first_b;
@@ -93,7 +101,7 @@ CS_INLINE struct ends ends_of(const struct piece *piece, const double *p, size_t
     double(*rows)[PIECE] = gathered->rows;
     for (size_t i = 0; i < piece->count; i++) {
         size_t from = ends[2 * i + reversed], to = ends[2 * i + !reversed];
-        /* else they are loaded as vectors, only to be taken apart again */
+        /* keeps the compiler from loading indices as vectors and extracting them again */
         __asm__("" : "+r"(from), "+r"(to));
         rows[0][i] = b[to] - a[from];
         rows[1][i] = b[n + to] - a[n + from];
@@ -102,11 +110,13 @@ CS_INLINE struct ends ends_of(const struct piece *piece, const double *p, size_t
     return (struct ends){NULL, NULL, NULL, rows[0], rows[1], rows[2]};
 }
 
+/* A vector over a spring. */
 struct difference {
     double x, y, z;
 };
 
-/* between the ends of spring i of a piece */
+/* Difference over spring i of a piece; `listed` is the constant that tells a mesh from a grid.
+ */
 CS_INLINE struct difference across(struct ends e, size_t i, const bool listed) {
     if (listed)
         return (struct difference){e.bx[i], e.by[i], e.bz[i]};
@@ -123,7 +133,8 @@ CS_INLINE void take_row(size_t count, const double *restrict from, double *restr
         to[i] -= from[i];
 }
 
-/* Adds the buffered forces of a mesh's piece at the first ends and takes them at the second. */
+/* Adds the buffered forces of a mesh's piece at the first ends and subtracts them at the second
+ * ends. */
 CS_INLINE void scatter(const struct piece *piece, const double *fx, const double *fy,
                        const double *fz, size_t n, double *f) {
     double *a = f + piece->run->first_a, *b = f + piece->run->first_b;
@@ -139,8 +150,8 @@ CS_INLINE void scatter(const struct piece *piece, const double *fx, const double
     }
 }
 
-/* the buffered forces, particle by particle, in the order of the springs; the run's body has
- * particles in the block */
+/* Adds the slots' forces to the particles of a block, particle by particle, in the order of the
+ * springs. The run's body has particles in the block. */
 CS_INLINE void gather(const struct cs_spring_slots *wait, const struct cs_spring_run *run,
                       const struct cs_block *block, size_t n, double *f) {
     static const double sign[2] = {1, -1};
@@ -169,7 +180,8 @@ CS_INLINE bool is_in(const struct cs_block *block, uint32_t particle) {
     return particle >= block->begin && particle < block->end;
 }
 
-/* Adds what kernel makes of a mesh's run, whose body is all in the block. */
+/* Computes a mesh's run and adds it; its whole body must be in the block, which holds with one
+ * thread. */
 CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
                        piece_kernel *kernel) {
     double fx[PIECE], fy[PIECE], fz[PIECE];
@@ -180,7 +192,8 @@ CS_INLINE void add_run(const struct job *job, const struct cs_spring_run *run,
     }
 }
 
-/* Buffers what kernel makes of the springs of one chunk. */
+/* Computes the forces of one chunk into the run's slots. A run that contributes nothing is
+ * skipped. */
 CS_INLINE void compute_chunk_to_slots(const struct job *job,
                                       const struct cs_spring_chunk *chunk, run_test *asks,
                                       piece_kernel *kernel) {

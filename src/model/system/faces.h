@@ -1,19 +1,21 @@
-/* faces.h - the triangles of a body, grid or mesh alike. */
+/* faces.h - triangles of a body, for grids and meshes alike. */
 #ifndef CS_FACES_H
 #define CS_FACES_H
 
 #include "mesh/trimesh.h"
 #include "model/system/system.h"
 
-/* A grid has two a cell; one row or column of particles has none. */
+/* Number of triangles. A grid has two per cell; a single row or column of particles has none.
+ */
 static inline uint32_t cs_faces_count(const struct cs_body_range *body) {
     if (body->mesh)
         return body->mesh->n_triangles;
     return body->columns > 1 && body->rows > 1 ? 2 * (body->columns - 1) * (body->rows - 1) : 0;
 }
 
-/* Corners of triangle t as particles of the body from 0: counter-clockwise seen from +z for a
- * hanging cloth, from outside for a mesh. */
+/* Vertices of triangle t as particles of the body, from 0: counter-clockwise seen from +z for a
+ * hanging cloth, from outside for a mesh. A cell's two triangles share the diagonal from top
+ * right to bottom left. */
 static inline void cs_face_corners(const struct cs_body_range *body, uint32_t t,
                                    uint32_t corners[3]) {
     if (body->mesh) {

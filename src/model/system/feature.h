@@ -1,4 +1,5 @@
-/* feature.h - what a system may have or leave out, and what was decided for one. */
+/* feature.h - the plan of a system: its optional features, and which of them are built, and
+ * why. */
 #ifndef CS_FEATURE_H
 #define CS_FEATURE_H
 
@@ -6,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* X(name, what is printed) in the order of printing; each is a feature that may be absent. The
- * forces of terms.h have rows of their own, printed before AREA. */
+/* X(name, printed text) in the order of printing. Each feature may be absent. Forces (terms.h)
+ * have rows of their own, which are printed before AREA. */
 #define CS_FEATURE_LIST(X)                                                                     \
     X(MESHES, "meshes")                                                                        \
     X(SPRINGS, "springs")                                                                      \
@@ -32,19 +33,22 @@ enum cs_feature {
         CS_FEATURES
 };
 
+/* Decision about one feature or force. */
 struct cs_plan_row {
     bool built;
-    size_t bytes;       /* taken when it was built; 0 before */
-    const char *reason; /* why it is built, or why it is left out */
+    size_t bytes;       /* memory taken when it was built; 0 before */
+    const char *reason; /* why it is built or left out; a constant text */
 };
 
+/* Most forces that a plan has rows for. */
 enum { CS_TERMS_MAX = 16 };
 
+/* What a scene and a method need, decided before anything is built. */
 struct cs_plan {
     uint32_t n, n_springs, n_bodies;
     uint32_t n_surface_springs,
         n_network_springs; /* springs on the surfaces of meshes, of networks in them */
-    size_t state_bytes;    /* of all arrays that no row has: state, masses, pins */
+    size_t state_bytes;    /* arrays that belong to no row: state, masses, pins */
     struct cs_plan_row rows[CS_FEATURES];
     struct cs_plan_row forces[CS_TERMS_MAX]; /* of the list in terms.h; why NULL: not printed */
 };

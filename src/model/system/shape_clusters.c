@@ -1,5 +1,5 @@
-/* Cuts bodies into overlapping clusters for shape matching: halves across the longest side,
- * again and again, each grown by a margin. */
+/* Cuts bodies into overlapping clusters for shape matching: recursive bisection across the
+ * longest side, and then overlap by boxes. */
 #include "model/system/shape_clusters.h"
 
 #include "mesh/trimesh.h"
@@ -9,13 +9,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* a particle and where it lies along the side that is cut */
+/* A particle and its coordinate along the side that is cut. */
 struct key {
     double along;
     uint32_t particle;
 };
 
-/* of a cloth: column and row times the distance of neighbours, before its placement */
+/* Coordinate of a particle in the undeformed body; for a cloth, column or row times the
+ * spacing. */
 static double position_of(const struct cs_body *body, uint32_t axis, uint32_t particle) {
     if (body->mesh.present)
         return body->mesh.geometry->positions[(size_t)axis * body->mesh.geometry->n + particle];
@@ -26,6 +27,7 @@ static double position_of(const struct cs_body *body, uint32_t axis, uint32_t pa
                : body->cloth.size[axis] / (double)(body->cloth.grid[axis] - 1) * step[axis];
 }
 
+/* Axis of the longest side of the box around some particles; the first of equals. */
 static uint32_t longest_side(const struct cs_body *body, const struct key *keys,
                              uint32_t count) {
     double side[3];
@@ -42,7 +44,7 @@ static uint32_t longest_side(const struct cs_body *body, const struct key *keys,
     return side[2] > side[of_two] ? 2 : of_two;
 }
 
-/* a full order: two particles in one place go by their numbers */
+/* A total order: particles at one position go by number, so that qsort has one result. */
 static int by_place(const void *left, const void *right) {
     const struct key *a = left, *b = right;
     if (a->along != b->along)
@@ -50,7 +52,8 @@ static int by_place(const void *left, const void *right) {
     return a->particle < b->particle ? -1 : a->particle > b->particle;
 }
 
-/* part_of (particles of the body): the keys' particles get parts first .. first + parts - 1 */
+/* Recursive bisection: gives the keys' particles the parts first .. first + parts - 1 in
+ * part_of. Particles are divided in proportion to the parts of either half. */
 static void cut(const struct cs_body *body, struct key *keys, uint32_t count, uint32_t parts,
                 uint32_t first, uint32_t *part_of) {
     if (parts == 1) {
@@ -67,11 +70,12 @@ static void cut(const struct cs_body *body, struct key *keys, uint32_t count, ui
     cut(body, keys + middle, count - middle, parts - left, first + left, part_of);
 }
 
-/* low and high corner of a part, grown to all sides by a share of the longest */
+/* Low and high corner of a part, enlarged on all sides by a fraction of its longest side. */
 struct box {
     double low[3], high[3];
 };
 
+/* Finds the boxes of all parts, and enlarges them. */
 static void find_boxes(const struct cs_body *body, uint32_t count, const uint32_t *part_of,
                        struct box *boxes) {
     const uint32_t parts = (uint32_t)body->shape_matching.clusters;
@@ -99,6 +103,7 @@ static void find_boxes(const struct cs_body *body, uint32_t count, const uint32_
     }
 }
 
+/* Tells whether a particle is in a box, border included. */
 static bool is_inside(const struct cs_body *body, uint32_t particle, const struct box *box) {
     for (uint32_t axis = 0; axis < 3; axis++) {
         const double at = position_of(body, axis, particle);
@@ -108,7 +113,8 @@ static bool is_inside(const struct cs_body *body, uint32_t particle, const struc
     return true;
 }
 
-/* items NULL: only counts them, into begin */
+/* Lists the particles of each cluster, ascending; with items NULL only counts them, into begin.
+ */
 static void fill(const struct cs_body *body, uint32_t count, const struct box *boxes,
                  uint32_t *begin, uint32_t *items) {
     uint32_t n = 0;
@@ -154,7 +160,7 @@ enum cs_status cs_shape_clusters_make(const struct cs_body *body,
     return error->status;
 }
 
-/* clusters and items of all bodies */
+/* Counts clusters and items of all bodies. */
 static void count_all(const struct cs_scene *scene, size_t *n_clusters, size_t *n_items) {
     *n_clusters = *n_items = 0;
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
@@ -164,13 +170,14 @@ static void count_all(const struct cs_scene *scene, size_t *n_clusters, size_t *
     }
 }
 
-/* a body's clusters, behind those of the bodies before */
+/* Where the next body's clusters are written. */
 struct place {
     uint32_t *begin, *items;
     double *alpha, *beta, *step;
     uint32_t n_clusters, n_items;
 };
 
+/* Appends the clusters of one body, whose particles start at `first`. */
 static void put_clusters(struct place *at, const struct cs_shape_matching *of, uint32_t first) {
     for (uint32_t k = 0; k < of->parts->n; k++) {
         at->alpha[at->n_clusters] = of->alpha;
@@ -209,7 +216,8 @@ enum cs_status cs_shape_clusters_build(struct cs_system *system, struct cs_error
     return CS_OK;
 }
 
-/* sum of m |q|^2 about the centre of mass of a cluster at time 0 */
+/* Sum of m |q|^2 about the centre of mass of a cluster at time 0, by sum m q^2 - (sum m q)^2 /
+ * sum m. */
 static double inertia_of(const struct cs_view *view, uint32_t cluster) {
     const uint32_t begin = view->cluster_begin[cluster], end = view->cluster_begin[cluster + 1];
     double sum = 0;
@@ -217,7 +225,7 @@ static double inertia_of(const struct cs_view *view, uint32_t cluster) {
         double mass = 0, first = 0, second = 0;
         for (uint32_t k = begin; k < end; k++) {
             const uint32_t i = view->cluster_items[k];
-            // about a particle of its own, so that a far place costs no figures
+            // relative to one of its particles: far from the origin the difference would cancel
             const double q = view->start[c * view->n + i] -
                              view->start[c * view->n + view->cluster_items[begin]];
             mass += view->mass[i];
@@ -233,6 +241,7 @@ double cs_shape_clusters_energy(const struct cs_system *system) {
     const struct cs_view *view = &system->view;
     double energy = 0;
     for (uint32_t k = 0; k < view->n_clusters; k++) {
+        // E = (alpha / step^2) sum m |q|^2 / 2
         const double step =
             view->cluster_step[k] > 0 ? view->cluster_step[k] : 1 / system->scene->time.fps;
         energy += 0.5 * view->cluster_alpha[k] / (step * step) * inertia_of(view, k);

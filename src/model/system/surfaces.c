@@ -1,11 +1,12 @@
-/* Triangles and unique edges of all bodies and obstacles, and which triangles an edge belongs
- * to. */
+/* Builds triangles and unique edges of all bodies and mesh colliders, and the triangles at each
+ * edge. */
 #include "model/system/surfaces.h"
 
 #include "model/system/faces.h"
 #include "scene/body_pairs.h"
 
-/* of a grid: along rows, along columns, one across each cell */
+/* Edges of a body. A grid has them along its rows, along its columns, and one diagonal per
+ * cell. */
 static uint32_t count_edges(const struct cs_body_range *body) {
     const uint32_t columns = body->columns, rows = body->rows;
     return body->mesh
@@ -13,14 +14,15 @@ static uint32_t count_edges(const struct cs_body_range *body) {
                : (columns - 1) * rows + columns * (rows - 1) + (columns - 1) * (rows - 1);
 }
 
+/* Appends an edge. */
 static void add_edge(uint32_t *edges, uint32_t *n, uint32_t a, uint32_t b) {
     edges[2 * (size_t)*n] = a;
     edges[2 * (size_t)*n + 1] = b;
     ++*n;
 }
 
-/* ascending by both ends; a cell's diagonal runs from top right to bottom left, as in faces.h
- */
+/* Edges of a grid, ascending by both ends. A cell's diagonal runs from top right to bottom
+ * left, as in faces.h. */
 static void list_grid_edges(const struct cs_body_range *body, uint32_t *edges) {
     uint32_t n = 0;
     for (uint32_t r = 0; r < body->rows; r++)
@@ -35,6 +37,7 @@ static void list_grid_edges(const struct cs_body_range *body, uint32_t *edges) {
         }
 }
 
+/* Edges of a body; a mesh has them in that order already. */
 static void list_edges(const struct cs_body_range *body, uint32_t *edges) {
     if (!body->mesh) {
         list_grid_edges(body, edges);
@@ -44,7 +47,8 @@ static void list_edges(const struct cs_body_range *body, uint32_t *edges) {
         edges[e] = body->first + body->mesh->edges[e];
 }
 
-/* the edge between two particles, which there is, among edges [first, end) */
+/* Finds the edge between two points, which must exist, among the edges [first, end): binary
+ * search. */
 static uint32_t find_edge(const uint32_t *edges, uint32_t first, uint32_t end, uint32_t a,
                           uint32_t b) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
@@ -59,7 +63,8 @@ static uint32_t find_edge(const uint32_t *edges, uint32_t first, uint32_t end, u
     return first;
 }
 
-/* triangles come ascending, so that the first free place is the right one */
+/* Enters each triangle at its three edges. Triangles come in ascending order, so the first free
+ * entry is the right one. */
 static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
     for (uint32_t t = surfaces->first_triangle[body]; t < surfaces->first_triangle[body + 1];
          t++)
@@ -73,8 +78,8 @@ static void own_edges(struct cs_surfaces *surfaces, uint32_t body) {
         }
 }
 
-/* the range of a body, or one of the same kind for an obstacle: of no particle where it has no
- * mesh */
+/* Returns the range of a body, or an equivalent one for a collider: without particles if it has
+ * no mesh. */
 static struct cs_body_range range_of(const struct cs_system *system, uint32_t body,
                                      const struct cs_surfaces *surfaces) {
     const struct cs_collider *collider = cs_scene_obstacle(system->scene, body);
@@ -88,6 +93,7 @@ static struct cs_body_range range_of(const struct cs_system *system, uint32_t bo
                                   .mesh = mesh};
 }
 
+/* Fills triangles, edges and edge_triangles of one body. */
 static void fill_body(const struct cs_system *system, uint32_t body,
                       struct cs_surfaces *surfaces) {
     const struct cs_body_range range = range_of(system, body, surfaces);
@@ -102,6 +108,7 @@ static void fill_body(const struct cs_system *system, uint32_t body,
     own_edges(surfaces, body);
 }
 
+/* Sets the first point, triangle and edge of each body, and the totals. */
 static void count(const struct cs_system *system, struct cs_surfaces *surfaces) {
     for (uint32_t b = 0; b < surfaces->n_bodies; b++) {
         const struct cs_body_range range = range_of(system, b, surfaces);

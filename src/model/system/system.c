@@ -1,4 +1,4 @@
-/* What a built system can do by itself: weigh its particles, name one, give its memory back. */
+/* Functions of a built system: sets masses, names a particle, frees the memory. */
 #include "model/system/system.h"
 
 #include "scene/shape.h"
@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+/* Adds to degree (n) the number of springs at each particle. */
 static void count_degrees(const struct cs_system *system, double *degree) {
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;
@@ -16,7 +17,8 @@ static void count_degrees(const struct cs_system *system, double *degree) {
     }
 }
 
-/* a particle of mass 0 was refused by cs_scene_check */
+/* A body's mass is given per particle, in total, per spring at a particle, or per area.
+ * cs_scene_check has refused particles of mass 0. */
 void cs_system_set_masses(struct cs_system *system) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     memset(system->mass, 0, system->view.n * sizeof *system->mass);

@@ -1,4 +1,4 @@
-/* system.h - a scene made into arrays: only what the scene and the method need is there. */
+/* system.h - a scene as arrays: only what the scene and the method need is allocated. */
 #ifndef CS_SYSTEM_H
 #define CS_SYSTEM_H
 
@@ -13,8 +13,8 @@
 struct cs_term;
 struct cs_trimesh;
 
-/* The particles of one body, from `first` on: a grid of rows x columns, or a mesh (columns and
- * rows 0). */
+/* Particles of one body, from `first` on: a grid of rows x columns, or a mesh (columns and rows
+ * are 0). */
 struct cs_body_range {
     uint32_t first, count, columns, rows;
     const struct cs_trimesh *mesh; /* borrowed from the scene; NULL: a grid */
@@ -29,6 +29,7 @@ struct cs_surfaces;
 struct cs_points;
 struct cs_crossings;
 
+/* A built system. Its arena owns all arrays; the scene is borrowed. */
 struct cs_system {
     struct cs_view view;          /* what integrators see */
     const struct cs_scene *scene; /* borrowed, or as the events have changed it */
@@ -38,9 +39,10 @@ struct cs_system {
     double *mass, *inv_mass; /* (n) */
     double *start;           /* (3,n) positions at time 0 */
     double *state;           /* 6n: x (3,n), v (3,n) at time 0 */
-    double *area;            /* (n) share of the area in m2; NULL unless a law asks for it */
-    double *normals;     /* (3,n) of the last positions asked for; NULL: no force uses them */
-    double *event_force; /* (3,n) m/s2, of events over an interval; NULL where none can push */
+    double *area;            /* (n) each particle's part of the surface in m2; NULL: not used */
+    double *normals; /* (3,n) at the positions of the last update; NULL: no force uses them */
+    double
+        *event_force; /* (3,n) m/s2, of events over an interval; NULL: no event has a force */
     uint32_t *pinned, n_pinned;                /* (n_pinned) particles, ascending */
     const struct cs_term *terms[CS_TERMS_MAX]; /* the forces that this scene has */
     uint32_t n_terms;
@@ -59,14 +61,14 @@ struct cs_system {
     struct cs_arena arena;          /* owns the arrays */
 };
 
-/* Gives the memory back; *system is empty then. */
+/* Frees the arena; *system is empty afterwards. Safe on an empty one. */
 void cs_system_finish(struct cs_system *system);
 
-/* Sets mass (n) of all particles by the scene's values, and inv_mass (n) of those that are not
- * held. */
+/* Sets mass (n) in kg of all particles from the scene's values, and inv_mass (n) of those that
+ * are not pinned. Pinned particles keep the inverse mass 0. */
 void cs_system_set_masses(struct cs_system *system);
 
-/* Adds "particle 312 (body 0, column 24, row 4)", or "(body 0, vertex 312)" of a mesh. */
+/* Appends "particle 312 (body 0, column 24, row 4)", or "(body 0, vertex 312)" for a mesh. */
 void cs_system_print_particle(const struct cs_system *system, uint32_t particle,
                               struct cs_text *out);
 
