@@ -1,4 +1,7 @@
-/* Bump allocation in blocks of 64 KiB or more; everything is freed at once. */
+/* Bump allocation in blocks of at least 64 KiB; everything is freed at once.
+ *
+ * Allocations are aligned to 64 bytes: a cache line, and the widest vector. One that does not
+ * fit the newest block opens a new block; the rest of the old one is lost. */
 #include "base/arena.h"
 
 #include <stdint.h>
@@ -7,13 +10,14 @@
 
 enum { ALIGNMENT = 64, BLOCK_BYTES = 64 * 1024 };
 
-/* The block's bytes start at the next multiple of 64 behind this header. */
+/* Header of a block. Its bytes begin at the next multiple of 64 after it. */
 struct cs_arena_block {
     struct cs_arena_block *next;
     size_t used, capacity;
     unsigned char *bytes;
 };
 
+/* Allocates a zeroed block. Returns NULL if out of memory, or if the size would overflow. */
 static struct cs_arena_block *block_create(size_t capacity) {
     if (capacity > SIZE_MAX - 2 * ALIGNMENT)
         return NULL;
@@ -66,6 +70,7 @@ char *cs_arena_copy_text(struct cs_arena *arena, const char *text, struct cs_err
     return copy ? memcpy(copy, text, bytes) : NULL;
 }
 
+/* An adopted object. The node itself lies in the arena. */
 struct cs_arena_owned {
     struct cs_arena_owned *next;
     void (*finish)(void *object);

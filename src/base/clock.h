@@ -1,4 +1,4 @@
-/* clock.h - the only clock; nothing of it reaches the state. */
+/* clock.h - the only clocks of the program. Their values must never reach the state. */
 #ifndef CS_CLOCK_H
 #define CS_CLOCK_H
 

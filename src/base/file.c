@@ -13,7 +13,7 @@ enum cs_status cs_file_status(int reason) {
     return reason == ENOMEM ? CS_ERR_MEMORY : CS_ERR_FILE;
 }
 
-/* CS_ERR_FILE unless info is a regular file */
+/* Fails with CS_ERR_FILE unless info is of a regular file. */
 static enum cs_status check_regular(const struct stat *info, const char *verb, const char *path,
                                     struct cs_error *error) {
     if (S_ISDIR(info->st_mode))
@@ -24,6 +24,7 @@ static enum cs_status check_regular(const struct stat *info, const char *verb, c
     return CS_OK;
 }
 
+/* Fails with CS_ERR_FILE if the file has more than max bytes. */
 static enum cs_status check_size(const struct stat *info, size_t max, const char *path,
                                  struct cs_error *error) {
     if (info->st_size < 0 || (unsigned long long)info->st_size > max)
@@ -86,8 +87,8 @@ done:
     return status;
 }
 
-/* The path itself and what lies there now: nothing or a regular file, since the rename would
- * take the place of a device or link to one. */
+/* Checks the path, and that nothing or a regular file lies there: the rename would replace a
+ * device, or a link to one. */
 static enum cs_status check_target(const char *path, struct cs_error *error) {
     struct stat info;
     if (!*path)
@@ -102,7 +103,8 @@ static enum cs_status check_target(const char *path, struct cs_error *error) {
     return CS_OK;
 }
 
-/* -1 and errno on failure; never follows a link that someone laid there */
+/* Opens a new file, never through a link that someone else made. Returns -1 and errno on
+ * failure. */
 static int open_temporary(const char *path) {
     const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
     const int file = open(path, flags, 0666);
@@ -138,7 +140,8 @@ enum cs_status cs_file_create(struct cs_file_out *out, const char *path,
     return CS_OK;
 }
 
-/* The new name too. Some file systems cannot, and the file itself is safe: no failure. */
+/* Brings the new name to disk too. Some file systems cannot; the file's content is safe, so
+ * that is no failure. */
 static void sync_folder(const char *path) {
     char folder[sizeof((struct cs_file_out *)0)->path];
     const char *end = strrchr(path, '/');
@@ -187,6 +190,7 @@ void cs_file_abandon(struct cs_file_out *out) {
     unlink(out->temporary);
 }
 
+/* Creates, writes and finishes a file. */
 static enum cs_status write_whole(const char *path, const void *bytes, size_t length,
                                   bool lasting, struct cs_error *error) {
     struct cs_file_out out = {0};
@@ -219,7 +223,7 @@ enum cs_status cs_file_write_durable(const char *path, const void *bytes, size_t
     return write_whole(path, bytes, length, true, error);
 }
 
-/* mkdir that is content with a folder that is there */
+/* mkdir that accepts an existing folder. */
 static bool make_one(const char *path) {
     struct stat info;
     if (!mkdir(path, 0777))

@@ -16,6 +16,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+/* Prints a hash in canonical form. */
 static void print_digits(XXH128_hash_t hash, char digits[CS_HASH_DIGITS]) {
     XXH128_canonical_t canonical;
     XXH128_canonicalFromHash(&canonical, hash);
@@ -43,7 +44,7 @@ void cs_hash_bytes(const void *bytes, size_t length, char digits[CS_HASH_DIGITS]
     print_digits(XXH3_128bits(bytes, length), digits);
 }
 
-/* reads to the end; false: errno says why not */
+/* Hashes a file to its end. Returns false on failure, with errno. */
 static bool add_all(int file, XXH3_state_t *state, uint64_t *size) {
     enum { BLOCK_BYTES = 1 << 16 };
     char block[BLOCK_BYTES];

@@ -1,4 +1,4 @@
-/* hash.h - XXH3 of 128 bits, as 32 hexadecimal digits. */
+/* hash.h - XXH3 hashes of 128 bits, as 32 hexadecimal digits and a zero byte. */
 #ifndef CS_HASH_H
 #define CS_HASH_H
 
@@ -9,12 +9,13 @@
 
 enum { CS_HASH_DIGITS = 33 };
 
-/* Hash of n doubles as little-endian bytes, whatever the machine's order, in canonical form. */
+/* Hash of n doubles as little-endian bytes on every machine, printed in canonical (big-endian)
+ * form. */
 void cs_hash_doubles(const double *values, size_t n, char digits[CS_HASH_DIGITS]);
 void cs_hash_bytes(const void *bytes, size_t length, char digits[CS_HASH_DIGITS]);
 
-/* Hash and size of a regular file, read block by block: what `xxh128sum` prints of it.
- * CS_ERR_FILE; digits are then empty. */
+/* Hash and size of a regular file, read block by block: the digits that `xxh128sum` prints. On
+ * CS_ERR_FILE digits is empty. */
 enum cs_status cs_hash_file(const char *path, uint64_t *size, char digits[CS_HASH_DIGITS],
                             struct cs_error *error);
 

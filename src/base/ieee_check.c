@@ -1,5 +1,5 @@
-/* A few sums whose bits tell how they were computed; run when the build is configured and at
- * each start of the program. */
+/* Sums whose bits reveal how they were computed; run when the build is configured and at each
+ * start of the program. Flags and their names differ between compilers; results do not. */
 #ifdef CS_ARITHMETIC_ALONE
 const char *cs_ieee_check(void);
 #else
@@ -14,13 +14,14 @@ const char *cs_ieee_check(void);
 static volatile double one = 1, small = 0x1p-30, tiny = 0x1p-1022, large = 1e308, odd = 49,
                        whole = 1e16;
 
-/* (1 + e)(1 - e) - 1 is 0 in doubles, and -e^2 where product and sum are one operation */
+/* Fused multiply-add: (1 + e)(1 - e) - 1 with e = 2^-30 is 0 in doubles, and -e^2 = -2^-60 if
+ * product and sum are rounded once. */
 static bool is_fused(void) {
     const double a = one + small, b = one - small, c = -one;
     return a * b + c != 0;
 }
 
-/* 49 (1/49) is not 1, but 49/49 is */
+/* 49 (1/49) is not 1 in doubles, but 49/49 is. */
 static bool multiplies_by_reciprocals(void) {
     const double divisor = odd;
     double values[8];
@@ -32,7 +33,9 @@ static bool multiplies_by_reciprocals(void) {
     return wrong;
 }
 
-/* from left to right: 1e16 + 1 is 1e16 */
+/* Sums must run from left to right. 1e16 + 1 is 1e16, because the spacing of doubles there is
+ * 2. The array is 1e16, 1, -1e16, 1, four times: each 1e16 absorbs the sum before it and the 1
+ * after it, so only the last 1 remains. */
 static bool changes_order(void) {
     const double a = whole, b = one;
     double values[16], sum = 0;
@@ -43,17 +46,19 @@ static bool changes_order(void) {
     return a + b - a != 0 || sum != 1;
 }
 
+/* Half of the smallest normal number is subnormal and must not become 0. */
 static bool flushes_to_zero(void) {
     const double half = tiny / 2;
     return half == 0 || half + half != tiny;
 }
 
-/* beyond the range of doubles there is nothing to come back from */
+/* 1e309 must overflow; with the wider range of x87 registers it does not. */
 static bool is_wider(void) {
     const double product = large * 10, narrowed = product / 10;
     return narrowed == large;
 }
 
+/* inf - inf must be recognised as a NaN. */
 static bool takes_nan_for_a_number(void) {
     const double nan = large * 10 - large * 10;
     return nan == nan || !isnan(nan);

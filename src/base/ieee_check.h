@@ -1,9 +1,9 @@
-/* ieee_check.h - whether this build and machine compute with IEEE doubles as written: found by
- * computing, whatever the flags are called. */
+/* ieee_check.h - run-time self-test: does this build evaluate IEEE double arithmetic exactly as
+ * written? */
 #ifndef CS_IEEE_CHECK_H
 #define CS_IEEE_CHECK_H
 
-/* What is not so, in words; NULL: all is well. */
+/* Returns the first deviation in words, and NULL if there is none. */
 const char *cs_ieee_check(void);
 
 #endif

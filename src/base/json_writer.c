@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Adds the value of one conversion; returns what follows it in the template. */
+/* Appends the value of one conversion and returns the rest of the template. */
 static const char *add_value(struct cs_text *out, const char *format, va_list *args) {
     if (*format == 's') {
         const char *text = va_arg(*args, const char *);
@@ -33,6 +33,7 @@ static const char *add_value(struct cs_text *out, const char *format, va_list *a
     return format + 1;
 }
 
+/* Copies plain text, ' as ", and replaces conversions. */
 static void add_template(struct cs_text *out, const char *format, va_list *args) {
     while (*format) {
         const size_t plain = strcspn(format, "'%");
@@ -47,7 +48,8 @@ static void add_template(struct cs_text *out, const char *format, va_list *args)
     }
 }
 
-/* true at the begin of a text, an object or a list: a text in quotes ends otherwise */
+/* Tells whether no member or item stands before: at the beginning of the text, of an object or
+ * a list. A text value ends in a quote, so a brace at the end is always an opening one. */
 static bool is_first(const struct cs_text *out) {
     return !out->length || strchr("{[", out->bytes[out->length - 1]);
 }

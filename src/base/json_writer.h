@@ -1,4 +1,4 @@
-/* json_writer.h - writes JSON by a template that looks like the text it makes. */
+/* json_writer.h - writes JSON by templates that look like the text they produce. */
 #ifndef CS_JSON_WRITER_H
 #define CS_JSON_WRITER_H
 

@@ -1,4 +1,5 @@
-/* Defaults, checks and printing of any struct by its table of options. */
+/* Defaults, checks and printing of any struct by its table of options. The kinds' differences
+ * are in value_kind.c; here is what they have in common. */
 #include "base/options.h"
 
 #include "base/value_kind.h"
@@ -6,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+/* Address of the row's member in an object. */
 static void *field_of(const struct cs_option *row, void *object) {
     return (char *)object + row->offset;
 }
@@ -13,17 +15,17 @@ static const void *const_field_of(const struct cs_option *row, const void *objec
     return (const char *)object + row->offset;
 }
 
-/* kinds of one component need not say so */
+/* Number of components. Rows of single-component kinds may leave `count` at 0. */
 static uint32_t components_of(const struct cs_option *row) {
     return cs_value_kind_of(row)->several ? row->count : 1;
 }
 
-/* default of component i of a row */
+/* Default of component i of a row. */
 static double default_of(const struct cs_option *row, uint32_t i) {
     return row->defs ? row->defs[i] : row->def;
 }
 
-/* component i of a value, or of the default where there is no object */
+/* Component i of a value, or of the default if object is NULL. */
 static double value_of(const struct cs_option *row, const void *object, uint32_t i) {
     return object ? cs_value_kind_of(row)->get(const_field_of(row, object), i)
                   : default_of(row, i);
@@ -43,14 +45,14 @@ void cs_options_default(const struct cs_table *table, void *object) {
     }
 }
 
-/* absence is coded in the value: NAN, or a single whole number below the range */
+/* Absence is coded in the value: NAN, or a single whole number below the range. */
 static bool is_absent(const struct cs_option *row, const void *object) {
     const struct cs_value_kind *kind = cs_value_kind_of(row);
     const double value = value_of(row, object, 0);
     return isnan(value) || (kind->whole && !kind->several && value < row->min);
 }
 
-/* several components without defaults must be given */
+/* Several components without defaults must be given. */
 static bool has_default(const struct cs_option *row) {
     return row->defs || !cs_value_kind_of(row)->several;
 }
@@ -152,6 +154,7 @@ enum cs_status cs_option_set_choice(const struct cs_option *row, void *object, c
     return status;
 }
 
+/* Parses a switch: true, yes, 1, or false, no, 0. */
 static enum cs_status set_bool(bool *field, const char *text, const char *where,
                                enum cs_status status, struct cs_error *error) {
     if (!strcmp(text, "true") || !strcmp(text, "yes") || !strcmp(text, "1"))
@@ -176,7 +179,7 @@ enum cs_status cs_option_set(const struct cs_option *row, void *object, const ch
     return cs_option_set_number(row, object, value, where, status, error);
 }
 
-/* components, joined by ", " */
+/* Appends components, joined by ", ". */
 static void print_components(const struct cs_option *row, const void *object,
                              struct cs_text *out) {
     for (uint32_t i = 0; i < components_of(row); i++) {

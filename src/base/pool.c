@@ -1,5 +1,9 @@
-/* A thread pool that waits passively: each thread has a share of the blocks of a loop, and
- * takes blocks from the others when it has done its own. */
+/* A thread pool that waits passively. Each thread has a range of a loop's blocks, and takes
+ * blocks from the others when its own are done.
+ *
+ * A loop opens, threads join it, and all take blocks by atomic counters. The caller closes the
+ * loop when no block is left and every thread that joined has gone. A thread that wakes too
+ * late finds the loop closed and waits for the next one. */
 #include "base/pool.h"
 
 #include "base/thread.h"
@@ -12,12 +16,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Looks at a word before going to sleep over it: some microseconds, less than a wake-up takes.
- * Longer would hold up whoever needs the core. */
+/* Polls of a word before sleeping: some microseconds, less than a wake-up takes. Longer polling
+ * would hold up another process that needs the core. Chosen by trial. */
 enum { LOOKS = 200 };
 
-/* Blocks meant for one thread, neighbours, so that its cache has them the next time too. Each
- * on a cache line of its own. */
+/* Blocks meant for one thread. They are neighbours, and the same in every loop of as many
+ * blocks, so they stay in its cache. Each struct has a cache line of its own, because `next` is
+ * written by all threads. */
 struct share {
     _Alignas(64) atomic_uint next;
     uint32_t end;
@@ -27,36 +32,39 @@ struct pool {
     struct share shares[CS_POOL_THREADS_MAX];
     uint32_t n; /* threads, the caller among them */
     pthread_t threads[CS_POOL_THREADS_MAX];
-    atomic_uint numbered; /* threads that know which share is theirs */
+    atomic_uint numbered; /* threads that have taken their index */
 
-    atomic_bool busy; /* a loop is under way: another one is its caller's alone */
+    atomic_bool busy; /* a loop runs; the caller of another one runs it alone */
     void (*task)(void *arg, uint32_t block);
     void *arg;
 
-    pthread_mutex_t lock; /* for what follows; the atomic words are written with it held */
+    pthread_mutex_t lock; /* of all members below; atomic ones are read without it */
     pthread_cond_t wake, left;
-    atomic_uint loops;  /* so far: a change tells that there is one to join */
-    atomic_uint inside; /* threads that have joined the loop, without the caller */
+    atomic_uint loops;  /* number of loops so far; a change announces a new one */
+    atomic_uint inside; /* threads in the loop, without the caller */
     uint32_t asleep;
     bool open; /* the loop may be joined */
     bool closing;
 };
 
+/* The pool; NULL: one thread. */
 static struct pool *pool; /* NULL: one thread */
 
+/* Lets the other hyper-thread of the core work. */
 static void cpu_relax(void) {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
 #endif
 }
 
-/* waits a moment for *word to be something else, or to become 0 */
+/* Polls for a moment until *word differs from old. */
 static void spin_wait(atomic_uint *word, uint32_t old) {
     for (int k = 0; k < LOOKS && atomic_load_explicit(word, memory_order_relaxed) == old; k++)
         cpu_relax();
 }
 
-/* the own share first, then what the others have not come to */
+/* Runs blocks: this thread's own range first, then the remainder of the others'. fetch_add
+ * gives each block to one thread; counters may run past `end`. */
 static void do_blocks(struct pool *p, uint32_t self) {
     for (uint32_t k = 0; k < p->n; k++) {
         struct share *share = p->shares + (self + k) % p->n;
@@ -70,13 +78,14 @@ static void do_blocks(struct pool *p, uint32_t self) {
     }
 }
 
+/* Main function of a thread: joins loops until the pool closes. */
 static void *serve(void *argument) {
     struct pool *p = argument;
     const uint32_t self = 1 + atomic_fetch_add(&p->numbered, 1);
     uint32_t seen = 0;
     pthread_mutex_lock(&p->lock);
     for (;;) {
-        /* a loop that was joined before, or is closed again, is not joined */
+        /* join a loop once only, and only while it is open */
         while (!p->closing && (!p->open || p->loops == seen)) {
             p->asleep++;
             pthread_cond_wait(&p->wake, &p->lock);
@@ -100,6 +109,7 @@ static void *serve(void *argument) {
     return NULL;
 }
 
+/* Cuts the blocks into ranges as equal as possible. */
 static void distribute(struct pool *p, uint32_t blocks) {
     for (uint32_t k = 0; k < p->n; k++) {
         p->shares[k].next = (uint32_t)((uint64_t)blocks * k / p->n);
@@ -107,6 +117,7 @@ static void distribute(struct pool *p, uint32_t blocks) {
     }
 }
 
+/* Announces a loop. The lock orders the loop's data before the threads' first look at them. */
 static void open_loop(struct pool *p) {
     pthread_mutex_lock(&p->lock);
     p->open = true;
@@ -116,7 +127,7 @@ static void open_loop(struct pool *p) {
     pthread_mutex_unlock(&p->lock);
 }
 
-/* all blocks are taken: waits for those who have one, and for no one else */
+/* Waits for the threads that are in the loop, and for no other. All blocks are taken by now. */
 static void close_loop(struct pool *p) {
     for (uint32_t inside; (inside = p->inside) > 0;) {
         spin_wait(&p->inside, inside);
@@ -162,11 +173,12 @@ uint32_t cs_pool_threads(void) {
     return pool ? pool->n : 1;
 }
 
-/* A child has none of the threads, and perhaps a lock that one of them held. */
+/* After fork: the child has none of the threads, and perhaps a lock that one of them held. */
 static void forget(void) {
     pool = NULL;
 }
 
+/* Makes the pool and its threads. */
 static enum cs_status start(uint32_t threads, struct cs_error *error) {
     static bool forgotten_by_children;
     pool = aligned_alloc(_Alignof(struct pool), sizeof *pool);

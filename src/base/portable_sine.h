@@ -1,13 +1,13 @@
-/* portable_sine.h - the sine of scenes and moving obstacles: not libm's, whose bits differ
- * between machines. */
+/* portable_sine.h - sine and cosine for scenes and moving colliders. libm is not used, because
+ * its bits differ between machines. */
 #ifndef CS_PORTABLE_SINE_H
 #define CS_PORTABLE_SINE_H
 
-/* sin(r pi / 2) for r in 0..1, by its nested series up to the 21st power: good to 1e-15, 0 at 0
- * and 1 at 1. */
+/* sin(r pi / 2) for r in 0..1, by its nested series up to the 21st power: accurate to 1e-15, 0
+ * at 0 and 1 at 1. */
 double cs_quarter_sine(double r);
 
-/* Sine and cosine of an angle in rad, 0 or more and below 1e18. */
+/* Sine and cosine of an angle in rad, at least 0 and below 1e18. */
 void cs_sine_cosine(double angle, double *sine, double *cosine);
 
 #endif

@@ -1,10 +1,12 @@
-/* Writes values into memory, or reads them back. */
+/* Writes values into memory, or reads them back. Each value lies directly after the one before,
+ * without names or lengths; only texts have their length. */
 #include "base/serialise.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Grows the buffer to hold n more bytes. Returns false if out of memory. */
 static bool has_room(struct cs_serialiser *record, size_t n) {
     if (n <= record->capacity - record->length)
         return true;
@@ -19,6 +21,7 @@ static bool has_room(struct cs_serialiser *record, size_t n) {
     return true;
 }
 
+/* Appends n bytes. */
 static bool write_bytes(struct cs_serialiser *record, const void *value, size_t n) {
     if (!has_room(record, n))
         return false;
@@ -27,6 +30,7 @@ static bool write_bytes(struct cs_serialiser *record, const void *value, size_t 
     return true;
 }
 
+/* Reads the next n bytes. Returns false if fewer are left. */
 static bool read_bytes(struct cs_serialiser *record, void *value, size_t n) {
     if (n > record->length - record->position)
         return false;

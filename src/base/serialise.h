@@ -1,8 +1,8 @@
-/* serialise.h - values on their way into a checkpoint, or back by the same calls in the same
- * order: so that what is written and what is read cannot differ.
+/* serialise.h - symmetric serialisation: the same calls write a checkpoint and read it back, so
+ * the two formats cannot diverge.
  *
- * Values are bytes of this machine and this build; what a checkpoint is for is checked before
- * it is read (io/checkpoint.h). */
+ * Values are bytes of this machine and build. io/checkpoint.h checks that a checkpoint fits
+ * them before it is read. */
 #ifndef CS_SERIALISE_H
 #define CS_SERIALISE_H
 
@@ -11,30 +11,31 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Zeroed: an empty one, to write. */
+/* A buffer of serialised values. A zeroed struct is empty, for writing. */
 struct cs_serialiser {
     char *bytes; /* owned */
     size_t length, capacity;
     size_t position; /* of the next read */
-    bool is_reading; /* reads into the values, instead of writing them */
-    bool failed;     /* no memory, or nothing left to read: the values are not to be used */
+    bool is_reading; /* calls read into the values instead of writing them */
+    bool failed;     /* out of memory, or nothing left to read: values must not be used */
 };
 
-/* n bytes of a value that holds no pointer. */
+/* Writes or reads n bytes of a value without pointers. After a failure calls do nothing. */
 void cs_serialiser_bytes(struct cs_serialiser *record, void *value, size_t n);
 
-/* A field, or an array, of a fixed size. */
+/* Writes or reads a variable or array of fixed size. */
 #define CS_SERIALISER(record, value) cs_serialiser_bytes(record, &(value), sizeof(value))
 
-/* A text; one that is read is empty before. */
+/* Writes a text, or reads one into an empty text. */
 void cs_serialiser_text(struct cs_serialiser *record, struct cs_text *text);
 
-/* Empties one to be written anew, in the memory it has. */
+/* Empties the buffer for writing again; its memory is kept. */
 void cs_serialiser_begin(struct cs_serialiser *record);
 
-/* Whether all of one that was read has been read, and no more. */
+/* Tells, after reading, whether exactly all bytes were read. */
 bool cs_serialiser_is_done(const struct cs_serialiser *record);
 
+/* Frees the buffer; *record is empty afterwards. */
 void cs_serialiser_finish(struct cs_serialiser *record);
 
 #endif

@@ -1,4 +1,4 @@
-/* status.h - how a call fails: a code, and the first message with its place. */
+/* status.h - how a call fails: a status code, and the first message with its place. */
 #ifndef CS_STATUS_H
 #define CS_STATUS_H
 
@@ -21,13 +21,15 @@ enum cs_status {
 #undef X
 };
 
+/* The failure of a call. A zeroed struct means that nothing has failed. */
 struct cs_error {
     enum cs_status status; /* CS_OK while nothing has failed */
     char message[1024];    /* one line, without the program's name */
 };
 
-/* Records status and message in *error unless it already holds one (the first wins: the place
- * that knows most). Returns status, so that a caller can write `return cs_fail(error, ...)`. */
+/* Records status and message in *error unless it already holds a failure: the first one wins,
+ * because it is made where most is known. Returns the status that *error then has, for `return
+ * cs_fail(error, ...)`. */
 enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -35,7 +37,8 @@ enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char
 int cs_status_exit_code(enum cs_status status);
 const char *cs_status_sentence(enum cs_status status);
 
-/* A programmer's mistake: prints the place and aborts, in every build. */
+/* Checks an invariant of the program: prints the place and aborts if it does not hold, in every
+ * build. */
 #define CS_ASSERT(fact) ((fact) ? (void)0 : cs_assert_failed(#fact, __FILE__, __LINE__))
 _Noreturn void cs_assert_failed(const char *fact, const char *file, int line);
 

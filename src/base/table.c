@@ -13,6 +13,7 @@
 
 enum { FILE_BYTES_MAX = 1 << 30 };
 
+/* A comma, unless the line is empty. */
 static void add_comma(struct cs_text *out) {
     if (out->length && out->bytes[out->length - 1] != '\n')
         cs_text_add(out, ",");
@@ -104,13 +105,13 @@ enum cs_status cs_row_table_open(struct cs_row_table *table, const char *folder,
     return cs_folder_create(folder, error);
 }
 
-/* The descriptor of a lock that is held; below 0: a failure. */
+/* Returns the descriptor of a lock that is held; a negative number after failure. A signal
+ * interrupts the wait and not the lock, so the wait goes on: no owner keeps it long. On a file
+ * system without locks there is no wait. */
 static int take_lock(const char *path, struct cs_error *error) {
     const int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock < 0)
         cs_fail(error, CS_ERR_FILE, "cannot open %s: %s", path, strerror(errno));
-    // a signal interrupts the wait, not the lock: who is told to stop looks at that once it is
-    // held, and no owner waits long. A file system without locks has no owners.
     while (lock >= 0 && flock(lock, LOCK_EX) && errno == EINTR)
         ;
     return lock;
@@ -128,7 +129,8 @@ void cs_row_table_unlock(struct cs_row_table *table) {
     table->lock = 0;
 }
 
-/* Where the last whole row ends; below 0: errno says why that cannot be found. */
+/* Offset at which the last whole row ends; a negative number, with errno, if that cannot be
+ * found. */
 static off_t end_of_rows(int file, size_t row_bytes) {
     off_t end = lseek(file, 0, SEEK_END);
     if (end > 0 && row_bytes)

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Makes room for `more` bytes and the zero byte, at least doubling. Returns false if out of
+ * memory. */
 static bool reserve(struct cs_text *text, size_t more) {
     if (text->failed)
         return false;
@@ -94,12 +96,14 @@ static size_t min_of(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
+/* Upper and lower case count as the same letter. */
 static bool is_same(char a, char b) {
     return tolower((unsigned char)a) == tolower((unsigned char)b);
 }
 
-/* edits that turn a into b: insert, delete, replace, swap two neighbours; by three rows of the
- * usual table */
+/* Edit distance of a and b with the edits insert, delete, replace, and swap of two neighbours
+ * (Damerau 1964): the usual table by rows, of which a swap needs three. Restricted: no letter
+ * is edited twice. */
 static size_t distance(const char *a, const char *b) {
     enum { LONGEST = 64 };
     size_t rows[3][LONGEST + 1];
@@ -127,10 +131,10 @@ const char *cs_nearest_word(const char *word, const char *const *candidates) {
     const char *nearest = NULL;
     size_t least = SIZE_MAX;
     for (; *candidates; candidates++) {
-        // beyond a third of the letters two words have nothing to do with each other
+        // beyond a third of the letters two words are hardly related; chosen by trial
         const size_t letters = strlen(strlen(word) > strlen(*candidates) ? word : *candidates);
         const size_t most = letters < 3 ? 1 : letters / 3;
-        /* what was begun and not finished is near too */
+        /* the beginning of a candidate counts as one edit */
         const bool begun = strlen(word) > 2 && !strncmp(word, *candidates, strlen(word));
         const size_t d = begun ? 1 : distance(word, *candidates);
         if (d <= most && d < least) {

@@ -1,4 +1,4 @@
-/* text.h - growable text, and numbers that read back the same in every locale. */
+/* text.h - growable text, and numbers that read back exactly in every locale. */
 #ifndef CS_TEXT_H
 #define CS_TEXT_H
 
@@ -6,31 +6,34 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A zeroed struct is an empty text. */
+/* A text. A zeroed struct is an empty one. */
 struct cs_text {
     char *bytes; /* owned, zero-terminated; NULL while empty */
     size_t length, capacity;
-    bool failed; /* out of memory: later additions do nothing, the content is not to be used */
+    bool failed; /* out of memory: later additions do nothing; do not use the content */
 };
 
+/* Appends formatted text. */
 void cs_text_add(struct cs_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Adds the shortest decimal that reads back as value; inf and nan are written as null. */
+/* Appends the shortest decimal that reads back as value; inf and nan become null. */
 void cs_text_add_real(struct cs_text *text, double value);
 
 /* Adds s in quotes with JSON's escapes. */
 void cs_text_add_json(struct cs_text *text, const char *s);
 
-/* Zero-terminated content, "" if empty. */
+/* Returns the zero-terminated content, "" if empty. Valid until the next addition. */
 const char *cs_text_get(const struct cs_text *text);
 void cs_text_finish(struct cs_text *text);
 
-/* Reads a whole string as a finite double, with a point whatever the locale. */
+/* Parses a whole string as a finite double, with a decimal point in every locale. Returns
+ * false, and leaves *value, if it is none. */
 bool cs_parse_real(const char *s, double *value);
 
-/* The candidate (list closed by NULL) nearest to word, or NULL if none is: edits, of which a
- * swap of neighbours is one, of at most a third of the letters, or a beginning. */
+/* Returns the candidate (list closed by NULL) nearest to word, or NULL if none is near: at most
+ * a third of its letters edited, where a swap of neighbours is one edit, or word is its
+ * beginning. */
 const char *cs_nearest_word(const char *word, const char *const *candidates);
 
 #endif

@@ -1,4 +1,4 @@
-/* Starts threads with the signals blocked that are not their own. */
+/* Starts threads that have all signals blocked except those of their own faults. */
 #include "base/thread.h"
 
 #include <signal.h>

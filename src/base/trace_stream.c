@@ -1,4 +1,4 @@
-/* Writes and reads streams of arrays. */
+/* Writes and reads streams of arrays, in blocks of 512 doubles on the stack. */
 #include "base/trace_stream.h"
 
 #include "base/text.h"
@@ -31,12 +31,13 @@ void cs_trace_stream_write(FILE *file, const struct cs_trace_record *point) {
     }
 }
 
+/* Reports that the file is no such stream. */
 static bool refuse(struct cs_error *error) {
     cs_fail(error, CS_ERR_FILE, "expected a trail of clothsim, found something else");
     return false;
 }
 
-/* "FRAME STEP T N PHASE:NAME", where a phase may have blanks */
+/* Reads "FRAME STEP T N PHASE:NAME"; a phase may contain blanks, a name no colon. */
 static bool read_line(struct cs_trace_stream *trace, struct cs_error *error) {
     struct cs_trace_record *point = &trace->point;
     char line[240], t[40], *colon;
@@ -54,6 +55,7 @@ static bool read_line(struct cs_trace_stream *trace, struct cs_error *error) {
     return true;
 }
 
+/* Reads the values of the record into the stream's buffer. */
 static bool read_values(struct cs_trace_stream *trace, struct cs_error *error) {
     const size_t n = trace->point.n;
     if (n > trace->capacity) {

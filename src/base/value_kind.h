@@ -1,5 +1,5 @@
-/* value_kind.h - the kinds of values that an option holds: all that depends on the kind. A new
- * one is a line of enum cs_type and a row of the table in value_kind.c. */
+/* value_kind.h - the kinds of values that an option holds, and all that depends on the kind. A
+ * new kind is a line of enum cs_type and a row of the table in value_kind.c. */
 #ifndef CS_VALUE_KIND_H
 #define CS_VALUE_KIND_H
 
@@ -7,8 +7,8 @@
 
 #include <clothsim/option.h>
 
-/* The JSON that stands for a value: a number or a list of them, true or false, a name of the
- * option's choices, a text, an object, a list of objects. */
+/* JSON form of a value: a number or a list of numbers, true or false, a name of the option's
+ * choices, a text, an object, a list of objects. */
 enum cs_value_form {
     CS_FORM_NUMBER,
     CS_FORM_BOOL,
@@ -19,6 +19,7 @@ enum cs_value_form {
     CS_VALUE_FORMS
 };
 
+/* Properties of a kind, and its operations. */
 struct cs_value_kind {
     enum cs_value_form form;
     bool several; /* a list of `count` numbers */
@@ -34,14 +35,16 @@ struct cs_value_kind {
     void (*set)(void *field, uint32_t i, double value);
     void (*print)(const struct cs_option *row, double value, struct cs_text *out); /* as JSON */
 
-    /* Other forms: is there a value? NULL for numbers, switches and choices. */
+    /* Other forms: tells whether there is a value. NULL for numbers, switches and choices. */
     bool (*is_given)(const struct cs_option *row, const void *field);
 
-    /* What is accepted: for people, and as members of a JSON schema. NULL: nothing to add. */
+    /* Print the accepted values: for people, and as members of a JSON schema. NULL: nothing to
+     * add. */
     void (*print_range)(const struct cs_option *row, struct cs_text *out);
     void (*print_schema)(const struct cs_option *row, struct cs_text *out);
 };
 
+/* The kind of a row. */
 const struct cs_value_kind *cs_value_kind_of(const struct cs_option *row);
 
 #endif

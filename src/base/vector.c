@@ -1,5 +1,6 @@
-/* Loops and sums over arrays in blocks of 4096. Each block is summed in 8 lanes and the block
- * sums are added in order, so that no sum depends on the number of threads. */
+/* Loops and sums over arrays. A sum is cut into blocks of 4096 whatever the number of threads;
+ * each block is summed in 8 lanes, and the block sums are added in order. The result has the
+ * same bits for any number of threads and any width of vectors. */
 #include "base/vector.h"
 
 #include "base/pool.h"
@@ -10,15 +11,17 @@
 
 enum {
     BLOCK = 4096,
-    PART = 1024, /* of what several threads share, where no sum depends on it */
+    PART = 1024, /* items per block of loops shared by threads, where no sum depends on it */
     LANES = 8,
-    WAITING = 512 /* block sums on the stack; a longer array is summed in several goes */
+    WAITING = 512 /* block sums on the stack; longer arrays take several rounds */
 };
 
+/* End of the block of a sum that starts at begin. */
 static size_t end_of(size_t begin, size_t n) {
     return n - begin < BLOCK ? n : begin + BLOCK;
 }
 
+/* Arguments of a shared loop. */
 struct shared {
     void (*part)(void *arg, size_t begin, size_t end);
     void *arg;
@@ -37,6 +40,7 @@ void cs_vector_parallel_for(size_t n, void (*part)(void *arg, size_t begin, size
     cs_pool_run((uint32_t)((n + shared.size - 1) / shared.size), do_part, &shared);
 }
 
+/* Arguments of a shared sum, with the sums of one round. */
 struct summed {
     double (*part)(const void *arg, size_t begin, size_t end);
     const void *arg;
@@ -69,19 +73,20 @@ double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, siz
     return sum;
 }
 
-/* the lanes of a sum at once, and as they lie in an array */
+/* Eight lanes of a sum, and the same at any address in an array. */
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
 typedef double loaded
     __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-/* what a kernel works on; b and z of a linear sum alone */
+/* Arguments of a kernel; b and z are for linear sums alone. */
 struct arrays {
     const double *x, *y;
     double a, b, *z;
 };
 
-/* What is left of an array after whole vectors goes to the first lanes. By address: how a
- * vector is passed depends on the instruction set. */
+/* Adds the items after the last whole vector to the first lanes, and then the lanes pair by
+ * pair. The vector comes by address, because how a vector is passed depends on the instruction
+ * set. */
 CS_INLINE double sum_lanes(const lanes *whole, const double *rest, size_t n) {
     double s[LANES];
     memcpy(s, whole, sizeof s);
@@ -109,6 +114,7 @@ double cs_vector_dot(size_t n, const double *x, const double *y) {
     return cs_vector_sum(n, dot_part, &arrays);
 }
 
+/* Sum of (x_i w_i)^2 over a block. */
 CS_CLONES static double weighted_part(const void *arg, size_t begin, size_t end) {
     const struct arrays *arrays = arg;
     const double *x = arrays->x + begin, *w = arrays->y + begin;
@@ -130,7 +136,7 @@ static double weighted_square(size_t n, const double *x, const double *w) {
     return cs_vector_sum(n, weighted_part, &arrays);
 }
 
-/* z may be x or y */
+/* z = a x + b y over a block; z may be x or y. */
 CS_CLONES static void linear_part(void *arg, size_t begin, size_t end) {
     const struct arrays *arrays = arg;
     const double a = arrays->a, b = arrays->b, *x = arrays->x, *y = arrays->y;
@@ -146,6 +152,7 @@ static void linear_sum(size_t n, double a, const double *x, double b, const doub
     cs_vector_parallel_for(n, linear_part, &arrays);
 }
 
+/* Largest magnitude. A NaN wins and stays, so that it shows in the result. */
 static double max_norm(size_t n, const double *x) {
     double largest = 0;
     for (size_t i = 0; i < n; i++)

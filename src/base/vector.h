@@ -1,21 +1,24 @@
-/* vector.h - loops over arrays in blocks of 4096, which threads share, and sums in one fixed
- * order: 8 lanes a block, block sums added serially. */
+/* vector.h - loops over arrays in blocks, shared among threads, and sums in one fixed order:
+ * blocks of 4096, 8 lanes per block, block sums added serially. */
 #ifndef CS_MODEL_VECTOR_H
 #define CS_MODEL_VECTOR_H
 
 #include <clothsim/system.h>
 
+/* The kernels of the module contract. */
 extern const struct cs_vector_kernels cs_vector_kernels;
 
+/* Dot product of two arrays of n numbers. */
 double cs_vector_dot(size_t n, const double *x, const double *y);
 
-/* Calls part(arg, begin, end) for every block of 0..n-1, several at the same time: a part may
- * write only what belongs to its items, and blocks are smaller where threads share them. */
+/* Calls part(arg, begin, end) for blocks that cover 0..n-1, concurrently. A part must write
+ * only what belongs to its own items. The size of blocks depends on the number of threads, so
+ * no sum may depend on it. */
 void cs_vector_parallel_for(size_t n, void (*part)(void *arg, size_t begin, size_t end),
                             void *arg);
 
-/* The sum of part(arg, begin, end) over the blocks, one after the other; parts are made at the
- * same time and only look. 0 where n is 0. */
+/* Returns the sum of part(arg, begin, end) over blocks of 4096, added in their order. Parts run
+ * concurrently and must not write. 0 if n is 0. */
 double cs_vector_sum(size_t n, double (*part)(const void *arg, size_t begin, size_t end),
                      const void *arg);
 

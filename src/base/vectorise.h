@@ -1,16 +1,15 @@
-/* vectorise.h - for a file whose loops do a whole thing a turn, lane by lane, and are to become
- * vectors: to be included before all that is inlined there. */
+/* vectorise.h - compiler settings for files whose loops compute one whole item per iteration,
+ * lane by lane, and must vectorise. Include it before everything that is inlined there. */
 #ifndef CS_VECTORISE_H
 #define CS_VECTORISE_H
 
 #if defined(__GNUC__) && !defined(__clang__)
-/* else gcc keeps branches round what could trap, and no such loop becomes one of vectors;
- * values are the same */
+/* Otherwise gcc keeps branches around operations that could trap, and does not vectorise such
+ * loops. Results are the same. */
 #pragma GCC optimize("no-trapping-math")
 #endif
 
-/* before a loop within the loop over lanes, so that what it fills is in registers when that is
- * looked at */
+/* Unrolls a short loop inside the loop over lanes, so that its array stays in registers. */
 #define CS_UNROLLED _Pragma("GCC unroll 12")
 
 #endif

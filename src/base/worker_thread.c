@@ -1,4 +1,4 @@
-/* A worker thread that does one piece of work at a time. */
+/* A worker thread that runs one task at a time, handed over by a condition variable. */
 #include "base/worker_thread.h"
 
 #include "base/thread.h"
@@ -9,13 +9,14 @@
 
 struct cs_worker_thread {
     pthread_t thread;
-    pthread_mutex_t lock; /* for what follows */
+    pthread_mutex_t lock; /* of the members below */
     pthread_cond_t changed;
-    void (*work)(void *argument); /* NULL: nothing to do */
+    void (*work)(void *argument); /* NULL: idle */
     void *argument;
     bool closing;
 };
 
+/* Runs tasks, without the lock, until the worker closes. */
 static void *thread_main(void *object) {
     struct cs_worker_thread *worker = object;
     pthread_mutex_lock(&worker->lock);
@@ -46,7 +47,7 @@ struct cs_worker_thread *cs_worker_thread_create(void) {
     return NULL;
 }
 
-/* called and left with the lock held */
+/* Waits until the worker is idle; called, and left, with the lock held. */
 static void wait_for_work(struct cs_worker_thread *worker) {
     while (worker->work)
         pthread_cond_wait(&worker->changed, &worker->lock);

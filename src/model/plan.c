@@ -1,4 +1,4 @@
-/* Decides what a scene and a method need to be built, and prints it with bytes and reasons. */
+/* Decides which features a scene and a method need, and prints them with bytes and reasons. */
 #include "model/plan.h"
 
 #include "base/pool.h"
@@ -15,17 +15,21 @@
 #include <clothsim/integrator.h>
 #include <math.h>
 
+/* Printed names of enum cs_feature. */
 static const char *const feature_names[CS_FEATURES] = {
 #define X(name, text) text,
     CS_FEATURE_LIST(X)
 #undef X
 };
 
+/* Sets the row of a feature, with the reason for the decision. */
 static void decide(struct cs_plan *plan, enum cs_feature feature, bool built, const char *why,
                    const char *why_not) {
     plan->rows[feature] = (struct cs_plan_row){.built = built, .reason = built ? why : why_not};
 }
 
+/* Counts particles and springs. Springs of meshes are also counted by surface and network, to
+ * be printed. */
 static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     plan->n_bodies = scene->bodies.n;
@@ -42,7 +46,7 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene) {
     }
 }
 
-/* meshes are part of the scene, and there before anything is built */
+/* Bytes of meshes. They belong to the scene, and exist before anything is built. */
 static size_t mesh_bytes(const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     size_t bytes = 0;
@@ -55,6 +59,7 @@ static size_t mesh_bytes(const struct cs_scene *scene) {
     return bytes;
 }
 
+/* Tells whether a body has a property. */
 static bool any_body(const struct cs_scene *scene, bool (*has)(const struct cs_body *body)) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
@@ -72,6 +77,7 @@ static bool has_limit(const struct cs_body *body) {
     return !isnan(body->strain_limit);
 }
 
+/* Forces and what belongs to them. A feature that an event can switch on counts as needed. */
 static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
     const struct cs_forces *forces = &scene->forces;
     const bool springs = plan->n_springs > 0;
@@ -97,6 +103,8 @@ static void plan_forces(struct cs_plan *plan, const struct cs_scene *scene) {
            "no event is a viewpoint_force");
 }
 
+/* Contact by projection, and the test for crossings. Contact by force is a force of the list.
+ */
 static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, bool render) {
     decide(plan, CS_FEATURE_CONTACT,
            scene->colliders.n > 0 && scene->contact.law == CS_CONTACT_PROJECT,
@@ -111,6 +119,7 @@ static void plan_contact(struct cs_plan *plan, const struct cs_scene *scene, boo
            "crossings is ignore");
 }
 
+/* Features that depend on the integrator. */
 static void plan_needs(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs) {
     const char *idle = "the integrator does not ask for it";
     const bool matched = cs_scene_first_matched(scene) < plan->n_bodies;
@@ -166,6 +175,7 @@ enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integ
     return CS_OK;
 }
 
+/* One line of the plan. */
 static void print_row(const char *name, const struct cs_plan_row *row, struct cs_text *out) {
     cs_text_add(out, "%-14s %-9s %10zu bytes   %s\n", name, row->built ? "built" : "left out",
                 row->bytes, row->reason);
@@ -181,6 +191,7 @@ void cs_plan_print(const struct cs_plan *plan, struct cs_text *out) {
     if (plan->n_network_springs)
         cs_text_add(out, "inside         %u springs\n", plan->n_network_springs);
     for (uint32_t f = 0; f < CS_FEATURES; f++) {
+        /* the forces come before the row AREA */
         for (uint32_t k = 0; f == CS_FEATURE_AREA && k < cs_n_terms; k++)
             if (plan->forces[k].reason)
                 print_row(cs_terms[k]->name, plan->forces + k, out);

@@ -1,4 +1,5 @@
-/* plan.h - what a scene and a method ask for: decided once, built by it, and printed. */
+/* plan.h - the plan of a scene and a method: which features are needed, decided once, and the
+ * basis of all that is built and printed. */
 #ifndef CS_PLAN_H
 #define CS_PLAN_H
 
@@ -8,19 +9,20 @@
 
 #include <clothsim/integrator.h>
 
-/* Decides from a checked scene, the method's needs (enum cs_need) and whether frames are drawn.
- */
+/* Decides all features of a checked scene, for a method with these needs (set of enum cs_need),
+ * with or without drawn frames. Overwrites *plan; allocates nothing. */
 void cs_plan_make(struct cs_plan *plan, const struct cs_scene *scene, uint32_t needs,
                   bool render);
 
-/* Whether a method can follow the scene: shape matching is no force law, and a
- * method that is made for it has nothing to do without; and contact by force is stiff. The
- * message starts with the JSON path. CS_ERR_SCENE. */
+/* Checks that a method can follow the scene. Shape matching is no force law, so it needs a
+ * method of its own, and that method needs shape matching; contact by force is too stiff for
+ * methods that treat it explicitly. Returns CS_ERR_SCENE; the message begins with the JSON
+ * path. */
 enum cs_status cs_plan_check(const struct cs_scene *scene, const struct cs_integrator *method,
                              struct cs_error *error);
 
-/* Prints it as aligned text, one feature a line, with the bytes that were taken for it so far.
- */
+/* Appends the plan as aligned text, one feature per line, with the bytes allocated for it so
+ * far. */
 void cs_plan_print(const struct cs_plan *plan, struct cs_text *out);
 
 #endif

@@ -1,4 +1,11 @@
-/* A scene made into arrays: counted, taken from one arena, filled, by the plan. */
+/* Builds a system from a scene by its plan: counts, allocates from one arena, fills.
+ *
+ * Order, because each stage reads the ones before:
+ *   1. Bodies and arrays of particles.
+ *   2. Springs, and their partition among threads.
+ *   3. Masses, which may depend on the springs at a particle; then state and pins.
+ *   4. Forces, which may read all of that.
+ *   5. Crossings, and events with the bounds on frequencies. */
 #include "model/system_build.h"
 
 #include "model/contact/ccd/crossings.h"
@@ -12,17 +19,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* whether a feature is built; what is taken from now on is counted in its row of the plan */
+/* Starts a feature: returns whether it is built, and counts allocations from now on in its row.
+ */
 static bool begin(struct cs_system *system, enum cs_feature feature) {
     system->arena.part = &system->plan.rows[feature].bytes;
     return system->plan.rows[feature].built;
 }
 
-/* doubles from the system's arena; NULL with the error set */
+/* Allocates doubles in the system's arena. Returns NULL and sets the error if out of memory. */
 static double *take(struct cs_system *system, size_t n, struct cs_error *error) {
     return cs_arena_alloc_array(&system->arena, n, sizeof(double), error);
 }
 
+/* Makes the runs of all bodies, in their order. The first pass counts; only meshes have lists.
+ */
 static void build_springs(struct cs_system *system, struct cs_error *error) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     uint32_t n_runs = 0, n_springs = 0, n_listed = 0;
@@ -46,7 +56,8 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
     system->springs = (struct cs_springs){.runs = runs, .n_runs = n_runs, .n = n_springs};
 }
 
-/* the runs written out, for methods that want springs one by one */
+/* Writes the runs out spring by spring, for methods that need single springs (CS_NEED_SPRINGS).
+ */
 static void build_spring_list(struct cs_system *system, struct cs_error *error) {
     const uint32_t n = system->springs.n;
     uint32_t *ends = cs_arena_alloc_array(&system->arena, 2 * (size_t)n, sizeof *ends, error);
@@ -79,6 +90,7 @@ static void build_spring_list(struct cs_system *system, struct cs_error *error) 
     system->view.axial = axial;
 }
 
+/* Each particle's part of the surface in m2. */
 static void fill_area(struct cs_system *system) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     for (uint32_t b = 0; b < system->scene->bodies.n; b++) {
@@ -88,7 +100,8 @@ static void fill_area(struct cs_system *system) {
     }
 }
 
-/* v += spin x (x - centre) where the particle is free */
+/* Adds the velocity of a rotation about the body's placement, v += spin x (x - centre), to free
+ * particles. */
 static void spin_body(struct cs_system *system, const struct cs_body *body,
                       const struct cs_body_range *range, const bool *pinned) {
     const double *w = body->mesh.present ? body->mesh.spin : body->cloth.spin;
@@ -104,6 +117,7 @@ static void spin_body(struct cs_system *system, const struct cs_body *body,
         }
 }
 
+/* Positions and velocities at time 0, and marks of pinned particles, whose velocity is 0. */
 static void fill_state(struct cs_system *system, bool *pinned) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
     const uint32_t n = system->view.n;
@@ -119,6 +133,7 @@ static void fill_state(struct cs_system *system, bool *pinned) {
     }
 }
 
+/* Lists the pinned particles, ascending, and sets inverse masses: 0 marks a pinned particle. */
 static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_error *error) {
     const uint32_t n = system->view.n;
     uint32_t count = 0;
@@ -135,6 +150,7 @@ static void fill_pins(struct cs_system *system, const bool *pinned, struct cs_er
     }
 }
 
+/* Allocates the arrays that a force reads, and lets it build its own. */
 static void build_term(struct cs_system *system, const struct cs_term *term,
                        struct cs_error *error) {
     const uint32_t uses = term->uses ? term->uses(system->scene) : 0;
@@ -144,6 +160,8 @@ static void build_term(struct cs_system *system, const struct cs_term *term,
         term->build(system, error);
 }
 
+/* Builds the forces of the plan, in the order of the list. One that finds nothing to do is
+ * taken out of the plan, with its reason. */
 static void choose_terms(struct cs_system *system, struct cs_error *error) {
     for (uint32_t k = 0; k < cs_n_terms && !error->status; k++) {
         struct cs_plan_row *row = system->plan.forces + k;
@@ -160,6 +178,7 @@ static void choose_terms(struct cs_system *system, struct cs_error *error) {
     }
 }
 
+/* Allocates the arrays of particles and describes the bodies' ranges. */
 static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     const size_t n = system->view.n;
     uint32_t first = 0;
@@ -170,7 +189,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     system->inv_mass = take(system, n, error);
     system->state = take(system, 6 * n, error);
     system->start = take(system, 3 * n, error);
-    /* what no force of the scene reads is not taken */
+    /* areas only if a force reads them */
     if (begin(system, CS_FEATURE_AREA))
         system->area = take(system, n, error);
     if (error->status)
@@ -187,6 +206,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
     }
 }
 
+/* Builds in the order above. work has 2n doubles. */
 static void build(struct cs_system *system, void *work, struct cs_error *error) {
     alloc_arrays(system, error);
     if (!error->status && begin(system, CS_FEATURE_SPRINGS))

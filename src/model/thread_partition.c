@@ -1,24 +1,32 @@
 /* Splits the work of a system among threads: particles into blocks, springs of meshes into
- * chunks. */
+ * chunks.
+ *
+ * A grid's springs reach at most two rows, so a thread computes those of its rows, and those of
+ * the rows at its border twice. A mesh's springs reach anywhere; they are computed once, in
+ * chunks, into slots, and each thread then gathers the forces on its own particles. */
 #include "model/thread_partition.h"
 
 #include "base/pool.h"
 #include "scene/shape.h"
 
-/* Blocks a thread, so that one that is held up finds its work done by others; fewer where
- * blocks would have less than LEAST particles, since springs across borders are done twice. */
+/* Blocks per thread, so that the others can take over the work of one that is held up; and the
+ * least particles per block, because springs across borders are computed twice. Chosen by
+ * trial. */
 enum { BLOCKS = 4, LEAST = 256 };
 
+/* Upper bounds for the arrays of the partition. */
 struct sizes {
     size_t particles, runs, blocks;
     size_t listed_runs, listed_springs, starts; /* of meshes */
 };
 
+/* Least particles of a block. */
 static uint32_t block_size(size_t n, uint32_t threads) {
     const size_t even = (n + BLOCKS * threads - 1) / (BLOCKS * threads);
     return (uint32_t)(even > LEAST ? even : LEAST);
 }
 
+/* Counts what the bodies have. */
 static struct sizes sizes_of(const struct cs_scene *scene, uint32_t threads) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     struct sizes sizes = {0};
@@ -39,7 +47,7 @@ static struct sizes sizes_of(const struct cs_scene *scene, uint32_t threads) {
     return sizes;
 }
 
-/* end of the block that begins there: of a whole row in a grid */
+/* End of the block that begins at `begin`: rounded up to a whole row in a grid. */
 static uint32_t end_of_block(const struct cs_system *system, uint32_t begin, uint32_t size) {
     if (system->view.n - begin <= size)
         return system->view.n;
@@ -52,7 +60,7 @@ static uint32_t end_of_block(const struct cs_system *system, uint32_t begin, uin
     return body->first + (within + body->columns - 1) / body->columns * body->columns;
 }
 
-/* the block that a particle is in */
+/* The block of a particle: binary search. */
 static uint32_t find_block(const struct cs_block *blocks, uint32_t n, uint32_t particle) {
     uint32_t low = 0;
     for (uint32_t high = n; high - low > 1;) {
@@ -62,13 +70,15 @@ static uint32_t find_block(const struct cs_block *blocks, uint32_t n, uint32_t p
     return low;
 }
 
-/* run r has an end in that block; fan: the first run of its row, or r */
+/* Notes that run r has an end in a block. fan is the first run of its row, or r: a row is
+ * evaluated as a whole, so a block starts with its first run. */
 static void touch(struct cs_block *block, uint32_t fan, uint32_t r) {
     if (block->end_run == 0)
         block->first_run = fan;
     block->end_run = r + 1;
 }
 
+/* Cuts the particles into blocks, and finds the runs that each must evaluate. */
 static void build_blocks(struct cs_system *system, const struct sizes *sizes, uint32_t threads,
                          struct cs_error *error) {
     const uint32_t size = block_size(sizes->particles, threads);
@@ -89,7 +99,7 @@ static void build_blocks(struct cs_system *system, const struct sizes *sizes, ui
         const uint32_t to = find_block(blocks, n, last);
         uint32_t b = find_block(blocks, n, run->first_a);
         touch(blocks + b, fan, r);
-        /* a mesh's springs end in all between; of a grid's two rows there is nothing between */
+        /* a mesh's springs end in all blocks between; a grid's run ends in two rows alone */
         for (b = run->ends ? b + 1 : to; b <= to; b++)
             touch(blocks + b, fan, r);
     }
@@ -97,10 +107,13 @@ static void build_blocks(struct cs_system *system, const struct sizes *sizes, ui
     springs->n_blocks = n;
 }
 
-/* around: springs by particle, ascending; starts goes one behind until all are in */
+/* Lists the springs at each particle, ascending: a counting sort. Counts are stored two places
+ * further on, so that filling moves the starts to where they belong. The number of entry e of
+ * ends is spring e / 2, end e modulo 2. */
 static void list_around(const struct cs_spring_run *run, uint32_t n, uint32_t *starts,
                         uint32_t *around) {
     for (size_t e = 0; e < 2 * (size_t)run->count; e++)
+        // the last particle's list needs no start after it
         if (run->ends[e] + 2 <= n)
             starts[run->ends[e] + 2]++;
     for (uint32_t i = 2; i <= n; i++)
@@ -109,6 +122,7 @@ static void list_around(const struct cs_spring_run *run, uint32_t n, uint32_t *s
         around[starts[run->ends[e] + 1]++] = e;
 }
 
+/* Cuts the springs of meshes into chunks, and makes their slots. */
 static void build_chunks(struct cs_system *system, const struct sizes *sizes,
                          struct cs_error *error) {
     struct cs_springs *springs = &system->springs;
@@ -146,6 +160,7 @@ static void build_chunks(struct cs_system *system, const struct sizes *sizes,
     springs->slots = waits;
 }
 
+/* With one thread there is one block of everything, and no slots. */
 enum cs_status cs_thread_partition_build(struct cs_system *system, struct cs_error *error) {
     const uint32_t threads = cs_pool_threads();
     system->springs.n_blocks = 1;
