@@ -52,7 +52,7 @@ enum cs_status cs_option_check_range(const struct cs_option *row, double value, 
                                      const char *where, enum cs_status status,
                                      struct cs_error *error);
 
-/* Appends the value as JSON; nothing for TABLE and LIST. object NULL: the default. */
+/* Appends the value as JSON; nothing for TABLE and LIST. object NULL: prints the default. */
 void cs_option_print(const struct cs_option *row, const void *object, struct cs_text *out);
 
 /* Appends numbers, switches and choices as a user writes them, without quotes and brackets. */

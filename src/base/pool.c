@@ -28,6 +28,8 @@ struct share {
     uint32_t end;
 };
 
+/* The pool: ranges of blocks, threads, the loop that runs, and the state that the lock
+ * protects. */
 struct pool {
     struct share shares[CS_POOL_THREADS_MAX];
     uint32_t n; /* threads, the caller among them */

@@ -24,7 +24,7 @@ struct cs_value_kind {
     enum cs_value_form form;
     bool several; /* a list of `count` numbers */
     bool whole;   /* whole numbers; a single one below the range is absent, else NAN is */
-    const char *expected; /* in messages, before the range: "a number"; `several`: "numbers" */
+    const char *expected; /* for messages, before the range: "a number"; `several`: "numbers" */
     const char *schema;   /* of numbers: the type in a JSON schema */
 
     size_t

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+/* A thread and its only task. */
 struct cs_worker_thread {
     pthread_t thread;
     pthread_mutex_t lock; /* of the members below */

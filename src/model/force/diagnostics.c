@@ -17,6 +17,7 @@ double cs_measure_kinetic(const struct cs_system *system, const double *v) {
     return energy;
 }
 
+/* Each force adds its energy to the member of its kind. */
 struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
                                        const double *x, const double *v) {
     const struct cs_eval at = {.t = t, .x = x, .v = v, .parts = CS_PART_ALL};

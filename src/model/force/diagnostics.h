@@ -11,6 +11,7 @@ struct cs_energy {
 };
 /* Kinetic energy in J: the sum of m |v|^2 / 2. */
 double cs_measure_kinetic(const struct cs_system *system, const double *v);
+/* All energies of a state at time t; x and v are (3,n). Contact counts as `other`. */
 struct cs_energy cs_diagnostics_energy(const struct cs_system *system, double t,
                                        const double *x, const double *v);
 

@@ -17,6 +17,7 @@ struct neighbours {
     uint32_t left, right, up, down;
 };
 
+/* At a border the particle itself stands in, which makes the difference one-sided. */
 static struct neighbours neighbours_of(const struct cs_body_range *body, uint32_t i) {
     const uint32_t row = (i - body->first) / body->columns,
                    column = (i - body->first) % body->columns;

@@ -65,14 +65,14 @@ struct cs_term {
      * there, which forces may share. NULL: a column of its own name. */
     const char *energy_column, *work_column;
 
-    /* --- its share of the solver's matrix: with a bit of CS_PART_LINEARISED, one of three ---
+    /* --- its part of the solver's matrix: one of three, with a bit of CS_PART_LINEARISED ---
      */
-    /* A number times the identity at each particle: diagonal (n) += those of the particles
-     * [begin, end), cd df/dv + ck df/dx. */
+    /* A number times the identity at each particle: diagonal (n) += its part of cd df/dv + ck
+     * df/dx, at the particles [begin, end). */
     void (*add_scalar)(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *diagonal);
-    /* A symmetric 3x3 block at each particle: blocks (6,n) += those, likewise. With matrix->psd
-     * none may have a negative eigenvalue. */
+    /* A symmetric 3x3 block at each particle: blocks (6,n) likewise. With matrix->psd no block
+     * may have a negative eigenvalue. */
     void (*add_blocks)(const struct cs_system *system, const struct cs_matrix *matrix,
                        size_t begin, size_t end, double *blocks);
     /* For a force with entries between arbitrary particles, beside its diagonal blocks. Finds

@@ -83,6 +83,8 @@ static bool has_gust(const struct cs_scene *scene) {
     return false;
 }
 
+/* Wind is built if it blows at some time: from the start, by a ramp, or as a gust of an event.
+ */
 static struct cs_plan_row wind_plan(const struct cs_scene *scene) {
     const struct cs_wind *wind = &scene->forces.wind;
     const double strength = wind->present ? wind->strength : 0;
@@ -139,6 +141,8 @@ static void add_turned(const struct cs_system *system, const struct cs_eval *at,
     }
 }
 
+/* Body by body, because neighbours depend on the body's shape. Only dx matters: n does not
+ * depend on v. */
 static void wind_jvp(const struct cs_system *system, const struct cs_eval *at, double *df) {
     for (uint32_t b = 0; at->dx && b < system->scene->bodies.n; b++) {
         const struct cs_body_range *body = system->bodies + b;

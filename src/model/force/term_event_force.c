@@ -15,6 +15,7 @@ static struct cs_plan_row plan(const struct cs_scene *scene) {
     return row;
 }
 
+/* event_force holds accelerations, so that one array serves both kinds of events. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
     const double *push = system->event_force;

@@ -77,7 +77,7 @@ cs_extra_springs_of(const struct cs_extra_springs *links, size_t b) {
     const struct cs_extra_springs_chunk *piece = links->chunks + b / CS_EXTRA_SPRINGS_CHUNK;
     const size_t begin = links->begins[b];
     const uint32_t n = links->ends[b] - links->begins[b];
-    if (!n) // a piece without slots may have no memory
+    if (!n) // a chunk without slots may have no arrays
         return (struct cs_extra_springs_slots){0};
     return (struct cs_extra_springs_slots){piece->cells + CS_EXTRA_SPRINGS_LANES * begin,
                                            piece->springs + 6 * CS_EXTRA_SPRINGS_LANES * begin,

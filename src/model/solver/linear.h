@@ -46,10 +46,10 @@ struct cs_linear {
 enum cs_status cs_linear_init(struct cs_linear *linear, const struct cs_system *system,
                               struct cs_arena *arena, struct cs_error *error);
 
-/* Prepares A at the state of matrix, whose arrays must live until the last solve. cm > 0, cd <=
- * 0, ck <= 0. Returns false if a diagonal block is not positive definite, which happens only
- * without psd; A is then indefinite and must not be used. Other indefinite matrices show in
- * cs_linear_solve. */
+/* Prepares A at the state of matrix, whose arrays stay the caller's. cm > 0, cd <= 0, ck <= 0.
+ * Returns false if a diagonal block is not positive definite, which happens only without psd. A
+ * is then indefinite and must not be used. Other indefinite matrices show in cs_linear_solve.
+ */
 bool cs_linear_setup(struct cs_linear *linear, const struct cs_matrix *matrix);
 
 /* y = A p for p that is 0 on pinned particles; y (3,n) is 0 there too. */

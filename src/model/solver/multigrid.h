@@ -13,7 +13,10 @@
  *
  * Aggregates and their halved springs: multigrid_hierarchy.h. Contact of a body with itself:
  * contact_coupling.h. Contact with other bodies and with colliders is in the diagonal blocks
- * alone. */
+ * alone.
+ *
+ * Gain: on a sheet of 64 x 64 particles and for a residual of 1e-3, conjugate gradients take 4
+ * to 5 iterations instead of 100 to 240 with blocks. W-cycles gained nothing in a prototype. */
 #ifndef CS_MULTIGRID_H
 #define CS_MULTIGRID_H
 

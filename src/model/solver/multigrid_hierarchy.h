@@ -11,19 +11,19 @@
  * matrix of masses and springs. A coarse cell has the sum of its cells' masses; two coarse
  * cells are joined by the sum of the springs between them; springs inside an aggregate vanish.
  *
- * That matrix is too stiff. A smooth displacement of slope g becomes steps: over an aggregate
- * of two cells, one spring between aggregates sees the difference 2 g and none sees the other
- * g:
+ * That matrix is too stiff, because a smooth displacement becomes steps. Let it have the
+ * difference g per cell, in one dimension. Per aggregate of two cells, the fine level has two
+ * springs of the length change g, the coarse level one of 2 g:
  *
- *   fine    2 springs k g^2 / 2 = k g^2
- *   coarse  1 spring  k (2 g)^2 / 2 = 2 k g^2
+ *   fine    2 * k g^2 / 2   = k g^2
+ *   coarse  k (2 g)^2 / 2   = 2 k g^2
  *
  * The same holds for 2 x 2 cells and both diagonals. The coarse correction is therefore about
  * half of the right one (Braess 1995, who scales the correction). Here the springs are
  * multiplied by CS_HIERARCHY_SOFTNESS = 1/2 and the masses are not, which leaves rigid motions
- * right: a translation meets mass alone. Springs over two cells (bending) would need the factor
- * 1 on the first level; half of it only makes that level too soft, which costs iterations and
- * no accuracy. */
+ * right: a translation meets mass alone. Dirichlet springs are halved likewise. Springs over
+ * two cells (bending) would need the factor 1 on the first level; half of it only makes that
+ * level too soft, which costs iterations and no accuracy. */
 #ifndef CS_MULTIGRID_HIERARCHY_H
 #define CS_MULTIGRID_HIERARCHY_H
 

@@ -128,8 +128,9 @@ CS_INLINE struct vectors add_lists(const struct cs_level *level, size_t i, const
     return y;
 }
 
-/* Prefetches the springs of cells to come. Each step and component is a stream of its own, up
- * to 24 or 36 of them, which is more than the processor's prefetcher follows. */
+/* Prefetches the springs of cells to come. Each step and component is a stream of its own: 24
+ * with six factored or four full kinds of springs, which is more than the processor's
+ * prefetcher follows. */
 CS_INLINE void fetch_springs(const struct cs_level *level, size_t i) {
     const size_t at = i + AHEAD < level->n ? i + AHEAD : i;
     const size_t rows = level->n_neighbour_offsets * (cs_level_is_factored(level) ? 4 : 6);
@@ -260,6 +261,7 @@ CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
  *
  * which gives q = 5/7, 35/73, 365/847, and from them the fractions below. */
 static const float first_gain = 6 / 7.0F;
+/* The second and the third move: a and b of e = a d + b D^-1 r. */
 static const struct {
     float a, b;
 } gains[2] = {{25 / 73.0F, 84 / 73.0F}, {350 / 1694.0F, 1752 / 1694.0F}};

@@ -18,7 +18,9 @@
  *
  * The smoother's error polynomial is 1 - l s(l) = T3((7/6 - l) / (5/6)) / T3(7/5), T3(c) = 4
  * c^3 - 3 c. Its magnitude is at most 1 / T3(7/5) = 0.148 on [1/3, 2], and below 1 on (0, 2];
- * the eigenvalues l s(l) of S A are therefore in (0, 2), which multigrid.h needs.
+ * the eigenvalues l s(l) of S A are therefore in (0, 2), which multigrid.h needs. The degree
+ * was tuned with a prototype on square sheets: degree 2 took 20 instead of 15 iterations in the
+ * same total time.
  *
  * Each cell is written by one block of a loop, from values of before the loop: the number of
  * threads changes no bit. */

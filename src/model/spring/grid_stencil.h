@@ -22,6 +22,7 @@
 
 #include "model/spring/run_pieces.h"
 
+/* Sizes of a tile and of its results. */
 enum {
     TILE = 64,  /* particles per tile; 32 took 1.1 of the time at 64 x 64 (docs/speed.md) */
     MARGIN = 8, /* more than any spring reaches along the row, and a whole vector */

@@ -21,17 +21,21 @@ uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uin
  * lengths must be set. A list that is up to date is not written. */
 void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body);
 
-/* Adds the spring and damper forces of the chosen parts to f (3,n) at the particles of one of
- * the blocks, after cs_springs_force_to_slots with the same arguments.
+/* Adds the spring and damper forces of the chosen parts to f (3,n) at the particles of one
+ * block, after cs_springs_force_to_slots with the same arguments.
  *
- * For a spring of rest length L, stiffness k and damping d, with unit direction u from end a to
- * end b: f_a += (k (|x_b - x_a| - L) + d (v_b - v_a).u) u, and the opposite on b (axial
- * damping; flag thesis, sec. 2.4); relative damping adds d (v_b - v_a) (cloth thesis,
- * eq. 5.10). The smallest normal double is added to the squared length before the root, so that
- * two particles in one place feel no spring force instead of dividing by zero.
+ * For a spring of rest length L, stiffness k and damping c, with unit vector u from end a to
+ * end b:
  *
- * Where at->kxx and at->dvv are given, the diagonal blocks of df/dx and df/dv (6,n) of grids
- * are added too, and f may be NULL; cs_springs_finish_diagonal adds the rest. */
+ *   f_a += (k (|x_b - x_a| - L) + c (v_b - v_a).u) u   axial (flag thesis, sec. 2.4)
+ *   f_a += k (|x_b - x_a| - L) u + c (v_b - v_a)       relative (cloth thesis, eq. 5.10)
+ *
+ * and the opposite on b. DBL_MIN is added to the squared length before the root: two particles
+ * at one position then feel no spring force, and nothing is divided by 0.
+ *
+ * If at->dfdx_blocks and at->dfdv_blocks are given, the diagonal blocks of df/dx and df/dv
+ * (6,n) of grids are added too, and f may be NULL. cs_springs_finish_diagonal adds the
+ * remaining blocks. */
 void cs_springs_add_force(const struct cs_springs *springs, uint32_t n,
                           const struct cs_eval *at, double *f);
 /* Computes the forces of meshes into slots, by all threads, before any block. Does nothing if
@@ -54,16 +58,17 @@ double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n, c
  * / 2. */
 double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
-/* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df at the particles of a block; dx or dv
- * may be NULL. After cs_springs_jvp_to_slots, as above. */
+/* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df (3,n) at the particles of a block; dx
+ * or dv may be NULL, which means 0. cs_springs_jvp_to_slots goes before, as above. */
 void cs_springs_add_jvp(const struct cs_springs *springs, uint32_t n, const struct cs_eval *at,
                         double *df);
+/* Computes the derivatives of meshes' springs into slots, by all threads, before any block. */
 void cs_springs_jvp_to_slots(const struct cs_springs *springs, uint32_t n,
                              const struct cs_eval *at);
 
-/* After all blocks of cs_springs_add_force with at->kxx and at->dvv, which were 0 before, adds
- * what is left of the diagonal blocks of df/dx and df/dv: xx, xy, xz, yy, yz, zz. The position
- * derivative of axial damping is left out, as in the solver's matrix. */
+/* Adds the remaining diagonal blocks after all blocks of cs_springs_add_force with
+ * at->dfdx_blocks and at->dfdv_blocks, which must have been 0 before: xx, xy, xz, yy, yz, zz.
+ * The position derivative of axial damping is left out, as in the solver's matrix. */
 void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
                                 const struct cs_eval *at);
 
@@ -77,7 +82,7 @@ void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
 /* y += the springs' part of A p, by all threads. */
 void cs_springs_mul_add(const struct cs_springs *springs, uint32_t n, const double *factors,
                         const double *p, double *y);
-/* Diagonal blocks (6,n) of that matrix, added. */
+/* blocks (6,n) += the diagonal blocks of that matrix. */
 void cs_springs_factor_diagonal(const struct cs_springs *springs, uint32_t n,
                                 const double *factors, double *blocks);
 

@@ -31,9 +31,9 @@ struct cs_crossings;
 
 /* A built system. Its arena owns all arrays; the scene is borrowed. */
 struct cs_system {
-    struct cs_view view;          /* what integrators see */
-    const struct cs_scene *scene; /* borrowed, or as the events have changed it */
-    struct cs_plan plan;          /* what was built, what was left out */
+    struct cs_view view;          /* the part that integrators see */
+    const struct cs_scene *scene; /* borrowed; with events, their changed copy */
+    struct cs_plan plan;          /* features built and left out, with reasons and bytes */
     struct cs_body_range *bodies; /* (scene->bodies.n) */
     struct cs_springs springs;
     double *mass, *inv_mass; /* (n) */
@@ -41,23 +41,22 @@ struct cs_system {
     double *state;           /* 6n: x (3,n), v (3,n) at time 0 */
     double *area;            /* (n) each particle's part of the surface in m2; NULL: not used */
     double *normals; /* (3,n) at the positions of the last update; NULL: no force uses them */
-    double
-        *event_force; /* (3,n) m/s2, of events over an interval; NULL: no event has a force */
+    double *event_force; /* (3,n) m/s2, of events over an interval; NULL: no such event */
     uint32_t *pinned, n_pinned;                /* (n_pinned) particles, ascending */
     const struct cs_term *terms[CS_TERMS_MAX]; /* the forces that this scene has */
     uint32_t n_terms;
     struct cs_collider_motion
-        *motions;            /* (scene->colliders.n); NULL where no event moves one */
-    double *collider_motion; /* (3, colliders, 3) what the view shows of them; NULL likewise */
+        *motions;            /* (scene->colliders.n); NULL: no event moves a collider */
+    double *collider_motion; /* (3, colliders, 3) the view's copy of motions; NULL likewise */
     const struct cs_collider_params
         *collider_params;   /* (scene->colliders.n); NULL without contact by force */
-    struct cs_pairs *pairs; /* bodies that keep off each other; NULL: none do */
+    struct cs_pairs *pairs; /* contact between bodies, and with mesh colliders; NULL: none */
     struct cs_contact_samples
-        *contact_samples; /* points between particles that colliders touch; NULL: none */
+        *contact_samples; /* contact points between particles, for colliders; NULL: none */
     const struct cs_surfaces *surfaces; /* of all bodies; NULL unless asked for (surfaces.h) */
     struct cs_points *points;       /* NULL unless colliders are meshes (surface_points.h) */
     struct cs_crossings *crossings; /* NULL unless asked for (crossing_policy.h) */
-    struct cs_events *events;       /* NULL without; it then holds the scene that `scene` is */
+    struct cs_events *events;       /* NULL without events; it owns the scene's changed copy */
     struct cs_arena arena;          /* owns the arrays */
 };
 
