@@ -1,12 +1,14 @@
-/* linear.h - the host's linear solver: A u = b by preconditioned conjugate gradients, with A =
- * cm M + cd df/dv + ck df/dx of the forces of CS_PART_LINEARISED. A is never assembled.
+/* linear.h - the host's linear solver: A u = b by preconditioned conjugate gradients, where
  *
- * A is symmetric. With matrix->psd each force's part is positive semi-definite, and cm M makes
- * A positive definite. Without psd, A may be indefinite; the solver then reports
- * CS_LINEAR_INDEFINITE.
+ *   A = cm M + cd df/dv + ck df/dx     of the forces of CS_PART_LINEARISED
+ *
+ * is never assembled. A is symmetric. With matrix->psd each force's part is positive
+ * semi-definite, and cm M makes A positive definite. Without psd, A may be indefinite; the
+ * solver then reports CS_LINEAR_INDEFINITE.
  *
  * The preconditioner is one V-cycle of multigrid (multigrid.h) where both conditions hold, and
  * else the inverses of the 3x3 blocks of A's diagonal (block Jacobi):
+ *
  *   - A body of the scene has more than 24 x 24 particles.
  *   - The matrix is stiff: -ck omega^2 - 2 cd delta > 16 cm. The view's bounds omega and delta
  *     limit the eigenvalues of M^-1 df/dx and M^-1 df/dv, so the left side bounds stiffness

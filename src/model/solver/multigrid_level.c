@@ -253,9 +253,9 @@ CS_CLONES static void start(const struct loop *loop, size_t begin, size_t end) {
     }
 }
 
-/* Gains of Chebyshev's iteration (Saad 2003, algorithm 12.1). Let t = 7/6 be the centre and h =
- * 5/6 half the length of [1/3, 2], and c = t / h = 7/5. The first move is D^-1 r / t. The next
- * ones are
+/* Gains of Chebyshev's iteration (Saad 2003, algorithm 12.1) on [1/3, 2], whose centre is t =
+ * 7/6 and half of whose length is h = 5/6. With c = t / h = 7/5 the first move is D^-1 r / t.
+ * The next ones are
  *
  *   d' = q' q d + (2 q' / h) D^-1 r,   q' = 1 / (2 c - q),   q0 = 1 / c
  *

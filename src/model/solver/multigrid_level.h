@@ -16,8 +16,11 @@
  * B)) is positive semi-definite. Sum over the springs, and add D0 <= 2 D0. A larger D only
  * makes eigenvalues smaller. No eigenvalue has to be estimated.
  *
- * The smoother's error polynomial is 1 - l s(l) = T3((7/6 - l) / (5/6)) / T3(7/5), T3(c) = 4
- * c^3 - 3 c. Its magnitude is at most 1 / T3(7/5) = 0.148 on [1/3, 2], and below 1 on (0, 2];
+ * The smoother's error polynomial, by Chebyshev's T3(c) = 4 c^3 - 3 c, is
+ *
+ *   1 - l s(l) = T3((7/6 - l) / (5/6)) / T3(7/5)
+ *
+ * Its magnitude is at most 1 / T3(7/5) = 0.148 on [1/3, 2], and below 1 on (0, 2];
  * the eigenvalues l s(l) of S A are therefore in (0, 2), which multigrid.h needs. The degree
  * was tuned with a prototype on square sheets: degree 2 took 20 instead of 15 iterations in the
  * same total time.

@@ -54,8 +54,8 @@ double cs_springs_energy(const struct cs_springs *springs, uint32_t n, const dou
 /* Largest |l / L - 1| over all springs; NaNs are skipped. 0 without springs. */
 double cs_springs_largest_strain(const struct cs_springs *springs, uint32_t n, const double *x);
 
-/* Elastic energy in J that all springs would hold at twice their rest lengths: the sum of k L^2
- * / 2. */
+/* Elastic energy in J that all springs would hold at twice their rest lengths, k L^2 / 2 each.
+ */
 double cs_springs_energy_at_twice(const struct cs_springs *springs);
 
 /* Adds (df/dx) dx + (df/dv) dv of the chosen parts to df (3,n) at the particles of a block; dx
@@ -72,11 +72,14 @@ void cs_springs_jvp_to_slots(const struct cs_springs *springs, uint32_t n,
 void cs_springs_finish_diagonal(const struct cs_springs *springs, uint32_t n,
                                 const struct cs_eval *at);
 
-/* The springs' part of the matrix in factored form: A p is the sum over the springs of (s I + w
- * w^T) (p_a - p_b), added at a and subtracted at b. factors has 4 doubles per spring, by run:
- * s, wx, wy, wz, each (count). With psd the transverse part of a compressed spring is dropped
- * (Choi, Ko 2002; Teran et al. 2005); else s may be negative. The position derivative of axial
- * damping, which is not symmetric, is left out. Derivation: springs_matrix.c. */
+/* The springs' part of the matrix in factored form:
+ *
+ *   A p = sum over the springs of (s I + w w^T) (p_a - p_b), added at a and subtracted at b
+ *
+ * factors has 4 doubles per spring, by run: s, wx, wy, wz, each (count). With psd the
+ * transverse part of a compressed spring is dropped (Choi, Ko 2002; Teran et al. 2005); else s
+ * may be negative. The position derivative of axial damping, which is not symmetric, is left
+ * out. Derivation: springs_matrix.c. */
 void cs_springs_factor(const struct cs_springs *springs, uint32_t n,
                        const struct cs_matrix *matrix, double *factors);
 /* y += the springs' part of A p, by all threads. */

@@ -1,7 +1,7 @@
 /* Diagonal 3x3 blocks: of the springs' derivatives, and of the matrix in factored form.
  *
- * A spring adds the same block at both of its ends, because its part of the derivative is ((-B,
- * B), (B, -B)):
+ * A spring's part of the derivative is ((-B, B), (B, -B)): it adds the same block at both of
+ * its ends,
  *
  *   df/dx     -k ((1 - L/l) I + (L/l) u u^T)
  *   df/dv     -c I (relative) or -c u u^T (axial)

@@ -12,10 +12,10 @@
  *   s     = -ck k (1 - L/l) + [-cd c]
  *   |w|^2 = -ck k (L/l)     + [-cd c],   w = |w| u
  *
- * Across a compressed spring (L > l) the eigenvalue s is negative. Buckling makes A indefinite,
- * and conjugate gradients fail. With psd the transverse part is dropped by L/l <- min(L/l, 1)
- * (Choi, Ko 2002; Teran et al. 2005): s >= 0, and |w|^2 = -ck k, so that the axial eigenvalue s
- * + |w|^2 = -ck k is exact in either case.
+ * Across a compressed spring (L > l) the eigenvalue s is negative: the spring may buckle. Then
+ * A may be indefinite, and conjugate gradients fail. With psd the transverse part is dropped by
+ * L/l <- min(L/l, 1) (Choi, Ko 2002; Teran et al. 2005). That gives s = 0 and |w|^2 = -ck k;
+ * the axial eigenvalue -ck k is exact in either case.
  *
  * Four numbers per spring instead of six for a block: the product is bound by memory, and its
  * factors are most of what it reads. */

@@ -216,8 +216,9 @@ enum cs_status cs_shape_clusters_build(struct cs_system *system, struct cs_error
     return CS_OK;
 }
 
-/* Sum of m |q|^2 about the centre of mass of a cluster at time 0, by sum m q^2 - (sum m q)^2 /
- * sum m. */
+/* Moment of a cluster about its centre of mass at time 0, by axis:
+ *
+ *   sum m (q - centre)^2 = sum m q^2 - (sum m q)^2 / sum m */
 static double inertia_of(const struct cs_view *view, uint32_t cluster) {
     const uint32_t begin = view->cluster_begin[cluster], end = view->cluster_begin[cluster + 1];
     double sum = 0;
