@@ -32,9 +32,10 @@ static void add_diagonal(const struct cs_system *system, const struct cs_eval *a
     cs_springs_finish_diagonal(&system->springs, system->view.n, at);
 }
 
-/* Row sums of the springs at a particle. A spring with L / l <= 2 has a block with eigenvalues
- * k and k (1 - L/l), both at most k in magnitude, at the particle and again at its other end: 2
- * k. A damper has 2 c. The bound fails if a spring is shorter than half its rest length. */
+/* Row sums of the springs at a particle. While L / l <= 2, the eigenvalues k and k (1 - L/l) of
+ * a spring's block are at most k in magnitude. The block stands at the particle and again at
+ * the other end: 2 k. A damper has 2 c. The bound fails if a spring is shorter than half its
+ * rest length. */
 static void add_bound(const struct cs_system *system, const struct cs_gershgorin *sums) {
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *run = system->springs.runs + r;

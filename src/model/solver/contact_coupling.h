@@ -1,8 +1,8 @@
 /* contact_coupling.h - contact of a body with itself in its multigrid, as extra springs between
  * cells.
  *
- * A contact pair (point and triangle, or two edges) of points x_i has weights w_i with the sum
- * 0 and a block C, and in the matrix the energy
+ * A contact pair is a point and a triangle, or two edges. Its points x_i have weights w_i with
+ * the sum 0. With a block C its energy in the matrix is
  *
  *   X^T C X / 2 = sum over i < j of -w_i w_j (x_i - x_j)^T C (x_i - x_j) / 2,   X = sum w_i x_i
  *

@@ -73,11 +73,11 @@ enum cs_status cs_hierarchy_of_grid(struct cs_hierarchy *hierarchy, struct cs_ar
 enum cs_status cs_hierarchy_of_mesh(struct cs_hierarchy *hierarchy, struct cs_arena *arena,
                                     struct cs_error *error);
 
-/* Reads s and w of one spring from the solver's factors, whose rows have `count` numbers, and
- * divides the spring's block B = s I + w w^T by the scale; root is 1 / sqrt(scale).
+/* Reads s and w of one spring from the solver's factors, whose rows have `count` numbers.
+ * Divides its block B = s I + w w^T by the scale; root is 1 / sqrt(scale).
  *
- * s < 0 means a compressed spring in an exact matrix. Its transverse part s (I - u u^T) is
- * dropped and its axial stiffness s + |w|^2 is preserved, if that is positive:
+ * s < 0 means a compressed spring in an exact matrix. Its transverse part is dropped, and its
+ * axial stiffness s + |w|^2 is preserved if that is positive:
  *
  *   s' = 0,   w' = w sqrt(max(0, 1 + s / |w|^2))
  *

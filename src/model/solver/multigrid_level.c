@@ -1,11 +1,11 @@
 /* Kernels of one multigrid level in single precision: product, Chebyshev smoother and inverse
  * diagonal blocks.
  *
- * A sweep fuses product, residual and smoother: one pass over the springs, which take 96
- * of the 172 bytes of a first-level cell. The sweeps of a smoother run as a wavefront
- * (wavefront.h), so that a level which does not fit the cache is fetched about once per
- * smoother and not once per sweep. With CS_LANES = 16 cells at a time, each lane has its own
- * arithmetic, and results do not depend on the vector width. */
+ * A sweep fuses product, residual and smoother: one pass over the springs, which take 96 of the
+ * 172 bytes of a first-level cell. The sweeps of a smoother run as a wavefront (wavefront.h). A
+ * level that does not fit the cache is therefore fetched about once per smoother, not once per
+ * sweep. CS_LANES = 16 cells are computed at a time. Each lane has its own arithmetic, and
+ * results do not depend on the vector width. */
 #include "model/solver/multigrid_level.h"
 
 #include "base/pool.h"

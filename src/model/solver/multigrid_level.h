@@ -102,9 +102,9 @@ static inline bool cs_level_is_alive(const struct cs_level *level, size_t i) {
 }
 
 /* Computes the inverses of D from springs and diagonal. Each block of D gets 2^-20 of its trace
- * on top. Reason: across a flat sheet a block has only its mass, but the rounding of A d leaves
- * up to 2^-24 of the stiffness along the sheet as a residual across it. Without the addition
- * the smoother would take that rounding for a large error. A larger D is allowed, see above. */
+ * on top. Reason: across a flat sheet a block has only its mass. The rounding of A d leaves up
+ * to 2^-24 of the stiffness along the sheet as a residual across it, which the smoother would
+ * otherwise take for a large error. A larger D is allowed, see above. */
 void cs_level_invert(struct cs_level *level);
 
 /* Smooths from the start 0: solution = S r, and then residual -= A solution. */
