@@ -1,7 +1,7 @@
 /* spring_runs.h - springs as runs, and how threads share them.
  *
- * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. No
- * list of ends is stored or read for it. The 12 neighbours of a grid's particle are six runs
+ * A run is a row of springs of one kind and law: spring i joins particles a + i and b + i. On a
+ * grid no list of ends is stored or read. The 12 neighbours of a grid's particle are six runs
  * per row, one for each forward direction; they stand together, and a kernel evaluates them at
  * once (grid_stencil.h). A mesh has one run per kind, with lists of ends, lengths and
  * stiffnesses; their differences are gathered into rows, and kernels with the same formulas
