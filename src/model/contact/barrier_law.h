@@ -19,21 +19,24 @@
 
 #include <clothsim/clones.h>
 
+/* y below which the stiffness is constant. Chosen so that a trial state of an iteration has
+ * finite forces; a pair must take up 1.36 k D^2 to get there. */
 #define CS_BARRIER_CORE 0.05 /* y below which the stiffness is constant */
 
-/* What the law gives at one distance. */
+/* Force F in N and stiffness K in N/m of the law at one distance. */
 struct cs_barrier {
     double force, stiffness; /* N, N/m */
 };
 
-/* y where the rational part ends, and how much further in the distance is, as a share of D */
+/* Clamps y into [core, 1]; *beyond is how far y lies below the core, in units of D. */
 CS_INLINE double cs_barrier_core(double y, double *beyond) {
     const double inside = y < CS_BARRIER_CORE ? CS_BARRIER_CORE : y;
     *beyond = inside - y;
     return inside < 1 ? inside : 1;
 }
 
-/* d, range in m; k in N/m. */
+/* F and K at the distance d; d and range D in m, k in N/m. Both are 0 from d = D on. In the
+ * core F grows linearly: F(core) + K(core) D beyond. */
 CS_INLINE struct cs_barrier cs_barrier_at(double d, double range, double k) {
     double beyond;
     const double y = cs_barrier_core(d / range, &beyond);
@@ -43,7 +46,8 @@ CS_INLINE struct cs_barrier cs_barrier_at(double d, double range, double k) {
         k * range / 12 * (square * (a * (1 + 3 * y))) + stiffness * range * beyond, stiffness};
 }
 
-/* psi in J. */
+/* psi in J. In the core the integral of the linear force is added: s F + K s^2/2 over s = D
+ * beyond. */
 CS_INLINE double cs_barrier_energy(double d, double range, double k) {
     double beyond;
     const double y = cs_barrier_core(d / range, &beyond);
@@ -54,12 +58,13 @@ CS_INLINE double cs_barrier_energy(double d, double range, double k) {
            further * (core.force + 0.5 * core.stiffness * further);
 }
 
-/* dK/dd in N/m2: 0 in the core, where the stiffness is constant. */
+/* dK/dd in N/m2; 0 in the core, where K is constant, and out of range. (1-y)^2 (1+2y+3y^2) /
+ * y^3 = 1/y^3 - 4 + 3y has the derivative 3 - 3/y^4, to be divided by D. */
 CS_INLINE double cs_barrier_slope(double d, double range, double k) {
     const double y = d / range;
     if (!(y >= CS_BARRIER_CORE && y < 1))
         return 0;
-    // (1-y)^2 (1+2y+3y^2) / y^3 = 1/y^3 - 4 + 3y
+
     return k / (6 * range) * (3 - 3 / (y * y * y * y));
 }
 

@@ -1,4 +1,4 @@
-/* Contacts in chunks, gathered by particles. */
+/* Contacts in chunks, and their gathering by particles. */
 #include "model/contact/contact_set.h"
 
 #include "base/pool.h"
@@ -57,12 +57,14 @@ void cs_contact_set_count(struct cs_contact_set *set) {
         set->n += set->chunks[l].n;
         set->failed = set->failed || set->chunks[l].failed;
     }
+    // Later passes must not read contacts that were never appended.
     // what was left out is not to be looked for behind the end of a lot
     if (set->failed)
         set->n = 0;
 }
 
-/* beside each other, for what is one thread's */
+/* Copies the points of a chunk's contacts into one dense array, which the serial passes
+ * count_ends and put_ends then read without gaps. */
 static void copy_corners(void *arg, uint32_t number) {
     const struct cs_contact_set *set = arg;
     const struct cs_contact_chunk *chunk = set->chunks + number;
@@ -79,7 +81,7 @@ static void count_ends(struct cs_contact_set *set) {
             set->starts[set->vertices[e] + 1]++;
 }
 
-/* into their places; chunks in their order */
+/* Fills the lists in the order of chunks, contacts and vertices, which is the order of sums. */
 static void put_ends(struct cs_contact_set *set) {
     for (uint32_t l = 0; l < set->n_chunks; l++) {
         const struct cs_contact_chunk *chunk = set->chunks + l;
@@ -91,7 +93,7 @@ static void put_ends(struct cs_contact_set *set) {
     }
 }
 
-/* false: no memory */
+/* Reserves the lists; returns false if out of memory. */
 static bool take_ends(struct cs_contact_set *set) {
     struct cs_contact_vertex *ends = cs_arena_realloc(
         set->particle_vertices, &set->particle_vertices_capacity, 4 * set->n, sizeof *ends);
@@ -102,8 +104,8 @@ static bool take_ends(struct cs_contact_set *set) {
     return ends && corners;
 }
 
-/* The corners of each particle one behind the other: counted two places on, so that filling
- * moves the starts to where they belong. */
+/* Counting sort by particle. Counts go two places on: filling then moves every start[i + 1]
+ * from the begin of list i to its end, which is where the format wants it. */
 void cs_contact_set_gather(struct cs_contact_set *set) {
     if (set->n && !take_ends(set)) {
         set->failed = true;

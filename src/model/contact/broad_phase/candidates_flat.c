@@ -1,17 +1,19 @@
-/* Blocks of grids: which are flat, and what is then passed over. */
+/* Decides which blocks of grids are flat, and keeps the rectangles that the search skips. */
 #include "model/contact/broad_phase/candidates_flat.h"
 
 #include <math.h>
 #include <string.h>
 
+/* empty rectangle: the block is not flat */
 static const struct cs_grid_rectangle nowhere = {{HUGE_VALF, HUGE_VALF},
                                                  {-HUGE_VALF, -HUGE_VALF}};
 
 /* --- made once --- */
 
-/* points whose numbers are floats too */
+/* 2^24: rows and columns are compared as floats, which are exact up to there */
 enum { POINTS_MAX = 1 << 24 };
 
+/* Returns whether a body is a grid with self-contact and few enough points. */
 static bool is_grid(const struct cs_system *system, const struct cs_body_pair_table *meetings,
                     uint32_t body) {
     if (body >= system->scene->bodies.n ||
@@ -59,7 +61,7 @@ enum cs_status cs_candidates_flat_init(struct cs_candidates_flat *flat,
 
 /* --- at a state --- */
 
-/* the block in `down` and `across` with those round it */
+/* Rectangle of points of a block and the eight around it. */
 static struct cs_grid_rectangle neighbourhood_of(const struct cs_flat_region *grid,
                                                  uint32_t down, uint32_t across) {
     const uint32_t top = CS_FLAT_REGION_BLOCK * (down ? down - 1 : 0);
@@ -71,7 +73,7 @@ static struct cs_grid_rectangle neighbourhood_of(const struct cs_flat_region *gr
         {(float)(grid->first_row + last), (float)(CS_FLAT_REGION_BLOCK * (across + 2))}};
 }
 
-/* m, that parts of a body must be apart for a margin */
+/* m, distance that skipped pairs must have: the range, plus what both sides may move */
 static double needed(const struct cs_candidates_flat *flat, uint32_t body, bool edges,
                      double margin) {
     return cs_body_pair_params_range(cs_body_pair_params_of(flat->body_pairs, body, body),
@@ -79,6 +81,8 @@ static double needed(const struct cs_candidates_flat *flat, uint32_t body, bool 
            2 * margin;
 }
 
+/* Sets the rectangles of one grid to those of flat blocks; returns their number. A comparison
+ * with NaN is false, so that a block with positions that are not finite is not flat. */
 static uint32_t find_in(const struct cs_flat_region *grid, double apart,
                         struct cs_grid_rectangle *round) {
     uint32_t n = 0;
@@ -111,6 +115,7 @@ void cs_candidates_flat_find(struct cs_candidates_flat *flat, const double *x, d
         store_state(flat, x, margin);
 }
 
+/* Returns whether all blocks that were flat are so still. */
 static bool has_not_moved(const struct cs_flat_region *grid, double apart,
                           const struct cs_grid_rectangle *round) {
     bool still = true;
