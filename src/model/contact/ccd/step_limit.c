@@ -1,4 +1,5 @@
-/* Asks contact by force and the crossings of surfaces about a step. */
+/* Combines the step tests of contact with colliders, samples and pairs with the limit of
+ * crossings. */
 #include "model/contact/ccd/step_limit.h"
 
 #include "model/contact/ccd/crossings.h"
