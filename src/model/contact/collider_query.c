@@ -1,4 +1,4 @@
-/* Range, distance and velocity of a point against a collider. */
+/* Range test, distance and relative velocity of a point against a collider. */
 #include "model/contact/collider_query.h"
 
 #include "base/vec3.h"

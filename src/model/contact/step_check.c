@@ -1,4 +1,4 @@
-/* The energy of contact that a step does not see, particle by particle. */
+/* Contact energy with colliders that a step does not predict, particle by particle. */
 #include "model/contact/step_check.h"
 
 #include "base/vector.h"
@@ -9,10 +9,11 @@
 #include <clothsim/clones.h>
 #include <math.h>
 
-/* points of one move, at most; particles of a row */
+/* largest number of samples of one move; particles of a row */
 enum { POINTS_MAX = 64, ROW = 64 };
 
-/* distance at a share of the way; the obstacle's own turn within a step is left out */
+/* m, distance at a fraction of the way; the rotation of the collider within the step is left
+ * out */
 static double distance_at(const struct cs_collider_step *passing, const double from[3],
                           const double to[3], double share) {
     double p[3], g[3], h[6];
@@ -50,10 +51,14 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
     return unseen > CS_UNRESOLVED_ENERGY_MAX * has;
 }
 
-/* Particles of a row that may have gone further into a plane or a sphere than their step knows.
- * Along a way of length s no y is below (d1 - s)/D, d1 the distance at its end; what is not
- * seen is at most s^3/6 of the largest third derivative there, k/(2 D y^4), and is held against
- * the kinetic energy of the way alone. So nothing that is_unseen would refuse is left out. */
+/* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
+ * without branches. On a way of length s, y is nowhere below (d1 - s)/D, with d1 the distance
+ * at its end. By Taylor's formula e is at most s^3/6 max |psi'''|, and |psi'''| <= k/(2 D y^4)
+ * there. It is compared with the kinetic energy m s^2 / 2h^2 alone:
+ *
+ *   s^3 k / (12 D y^4) <= 0.02 m s^2 / 2h^2   <=>   s k h^2 <= 6 0.02 D m y^4
+ *
+ * so that no particle that is_unresolved would reject is left out. */
 CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, size_t begin,
                                         size_t count) {
     const struct cs_posed_collider *after = &passing->at_t1, *before = &passing->at_t0;
@@ -101,7 +106,7 @@ bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begi
     return !cs_posed_collider_is_near(&passing->at_t1, reach, middle);
 }
 
-/* a row is looked at particle by particle only where something may happen in it */
+/* Returns whether a row needs no test particle by particle. */
 static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
                             size_t count) {
     const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
@@ -110,6 +115,7 @@ static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin
                : cs_collider_step_is_far(passing, begin, count);
 }
 
+/* Tests particle i. */
 static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
     const size_t n = passing->system->view.n;
     double from[3], to[3];
@@ -120,6 +126,7 @@ static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
     return cs_collider_step_misses_contact(passing, passing->system->mass[i], from, to);
 }
 
+/* Number of unresolved particles in [begin, end). */
 static double count_unresolved(const void *arg, size_t begin, size_t end) {
     const struct cs_collider_step *passing = arg;
     double unseen = 0;

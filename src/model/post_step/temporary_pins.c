@@ -1,4 +1,4 @@
-/* temporary_pins.c - a list of pins in place of the system's; see temporary_pins.h. */
+/* temporary_pins.c - exchanges the system's list of pins; see temporary_pins.h. */
 #include "model/post_step/temporary_pins.h"
 
 enum cs_status cs_temporary_pins_init(struct cs_temporary_pins *pins, struct cs_system *system,
