@@ -1,4 +1,4 @@
-/* barrier_law.h - the force between two surfaces that come near: a rational law with an energy.
+/* barrier_law.h - force between two surfaces that approach: a rational law with an energy.
  *
  * With the distance d, the range D and the stiffness k, y = d/D:
  *
@@ -6,14 +6,16 @@
  *   F = -psi' = (k D/12) (1-y)^3 (1+3y) / y^2          pushes apart
  *   K =  psi'' = (k/6) (1-y)^2 (1+2y+3y^2) / y^3       K(D/2) = 0.92 k
  *
- * psi has three continuous derivatives where the range begins and the force two, which keeps
- * the order of methods up to 4 in the mean of many contacts. Below y = 1/20 the stiffness stays
- * what it is there, 1333 k, so that a trial state that has passed through still has a finite
- * force. To get there takes up 1.36 k D^2.
+ * psi has three continuous derivatives at y = 1 and F two, which keeps the order of methods up
+ * to 4 in the mean of many contacts. Below y = 1/20 the stiffness stays what it is there, 1333
+ * k, so that a trial state that has passed through still has a finite force. To get there a
+ * pair must take up 1.36 k D^2.
  *
- * Cut into branches at y = 1 and 1/20 that compilers turn into selections: loops over many
- * distances vectorise.
- */
+ * A law without the pole, (k D^2/12) (1-y)^4, was tried first: at the same k a ribbon twisted
+ * by four turns crossed itself. This one held.
+ *
+ * Branches at y = 1 and 1/20 are written as selections, so that loops over many distances
+ * vectorise. */
 #ifndef CS_CONTACT_BARRIER_LAW_H
 #define CS_CONTACT_BARRIER_LAW_H
 

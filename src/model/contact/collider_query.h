@@ -11,7 +11,7 @@
 struct cs_posed_collider_law {
     struct cs_posed_collider collider;
     struct cs_collider_params params;
-    double friction, friction_speed, damping; /* as in touch.h */
+    double friction, friction_speed, damping; /* mu (1), ev (m/s), tau (s) */
 };
 
 /* Sets *near to a collider at t. The scene must have contact by force. */

@@ -58,7 +58,6 @@ void cs_contact_set_count(struct cs_contact_set *set) {
         set->failed = set->failed || set->chunks[l].failed;
     }
     // Later passes must not read contacts that were never appended.
-    // what was left out is not to be looked for behind the end of a lot
     if (set->failed)
         set->n = 0;
 }

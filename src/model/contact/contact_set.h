@@ -86,7 +86,8 @@ static inline bool cs_contact_set_has(const struct cs_contact_set *set, uint32_t
     return point < set->n_particles;
 }
 
-/* Fixed arrays from the arena, which then owns what grows too. CS_ERR_MEMORY. */
+/* Prepares an empty set; the arena owns all memory, that which grows included. CS_ERR_MEMORY.
+ */
 enum cs_status cs_contact_set_init(struct cs_contact_set *set, uint32_t n_particles,
                                    uint32_t n_chunks, struct cs_arena *arena,
                                    struct cs_error *error);

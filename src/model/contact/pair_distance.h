@@ -1,26 +1,25 @@
-/* pair_distance.h - how far a point is from a triangle and an edge from an edge: smooth
- * functions of four points, with gradient and exact second derivative along a direction.
+/* pair_distance.h - smooth distance of a point and a triangle, or of two edges: a function of
+ * four points, with its gradient and exact second derivative along a direction.
  *
  * Both are |r| with r = w - L1 u - L2 v for three differences u, v, w of the points:
  *
  *   point p, triangle t0 t1 t2    u = t1 - t0   v = t2 - t0   w = p - t0
  *   edges x0 x1 and x2 x3         u = x0 - x1   v = x3 - x2   w = x0 - x2
  *
- * (l1, l2) is the least of |w - l1 u - l2 v|^2 + q (u.u (l1 - 1/2)^2 + v.v (l2 - 1/2)^2): a
- * system of two equations, regular for parallel edges by q = CS_PAIR_DISTANCE_PARALLEL, and for
- * triangles without area by a q below what a distance can show. Then l is brought into the
- * primitives by the soft part S of soft.h, over CS_PAIR_DISTANCE_BLEND to both sides of a
- * border:
+ * (l1, l2) minimises |w - l1 u - l2 v|^2 + q (u.u (l1 - 1/2)^2 + v.v (l2 - 1/2)^2). This is a
+ * system of two equations. q = CS_PAIR_DISTANCE_PARALLEL keeps it regular for parallel edges;
+ * triangles have a q too small to change a distance, for those without area. Then l is moved
+ * into the primitives by the smooth positive part S of scene/soft.h, over
+ * CS_PAIR_DISTANCE_BLEND to both sides of a border:
  *
  *   triangle   L_i = S(l_i) / (S(l0) + S(l1) + S(l2)),   l0 = 1 - l1 - l2
  *   edges      L_i = S(l_i) - S(l_i - 1)
  *
- * The two points are on the primitives, so the distance is never below the true one; over the
- * inside of a triangle it is the true one, and at a rim it exceeds it by at most 0.016 of an
- * edge. It has three continuous derivatives wherever it is above 0: there is no kink where the
- * closest feature changes. 1e-12 m is added to r at right angles, so that it has derivatives at
- * 0 too.
- */
+ * Both contact points lie on the primitives, so the distance is never below the true one. Over
+ * the inside of a triangle it is the true one; at its edges it is larger by at most 0.016 of an
+ * edge. It has three continuous derivatives wherever it is positive, without a kink where the
+ * closest feature changes. r has 1e-12 m added at right angles, so that d has derivatives at 0
+ * too. */
 #ifndef CS_CONTACT_PAIR_DISTANCE_H
 #define CS_CONTACT_PAIR_DISTANCE_H
 
@@ -37,7 +36,8 @@
 #define CS_PAIR_DISTANCE_FLAT     1e-12 /* q of a triangle */
 #define CS_PAIR_DISTANCE_MIN      1e-12 /* m */
 
-/* The first point against the other three, or the first two against the last two. */
+/* A point (the first) against a triangle (the other three), or the first two points against the
+ * last two. */
 enum cs_pair_kind { CS_PAIR_POINT_TRIANGLE, CS_PAIR_EDGE_EDGE };
 
 /* One pair at one state; cs_pair_distance_set fills it. */

@@ -80,7 +80,6 @@ CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict moves
                               moves[edges ? second[0] : second[1]].values,
                               moves[edges ? second[1] : second[2]].values};
         // Compaction without a branch: a rejected pair is overwritten by the next.
-        // one that may not is written over
         out[2 * n] = i;
         out[2 * n + 1] = j;
         n += boxes_may_overlap(edges, p, reach);

@@ -37,7 +37,6 @@ void cs_posed_collider_rotate(const struct cs_collider_motion *motion, double t,
     sine = time < 0 ? -sine : sine;
 
     // Rodrigues' formula: I cos + (1 - cos) a a^T + sin [a]x
-    // Rodrigues' formula
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             by[3 * i + j] = (1 - cosine) * a[i] * a[j] + (i == j ? cosine : 0);

@@ -25,7 +25,7 @@ static double distance_at(const struct cs_collider_step *passing, const double f
 bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, double mass,
                                      const double start[3], const double to[3]) {
     const double range = passing->params.range, k = passing->params.k;
-    // seen from the obstacle, which stands where it is after the step
+    // relative to the collider, which keeps its position after the step
     double from[3], squared = 0;
     for (int c = 0; c < 3; c++) {
         from[c] = start[c] + passing->at_t1.centre[c] - passing->at_t0.centre[c];
@@ -80,7 +80,7 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, 
         const double d = sphere ? sqrt(rx * rx + ry * ry + rz * rz) - after->radius
                                 : g[0] * rx + g[1] * ry + g[2] * rz;
         const double y = (d - way) / range, square = y * y;
-        // what is not a number is risky
+        // NaN counts as suspect
         risky += !(y >= 1 ||
                    (y > CS_BARRIER_CORE && way * stiff <= give * mass[i] * square * square));
     }

@@ -96,7 +96,7 @@ static void project_block(void *arg, size_t begin, size_t end) {
 }
 
 /* Copies the particles that were not pushed into state_after. Sticking ones then count as
- * pushed: to the elastic response they are obstacles like pushed ones. */
+ * pushed: to the elastic response their positions are imposed like those of pushed ones. */
 static void complete(const struct step *step) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
@@ -125,8 +125,6 @@ static void push(const struct step *step) {
                                             .is_pushed = contact->is_pushed};
     complete(step);
     // If the push was cut short, a particle may still be behind a surface and is not at rest.
-    ///
-    // who is left behind a surface is not at rest on it
     if (!cs_projection_energy_limit(&contact->energy_limit, &blow))
         cs_static_friction_reject(&contact->static_friction);
     memcpy(step->x, contact->state_after, n3 * sizeof *step->x);

@@ -19,7 +19,8 @@
 
 /* Numbers of pairs of a particle and a collider over the whole run: tested, and projected. */
 struct cs_projection_counts {
-    uint64_t tests, projected; /* pairs of particle and obstacle */
+    /* pairs of a particle and a collider */
+    uint64_t tests, projected;
 };
 
 /* State of contact by projection between commits, and work arrays. */

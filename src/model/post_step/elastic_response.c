@@ -44,8 +44,8 @@ static void clear_free(const struct cs_system *system, const bool *pushed, doubl
 }
 
 /* Preconditioned conjugate gradients (Saad 2003) from the pushes in u. The first residual -A u
- * is not 0 at pushed particles either, but the preconditioned one is, and so are all
- * directions. */
+ * is not 0 at pushed particles either. The preconditioned one is, because clear_pinned follows
+ * the preconditioner; all directions are therefore 0 there too. */
 static void solve(struct cs_elastic_response *response, double *u) {
     struct cs_linear *linear = &response->linear;
     const struct cs_system *system = linear->system;

@@ -142,7 +142,8 @@ static void apply_elastic_response(struct cs_projection_energy *balance,
 
 /* Fractions of a correction: of displacements, and of the velocities that belong to them. */
 struct share {
-    double way, speed; /* of the pushes and what follows them, of the velocity that it gets */
+    /* of displacements (way), and of the velocities that belong to them (speed) */
+    double way, speed;
 };
 
 /* Applies fractions of the correction to the state after the step, and returns its energy.

@@ -55,7 +55,8 @@ struct cs_projection_step {
     const double *before_step; /* (6,n) the state before the step */
     const double *x, *v;       /* (3,n) as the step has left them */
     double *corrected;         /* (6,n) as the pushes leave them */
-    const bool *is_pushed; /* (n) particles that are where they have to be: pushed or held */
+    /* (n) particles whose position is imposed: pushed or held */
+    const bool *is_pushed;
 };
 
 /* Allocates the arrays in the arena. CS_ERR_MEMORY. */

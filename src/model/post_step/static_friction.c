@@ -80,8 +80,8 @@ static bool any(const struct cs_static_friction *stick) {
     return stick->n_sticking > 0;
 }
 
-/* Forces include those of springs, gravity and air, but no contact, which projection applies. A
- * sticking particle has its own load in addition, since its velocity was held at 0. */
+/* f is the sum of all force terms; colliders have none under this law. A sticking particle has
+ * its recorded load in addition. */
 bool cs_static_friction_update(struct cs_static_friction *stick,
                                const struct cs_posed_collider *obstacles, double t,
                                const double *x, const double *v, double *f) {

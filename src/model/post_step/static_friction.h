@@ -9,8 +9,8 @@
  *   N > 0 and |T| <= mu N
  *
  * with N and T the load along the inward normal and across it. The load is the force at the end
- * of the step, plus, for a pinned particle, m dx/dt^2 from the displacement dx that the step
- * would have given it.
+ * of the step, plus, for a pinned particle, m dx/dt^2 from the displacement dx that
+ * cs_static_friction_restore took back.
  *
  * States of a particle and their transitions, once per commit:
  *

@@ -120,7 +120,7 @@ enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uin
 /* Refits all boxes in one pass from the last node to the first: children come after their
  * parents in memory, so they are ready before them. */
 static void set_boxes(struct cs_bvh *tree) {
-    // children stand behind their parents
+    // children have higher numbers than their parents
     for (uint32_t k = tree->n_nodes; k-- > 0;) {
         struct cs_bvh_node *node = tree->nodes + k;
         node->box = cs_swept_aabb_empty();

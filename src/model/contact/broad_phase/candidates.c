@@ -260,14 +260,12 @@ bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0
     const double move = largest_move(candidates, x0, x1) * (1 + 1e-9);
     // A list built in the middle of the way must cover half of it in both directions: a
     // relative motion of move/2 = 2 margins.
-    // half of the way lies to both sides of its middle, and each particle goes half of that
     const double margin = fmax(candidates->margin, 0.25 * move);
     if (!(margin <=
           CS_CANDIDATES_FAR_MARGINS * CS_CANDIDATES_MARGIN * candidates->body_pairs->range_min))
         return false;
     // The next step probably continues like this one, so that the list is built as far ahead as
     // it still covers the start.
-    // the next step goes on much as this one: the list is made as far along as it covers this
     const double along = fmin(2 * margin / move, AHEAD);
     for (size_t i = 0; i < 3 * n; i++)
         candidates->x_at_build[i] = x0[i] + along * (x1[i] - x0[i]);

@@ -138,7 +138,6 @@ uint32_t cs_distance_filter_run(struct cs_distance_filter *filter, bool edges) {
         measure_triangles(filter);
     for (uint32_t l = 0; l < n; l++) {
         // Compaction without a branch: a removed pair is overwritten by the next.
-        // one that is held back is written over
         memcpy(filter->pairs[kept], filter->pairs[l], sizeof filter->pairs[l]);
         kept += !(filter->ratio[l] > 0);
     }

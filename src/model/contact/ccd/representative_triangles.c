@@ -54,7 +54,6 @@ static void list_owned(const uint32_t *owners, uint32_t n_items, uint32_t n, uin
     for (uint32_t k = 0; k < n; k++)
         first[k + 1] += first[k];
     // Filling advances first[owner + 1] from the begin of its list to the end.
-    // the start of an owner's list stands one place further on, and becomes its end
     for (uint32_t k = n; k > 0; k--)
         first[k] = first[k - 1];
     first[0] = 0;

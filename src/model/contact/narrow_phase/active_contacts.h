@@ -40,7 +40,8 @@ struct cs_active_chunk {
 struct cs_active_contacts {
     const struct cs_candidates *candidates; /* borrowed, as features are */
     const struct cs_feature_weights *feature_weights;
-    struct cs_active_chunk *chunks; /* those of the search */
+    /* (n_chunks of the candidates) */
+    struct cs_active_chunk *chunks;
     /* close_count of the candidates at that time; 0: none were found */
     uint64_t candidates_version;
     /* friction_version of the body pairs at that time */

@@ -34,7 +34,7 @@ CS_INLINE struct crossing cross_at(enum cs_pair_kind kind, double p[4][3]) {
     const double a = cs_vec3_dot(u, u), b = cs_vec3_dot(u, v), c = cs_vec3_dot(v, v);
     const double d = cs_vec3_dot(u, w), e = cs_vec3_dot(v, w);
     const double whole = a * c - b * b;
-    // where they are almost parallel the rims know it better
+    // nearly parallel: the edges decide
     struct crossing at = {c * d - b * e, a * e - b * d, whole > 1e-10 * a * c ? whole : -1, 0};
     const double l = at.l / at.whole, m = at.m / at.whole;
     const double r[3] = {w[0] - l * u[0] - m * v[0], w[1] - l * u[1] - m * v[1],

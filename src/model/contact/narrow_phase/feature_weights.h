@@ -51,9 +51,10 @@ enum { CS_FEATURES_PER_TRIANGLE = 7, CS_FEATURE_QUERY_PAIRS = 32 };
 
 /* A point and a triangle that are candidates. */
 struct cs_feature_query {
-    uint32_t points[4], triangle; /* the point and the corners */
-    bool same_body;               /* the triangle is of the point's own body */
-    double range;                 /* m */
+    /* the point and the vertices; the number of the triangle */
+    uint32_t points[4], triangle;
+    bool same_body; /* the triangle is of the point's own body */
+    double range;   /* m */
 };
 
 /* Finds the features that the points of n <= CS_FEATURE_QUERY_PAIRS pairs feel at x (3,

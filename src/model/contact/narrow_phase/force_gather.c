@@ -27,7 +27,7 @@ enum cs_status cs_gather_init(struct cs_gather *gather, uint32_t n_chunks, uint3
     return error->status;
 }
 
-/* --- rows of a lot --- */
+/* --- rows of a chunk --- */
 
 /* Slot of a point, or the free one where it would go: linear probing from a multiplicative hash
  * (2654435769 = 2^32 / golden ratio). */
@@ -141,7 +141,7 @@ bool cs_gather_set(struct cs_gather *gather) {
     return true;
 }
 
-/* --- what rows read, and have --- */
+/* --- data of rows --- */
 
 bool cs_gather_reserve(struct cs_gather *gather, size_t width) {
     double *read = cs_arena_realloc(gather->gathered, &gather->gathered_capacity,

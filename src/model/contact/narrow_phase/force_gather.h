@@ -32,7 +32,8 @@ struct cs_gather {
     uint32_t n_chunks, n_particles;
     uint32_t n_rows;  /* of all chunks */
     uint32_t *starts; /* (n_particles + 2) */
-    uint32_t *rows;   /* those of particle i: rows[starts[i] .. starts[i + 1]) */
+    /* row numbers of particle i: rows[starts[i]] to rows[starts[i + 1] - 1] */
+    uint32_t *rows;
     /* (n_rows, 3) results of the last query */
     double *row_sums;
     /* (n_rows, width) data read for it */
@@ -41,7 +42,8 @@ struct cs_gather {
     size_t rows_capacity, sums_capacity, gathered_capacity;
 };
 
-/* Fixed arrays from the arena, which then owns what grows too. CS_ERR_MEMORY. */
+/* Prepares empty tables; the arena owns all memory, that which grows included. CS_ERR_MEMORY.
+ */
 enum cs_status cs_gather_init(struct cs_gather *gather, uint32_t n_chunks, uint32_t n_particles,
                               struct cs_arena *arena, struct cs_error *error);
 

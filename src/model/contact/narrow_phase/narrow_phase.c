@@ -189,7 +189,7 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
             add_alone(work, lanes, l, work->chunk->points[first + l]);
 }
 
-/* --- what is in range --- */
+/* --- active contacts of a chunk --- */
 
 /* Sets the stiffness of one lane. In a positive semi-definite matrix the barrier's curvature
  * has the weight of the nearest feature alone. Friction and damping keep the full weights,

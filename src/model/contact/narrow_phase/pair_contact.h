@@ -69,7 +69,8 @@ CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
             reaction->contact.v[c] += reaction->weight[k] * v[k][c];
 }
 
-/* what the touch alone does: the elastic part has a gradient of its own */
+/* Parts of the contact points alone: the elastic force acts along g, which is not their
+ * direction n. */
 CS_INLINE struct cs_contact_force_parts
 /* Parts of `contact` alone: the elastic force acts along g and not along n. */
 cs_pair_contact_friction_parts(struct cs_contact_force_parts parts) {
@@ -172,7 +173,6 @@ CS_INLINE void cs_pair_contact_bound(const struct cs_pair_contact *reaction,
                                      double stiffness[4], double damping[4]) {
     double length[4], sum = 0, shares = 0, own, rub;
     // What is subtracted counts with its absolute value.
-    // what is taken away bounds as what is there
     struct cs_point_contact touch = reaction->contact;
     touch.k = fabs(touch.k);
     cs_point_contact_bound(&touch, &own, &rub);

@@ -19,8 +19,9 @@ enum { SOME = 256 };
 
 struct job {
     struct cs_pairs *pairs;
-    double h;        /* s */
-    uint32_t unseen; /* a lot that has a pair that goes unseen; NONE */
+    double h; /* s */
+    /* a chunk with an unresolved pair; NONE */
+    uint32_t unseen;
 };
 
 /* One chunk at work; pairs are collected until a block of lanes is full. */
@@ -169,7 +170,6 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
     // A pair that rejects the step again makes a list that covers the step unnecessary.
-    // what is refused again needs no list that covers the way
     if (search->is_built && !are_seen(pairs, 1, t1 - t0))
         return false;
     return cs_candidates_cover_step(search, from, to) &&

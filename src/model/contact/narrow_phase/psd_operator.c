@@ -189,7 +189,6 @@ static void add_part(void *arg, size_t begin, size_t end) {
 void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y) {
     struct job job = {product, p, y};
     // Never fails: the rows were at least 6 wide when the matrix was made.
-    // the room is there: rows were wider where the matrix was made
     if (!product->contacts->n || !cs_gather_reserve(&product->contacts->force_gather, 3))
         return;
     cs_pool_run(product->n_chunks, multiply_chunk, &job);
