@@ -12,7 +12,7 @@
 #define LENGTH 4.08e-4f
 
 /* s^2 = (a c - b^2) / (a c) up to which edges count as parallel, and triangles as their edges:
- * where the error u/s^2 of a foot is 0.06 per rounding. */
+ * where the error eps/s^2 of a foot is 0.06 per rounding. */
 #define PARALLEL 1e-6f
 
 CS_CLONES void cs_distance_filter_scale_points(const double *x, size_t n, double inverse,

@@ -10,23 +10,25 @@
  *
  * which needs no square root. The inequality is (a + b)^2 <= (1 + 1/50) a^2 + (1 + 50) b^2,
  * then (b1 + b2)^2 <= 2 (b1^2 + b2^2). Why 1e-6 P + 2e-3 L exceeds the error of d, with the
- * unit roundoff u = 2^-24 = 6e-8:
+ * unit roundoff eps = 2^-24 = 6e-8:
  *
- * - Positions are rounded by u of their size, so two contact points move apart by at most about
- *   2 u (P + L) = 1.2e-7 (P + L). 1e-6 P is eight times that.
- * - Let s be the sine of the angle of u and v. Products like u x v and a c - b^2 have errors of
- *   a few u |u| |v| and u a c. Relative to their size, s |u| |v| and s^2 a c, these are u/s and
- *   u/s^2.
- * - The normal of a triangle then turns by about u/s, and the height over its plane is off by L
- *   u/s. Feet are off by u/s^2 along the edge, which is u/s across it: L u/s again. So a foot
- *   that is wrongly taken for outside is that close to an edge, and an edge's distance stands
- *   for the plane's; a foot wrongly taken for inside gives a distance that is too small, which
- *   is safe.
- * - Triangles and pairs of edges with s^2 <= 1e-6, s <= 1e-3, are reduced to their edges. A
- *   triangle has nothing further than s L = 1e-3 L from its edges. For s above 1e-3, u/s is
- *   below 6e-5 per rounding.
+ * - Positions are rounded by eps of their size, so two contact points move apart by at most
+ *   about 2 eps (P + L) = 1.2e-7 (P + L). 1e-6 P is eight times that.
+ * - Let s be the sine of the angle of u and v. The errors of u x v and a c - b^2 are a few
+ *   eps |u| |v| and eps a c. Relative to their size, s |u| |v| and s^2 a c, these are eps/s and
+ *   eps/s^2.
+ * - The normal of a triangle then turns by about eps/s, and the height over its plane is off by
+ *   L eps/s. Feet are off by eps/s^2 along an edge, and by L eps/s across it. A foot wrongly
+ *   taken for outside is that close to an edge, whose distance then stands for the plane's. A
+ *   foot wrongly taken for inside gives a distance that is too small, which is safe.
+ * - The parameter of two edges is off by eps/s^2 too. The parameters found from it are optimal
+ *   again, and along both edges together the distance changes by at most s per length: again
+ *   L eps/s.
+ * - Up to s^2 = 1e-6, s = 1e-3, a triangle is reduced to its edges: none of its points is
+ *   further than s L = 1e-3 L from them. Edges up to there start from an end, which by the
+ *   argument above costs at most s L. Beyond, eps/s is below 6e-5 per rounding.
  *
- * The largest of these is 1e-3 L for slivers; 2e-3 L leaves twice as much. */
+ * The largest of these is 1e-3 L, for slivers; 2e-3 L leaves twice as much. */
 #ifndef CS_BROAD_PHASE_DISTANCE_FILTER_H
 #define CS_BROAD_PHASE_DISTANCE_FILTER_H
 

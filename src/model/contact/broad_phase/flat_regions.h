@@ -1,5 +1,5 @@
 /* flat_regions.h - finds parts of a grid that are too flat to touch themselves, so that
- * self-collision can skip them (cf. Volino, Magnenat-Thalmann 1994).
+ * self-collision can skip them (cf. Volino, Thalmann 1994).
  *
  * The criterion is a lower bound of distances and not a cone of normals. Let p and q be points
  * of a rectangular piece of the grid, in units of cells, and x(p) their positions. Along the

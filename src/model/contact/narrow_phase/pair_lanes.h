@@ -36,8 +36,8 @@ struct cs_pair_lanes {
     uint32_t n;
 };
 
-/* Sets d from p by the smooth distance of pair_distance.h. For features of triangles d is known
- * from feature_weights.h, and this function must not be used. */
+/* Sets d from p by the smooth distance of pair_distance.h. For features of triangles d comes
+ * from feature_weights.h instead. */
 void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes);
 
 /* Parameters that all lanes share: damping and friction speed of the scene, and the parts of
