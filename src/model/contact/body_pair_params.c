@@ -59,6 +59,7 @@ static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
     body_pairs->range_min = fmin(body_pairs->range_min, meeting->range);
 }
 
+/* All pairs share the stiffness k; range and friction differ. */
 enum cs_status cs_body_pair_table_build(struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs,
                                         struct cs_error *error) {

@@ -14,6 +14,7 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
     cs_posed_collider_at(system, collider, t, &near->collider);
 }
 
+/* A bounding test precedes the smooth distance, which costs far more. */
 bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],
                                     const double v[3], struct cs_point_contact *touch) {
     double surface[3];

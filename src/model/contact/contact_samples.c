@@ -109,7 +109,7 @@ static void list_chunks(struct cs_system *system, struct cs_contact_samples *sam
     const double spacing =
         cs_contact_sample_spacing(&pose, system->collider_params[collider].range);
     for (uint32_t each = 2; each <= 3; each++) {
-        // those of bodies come first
+        // items of bodies come before those of mesh colliders
         const uint32_t n = (each == 2 ? surfaces->first_edge
                                       : surfaces->first_triangle)[system->scene->bodies.n];
         for (uint32_t begin = 0; begin < n && !error->status; begin += LOT) {

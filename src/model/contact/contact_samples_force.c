@@ -191,6 +191,8 @@ double cs_contact_samples_energy(struct cs_contact_samples *samples, const struc
     return cs_contact_set_energy(&samples->current_set);
 }
 
+/* Bounds of the diagonal are only for matrices that are not kept: products need the exact
+ * blocks. */
 void cs_contact_samples_set_matrix(struct cs_contact_samples *samples,
                                    const struct cs_matrix *matrix, bool kept) {
     struct cs_contact_set *set = kept ? &samples->matrix : &samples->current_set;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Frees the arrays that grow; the arena calls it. */
 static void finish(void *object) {
     struct cs_contact_set *set = object;
     for (uint32_t l = 0; l < set->n_chunks; l++)
@@ -32,6 +33,7 @@ void cs_contact_chunk_clear(struct cs_contact_chunk *chunk) {
     chunk->failed = false;
 }
 
+/* Capacity grows in steps (cs_arena_realloc); entries that were appended before are kept. */
 struct cs_contact_entry *cs_contact_chunk_next(struct cs_contact_chunk *chunk) {
     struct cs_contact_entry *pairs =
         cs_arena_realloc(chunk->pairs, &chunk->capacity, chunk->n + 1, sizeof *pairs);
@@ -74,6 +76,7 @@ static void copy_corners(void *arg, uint32_t number) {
                 k < chunk->pairs[p].n ? chunk->pairs[p].particles[k] : UINT32_MAX;
 }
 
+/* Counts the vertices of each particle, serially over the dense copy. */
 static void count_ends(struct cs_contact_set *set) {
     for (size_t e = 0; e < 4 * set->n; e++)
         if (cs_contact_set_has(set, set->vertices[e]))
@@ -122,6 +125,7 @@ void cs_contact_set_gather(struct cs_contact_set *set) {
     put_ends(set);
 }
 
+/* Sums in the order of chunks, so that the bits do not depend on threads. */
 double cs_contact_set_energy(const struct cs_contact_set *set) {
     double sum = 0;
     for (uint32_t l = 0; l < set->n_chunks; l++)
@@ -129,6 +133,7 @@ double cs_contact_set_energy(const struct cs_contact_set *set) {
     return sum;
 }
 
+/* Each particle sums its own list; blocks of particles may run in different threads. */
 void cs_contact_set_add(const struct cs_contact_set *set, size_t begin, size_t end, double *f) {
     const size_t n = set->n_particles;
     for (size_t i = begin; i < end && set->n; i++)

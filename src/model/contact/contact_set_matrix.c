@@ -24,6 +24,7 @@ struct whole {
     const struct cs_contact_hessian *full; /* NULL: the set is not exact */
 };
 
+/* Contact `number` of a chunk with its terms. */
 static struct whole whole_of(const struct cs_contact_set *set, uint32_t chunk, size_t number) {
     const struct cs_contact_chunk *of = set->chunks + chunk;
     return (struct whole){of->pairs + number, of->parts + number,
@@ -65,6 +66,7 @@ static size_t number_of(const struct cs_contact_set *set, const struct cs_contac
     return (size_t)(end->pair - set->chunks[end->chunk].pairs);
 }
 
+/* Each particle sums the blocks of its own vertices, in the order of its list. */
 void cs_contact_set_add_blocks(const struct cs_contact_set *set, size_t begin, size_t end,
                                double *blocks) {
     const size_t n = set->n_particles;
@@ -175,6 +177,7 @@ static void add_products(void *arg, size_t begin, size_t end) {
         }
 }
 
+/* First all contacts, then all particles: the second pass reads what the first has stored. */
 void cs_contact_set_multiply(const struct cs_contact_set *set, const double *p, double *y) {
     struct product product = {set, p, y};
     if (!set->n)

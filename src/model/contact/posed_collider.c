@@ -23,6 +23,9 @@ static void multiply(const double a[9], const double b[9], double out[9]) {
                 a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
+/* turn = rotation about the axis of `spin` by |spin| (t - t_begin), times the rotation at
+ * t_begin. Sine and cosine are portable (base/portable_sine.h), with the same bits on all
+ * machines. */
 void cs_posed_collider_rotate(const struct cs_collider_motion *motion, double t,
                               double turn[9]) {
     const double speed = sqrt(cs_vec3_dot(motion->spin, motion->spin)),

@@ -22,6 +22,7 @@ static double distance_at(const struct cs_collider_step *passing, const double f
     return cs_posed_collider_smooth_distance(&passing->at_t1, p, g, h);
 }
 
+/* Samples the straight way of a point relative to the collider, at most half a range apart. */
 bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, double mass,
                                      const double start[3], const double to[3]) {
     const double range = passing->params.range, k = passing->params.k;
@@ -87,6 +88,8 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, 
     return risky;
 }
 
+/* Box of both ends of all particles, relative to the collider, as a sphere around its middle.
+ */
 bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begin,
                              size_t count) {
     const size_t n = passing->system->view.n;
@@ -149,6 +152,7 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
     cs_posed_collider_at(system, collider, t1, &passing->at_t1);
 }
 
+/* Ends at the first collider with an unresolved particle. */
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {

@@ -104,6 +104,7 @@ static void set_obstacles(const struct cs_system *system, double t, int array) {
     }
 }
 
+/* Particles are copied at each call, vertices of a collider only if its pose has changed. */
 const double *cs_surface_points_positions(const struct cs_system *system,
                                           enum cs_points_end end, double t, const double *x) {
     if (!system->points)

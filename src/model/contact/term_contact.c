@@ -51,6 +51,7 @@ static void add_at(double *f, size_t n, size_t i, const double a[3]) {
         f[c * n + i] += a[c];
 }
 
+/* Spheres and planes have a vectorised path with the same formulas. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
     const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
@@ -95,6 +96,7 @@ static void add_jvp(const struct cs_system *system, const struct cs_eval *at, do
     }
 }
 
+/* Energy of the barrier law over the free particles. */
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
     const size_t n = system->view.n;
     double sum = 0;

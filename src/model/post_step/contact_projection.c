@@ -131,6 +131,8 @@ static void push(const struct step *step) {
     memcpy(step->v, contact->state_after + n3, n3 * sizeof *step->v);
 }
 
+/* Colliders are posed at the end of the step. Without a push the last energy is unknown to the
+ * next commit, and contact ends unless particles stick. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
                                    double *x, double *v) {
     const size_t n = count_of(contact);
@@ -172,6 +174,7 @@ void cs_contact_projection_serialise(struct cs_contact_projection *contact,
     cs_projection_energy_serialise(&contact->energy_limit, record);
 }
 
+/* No energy is known yet, and no contact exists. */
 void cs_contact_start(struct cs_contact_projection *contact, double t, const double *x,
                       const double *v) {
     cs_contact_projection_store(contact, x, v, false);

@@ -135,6 +135,7 @@ static enum cs_status check_crossings(const struct cs_system *system, struct cs_
     return error->status;
 }
 
+/* Particles first, then samples, whose vertices may have been moved, then crossings. */
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *inside,
                                               struct cs_error *error) {

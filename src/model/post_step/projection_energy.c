@@ -188,6 +188,8 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
     return try_share(balance, blow, share);
 }
 
+/* Energies are computed lazily: the limit with external work only if the simple one is
+ * exceeded, the elastic response only if that is exceeded too. */
 bool cs_projection_energy_limit(struct cs_projection_energy *balance,
                                 const struct cs_projection_step *blow) {
     const size_t n = balance->system->view.n;

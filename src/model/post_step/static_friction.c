@@ -35,6 +35,7 @@ void cs_static_friction_unpin(struct cs_static_friction *stick) {
     cs_temporary_pins_clear(&stick->pins, stick->is_sticking);
 }
 
+/* The mass, not the inverse mass, is used: the latter is 0 while a particle is pinned. */
 bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, const double *last,
                                 double *x, double *v) {
     const size_t n = stick->system->view.n;
@@ -51,6 +52,7 @@ bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, con
     return moved;
 }
 
+/* Sticking particles keep resting_on: their collider did not change. */
 void cs_static_friction_reject(struct cs_static_friction *stick) {
     for (uint32_t i = 0; i < stick->system->view.n; i++)
         if (!stick->is_sticking[i])
@@ -134,6 +136,7 @@ static uint32_t find_resting_on(const struct cs_static_friction *stick,
     return 0;
 }
 
+/* Sets resting_on of all particles at rest on a collider, then decides by the cone. */
 void cs_static_friction_start(struct cs_static_friction *stick,
                               const struct cs_posed_collider *obstacles, double t,
                               const double *x, const double *v, double *f) {

@@ -35,6 +35,7 @@ static double time_of(const struct cs_system *system, const struct cs_posed_coll
     return time_to(fmax(gap, 0) + depth, speed, pull);
 }
 
+/* Minimum over all free particles and colliders. */
 double cs_step_bound_step(const struct cs_system *system,
                           const struct cs_posed_collider *obstacles, double depth,
                           const double *x, const double *v) {

@@ -88,6 +88,7 @@ static struct cs_strain_limit_grid grid_of(const struct pass *pass) {
     return grid;
 }
 
+/* Bodies one after the other; odd passes run backwards. */
 uint64_t cs_strain_limit_apply(const struct cs_system *system, double dt, double *x,
                                double *v) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);

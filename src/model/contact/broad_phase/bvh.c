@@ -96,10 +96,13 @@ static void add_nodes(struct cs_bvh *tree, const uint32_t *groups, uint32_t n_gr
     add_nodes(tree, groups, n_groups, cut, end);
 }
 
+/* A cut in the middle leaves leaves of at least two items; a cut at the end of a group may
+ * leave one. So there are at most n/2 + n_groups leaves, and fewer than n + 2 n_groups nodes.
+ */
 enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uint32_t *first,
                            uint32_t n_groups, struct cs_arena *arena, struct cs_error *error) {
     const uint32_t n = first[n_groups];
-    /* a cut leaves leaves of two items and more, but where groups end */
+
     const size_t nodes_most = n + 2 * (size_t)n_groups + 1;
     *tree = (struct cs_bvh){.n = n};
     struct placed *placed = calloc(n ? n : 1, sizeof *placed);
@@ -186,6 +189,7 @@ static void distribute(struct cs_bvh *tree) {
     }
 }
 
+/* Refits in O(n) and distributes; the topology does not change. */
 void cs_bvh_update(struct cs_bvh *tree, double reach) {
     tree->max_distance = reach;
     set_boxes(tree);

@@ -18,7 +18,8 @@ struct cs_candidate_chunk {
     size_t n, capacity; /* room in pairs */
     bool failed;        /* there was no memory */
     uint32_t
-        *in_range; /* (n_close, 2) those of them in range, of cs_candidates_find_in_range */
+        /* (n_in_range, 2) pairs in range, of cs_candidates_find_in_range */
+        *in_range;
     size_t n_in_range, close_capacity;
     /* answer of one chunk to a query over all candidates; the query defines it */
     double result;
@@ -58,8 +59,9 @@ struct cs_candidates {
     struct cs_candidate_range *rows[2]; /* of points, and of edges */
     struct cs_candidate_chunk *chunks;  /* points first */
     uint32_t n_batches, n_chunks;
-    size_t n_listed;                       /* pairs in all chunks */
-    struct cs_scaled_point *scaled_points; /* (n_points) of the last state that was looked at */
+    size_t n_listed; /* pairs in all chunks */
+    /* (n_points) positions of the last state that was scaled */
+    struct cs_scaled_point *scaled_points;
     /* 1/m, scale of scaled_points */
     double inverse_unit;
     double

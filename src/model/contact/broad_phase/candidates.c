@@ -31,6 +31,8 @@ static void cut(struct cs_candidate_chunk *chunks, enum cs_pair_kind kind, uint3
             .end = n - begin > CS_CANDIDATE_CHUNK ? begin + CS_CANDIDATE_CHUNK : n};
 }
 
+/* Positions are scaled by the largest range, which is near the size of the primitives. Chunks
+ * of points come before those of edges. */
 enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_system *system,
                                   const struct cs_body_pair_table *meetings,
                                   struct cs_error *error) {
@@ -185,6 +187,8 @@ static bool build(struct cs_candidates *candidates, double margin, double flat) 
     return candidates->is_built;
 }
 
+/* A list that is valid but whose flat blocks are too old is kept if these can be renewed at x.
+ */
 bool cs_candidates_update(struct cs_candidates *candidates, const double *x) {
     const double flat = flat_margin(candidates, candidates->margin);
     if (is_good(candidates, x) &&
@@ -252,6 +256,8 @@ static bool is_covered(const struct cs_candidates *candidates, const double *x0,
 /* Largest multiple of the step by which the state of a new list lies ahead of its start. */
 #define AHEAD 2
 
+/* The margin is at least a quarter of the largest relative motion. The factor 1 + 1e-9 exceeds
+ * the rounding of motions. */
 bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0,
                               const double *x1) {
     const size_t n = candidates->system->surfaces->n_points;
@@ -273,6 +279,7 @@ bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0
                  fmax(flat_margin(candidates, candidates->margin), 0.5 * along * move));
 }
 
+/* Comparisons are written so that NaN wins and stays. */
 double cs_candidates_max_motion(const struct cs_candidates *candidates, const double *x0,
                                 const double *x1) {
     const struct cs_body_pair_table *meetings = candidates->body_pairs;

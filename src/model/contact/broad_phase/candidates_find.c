@@ -296,12 +296,14 @@ static void find_batch(void *arg, uint32_t number) {
     set_rows(candidates, of, number);
 }
 
+/* Sets boxes and cells of one kind of clusters; returns false if out of memory. */
 static bool fill(const struct cs_candidates *candidates, struct cs_aabb_clusters *clusters,
                  const uint32_t *corners, uint32_t each) {
     const struct cs_item_boxes boxes = boxes_of(candidates, corners, each);
     return cs_item_boxes_fill(&boxes, clusters);
 }
 
+/* Boxes of triangles and edges are set first; then all batches run in parallel. */
 bool cs_candidates_find(struct cs_candidates *candidates) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
     bool failed = !fill(candidates, &candidates->triangles, surfaces->triangles, 3) ||

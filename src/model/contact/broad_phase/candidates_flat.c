@@ -24,6 +24,7 @@ static bool is_grid(const struct cs_system *system, const struct cs_body_pair_ta
            range->first + range->count <= POINTS_MAX;
 }
 
+/* Adds a grid with its blocks numbered after those of the grids before. */
 static void add_grid(struct cs_candidates_flat *flat, const struct cs_body_range *range,
                      struct cs_flat_region **grid, struct cs_arena *arena,
                      struct cs_error *error) {
@@ -95,11 +96,13 @@ static uint32_t find_in(const struct cs_flat_region *grid, double apart,
     return n;
 }
 
+/* Restarts the margin of flat blocks at x. */
 static void store_state(struct cs_candidates_flat *flat, const double *x, double margin) {
     memcpy(flat->x_at_build, x, 3 * flat->n_points * sizeof *x);
     flat->margin_now = margin;
 }
 
+/* Both kinds of pairs have rectangles of their own, because edges have a smaller range. */
 void cs_candidates_flat_find(struct cs_candidates_flat *flat, const double *x, double margin) {
     flat->n_flat_blocks = 0;
     for (uint32_t b = 0; b < flat->body_pairs->n_bodies; b++) {

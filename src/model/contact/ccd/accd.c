@@ -103,6 +103,8 @@ static double relative_move(enum cs_primitive_pair_kind kind, const double moves
                                                : fmax(length[0], length[1]) + other;
 }
 
+/* Two quick exits precede the loop: no relative motion, and a first distance that exceeds the
+ * whole relative motion. Each advance is safe by itself, so an early end is safe too. */
 double cs_accd_safe_fraction(enum cs_primitive_pair_kind kind, const double p[4][3],
                              const double moves[4][3], double most) {
     double rest[4][3], at[4][3], share = 0;

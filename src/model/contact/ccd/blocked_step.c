@@ -72,6 +72,7 @@ static void try_pair(struct search *search, enum cs_primitive_pair_kind kind,
     memcpy(search->at, at, sizeof search->at);
 }
 
+/* Tests all pairs of a point and a triangle, and all pairs of edges. */
 static void try_all(struct search *search) {
     const struct cs_surfaces *s = search->surfaces;
     for (uint32_t i = 0; i < s->n_points; i++)
@@ -88,6 +89,7 @@ static void try_all(struct search *search) {
         }
 }
 
+/* Runs the same test as the tree, so that it finds the pair that limited the step. */
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out) {
     const struct cs_surfaces *s = system->surfaces;

@@ -67,6 +67,8 @@ static bool are_on_same_side(const double edge[2][3], const double triangle[3][3
     return are_separated(edge, triangle, axis);
 }
 
+/* A product of signs >= 0 rejects ends on one side, and ends in the plane, whose sign is 0. The
+ * last three signs use the moved end, so that none of them is 0 for a triangle with area. */
 bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][3]) {
     if (has_gap(edge, triangle) || are_on_same_side(edge, triangle))
         return false;

@@ -106,6 +106,7 @@ static void find_centres(const struct cs_representative_triangles *parts, const 
     }
 }
 
+/* number of edges without a triangle */
 static uint32_t count_loose(const struct cs_surfaces *surfaces) {
     uint32_t n = 0;
     for (uint32_t e = 0; e < surfaces->n_edges; e++)
@@ -177,6 +178,7 @@ struct placing {
     const double *x0, *x1;
 };
 
+/* Swept boxes of the parts [begin, end). */
 static void place_parts(void *arg, size_t begin, size_t end) {
     const struct placing *placing = arg;
     for (size_t part = begin; part < end; part++) {
@@ -189,6 +191,7 @@ static void place_parts(void *arg, size_t begin, size_t end) {
     }
 }
 
+/* Sets the boxes of parts in parallel, then refits the tree. */
 void cs_representative_triangles_update(struct cs_representative_triangles *parts,
                                         const double *x0, const double *x1, double reach) {
     struct placing placing = {parts, x0, x1};

@@ -50,6 +50,7 @@ static void run(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     pairs->current_contacts->n = 0;
 }
 
+/* The query is a Jacobian product as soon as one direction is given. */
 void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at) {
     struct cs_narrow_phase narrow = {
         .query = at->dx || at->dv ? CS_CONTACT_QUERY_JVP : CS_CONTACT_QUERY_FORCE, .eval = *at};
@@ -82,6 +83,7 @@ static struct cs_contact_set *set_of(struct cs_pairs *pairs, const struct cs_mat
     return set;
 }
 
+/* A new solver matrix first releases the list of active contacts that the old one used. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept) {
     struct cs_narrow_phase narrow = {
         .query = CS_CONTACT_QUERY_MATRIX,
@@ -114,6 +116,7 @@ void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
                                    begin, end, blocks);
 }
 
+/* solver_psd.contacts is NULL while the solver's matrix is exact. */
 void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y) {
     if (pairs->failed)
         return;
@@ -123,6 +126,7 @@ void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y)
         cs_contact_set_multiply(&pairs->solver_exact, p, y);
 }
 
+/* Damping follows stiffness in the same array, n_rows numbers later. */
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
                         double *damping) {
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_BOUND, .eval = *at};

@@ -51,6 +51,8 @@ static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *aren
     return cs_contact_set_init(&pairs->other_exact, n, n_chunks, arena, error);
 }
 
+/* Order: surfaces, parameters of pairs, candidate list, features, queries; then the first list,
+ * at the start positions, which check_start reads. */
 enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
     if (cs_surface_points_build(system, error))
         return error->status;

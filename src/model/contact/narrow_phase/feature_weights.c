@@ -44,6 +44,8 @@ static void cross_edges(struct cs_feature_weights *features, uint32_t *inner) {
     }
 }
 
+/* vertex_edges is built by counting into place i + 1 and summing: edges are sorted by their
+ * first end. `inner` stays in the arena, unused afterwards. */
 enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
                                        const struct cs_surfaces *surfaces,
                                        struct cs_arena *arena, struct cs_error *error) {

@@ -34,8 +34,7 @@ struct lanes {
     /* of edges: squared distance of the point in m2 */
     double leg[3][LANES];
     /* m: squared distance of the foot from the feature in m2; square: d^2 in m2 */
-    double m[CS_FEATURES_PER_TRIANGLE][LANES],
-        square[CS_FEATURES_PER_TRIANGLE][LANES]; // square = d^2
+    double m[CS_FEATURES_PER_TRIANGLE][LANES], square[CS_FEATURES_PER_TRIANGLE][LANES];
 };
 
 /* --- in lanes --- */
@@ -118,6 +117,7 @@ static bool are_joined(const struct cs_feature_weights *features, uint32_t a, ui
     return joined;
 }
 
+/* Returns whether d^2 of a feature is below the square of the range of features. */
 static bool is_in_range(const struct finding *on, int feature) {
     const double range = on->at->range[on->lane];
     return on->at->square[feature][on->lane] < range * range;
@@ -178,7 +178,7 @@ static uint32_t across_rim(const struct finding *on, int k) {
 static void count_rims(struct finding *on) {
     const struct lanes *at = on->at;
     int nearest = -1;
-    for (int k = 0; k < 3; k++) { // from corner k to k + 1
+    for (int k = 0; k < 3; k++) {
         const bool inner = across_rim(on, k) != CS_NO_POINT;
         const bool beyond = at->l[(k + 2) % 3][on->lane] < 0;
         const int feature = facet_of_rim(on, k);
@@ -278,13 +278,14 @@ static void read(const struct cs_feature_weights *features,
     }
 }
 
+/* In three passes over at most CS_FEATURE_QUERY_PAIRS queries: load lanes, measure, select. */
 uint32_t cs_feature_weights_find(const struct cs_feature_weights *features,
                                  const struct cs_feature_query *pairs, uint32_t n,
                                  const double *x, struct cs_weighted_feature *uses) {
     struct lanes at[CS_FEATURE_QUERY_PAIRS / LANES];
     uint32_t found = 0;
-    // all are read before: what was just written number by number is not at once read as
-    // vectors
+    // all lanes are written before any is measured: a vector load directly after scalar stores
+    // to the same addresses would stall
     for (uint32_t k = 0; k < n; k += LANES)
         read(features, pairs + k, n - k < LANES ? n - k : LANES, x, at + k / LANES);
     for (uint32_t k = 0; k < n; k += LANES)
@@ -302,11 +303,14 @@ uint32_t cs_feature_weights_find(const struct cs_feature_weights *features,
 
 /* --- a point's --- */
 
+/* Returns whether two features are the same edge or vertex. */
 static bool are_same(const struct cs_weighted_feature *a, const struct cs_weighted_feature *b) {
     return a->shared_feature[0] == b->shared_feature[0] &&
            a->shared_feature[1] == b->shared_feature[1];
 }
 
+/* Each new feature is compared with those before it: a point has few. Features that depend on
+ * the plane of their triangle (CS_NO_POINT) are never merged. */
 uint32_t cs_feature_weights_join(struct cs_weighted_feature *uses, uint32_t n, uint32_t more) {
     for (uint32_t end = n + more, k = n; k < end; k++) {
         uint32_t same = uses[k].shared_feature[0] == CS_NO_POINT ? n : 0;
