@@ -2,8 +2,8 @@
  * load leaves the friction cone.
  *
  * Projection after a step cannot hold a particle by itself. Within the step it would fall, its
- * springs would follow, and whatever a multistep method remembers of the fall would return in
- * later steps. So a particle that a commit has stopped completely takes no part in the next
+ * springs would follow, and whatever a method remembers of the fall would return in later
+ * steps. So a particle that a commit has stopped completely takes no part in the next
  * steps (cf. the constraints of Baraff, Witkin 1998, sec. 5), as long as
  *
  *   N > 0 and |T| <= mu N

@@ -2,9 +2,9 @@
  * a time, for a few nanoseconds per pair.
  *
  * Pairs that pass must be tested again in double precision; pairs that are removed are
- * guaranteed to be out of range. With a reach R, P the distance of the pair's first point from
- * the origin and L the root of the sum of squares of its edges u, v and difference w, a pair is
- * removed if its distance d in single precision satisfies
+ * guaranteed to be out of range. R is the reach, P the distance of the pair's first point from
+ * the origin, L the root of the sum of squares of the edges u, v and the difference w. A pair
+ * is removed if its distance d in single precision satisfies
  *
  *   d^2 > 1.02 R^2 + 102 ((1e-6 P)^2 + (2e-3 L)^2) >= (R + 1e-6 P + 2e-3 L)^2
  *

@@ -16,12 +16,12 @@
  *
  *   1_S = sum of triangles 1_T - sum of inner edges 1_e + sum of inner vertices 1_v
  *
- * because inside a triangle this is 1, on an inner edge 2 - 1, at an inner vertex with k
- * triangles k - k + 1, and at a border vertex with k triangles k - (k - 1). Multiply by 1_B and
- * take the Euler characteristic. It is additive, and 1 for every convex set that is not empty,
- * so that the right side becomes the signed count, and the left side the Euler characteristic
- * of the intersection of S and B. This is 1 if B lies inside S, and also at a convex border.
- * So all steps have the factor 1, and their sum is phi(0) = psi(h). The proof holds for any f;
+ * It is 1 inside a triangle, 2 - 1 on an inner edge, k - k + 1 at an inner vertex with k
+ * triangles, and k - (k - 1) at a border vertex. Multiply by 1_B and take the Euler
+ * characteristic, which is additive, and 1 for every convex set that is not empty. The right
+ * side becomes the signed count, and the left side the Euler characteristic of the intersection
+ * of S and B. This is 1 if B lies inside S, and also at a convex border. So all steps have the
+ * factor 1, and their sum is phi(0) = psi(h). The proof holds for any f;
  * f only changes the scale of phi.
  *
  * The smooth clamp zeta below does not spoil this. A triangle whose foot is outside has the

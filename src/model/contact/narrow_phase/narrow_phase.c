@@ -10,8 +10,9 @@
  * H. With ck < 0 the first part enters the solver's matrix with the right sign; F H has
  * eigenvalues of both signs and is left out, as in a Gauss-Newton method. A feature with
  * negative weight would subtract stiffness, so that psd_weight replaces the weight: the nearest
- * feature alone counts. What remains is a sum of K g g^T with factors >= 0. Newton's method
- * with it still converges to the exact solution, because its residual has the exact force. */
+ * feature alone counts. What remains is a sum of K g g^T with factors >= 0. An
+ * iteration of Newton that converges with it has the exact solution, because its residual has
+ * the exact force. */
 #include "model/contact/narrow_phase/narrow_phase.h"
 
 #include "base/pool.h"
@@ -32,7 +33,7 @@ struct work {
     const double *rows;
 };
 
-/* Reads four points of x (3, n); points of colliders, from n on, are 0. */
+/* Reads four points of an array (3, n); points from n on, which it does not have, are 0. */
 static void read(const double *from, size_t n, const uint32_t at[4], double to[4][3]) {
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
