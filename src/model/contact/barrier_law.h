@@ -1,4 +1,4 @@
-/* barrier_law.h - the force between two surfaces that come near: a rational law with an energy.
+/* barrier_law.h - force between two surfaces that approach: a rational law with an energy.
  *
  * With the distance d, the range D and the stiffness k, y = d/D:
  *
@@ -6,34 +6,39 @@
  *   F = -psi' = (k D/12) (1-y)^3 (1+3y) / y^2          pushes apart
  *   K =  psi'' = (k/6) (1-y)^2 (1+2y+3y^2) / y^3       K(D/2) = 0.92 k
  *
- * psi has three continuous derivatives where the range begins and the force two, which keeps
- * the order of methods up to 4 in the mean of many contacts. Below y = 1/20 the stiffness stays
- * what it is there, 1333 k, so that a trial state that has passed through still has a finite
- * force. To get there takes up 1.36 k D^2.
+ * psi has three continuous derivatives at y = 1 and F two, which keeps the order of methods up
+ * to 4 in the mean of many contacts. Below y = 1/20 the stiffness stays what it is there, 1333
+ * k, so that a trial state that has passed through still has a finite force. To get there a
+ * pair must take up 1.36 k D^2.
  *
- * Cut into branches at y = 1 and 1/20 that compilers turn into selections: loops over many
- * distances vectorise.
- */
+ * A law without the pole, (k D^2/12) (1-y)^4, was tried first: at the same k a ribbon twisted
+ * by four turns crossed itself. This one held.
+ *
+ * Branches at y = 1 and 1/20 are written as selections, so that loops over many distances
+ * vectorise. */
 #ifndef CS_CONTACT_BARRIER_LAW_H
 #define CS_CONTACT_BARRIER_LAW_H
 
 #include <clothsim/clones.h>
 
+/* y below which the stiffness is constant. Chosen so that a trial state of an iteration has
+ * finite forces; a pair must take up 1.36 k D^2 to get there. */
 #define CS_BARRIER_CORE 0.05 /* y below which the stiffness is constant */
 
-/* What the law gives at one distance. */
+/* Force F in N and stiffness K in N/m of the law at one distance. */
 struct cs_barrier {
     double force, stiffness; /* N, N/m */
 };
 
-/* y where the rational part ends, and how much further in the distance is, as a share of D */
+/* Clamps y into [core, 1]; *beyond is how far y lies below the core, in units of D. */
 CS_INLINE double cs_barrier_core(double y, double *beyond) {
     const double inside = y < CS_BARRIER_CORE ? CS_BARRIER_CORE : y;
     *beyond = inside - y;
     return inside < 1 ? inside : 1;
 }
 
-/* d, range in m; k in N/m. */
+/* F and K at the distance d; d and range D in m, k in N/m. Both are 0 from d = D on. In the
+ * core F grows linearly: F(core) + K(core) D beyond. */
 CS_INLINE struct cs_barrier cs_barrier_at(double d, double range, double k) {
     double beyond;
     const double y = cs_barrier_core(d / range, &beyond);
@@ -43,7 +48,8 @@ CS_INLINE struct cs_barrier cs_barrier_at(double d, double range, double k) {
         k * range / 12 * (square * (a * (1 + 3 * y))) + stiffness * range * beyond, stiffness};
 }
 
-/* psi in J. */
+/* psi in J. In the core the integral of the linear force is added: s F + K s^2/2 over s = D
+ * beyond. */
 CS_INLINE double cs_barrier_energy(double d, double range, double k) {
     double beyond;
     const double y = cs_barrier_core(d / range, &beyond);
@@ -54,12 +60,13 @@ CS_INLINE double cs_barrier_energy(double d, double range, double k) {
            further * (core.force + 0.5 * core.stiffness * further);
 }
 
-/* dK/dd in N/m2: 0 in the core, where the stiffness is constant. */
+/* dK/dd in N/m2; 0 in the core, where K is constant, and out of range. (1-y)^2 (1+2y+3y^2) /
+ * y^3 = 1/y^3 - 4 + 3y has the derivative 3 - 3/y^4, to be divided by D. */
 CS_INLINE double cs_barrier_slope(double d, double range, double k) {
     const double y = d / range;
     if (!(y >= CS_BARRIER_CORE && y < 1))
         return 0;
-    // (1-y)^2 (1+2y+3y^2) / y^3 = 1/y^3 - 4 + 3y
+
     return k / (6 * range) * (3 - 3 / (y * y * y * y));
 }
 

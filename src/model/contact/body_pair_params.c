@@ -1,5 +1,5 @@
-/* Range, stiffness and friction between bodies and with obstacles, from the scene's keys and
- * the edges. */
+/* Derives range, stiffness and friction of pairs of bodies from the scene's keys and the edges.
+ */
 #include "model/contact/body_pair_params.h"
 
 #include "model/contact/collider_params.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* m, of a body at the start; HUGE_VAL: it has no edge */
+/* m, shortest edge of a body at the start; HUGE_VAL without edges */
 static double shortest_edge(const struct cs_system *system, uint32_t body) {
     const struct cs_surfaces *surfaces = system->surfaces;
     const double *x = system->start;
@@ -24,6 +24,7 @@ static double shortest_edge(const struct cs_system *system, uint32_t body) {
     return sqrt(least);
 }
 
+/* m, thickness of a body: given, or a fraction of its shortest edge */
 static double thickness_of(const struct cs_system *system, uint32_t body,
                            struct cs_error *error) {
     const double given = cs_scene_bodies(system->scene)[body].thickness;
@@ -36,8 +37,9 @@ static double thickness_of(const struct cs_system *system, uint32_t body,
     return thickness;
 }
 
-/* m, between two of which the first is a body; an obstacle's is all of it, as other colliders'
- * is */
+/* m, range of body a and of body or collider b: the mean of both thicknesses, because each
+ * surface has half of its own. A collider's thickness counts in full, as for other colliders.
+ */
 static double range_between(const struct cs_system *system, uint32_t a, uint32_t b,
                             struct cs_error *error) {
     const struct cs_collider *collider = cs_scene_obstacle(system->scene, b);
@@ -47,6 +49,7 @@ static double range_between(const struct cs_system *system, uint32_t a, uint32_t
     return collider || a == b ? first : 0.5 * (first + thickness_of(system, b, error));
 }
 
+/* Stores the parameters of a pair in both orders. */
 static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
                  const struct cs_body_pair_params *meeting) {
     body_pairs->params[(size_t)a * body_pairs->n_bodies + b] = *meeting;
@@ -56,6 +59,7 @@ static void meet(struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b,
     body_pairs->range_min = fmin(body_pairs->range_min, meeting->range);
 }
 
+/* All pairs share the stiffness k; range and friction differ. */
 enum cs_status cs_body_pair_table_build(struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs,
                                         struct cs_error *error) {

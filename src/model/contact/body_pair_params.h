@@ -1,50 +1,61 @@
-/* body_pair_params.h - which bodies keep off each other, and how: made once from a scene. */
+/* body_pair_params.h - contact range, stiffness and friction for each pair of bodies; built
+ * once per scene. */
 #ifndef CS_CONTACT_BODY_PAIR_PARAMS_H
 #define CS_CONTACT_BODY_PAIR_PARAMS_H
 
 #include "model/system/surfaces.h"
 
-/* Share of a body's shortest edge that its thickness is where none is given: in a flat grid no
- * two triangles that do not touch are nearer than 0.7 of an edge. */
+/* Default thickness in units of a body's shortest edge. In a flat grid, triangles without a
+ * common vertex are at least 0.7 of an edge apart, so that a sheet at rest does not touch
+ * itself. */
 #define CS_THICKNESS_SHARE 0.4
 
-/* Two bodies, one with itself, or one and an obstacle. */
+/* Parameters of two bodies, of one with itself, or of a body and a collider. */
 struct cs_body_pair_params {
-    double range;    /* m, of the law; 0: they do not meet */
-    double k;        /* N/m a pair */
-    double friction; /* friction */
+    /* m, range D of the law; 0: no contact */
+    double range;
+    /* N/m per pair */
+    double k;
+    /* coefficient of friction (1) */
+    double friction;
 };
 
-/* Of the range, that of edges with edges: over surfaces that lie on each other their number
- * changes, and so points alone hold these apart; edges are there so that nothing goes through.
- */
+/* Fraction of the range at which edges act on edges. The number of crossing edges changes as
+ * surfaces slide on each other. Point-triangle pairs alone therefore carry the load, and
+ * edge-edge pairs only prevent crossings. */
 #define CS_EDGE_RANGE_RATIO 0.5
 
-/* m, within which pairs of points and triangles, or of edges, are felt. */
+/* m, range of point-triangle pairs, or of edge-edge pairs. */
 static inline double cs_body_pair_params_range(const struct cs_body_pair_params *meeting,
                                                bool edges) {
     return meeting->range * (edges ? CS_EDGE_RANGE_RATIO : 1);
 }
 
+/* Parameters of all pairs; the system's arena owns the arrays. */
 struct cs_body_pair_table {
-    uint32_t n_bodies;                  /* as in surfaces.h: with obstacles */
+    /* bodies and mesh colliders, as in surfaces.h */
+    uint32_t n_bodies;
     struct cs_body_pair_params *params; /* (n_bodies, n_bodies), symmetric */
-    bool *has_partner;                  /* (n_bodies) the body meets one */
-    double range_max, range_min;        /* m, of all ranges */
-    uint64_t friction_version;          /* how often a friction changed */
+    /* (n_bodies) the body has contact with another or itself */
+    bool *has_partner;
+    /* m, largest and smallest range of pairs with contact */
+    double range_max, range_min;
+    /* number of changes of friction */
+    uint64_t friction_version;
 };
 
-/* Needs system->surfaces. Memory from the system's arena. CS_ERR_SCENE: no thickness or no
- * stiffness to be had; CS_ERR_MEMORY. */
+/* Builds the table from the scene; system->surfaces must exist. CS_ERR_SCENE: a thickness or
+ * stiffness is neither given nor to be derived; CS_ERR_MEMORY. */
 enum cs_status cs_body_pair_table_build(struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs,
                                         struct cs_error *error);
 
-/* Takes the friction of obstacles as the scene has it now: events may change it. */
+/* Reads the friction of colliders from the scene again, because events may change it. */
 void cs_body_pair_table_update_friction(const struct cs_system *system,
                                         struct cs_body_pair_table *body_pairs);
 
 static inline const struct cs_body_pair_params *
+/* Parameters of bodies a and b, in either order. */
 cs_body_pair_params_of(const struct cs_body_pair_table *body_pairs, uint32_t a, uint32_t b) {
     return body_pairs->params + (size_t)a * body_pairs->n_bodies + b;
 }

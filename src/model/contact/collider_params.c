@@ -1,9 +1,10 @@
-/* Range and stiffness of contact by force, from the scene's keys and its springs. */
+/* Derives range and stiffness of contact with colliders from the scene's keys and the springs.
+ */
 #include "model/contact/collider_params.h"
 
 #include <math.h>
 
-/* N/m, of the softest stretch spring; HUGE_VAL: there is none */
+/* N/m, softest stretch spring; HUGE_VAL without one */
 static double softest(const struct cs_springs *springs) {
     double k = HUGE_VAL;
     for (uint32_t r = 0; r < springs->n_runs; r++)

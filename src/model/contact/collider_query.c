@@ -1,4 +1,4 @@
-/* Range, distance and velocity of a point against a collider. */
+/* Range test, distance and relative velocity of a point against a collider. */
 #include "model/contact/collider_query.h"
 
 #include "base/vec3.h"
@@ -14,6 +14,7 @@ void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider,
     cs_posed_collider_at(system, collider, t, &near->collider);
 }
 
+/* A bounding test precedes the smooth distance, which costs far more. */
 bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],
                                     const double v[3], struct cs_point_contact *touch) {
     double surface[3];

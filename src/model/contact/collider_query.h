@@ -1,4 +1,5 @@
-/* collider_query.h - a collider as a point in its range feels it. */
+/* collider_query.h - a posed collider with its contact parameters, ready to be evaluated at
+ * points. */
 #ifndef CS_CONTACT_COLLIDER_QUERY_H
 #define CS_CONTACT_COLLIDER_QUERY_H
 
@@ -6,28 +7,29 @@
 #include "model/contact/point_contact.h"
 #include "model/contact/posed_collider.h"
 
-/* An obstacle as it is at one time, and how it rubs. */
+/* A collider at one time with its parameters. */
 struct cs_posed_collider_law {
     struct cs_posed_collider collider;
     struct cs_collider_params params;
-    double friction, friction_speed, damping; /* as in touch.h */
+    double friction, friction_speed, damping; /* mu (1), ev (m/s), tau (s) */
 };
 
-/* With contact by force. */
+/* Sets *near to a collider at t. The scene must have contact by force. */
 void cs_posed_collider_law_at(const struct cs_system *system, uint32_t collider, double t,
                               struct cs_posed_collider_law *near);
 
-/* How a point at p with velocity v (m, m/s) touches; false: it is out of range. */
+/* Sets *contact for a point at p (m) with velocity v (m/s); returns false if it is out of
+ * range, and *contact is then unspecified. */
 bool cs_posed_collider_law_in_range(const struct cs_posed_collider_law *near, const double p[3],
                                     const double v[3], struct cs_point_contact *contact);
 
-/* A move of a point and of its velocity as one against the obstacle, whose surface below the
- * point has another velocity after it where the obstacle turns. */
+/* Converts a motion of a point into one relative to the collider. If the collider rotates, the
+ * velocity of its matter differs at the moved point, by spin x dp. */
 struct cs_point_contact_motion
 cs_posed_collider_law_motion(const struct cs_posed_collider_law *near, const double dp[3],
                              const double dv[3]);
 
-/* The parts of a force (enum cs_part) as factors. */
+/* Parts of a force (enum cs_part) as factors 0 and 1. */
 static inline struct cs_contact_force_parts cs_force_parts_of(uint32_t parts) {
     return (struct cs_contact_force_parts){.elastic = parts & CS_PART_POTENTIAL ? 1 : 0,
                                            .friction = parts & CS_PART_DISSIPATIVE ? 1 : 0};

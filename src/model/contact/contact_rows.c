@@ -1,11 +1,12 @@
-/* Contact with spheres and planes in vectors: the formulas of touch.h, whose branches are
- * selections here. Rows out of range are passed over; within a row a particle out of range adds
- * nothing, since its law is 0. */
+/* Contact with spheres and planes, vectorised: the formulas of point_contact.h with selections
+ * for branches. Rows without a particle in range are skipped. Within a row a particle out of
+ * range adds 0, since its law is 0 there. |g| is 1 for both shapes. */
 #include "model/contact/contact_rows.h"
 
 #include <clothsim/clones.h>
 #include <math.h>
 
+/* particles per row */
 enum { ROW = 64 };
 
 bool cs_contact_rows_supported(const struct cs_posed_collider_law *near) {
@@ -16,13 +17,13 @@ bool cs_contact_rows_supported(const struct cs_posed_collider_law *near) {
            spin[1] == 0 && spin[2] == 0;
 }
 
-/* distances of one row, and what lies between the obstacle and its particles */
+/* Distances and gradients of one row; a plane's gradient is its normal and is not stored. */
 struct row {
     double d[ROW], x[ROW], y[ROW], z[ROW];
     size_t start, count; /* of a row of bounds */
 };
 
-/* Distance and gradient of `count` particles; returns how many are in range. */
+/* Sets distances in m and gradients of `count` particles; returns how many are in range. */
 CS_INLINE uint32_t measure(const struct cs_posed_collider_law *near, size_t n, const double *x,
                            size_t count, const bool sphere, struct row *row) {
     const struct cs_posed_collider *pose = &near->collider;
@@ -44,7 +45,8 @@ CS_INLINE uint32_t measure(const struct cs_posed_collider_law *near, size_t n, c
     return inside;
 }
 
-/* Adds the forces of one row; rubs: friction or damping act. */
+/* Adds the forces of one row. rubs: friction or damping act; a constant, so that the loop has
+ * no branch. */
 CS_INLINE void push(const struct cs_posed_collider_law *near, size_t n, const double *v,
                     size_t count, struct cs_contact_force_parts parts, const bool sphere,
                     const bool rubs, const struct row *row, double *restrict f) {
@@ -74,6 +76,7 @@ CS_INLINE void push(const struct cs_posed_collider_law *near, size_t n, const do
     }
 }
 
+/* Adds the forces of all rows of a block. */
 CS_INLINE void add(const struct cs_posed_collider_law *near, size_t n, const struct cs_eval *at,
                    struct cs_contact_force_parts parts, const bool sphere, double *f) {
     const bool rubs = parts.friction * (near->friction + near->damping) > 0;
@@ -98,8 +101,7 @@ CS_CLONES void cs_contact_rows_add(const struct cs_posed_collider_law *near, siz
         add(near, n, at, parts, false, f);
 }
 
-/* Adds the bounds of one row: those of cs_point_contact_bound, whose gradient is of length 1
- * here. */
+/* Adds the bounds of one row, those of cs_point_contact_bound for |g| = 1. */
 CS_INLINE void bound(const struct cs_posed_collider_law *near, const struct cs_eval *at,
                      size_t n, const struct row *row, const bool sphere,
                      const struct cs_gershgorin *sums) {

@@ -1,11 +1,12 @@
-/* Which edges and triangles need points against which collider, and the points one by one. */
+/* Selects the edges and triangles that need samples against each collider, and iterates over
+ * samples. */
 #include "model/contact/contact_samples.h"
 
 #include "mesh/trimesh.h"
 
 #include <math.h>
 
-/* items of a lot */
+/* items per chunk */
 enum { LOT = 128 };
 
 double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, double range) {
@@ -16,7 +17,7 @@ double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, doubl
 
 /* --- lengths --- */
 
-/* m, between two particles where they start */
+/* m, distance of two particles at the start */
 static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) {
     const double *x = system->start;
     const size_t n = system->view.n;
@@ -26,6 +27,7 @@ static double length_of(const struct cs_system *system, uint32_t a, uint32_t b) 
     return sqrt(squared);
 }
 
+/* m, longest edge or cell diagonal of a grid at the start */
 static double longest_of_grid(const struct cs_system *system,
                               const struct cs_body_range *body) {
     const uint32_t columns = body->columns;
@@ -59,7 +61,8 @@ double cs_contact_sample_longest(const struct cs_system *system) {
 
 /* --- making --- */
 
-/* parts of an edge or a triangle; 0: it has no points */
+/* Number m of parts per edge of an item; 0 if it has no samples. A triangle has inner points
+ * from m = 3 on, an edge from m = 2 on. */
 static uint8_t parts_of(const struct cs_system *system,
                         const struct cs_contact_sample_chunk *chunk, uint32_t item,
                         double spacing) {
@@ -73,11 +76,12 @@ static uint8_t parts_of(const struct cs_system *system,
     return parts >= chunk->vertices_per_item ? (uint8_t)parts : 0;
 }
 
+/* samples of an item: m - 1 in an edge, (m - 1)(m - 2)/2 inside a triangle */
 static size_t points_of(uint32_t each, size_t parts) {
     return parts == 0 ? 0 : each == 2 ? parts - 1 : (parts - 1) * (parts - 2) / 2;
 }
 
-/* Sets the rest of a lot whose items are there; returns its points. */
+/* Sets the other members of a chunk whose items are set; returns the number of its samples. */
 static size_t fill_chunk(const struct cs_system *system, double spacing,
                          struct cs_contact_sample_chunk *chunk) {
     size_t points = 0;
@@ -96,7 +100,7 @@ static size_t fill_chunk(const struct cs_system *system, double spacing,
     return points;
 }
 
-/* The chunks of one collider that have points: counted, and put where chunks are there. */
+/* Chunks of one collider with samples: counted, and stored if samples->chunks exists. */
 static void list_chunks(struct cs_system *system, struct cs_contact_samples *samples,
                         uint32_t collider, struct cs_error *error) {
     const struct cs_surfaces *surfaces = system->surfaces;
@@ -105,7 +109,7 @@ static void list_chunks(struct cs_system *system, struct cs_contact_samples *sam
     const double spacing =
         cs_contact_sample_spacing(&pose, system->collider_params[collider].range);
     for (uint32_t each = 2; each <= 3; each++) {
-        // those of bodies come first
+        // items of bodies come before those of mesh colliders
         const uint32_t n = (each == 2 ? surfaces->first_edge
                                       : surfaces->first_triangle)[system->scene->bodies.n];
         for (uint32_t begin = 0; begin < n && !error->status; begin += LOT) {
@@ -129,6 +133,7 @@ static void list_chunks(struct cs_system *system, struct cs_contact_samples *sam
     }
 }
 
+/* Chunks of all colliders, in their order. */
 static void list_all(struct cs_system *system, struct cs_contact_samples *samples,
                      struct cs_error *error) {
     samples->n_chunks = 0;
@@ -136,7 +141,7 @@ static void list_all(struct cs_system *system, struct cs_contact_samples *sample
         list_chunks(system, samples, c, error);
 }
 
-/* whether an edge is longer than what a collider leaves uncovered */
+/* Returns whether some edge is longer than the spacing of some collider. */
 static bool is_needed(const struct cs_system *system) {
     const double longest = cs_contact_sample_longest(system);
     bool needed = false;

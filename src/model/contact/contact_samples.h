@@ -1,17 +1,19 @@
-/* contact_samples.h - points on edges and in triangles that feel colliders as particles do,
- * where an obstacle could come in between particles.
+/* contact_samples.h - contact sample points on edges and triangles, so that a collider narrower
+ * than a cell cannot pass between particles.
  *
- * An edge of length s is cut into m equal parts, a triangle into m^2, whose corners feel the
- * law of touch.h. m is the least for which what lies between stays covered: with points at half
- * the range D from an obstacle whose core has a radius R about it, a part of s/m across its
- * round side is nowhere nearer than D/4, if (s/m)^2 <= D (2R + 3/4 D). That holds across the
- * rounded edge of a box too. Where m is 1 there are no such points, and on planes there never
- * are.
+ * An edge of length s is divided into m equal parts, a triangle into m^2; the inner points of
+ * the division feel the law of point_contact.h. m is the smallest number that leaves no gap.
+ * Let points be at D/2 from a round collider of radius R, the middle of a part of length s/m
+ * between them at the height a over its centre line: a^2 = (R + D/2)^2 - (s/m)^2/4. It stays
+ * D/4 in front of the surface if a >= R + D/4, which is
  *
- * A point is p = sum w_i x_i with weights w that do not change: its force f gives w_i f to each
- * corner, and all derivatives are those of a particle at p, seen through the weights. Energy is
- * kept, momentum and its moment go over in full, and there is no kink anywhere.
- */
+ *   (s/m)^2 <= 4 ((R + D/2)^2 - (R + D/4)^2) = D (2 R + 3/4 D)
+ *
+ * That holds across the rounded edge of a box too. m = 1 needs no samples; planes never do.
+ *
+ * A sample is p = sum w_i x_i with constant weights w. Its force f gives w_i f to each vertex,
+ * and all derivatives are those of a particle at p, seen through the weights. Energy is
+ * conserved, momentum and angular momentum are transferred in full, and nothing has a kink. */
 #ifndef CS_CONTACT_SAMPLES_H
 #define CS_CONTACT_SAMPLES_H
 
@@ -19,66 +21,80 @@
 #include "model/contact/contact_set.h"
 #include "model/system/surfaces.h"
 
-/* Parts of an edge at most: what is finer still can come in, and is told of
- * (study/sampling_warning.h).
- */
+/* Largest number of parts of an edge. Colliders that are finer still can pass, and
+ * study/sampling_warning.h warns of them. */
 enum { CS_CONTACT_SAMPLE_PARTS_MAX = 16 };
 
-/* Edges, or triangles, [begin, end) of a system against one collider: one thread's. */
+/* Edges or triangles [begin, end) of a system against one collider; one thread at a time
+ * evaluates it. */
 struct cs_contact_sample_chunk {
-    const uint32_t *vertices;   /* (n, each) of all; borrowed from the surfaces */
+    /* (items, vertices_per_item) of all items; borrowed from the surfaces */
+    const uint32_t *vertices;
     uint32_t vertices_per_item; /* 2: edges; 3: triangles */
     uint32_t begin, end, collider;
-    uint32_t first, last;  /* the corners are particles [first, last] */
-    uint8_t *subdivisions; /* (end - begin) of each; 0: no point in it */
+    /* its vertices are among the particles first to last */
+    uint32_t first, last;
+    /* (end - begin) number m of parts per edge; 0: no sample */
+    uint8_t *subdivisions;
 };
 
+/* All samples of a system; its arena owns them. */
 struct cs_contact_samples {
-    const struct cs_system *system;          /* borrowed */
-    struct cs_posed_collider_law *colliders; /* (colliders) at the time of the last question */
+    const struct cs_system *system; /* borrowed */
+    /* (colliders) at the time of the last query */
+    struct cs_posed_collider_law *colliders;
     struct cs_contact_sample_chunk
         *chunks; /* (n_chunks) those with points; by colliders, edges first */
     uint32_t n_chunks;
-    size_t n_points;                     /* of all chunks */
-    struct cs_contact_set current_set;   /* of the last force, product, energy or bound */
-    struct cs_contact_set matrix;        /* of the solver's matrix, until the next */
-    const struct cs_contact_set *blocks; /* whose diagonal blocks are asked for */
+    /* number of samples */
+    size_t n_points;
+    /* contacts of the last force, Jacobian product, energy or bound */
+    struct cs_contact_set current_set;
+    /* contacts of the solver's matrix, until the next */
+    struct cs_contact_set matrix;
+    /* set whose diagonal blocks are wanted */
+    const struct cs_contact_set *blocks;
 };
 
-/* The longest part in m of an edge that an obstacle of that radius does not come in by;
- * HUGE_VAL: any, of a plane or a mesh. */
+/* Longest part in m of an edge that a collider cannot pass, sqrt(D (2 R + 3/4 D)); HUGE_VAL for
+ * planes and meshes, which need no samples. */
 double cs_contact_sample_spacing(const struct cs_posed_collider *obstacle, double range);
 
-/* The longest edge in m of a system where it starts; it needs no surfaces. */
+/* Longest edge in m of a system at its start; needs no surfaces. */
 double cs_contact_sample_longest(const struct cs_system *system);
 
-/* Makes system->covers, and the surfaces if they are not there; NULL where no point is needed.
- * After the pairings. CS_ERR_MEMORY. */
+/* Builds system->contact_samples, and the surfaces if they are missing; leaves it NULL if no
+ * sample is needed. After cs_collider_params_table_build. CS_ERR_MEMORY. */
 enum cs_status cs_contact_samples_build(struct cs_system *system, struct cs_error *error);
 
-/* One point of an edge or triangle. */
+/* One sample of an edge or triangle, and the state of the iteration over them. */
 struct cs_contact_sample_point {
-    uint32_t n, particles[3]; /* corners */
+    /* number of vertices and the vertices */
+    uint32_t n, particles[3];
+    /* weights, which sum to 1 */
     double w[3];
-    uint32_t subdivisions, a, b; /* w = (parts - a - b, a, b) / parts */
+    /* w = (m - a - b, a, b) / m with m = subdivisions */
+    uint32_t subdivisions, a, b;
 };
 
-/* All points of one item, without its corners and, of a triangle, its edges:
- * for (cs_contact_sample_first(chunk, item, &point); cs_contact_sample_next(&point);) ... */
+/* Iterates over the samples of one item, without its vertices and, for a triangle, without its
+ * edges: for (cs_contact_sample_first(chunk, item, &point); cs_contact_sample_next(&point);)
+ * ... */
 void cs_contact_sample_first(const struct cs_contact_sample_chunk *chunk, uint32_t item,
                              struct cs_contact_sample_point *point);
 bool cs_contact_sample_next(struct cs_contact_sample_point *point);
 
-/* out = sum w_i x_i of (3,n); 0 where x is NULL. */
+/* out = sum w_i x_i for x (3,n); 0 if x is NULL. */
 void cs_contact_sample_interpolate(const struct cs_contact_sample_point *point, size_t n,
                                    const double *x, double out[3]);
 
-/* Mass in kg of a point as what pushes it feels it: 1 / sum (w_i^2 / m_i); HUGE_VAL: held. */
+/* Effective mass in kg of a sample against a force: 1 / sum (w_i^2 / m_i); HUGE_VAL if all its
+ * vertices are pinned. */
 double cs_contact_sample_mass(const struct cs_system *system,
                               const struct cs_contact_sample_point *point);
 
-/* As cs_collider_contact_resolves_step (contact/step_check.h), for the points. With all
- * threads. */
+/* As cs_collider_contact_resolves_step (contact/step_check.h), for samples. With all threads.
+ */
 bool cs_contact_samples_resolve_step(const struct cs_contact_samples *samples, double t0,
                                      const double *x0, double t1, const double *x1);
 

@@ -1,4 +1,4 @@
-/* Points in range: found chunk by chunk, each with what it does to its corners. */
+/* Evaluates the samples in range, chunk by chunk. */
 #include "model/contact/contact_samples_force.h"
 
 #include "base/pool.h"
@@ -7,9 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-/* what the points in range are asked for */
+/* quantity that is evaluated */
 enum ask { ASK_FORCE, ASK_CHANGE, ASK_ENERGY, ASK_MATRIX, ASK_BOUND };
 
+/* One query for all chunks. */
 struct job {
     struct cs_contact_samples *covers;
     struct cs_contact_set *set;
@@ -18,6 +19,7 @@ struct job {
     const struct cs_matrix *matrix;
 };
 
+/* w_i f at each vertex */
 static void set_contact(const double f[3], const struct cs_contact_sample_point *point,
                         struct cs_contact_entry *place) {
     for (uint32_t k = 0; k < place->n; k++)
@@ -25,8 +27,8 @@ static void set_contact(const double f[3], const struct cs_contact_sample_point 
             place->vectors[k][c] = point->w[k] * f[c];
 }
 
-/* The rows of a point's share have w_i w_j in front of the same block, and the weights add up
- * to 1. */
+/* Bounds of one sample. Row i of its matrix has w_i w_j times one block, and the weights sum to
+ * 1, so that the row sum is w_i times the bound of the point. */
 static void bound(const struct cs_point_contact *contact,
                   const struct cs_contact_sample_point *point,
                   struct cs_contact_matrix_part *part) {
@@ -38,6 +40,7 @@ static void bound(const struct cs_point_contact *contact,
     }
 }
 
+/* Matrix terms of one sample: (w w^T) x B, without a gradient. */
 static void fill_matrix(const struct cs_point_contact *contact, const struct cs_matrix *matrix,
                         const struct cs_contact_sample_point *point,
                         struct cs_contact_entry *place, struct cs_contact_matrix_part *part) {
@@ -48,6 +51,7 @@ static void fill_matrix(const struct cs_point_contact *contact, const struct cs_
     cs_point_contact_add_block(contact, matrix, part->block);
 }
 
+/* Matrix terms or bounds of one sample. */
 static void answer_part(const struct job *job, const struct cs_contact_sample_point *point,
                         const struct cs_point_contact *contact, struct cs_contact_chunk *chunk,
                         struct cs_contact_entry *place) {
@@ -58,6 +62,7 @@ static void answer_part(const struct job *job, const struct cs_contact_sample_po
         bound(contact, point, part);
 }
 
+/* Force of one sample, or its change. */
 static void answer_force(const struct job *job, const struct cs_posed_collider_law *near,
                          const struct cs_contact_sample_point *point,
                          const struct cs_point_contact *contact,
@@ -77,6 +82,7 @@ static void answer_force(const struct job *job, const struct cs_posed_collider_l
     set_contact(f, point, place);
 }
 
+/* Evaluates one sample if it is in range and can move. */
 static void meet(const struct job *job, const struct cs_posed_collider_law *near,
                  const struct cs_contact_sample_point *point, struct cs_contact_chunk *chunk) {
     const struct cs_system *system = job->covers->system;
@@ -102,7 +108,7 @@ static void meet(const struct job *job, const struct cs_posed_collider_law *near
         answer_force(job, near, point, &contact, place);
 }
 
-/* middle of the box of particles [first, last], and half its diagonal */
+/* Middle of the box of particles [first, last]; returns half its diagonal in m. */
 static double box_of(const double *x, size_t n, uint32_t first, uint32_t last,
                      double middle[3]) {
     double squared = 0;
@@ -119,7 +125,7 @@ static double box_of(const double *x, size_t n, uint32_t first, uint32_t last,
     return sqrt(squared);
 }
 
-/* The same of an item's corners: no point of it is further from the middle. */
+/* The same for the vertices of one item: no sample of it is further from the middle. */
 static double reach_of(const struct cs_contact_sample_chunk *chunk, uint32_t item, size_t n,
                        const double *x, double middle[3]) {
     const uint32_t *at = chunk->vertices + (size_t)chunk->vertices_per_item * item;
@@ -137,6 +143,7 @@ static double reach_of(const struct cs_contact_sample_chunk *chunk, uint32_t ite
     return sqrt(squared);
 }
 
+/* Evaluates one chunk. Boxes of the chunk and of each item come before single samples. */
 static void do_chunk(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_contact_sample_chunk *chunk = job->covers->chunks + number;
@@ -159,6 +166,7 @@ static void do_chunk(void *arg, uint32_t number) {
     }
 }
 
+/* Poses all colliders, evaluates all chunks and counts their contacts. */
 static void do_chunks(struct job *job) {
     const struct cs_system *system = job->covers->system;
     for (uint32_t c = 0; c < system->scene->colliders.n; c++)
@@ -183,6 +191,8 @@ double cs_contact_samples_energy(struct cs_contact_samples *samples, const struc
     return cs_contact_set_energy(&samples->current_set);
 }
 
+/* Bounds of the diagonal are only for matrices that are not kept: products need the exact
+ * blocks. */
 void cs_contact_samples_set_matrix(struct cs_contact_samples *samples,
                                    const struct cs_matrix *matrix, bool kept) {
     struct cs_contact_set *set = kept ? &samples->matrix : &samples->current_set;

@@ -1,15 +1,17 @@
-/* The energy that a step does not see of points between particles. */
+/* Tests whether a step resolves the contact of samples with colliders. */
 #include "model/contact/contact_samples.h"
 
 #include "base/vector.h"
 #include "model/contact/step_check.h"
 
+/* One step. */
 struct job {
     const struct cs_contact_samples *covers;
     double t0, t1;
     const double *x0, *x1;
 };
 
+/* Tests one sample, with its effective mass; pinned ones are never unresolved. */
 static bool is_unresolved(const struct cs_collider_step *passing,
                           const struct cs_contact_sample_point *point) {
     const size_t n = passing->system->view.n;
@@ -20,6 +22,7 @@ static bool is_unresolved(const struct cs_collider_step *passing,
     return mass < HUGE_VAL && cs_collider_step_misses_contact(passing, mass, from, to);
 }
 
+/* Number of unresolved samples in the chunks [begin, end). */
 static double count_unresolved(const void *arg, size_t begin, size_t end) {
     const struct job *job = arg;
     double unseen = 0;

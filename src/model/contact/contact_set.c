@@ -1,4 +1,4 @@
-/* Contacts in chunks, gathered by particles. */
+/* Contacts in chunks, and their gathering by particles. */
 #include "model/contact/contact_set.h"
 
 #include "base/pool.h"
@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Frees the arrays that grow; the arena calls it. */
 static void finish(void *object) {
     struct cs_contact_set *set = object;
     for (uint32_t l = 0; l < set->n_chunks; l++)
@@ -32,6 +33,7 @@ void cs_contact_chunk_clear(struct cs_contact_chunk *chunk) {
     chunk->failed = false;
 }
 
+/* Capacity grows in steps (cs_arena_realloc); entries that were appended before are kept. */
 struct cs_contact_entry *cs_contact_chunk_next(struct cs_contact_chunk *chunk) {
     struct cs_contact_entry *pairs =
         cs_arena_realloc(chunk->pairs, &chunk->capacity, chunk->n + 1, sizeof *pairs);
@@ -57,12 +59,13 @@ void cs_contact_set_count(struct cs_contact_set *set) {
         set->n += set->chunks[l].n;
         set->failed = set->failed || set->chunks[l].failed;
     }
-    // what was left out is not to be looked for behind the end of a lot
+    // Later passes must not read contacts that were never appended.
     if (set->failed)
         set->n = 0;
 }
 
-/* beside each other, for what is one thread's */
+/* Copies the points of a chunk's contacts into one dense array, which the serial passes
+ * count_ends and put_ends then read without gaps. */
 static void copy_corners(void *arg, uint32_t number) {
     const struct cs_contact_set *set = arg;
     const struct cs_contact_chunk *chunk = set->chunks + number;
@@ -73,13 +76,14 @@ static void copy_corners(void *arg, uint32_t number) {
                 k < chunk->pairs[p].n ? chunk->pairs[p].particles[k] : UINT32_MAX;
 }
 
+/* Counts the vertices of each particle, serially over the dense copy. */
 static void count_ends(struct cs_contact_set *set) {
     for (size_t e = 0; e < 4 * set->n; e++)
         if (cs_contact_set_has(set, set->vertices[e]))
             set->starts[set->vertices[e] + 1]++;
 }
 
-/* into their places; chunks in their order */
+/* Fills the lists in the order of chunks, contacts and vertices, which is the order of sums. */
 static void put_ends(struct cs_contact_set *set) {
     for (uint32_t l = 0; l < set->n_chunks; l++) {
         const struct cs_contact_chunk *chunk = set->chunks + l;
@@ -91,7 +95,7 @@ static void put_ends(struct cs_contact_set *set) {
     }
 }
 
-/* false: no memory */
+/* Reserves the lists; returns false if out of memory. */
 static bool take_ends(struct cs_contact_set *set) {
     struct cs_contact_vertex *ends = cs_arena_realloc(
         set->particle_vertices, &set->particle_vertices_capacity, 4 * set->n, sizeof *ends);
@@ -102,8 +106,8 @@ static bool take_ends(struct cs_contact_set *set) {
     return ends && corners;
 }
 
-/* The corners of each particle one behind the other: counted two places on, so that filling
- * moves the starts to where they belong. */
+/* Counting sort by particle. Counts go two places on: filling then moves every start[i + 1]
+ * from the begin of list i to its end, which is where the format wants it. */
 void cs_contact_set_gather(struct cs_contact_set *set) {
     if (set->n && !take_ends(set)) {
         set->failed = true;
@@ -121,6 +125,7 @@ void cs_contact_set_gather(struct cs_contact_set *set) {
     put_ends(set);
 }
 
+/* Sums in the order of chunks, so that the bits do not depend on threads. */
 double cs_contact_set_energy(const struct cs_contact_set *set) {
     double sum = 0;
     for (uint32_t l = 0; l < set->n_chunks; l++)
@@ -128,6 +133,7 @@ double cs_contact_set_energy(const struct cs_contact_set *set) {
     return sum;
 }
 
+/* Each particle sums its own list; blocks of particles may run in different threads. */
 void cs_contact_set_add(const struct cs_contact_set *set, size_t begin, size_t end, double *f) {
     const size_t n = set->n_particles;
     for (size_t i = begin; i < end && set->n; i++)

@@ -1,4 +1,14 @@
-/* What pairs have of a matrix: its blocks, its product with a vector, and bounds. */
+/* Matrix of contacts: diagonal blocks, products with vectors, and bounds.
+ *
+ * A contact has the matrix A = c g g^T + (w w^T) x B + F, by its n <= 4 points, with the 12 x
+ * 12 part F = ck F H present only in an exact matrix. Its product is evaluated without forming
+ * A:
+ *
+ *   (A p)_k = c (sum g_j.p_j) g_k + w_k B (sum w_j p_j) + sum F_kj p_j
+ *
+ * The solver applies the diagonal blocks A_kk itself, and cs_contact_set_multiply subtracts
+ * them from each row. Products are computed contact by contact, stored, and then gathered by
+ * particles in a second pass: no two threads write the same number. */
 #include "model/contact/contact_set.h"
 
 #include "base/pool.h"
@@ -7,20 +17,21 @@
 
 #include <math.h>
 
-/* a pair, and what it has of the matrix beside its gradient */
+/* A contact with its matrix terms. */
 struct whole {
     const struct cs_contact_entry *pair;
     struct cs_contact_matrix_part *part;
     const struct cs_contact_hessian *full; /* NULL: the set is not exact */
 };
 
+/* Contact `number` of a chunk with its terms. */
 static struct whole whole_of(const struct cs_contact_set *set, uint32_t chunk, size_t number) {
     const struct cs_contact_chunk *of = set->chunks + chunk;
     return (struct whole){of->pairs + number, of->parts + number,
                           set->has_hessians ? of->hessians + number : NULL};
 }
 
-/* block += that of corner k of a pair with itself, each part times its factor */
+/* block += A_kk, with c g g^T times factor[0] and w^2 B times factor[1]. */
 static void add_own(const struct whole *whole, uint32_t k, const double factor[2],
                     double block[6]) {
     static const uint32_t row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -34,7 +45,9 @@ static void add_own(const struct whole *whole, uint32_t k, const double factor[2
     }
 }
 
-/* by how much a block must grow for all together to be above what the pair couples */
+/* Factors by which the blocks of point k grow, so that they bound the matrix of the contact:
+ * sum |g_j| / |g_k| and sum |w_j| / |w_k| (proof: find_growth of pair_lanes.c). F is not
+ * bounded by them. */
 static void find_growth(const struct whole *whole, uint32_t k, double factor[2]) {
     const struct cs_contact_entry *pair = whole->pair;
     const double *share = whole->part->weights;
@@ -48,11 +61,12 @@ static void find_growth(const struct whole *whole, uint32_t k, double factor[2])
     factor[1] = share[k] != 0 ? shares / fabs(share[k]) : 1;
 }
 
-/* its number in its chunk */
+/* index of a contact in its chunk */
 static size_t number_of(const struct cs_contact_set *set, const struct cs_contact_vertex *end) {
     return (size_t)(end->pair - set->chunks[end->chunk].pairs);
 }
 
+/* Each particle sums the blocks of its own vertices, in the order of its list. */
 void cs_contact_set_add_blocks(const struct cs_contact_set *set, size_t begin, size_t end,
                                double *blocks) {
     const size_t n = set->n_particles;
@@ -71,19 +85,21 @@ void cs_contact_set_add_blocks(const struct cs_contact_set *set, size_t begin, s
 
 /* --- the matrix times a vector --- */
 
+/* One product: y += (A - diagonal) p. */
 struct product {
     const struct cs_contact_set *set;
     const double *p;
     double *y;
 };
 
+/* out = s p for a symmetric block */
 static void turn(const double s[6], const double p[3], double out[3]) {
     out[0] = s[0] * p[0] + s[1] * p[1] + s[2] * p[2];
     out[1] = s[1] * p[0] + s[3] * p[1] + s[4] * p[2];
     out[2] = s[2] * p[0] + s[4] * p[1] + s[5] * p[2];
 }
 
-/* by = the pair's share times p, less what the diagonal blocks of the solver have of it */
+/* Stores the product of one contact, without its diagonal blocks. */
 static void multiply_pair(const struct whole *whole, double p[4][3]) {
     const struct cs_contact_entry *pair = whole->pair;
     struct cs_contact_matrix_part *part = whole->part;
@@ -109,7 +125,7 @@ static void multiply_pair(const struct whole *whole, double p[4][3]) {
     }
 }
 
-/* the same where it is of*(w w^T) alone: w_k of (sum w_j p_j - w_k p_k) */
+/* The same without gradient and Hessian: w_k B (sum w_j p_j - w_k p_k). */
 static void multiply_point(const struct whole *whole, double p[4][3]) {
     struct cs_contact_matrix_part *part = whole->part;
     double all[3] = {0};
@@ -124,6 +140,7 @@ static void multiply_point(const struct whole *whole, double p[4][3]) {
     }
 }
 
+/* Products of all contacts of a chunk; points of colliders have p = 0. */
 static void multiply_chunk(void *arg, uint32_t number) {
     const struct product *product = arg;
     const struct cs_contact_set *set = product->set;
@@ -145,6 +162,7 @@ static void multiply_chunk(void *arg, uint32_t number) {
     }
 }
 
+/* Gathers the products of the particles [begin, end). */
 static void add_products(void *arg, size_t begin, size_t end) {
     const struct product *product = arg;
     const struct cs_contact_set *set = product->set;
@@ -159,6 +177,7 @@ static void add_products(void *arg, size_t begin, size_t end) {
         }
 }
 
+/* First all contacts, then all particles: the second pass reads what the first has stored. */
 void cs_contact_set_multiply(const struct cs_contact_set *set, const double *p, double *y) {
     struct product product = {set, p, y};
     if (!set->n)

@@ -1,26 +1,25 @@
-/* pair_distance.h - how far a point is from a triangle and an edge from an edge: smooth
- * functions of four points, with gradient and exact second derivative along a direction.
+/* pair_distance.h - smooth distance of a point and a triangle, or of two edges: a function of
+ * four points, with its gradient and exact second derivative along a direction.
  *
  * Both are |r| with r = w - L1 u - L2 v for three differences u, v, w of the points:
  *
  *   point p, triangle t0 t1 t2    u = t1 - t0   v = t2 - t0   w = p - t0
  *   edges x0 x1 and x2 x3         u = x0 - x1   v = x3 - x2   w = x0 - x2
  *
- * (l1, l2) is the least of |w - l1 u - l2 v|^2 + q (u.u (l1 - 1/2)^2 + v.v (l2 - 1/2)^2): a
- * system of two equations, regular for parallel edges by q = CS_PAIR_DISTANCE_PARALLEL, and for
- * triangles without area by a q below what a distance can show. Then l is brought into the
- * primitives by the soft part S of soft.h, over CS_PAIR_DISTANCE_BLEND to both sides of a
- * border:
+ * (l1, l2) minimises |w - l1 u - l2 v|^2 + q (u.u (l1 - 1/2)^2 + v.v (l2 - 1/2)^2). This is a
+ * system of two equations. q = CS_PAIR_DISTANCE_PARALLEL keeps it regular for parallel edges;
+ * triangles have a q too small to change a distance, for those without area. Then l is moved
+ * into the primitives by the smooth positive part S of scene/soft.h, over
+ * CS_PAIR_DISTANCE_BLEND to both sides of a border:
  *
  *   triangle   L_i = S(l_i) / (S(l0) + S(l1) + S(l2)),   l0 = 1 - l1 - l2
  *   edges      L_i = S(l_i) - S(l_i - 1)
  *
- * The two points are on the primitives, so the distance is never below the true one; over the
- * inside of a triangle it is the true one, and at a rim it exceeds it by at most 0.016 of an
- * edge. It has three continuous derivatives wherever it is above 0: there is no kink where the
- * closest feature changes. 1e-12 m is added to r at right angles, so that it has derivatives at
- * 0 too.
- */
+ * Both contact points lie on the primitives, so the distance is never below the true one. Over
+ * the inside of a triangle it is the true one; at its edges it is larger by at most 0.016 of an
+ * edge. It has three continuous derivatives wherever it is positive, without a kink where the
+ * closest feature changes. r has 1e-12 m added at right angles, so that d has derivatives at 0
+ * too. */
 #ifndef CS_CONTACT_PAIR_DISTANCE_H
 #define CS_CONTACT_PAIR_DISTANCE_H
 
@@ -30,26 +29,32 @@
 #include <float.h>
 #include <stdbool.h>
 
+/* BLEND is the half-width of the smooth clamp in units of l; half and twice of it gave the same
+ * convergence orders. PARALLEL and FLAT are q of edges and of triangles. */
 #define CS_PAIR_DISTANCE_BLEND    0.1
 #define CS_PAIR_DISTANCE_PARALLEL 1e-3
 #define CS_PAIR_DISTANCE_FLAT     1e-12 /* q of a triangle */
 #define CS_PAIR_DISTANCE_MIN      1e-12 /* m */
 
-/* The first point against the other three, or the first two against the last two. */
+/* A point (the first) against a triangle (the other three), or the first two points against the
+ * last two. */
 enum cs_pair_kind { CS_PAIR_POINT_TRIANGLE, CS_PAIR_EDGE_EDGE };
 
-/* One pair at one state. */
+/* One pair at one state; cs_pair_distance_set fills it. */
 struct cs_pair_distance {
     enum cs_pair_kind kind;
-    double d, n[3];          /* m; direction from the second to the first */
+    /* distance in m; unit vector from the second contact point to the first */
+    double d, n[3];
     double u[3], v[3], w[3]; /* m */
     double a, b, c, q,
-        inverse_determinant;         /* u.u, u.v, v.v; the system's determinant is 1/inverse */
-    double unclamped[2], clamped[2]; /* l and L */
-    double blend[3][3]; /* S, S', S'': of l0, l1, l2, or of the edges in the first two */
+        inverse_determinant; /* u.u, u.v, v.v; the system's determinant is 1/inverse */
+    /* l before and L after the smooth clamp */
+    double unclamped[2], clamped[2];
+    /* S, S', S'' of l0, l1, l2 for a triangle, of l1, l2 for edges */
+    double blend[3][3];
 };
 
-/* one of two equations' solution by Cramer's rule: (a b; b c) z = k, a and c with their q */
+/* Solves ((1+q) a, b; b, (1+q) c) z = k by Cramer's rule. */
 CS_INLINE void cs_pair_distance_solve(const struct cs_pair_distance *s, const double k[2],
                                       double z[2]) {
     const double a = (1 + s->q) * s->a, c = (1 + s->q) * s->c;
@@ -57,6 +62,8 @@ CS_INLINE void cs_pair_distance_solve(const struct cs_pair_distance *s, const do
     z[1] = (a * k[1] - s->b * k[0]) * s->inverse_determinant;
 }
 
+/* L_i = S(l_i) / sum of S(l_j). The sum never vanishes: the l_i add up to 1, so one of them is
+ * at least 1/3, and S(l) = l from 0.1 on. */
 CS_INLINE void cs_pair_distance_clamp_triangle(struct cs_pair_distance *s) {
     cs_smooth_positive(1 - s->unclamped[0] - s->unclamped[1], CS_PAIR_DISTANCE_BLEND,
                        s->blend[0]);
@@ -67,6 +74,7 @@ CS_INLINE void cs_pair_distance_clamp_triangle(struct cs_pair_distance *s) {
     s->clamped[1] = s->blend[2][0] / sum;
 }
 
+/* L_i = S(l_i) - S(l_i - 1): 0 below -0.1, 1 above 1.1, and l_i between 0.1 and 0.9. */
 CS_INLINE void cs_pair_distance_clamp_edges(struct cs_pair_distance *s) {
     for (int i = 0; i < 2; i++) {
         double low[3], high[3];
@@ -80,7 +88,7 @@ CS_INLINE void cs_pair_distance_clamp_edges(struct cs_pair_distance *s) {
         s->blend[2][k] = 0;
 }
 
-/* the three differences of four points, or of their moves */
+/* The three differences of four points, or of their displacements: (u, v, w) = D p. */
 CS_INLINE void cs_pair_distance_differences(enum cs_pair_kind kind, double p[4][3], double u[3],
                                             double v[3], double w[3]) {
     for (int c = 0; c < 3; c++) {
@@ -91,7 +99,7 @@ CS_INLINE void cs_pair_distance_differences(enum cs_pair_kind kind, double p[4][
     }
 }
 
-/* its transpose, of one component: slopes by u, v, w to slopes by the four points */
+/* D^T for one component: slopes by u, v, w to slopes by the four points, which sum to 0. */
 CS_INLINE void cs_pair_distance_to_points(enum cs_pair_kind kind, double u, double v, double w,
                                           double out[4]) {
     const bool edges = kind == CS_PAIR_EDGE_EDGE;
@@ -101,7 +109,7 @@ CS_INLINE void cs_pair_distance_to_points(enum cs_pair_kind kind, double u, doub
     out[3] = v;
 }
 
-/* back: of out that sums to 0 */
+/* Inverse of D^T on slopes by the points that sum to 0. */
 CS_INLINE void cs_pair_distance_from_points(enum cs_pair_kind kind, const double four[4],
                                             double by[3]) {
     const bool edges = kind == CS_PAIR_EDGE_EDGE;
@@ -110,7 +118,8 @@ CS_INLINE void cs_pair_distance_from_points(enum cs_pair_kind kind, const double
     by[2] = edges ? four[0] + four[1] : four[0];
 }
 
-/* The differences and l. */
+/* Sets the differences, their products and l. DBL_MIN keeps the inverse finite if all points
+ * coincide. */
 CS_INLINE void cs_pair_distance_frame(struct cs_pair_distance *s, enum cs_pair_kind kind,
                                       double p[4][3]) {
     s->kind = kind;
@@ -126,7 +135,7 @@ CS_INLINE void cs_pair_distance_frame(struct cs_pair_distance *s, enum cs_pair_k
     cs_pair_distance_solve(s, right, s->unclamped);
 }
 
-/* Distance and what the derivatives need. */
+/* Sets the distance, and all that its derivatives need. p is not changed. */
 CS_INLINE void cs_pair_distance_set(struct cs_pair_distance *s, enum cs_pair_kind kind,
                                     double p[4][3]) {
     cs_pair_distance_frame(s, kind, p);
@@ -142,19 +151,25 @@ CS_INLINE void cs_pair_distance_set(struct cs_pair_distance *s, enum cs_pair_kin
         s->n[c] = r[c] / s->d;
 }
 
-/* Shares of the four points in the difference of the two contact points; their sum is 0. */
+/* Weights of the four points in the difference of both contact points; they sum to 0. */
 CS_INLINE void cs_pair_distance_weights(const struct cs_pair_distance *s, double out[4]) {
     cs_pair_distance_to_points(s->kind, -s->clamped[0], -s->clamped[1], 1, out);
 }
 
-/* What the gradient is made of; the slopes of d by l1, l2 before the clamp, and the adjoint. */
+/* Intermediate values of the gradient, by the adjoint method: k = dd/dl through the clamp, z =
+ * A^-1 k, and y = z1 u + z2 v. For one direction, k.dl = z.(d(rhs) - dA l), so that one
+ * solution z serves all twelve components. */
 struct cs_pair_distance_gradients {
     double dd_dweight[2]; /* of d by L1, L2 */
-    double mean;          /* of a triangle */
-    double h[3];          /* of a triangle: by l0, l1, l2, each on its own */
+    /* triangle: sum of L_i dd/dL_i */
+    double mean;
+    /* triangle: slopes by l0, l1, l2 as independent numbers */
+    double h[3];
     double k[2], z[2], y[3];
 };
 
+/* Fills `slopes`. dd/dL is (-n.u, -n.v). For a triangle dd/dL_0 = 0, and each L depends on all
+ * l_i through the sum. */
 CS_INLINE void cs_pair_distance_set_slopes(const struct cs_pair_distance *s,
                                            struct cs_pair_distance_gradients *slopes) {
     const double *g = slopes->dd_dweight;
@@ -177,7 +192,13 @@ CS_INLINE void cs_pair_distance_set_slopes(const struct cs_pair_distance *s,
         slopes->y[c] = slopes->z[0] * s->u[c] + slopes->z[1] * s->v[c];
 }
 
-/* g = the gradient of d by the four points; its sum is 0, and so is that of p x g. */
+/* Sets g (4,3) = the gradient of d by the four points. By the differences it is
+ *
+ *   g_u = -L1 n + z1 (r0 + q (1 - 2 l1) u) - l1 y,   r0 = w - l1 u - l2 v
+ *   g_v = -L2 n + z2 (r0 + q (1 - 2 l2) v) - l2 y
+ *   g_w = n + y
+ *
+ * The sum of g over the points is 0, and so is that of p x g: no net force and no torque. */
 CS_INLINE void cs_pair_distance_gradient(const struct cs_pair_distance *s, double g[4][3]) {
     struct cs_pair_distance_gradients at;
     cs_pair_distance_set_slopes(s, &at);

@@ -1,19 +1,17 @@
-/* point_contact.h - what a point feels near an obstacle: the law's force, friction and damping,
+/* point_contact.h - force on a point near a collider, by the barrier law, friction and damping,
  * with their derivatives.
  *
- * With the smooth distance d of the point, its gradient g and Hessian H, the point's velocity V
- * against the obstacle, n = g/|g| and T = V - n (n.V):
+ * With the smooth distance d of the point, its gradient g and Hessian H, the velocity V of the
+ * point relative to the collider, n = g/|g| and T = V - n (n.V):
  *
- *   elastic    F g                               F = -psi'(d), law.h
- *   damping   -tau K (g.V) g                     K = psi''(d): of the law, so it fades with it
- *   friction  -mu N T / sqrt(T.T + ev^2)         N = F |g|; ev: the speed where it has 0.7 of
- * mu N
+ *   elastic    F g                               F = -psi'(d), barrier_law.h
+ *   damping   -tau K (g.V) g                     K = psi''(d): vanishes with the contact
+ *   friction  -mu N T / sqrt(T.T + ev^2)         N = F |g|
  *
- * All are functions of position and velocity alone. Friction is Coulomb's law made smooth
- * (contact has no memory): below the angle of friction a body creeps at
- * ev tan a / sqrt(mu^2 - tan^2 a) instead of resting. A function whose loops over points are
- * hot has them inlined.
- */
+ * ev is the speed at which friction has 1/sqrt(2) = 0.71 of mu N. All are functions of position
+ * and velocity alone. Friction is Coulomb's law made smooth and has no memory: below the angle
+ * of friction a body creeps at ev tan a / sqrt(mu^2 - tan^2 a) and does not rest. Functions are
+ * inlined, because loops over points are hot. */
 #ifndef CS_CONTACT_POINT_CONTACT_H
 #define CS_CONTACT_POINT_CONTACT_H
 
@@ -22,25 +20,29 @@
 
 #include <math.h>
 
-/* A point near an obstacle, and how the two rub. */
+/* A point near a collider and the parameters of the pair. */
 struct cs_point_contact {
-    double d, range;   /* m */
-    double g[3], h[6]; /* gradient and Hessian of d; h: xx, xy, xz, yy, yz, zz */
-    double v[3];       /* m/s, of the point against the obstacle */
-    double k;          /* N/m */
-    double friction, friction_speed, damping; /* friction; m/s; s */
+    double d, range; /* m */
+    /* gradient (1) and Hessian (1/m) of d; h: xx, xy, xz, yy, yz, zz */
+    double g[3], h[6];
+    /* m/s, relative to the collider */
+    double v[3];
+    /* stiffness of the law in N/m; negative for a feature that is subtracted */
+    double k;
+    /* mu (1), ev (m/s), tau (s) */
+    double friction, friction_speed, damping;
 };
 
 CS_INLINE double cs_point_contact_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Parts of the force asked for, as factors 0 or 1. */
+/* Parts of the force that are wanted, as factors 0 or 1. friction includes damping. */
 struct cs_contact_force_parts {
     double elastic, friction;
 };
 
-/* f = force on the point in N. */
+/* f = force on the point in N. The law is evaluated once for all three parts. */
 CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
                                       struct cs_contact_force_parts parts, double f[3]) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);
@@ -58,13 +60,16 @@ CS_INLINE void cs_point_contact_force(const struct cs_point_contact *contact,
         f[c] = along * contact->g[c] - rub * t[c];
 }
 
-/* A small move of the point: by dp, with dv the change of its velocity against the obstacle. */
+/* Displacement dp in m of the point, and dv in m/s of its relative velocity. */
 struct cs_point_contact_motion {
     double dp[3], dv[3];
-    double extra_dd; /* m, by which d changes beyond g.dp */
+    /* m, change of d in addition to g.dp; of features whose d is not the distance of the
+     * contact points */
+    double extra_dd;
 };
 
-/* df = change of the force, exact. */
+/* df = exact change of the force along a motion, in N. By the product rule, with dg = H dp, dd
+ * = g.dp + extra_dd, dF = -K dd and dK = K' dd. */
 CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
                                     struct cs_contact_force_parts parts,
                                     const struct cs_point_contact_motion *move, double df[3]) {
@@ -104,11 +109,14 @@ CS_INLINE void cs_point_contact_jvp(const struct cs_point_contact *contact,
         df[c] = dalong * g[c] + along * dg[c] - drub * t[c] - rub * dt[c];
 }
 
-/* b (6) += the symmetric part cd df/dv + ck df/dx that the solver holds.
- * Left out: how the directions of damping and friction turn with the position. psd: the
- * curvature of the obstacle, which is negative, is left out too. bound: friction has the slope
- * mu N / sqrt(T.T + ev^2) along T too, an upper bound that Newton's iteration does not
- * overshoot (iteratively reweighted least squares). */
+/* b (6) += the symmetric part cd df/dv + ck df/dx that the solver uses:
+ *
+ *   -(ck + cd tau) K g g^T - cd mu N / s (I - n n^T - T T^T / s^2) + ck F H,  s^2 = T.T + ev^2
+ *
+ * Left out: the change of the directions of damping and friction with the position. psd: leaves
+ * out F H too, whose curvature has the wrong sign in front of a convex collider. bound: leaves
+ * out T T^T / s^2. The slope mu N / s along T is then an upper bound, which Newton's iteration
+ * does not overshoot (iteratively reweighted least squares). */
 CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact,
                                           const struct cs_matrix *matrix, double b[6]) {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -134,7 +142,8 @@ CS_INLINE void cs_point_contact_add_block(const struct cs_point_contact *contact
     }
 }
 
-/* Largest stiffness in N/m and damping in N s/m that the point adds in any direction. */
+/* Largest stiffness in N/m and damping in N s/m that the point adds in any direction: K |g|^2,
+ * and tau K |g|^2 + mu N / s. */
 CS_INLINE void cs_point_contact_bound(const struct cs_point_contact *contact, double *stiffness,
                                       double *damping) {
     const struct cs_barrier law = cs_barrier_at(contact->d, contact->range, contact->k);

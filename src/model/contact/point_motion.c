@@ -1,4 +1,5 @@
-/* Points during a step, and boxes about them: all numbers of a point at once. */
+/* Motion of surface points, and the swept-box test of pairs on all numbers of a point at once.
+ */
 #include "base/vectorise.h"
 
 #include "model/contact/point_motion.h"
@@ -8,6 +9,7 @@
 
 #include <clothsim/clones.h>
 
+/* One call of cs_point_motion_set. */
 struct setting {
     const struct cs_system *system;
     const double *x0, *x1;
@@ -43,7 +45,9 @@ CS_INLINE double max_of(double a, double b) {
     return a > b ? a : b;
 }
 
-/* The boxes of both sides, of places and of moves at once: the second point is of either. */
+/* 1 if the swept boxes of both primitives may come within reach. Differences of the bounds of
+ * both sides are taken for positions and displacements alike; point p[1] belongs to the first
+ * side of two edges, else to the triangle. */
 CS_INLINE uint32_t boxes_may_overlap(bool edges, const double *restrict p[4], double reach) {
     double below[CS_POINT_MOVE_NUMBERS], above[CS_POINT_MOVE_NUMBERS];
     for (int k = 0; k < CS_POINT_MOVE_NUMBERS; k++) {
@@ -75,7 +79,7 @@ CS_INLINE size_t filter(bool edges, const struct cs_point_motion *restrict moves
                               moves[edges ? first[1] : second[0]].values,
                               moves[edges ? second[0] : second[1]].values,
                               moves[edges ? second[1] : second[2]].values};
-        // one that may not is written over
+        // Compaction without a branch: a rejected pair is overwritten by the next.
         out[2 * n] = i;
         out[2 * n + 1] = j;
         n += boxes_may_overlap(edges, p, reach);

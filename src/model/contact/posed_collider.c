@@ -1,5 +1,4 @@
-/* posed_collider.c - the poses of a system's colliders at a time, at rest or moved by events.
- */
+/* posed_collider.c - poses of a system's colliders at a time, at rest or moved by events. */
 #include "model/contact/posed_collider.h"
 
 #include "base/portable_sine.h"
@@ -8,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* as the scene has it */
+/* Pose at rest, as the scene defines it. */
 static void pose(struct cs_posed_collider *out, const struct cs_collider *collider) {
     *out = (struct cs_posed_collider){.shape = cs_collider_shape(collider),
                                       .collider = collider,
@@ -16,7 +15,7 @@ static void pose(struct cs_posed_collider *out, const struct cs_collider *collid
     out->shape->pose(collider, out);
 }
 
-/* out = a b */
+/* out = a b for 3 x 3 matrices by rows */
 static void multiply(const double a[9], const double b[9], double out[9]) {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -24,6 +23,9 @@ static void multiply(const double a[9], const double b[9], double out[9]) {
                 a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
+/* turn = rotation about the axis of `spin` by |spin| (t - t_begin), times the rotation at
+ * t_begin. Sine and cosine are portable (base/portable_sine.h), with the same bits on all
+ * machines. */
 void cs_posed_collider_rotate(const struct cs_collider_motion *motion, double t,
                               double turn[9]) {
     const double speed = sqrt(cs_vec3_dot(motion->spin, motion->spin)),
@@ -37,7 +39,7 @@ void cs_posed_collider_rotate(const struct cs_collider_motion *motion, double t,
     cs_sine_cosine(speed * fabs(time), &sine, &cosine);
     sine = time < 0 ? -sine : sine;
 
-    // Rodrigues' formula
+    // Rodrigues' formula: I cos + (1 - cos) a a^T + sin [a]x
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             by[3 * i + j] = (1 - cosine) * a[i] * a[j] + (i == j ? cosine : 0);
@@ -58,6 +60,7 @@ void cs_posed_collider_translate(const struct cs_collider_motion *motion, double
                        : motion->shift_end[c] + motion->rate[c] * (t - motion->t_end);
 }
 
+/* Returns whether a rotation is not the identity. */
 static bool is_turned(const double turn[9]) {
     static const double same[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int k = 0; k < 9; k++)
@@ -66,6 +69,7 @@ static bool is_turned(const double turn[9]) {
     return false;
 }
 
+/* Applies a motion at t to a pose. */
 static void move(struct cs_posed_collider *out, const struct cs_collider_motion *motion,
                  double t) {
     double turn[9], shift[3];

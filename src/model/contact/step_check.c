@@ -1,4 +1,4 @@
-/* The energy of contact that a step does not see, particle by particle. */
+/* Contact energy with colliders that a step does not predict, particle by particle. */
 #include "model/contact/step_check.h"
 
 #include "base/vector.h"
@@ -9,10 +9,11 @@
 #include <clothsim/clones.h>
 #include <math.h>
 
-/* points of one move, at most; particles of a row */
+/* largest number of samples of one move; particles of a row */
 enum { POINTS_MAX = 64, ROW = 64 };
 
-/* distance at a share of the way; the obstacle's own turn within a step is left out */
+/* m, distance at a fraction of the way; the rotation of the collider within the step is left
+ * out */
 static double distance_at(const struct cs_collider_step *passing, const double from[3],
                           const double to[3], double share) {
     double p[3], g[3], h[6];
@@ -21,10 +22,11 @@ static double distance_at(const struct cs_collider_step *passing, const double f
     return cs_posed_collider_smooth_distance(&passing->at_t1, p, g, h);
 }
 
+/* Samples the straight way of a point relative to the collider, at most half a range apart. */
 bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, double mass,
                                      const double start[3], const double to[3]) {
     const double range = passing->params.range, k = passing->params.k;
-    // seen from the obstacle, which stands where it is after the step
+    // relative to the collider, which keeps its position after the step
     double from[3], squared = 0;
     for (int c = 0; c < 3; c++) {
         from[c] = start[c] + passing->at_t1.centre[c] - passing->at_t0.centre[c];
@@ -50,10 +52,14 @@ bool cs_collider_step_misses_contact(const struct cs_collider_step *passing, dou
     return unseen > CS_UNRESOLVED_ENERGY_MAX * has;
 }
 
-/* Particles of a row that may have gone further into a plane or a sphere than their step knows.
- * Along a way of length s no y is below (d1 - s)/D, d1 the distance at its end; what is not
- * seen is at most s^3/6 of the largest third derivative there, k/(2 D y^4), and is held against
- * the kinetic energy of the way alone. So nothing that is_unseen would refuse is left out. */
+/* Number of particles of a row that may be unresolved at a plane or sphere: a conservative test
+ * without branches. On a way of length s, y is nowhere below (d1 - s)/D, with d1 the distance
+ * at its end. By Taylor's formula e is at most s^3/6 max |psi'''|, and |psi'''| <= k/(2 D y^4)
+ * there. It is compared with the kinetic energy m s^2 / 2h^2 alone:
+ *
+ *   s^3 k / (12 D y^4) <= 0.02 m s^2 / 2h^2   <=>   s k h^2 <= 6 0.02 D m y^4
+ *
+ * so that no particle that is_unresolved would reject is left out. */
 CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, size_t begin,
                                         size_t count) {
     const struct cs_posed_collider *after = &passing->at_t1, *before = &passing->at_t0;
@@ -75,13 +81,15 @@ CS_CLONES static uint32_t count_suspect(const struct cs_collider_step *passing, 
         const double d = sphere ? sqrt(rx * rx + ry * ry + rz * rz) - after->radius
                                 : g[0] * rx + g[1] * ry + g[2] * rz;
         const double y = (d - way) / range, square = y * y;
-        // what is not a number is risky
+        // NaN counts as suspect
         risky += !(y >= 1 ||
                    (y > CS_BARRIER_CORE && way * stiff <= give * mass[i] * square * square));
     }
     return risky;
 }
 
+/* Box of both ends of all particles, relative to the collider, as a sphere around its middle.
+ */
 bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begin,
                              size_t count) {
     const size_t n = passing->system->view.n;
@@ -101,7 +109,7 @@ bool cs_collider_step_is_far(const struct cs_collider_step *passing, size_t begi
     return !cs_posed_collider_is_near(&passing->at_t1, reach, middle);
 }
 
-/* a row is looked at particle by particle only where something may happen in it */
+/* Returns whether a row needs no test particle by particle. */
 static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin,
                             size_t count) {
     const enum cs_shape_bounds bounds = passing->at_t1.shape->bounds;
@@ -110,6 +118,7 @@ static bool row_is_resolved(const struct cs_collider_step *passing, size_t begin
                : cs_collider_step_is_far(passing, begin, count);
 }
 
+/* Tests particle i. */
 static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
     const size_t n = passing->system->view.n;
     double from[3], to[3];
@@ -120,6 +129,7 @@ static bool is_unresolved(const struct cs_collider_step *passing, size_t i) {
     return cs_collider_step_misses_contact(passing, passing->system->mass[i], from, to);
 }
 
+/* Number of unresolved particles in [begin, end). */
 static double count_unresolved(const void *arg, size_t begin, size_t end) {
     const struct cs_collider_step *passing = arg;
     double unseen = 0;
@@ -142,6 +152,7 @@ void cs_collider_step_set(struct cs_collider_step *passing, const struct cs_syst
     cs_posed_collider_at(system, collider, t1, &passing->at_t1);
 }
 
+/* Ends at the first collider with an unresolved particle. */
 bool cs_collider_contact_resolves_step(const struct cs_system *system, double t0,
                                        const double *x0, double t1, const double *x1) {
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {

@@ -1,5 +1,4 @@
-/* Particles copied beside the vertices of mesh colliders, which are posed as any collider is.
- */
+/* Copies particles beside the vertices of mesh colliders, which are posed like any collider. */
 #include "model/contact/surface_points.h"
 
 #include "mesh/trimesh.h"
@@ -7,17 +6,18 @@
 
 #include <string.h>
 
-/* the arrays: places at both ends of a step, and velocities */
+/* arrays: positions at both ends of a step, then velocities */
 enum { VELOCITIES = 2, ARRAYS };
 
-/* Where the vertices of an obstacle are, and how they move, in one array. */
+/* Pose and motion of a collider, as one array has it. */
 struct pose {
     double centre[3], axes[3][3], velocity[3], spin[3], pivot[3];
 };
 
 struct cs_points {
     double *of[ARRAYS]; /* (3, n_points) */
-    struct pose *posed; /* (ARRAYS, obstacles) as the arrays have them: what is at rest stays */
+    /* (ARRAYS, colliders) poses in the arrays; a collider at rest is not set again */
+    struct pose *posed;
 };
 
 static double *take(struct cs_system *system, struct cs_error *error) {
@@ -51,7 +51,7 @@ static void copy_particles(const struct cs_system *system, const double *from, d
     }
 }
 
-/* vertex i of an obstacle: its axes times the place in the mesh */
+/* Position of vertex i of a collider: its axes times the coordinates in the mesh. */
 static void pose_vertex(const struct cs_posed_collider *obstacle, size_t i, double p[3]) {
     const struct cs_trimesh *mesh = obstacle->collider->mesh.geometry;
     const double *own = mesh->positions + i;
@@ -61,7 +61,7 @@ static void pose_vertex(const struct cs_posed_collider *obstacle, size_t i, doub
                obstacle->axes[2][c] * own[2 * n] + obstacle->centre[c];
 }
 
-/* whether an array has an obstacle as it is; from now on it has */
+/* Returns whether an array has this pose already, and records it. */
 static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *posed) {
     struct pose pose;
     memcpy(pose.centre, obstacle->centre, sizeof pose.centre);
@@ -74,7 +74,7 @@ static bool is_posed(const struct cs_posed_collider *obstacle, struct pose *pose
     return same;
 }
 
-/* Sets places or velocities of the vertices [first, end) of an obstacle. */
+/* Sets positions or velocities of the vertices of a collider. */
 static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
                          const struct cs_posed_collider *obstacle, bool velocities,
                          double *to) {
@@ -90,7 +90,7 @@ static void set_vertices(const struct cs_surfaces *surfaces, uint32_t surface,
     }
 }
 
-/* of all obstacles, in one of the arrays */
+/* Sets all colliders in one of the arrays. */
 static void set_obstacles(const struct cs_system *system, double t, int array) {
     struct cs_points *points = system->points;
     const uint32_t n_bodies = system->scene->bodies.n;
@@ -104,6 +104,7 @@ static void set_obstacles(const struct cs_system *system, double t, int array) {
     }
 }
 
+/* Particles are copied at each call, vertices of a collider only if its pose has changed. */
 const double *cs_surface_points_positions(const struct cs_system *system,
                                           enum cs_points_end end, double t, const double *x) {
     if (!system->points)

@@ -1,10 +1,8 @@
-/* surface_points.h - where the points of all surfaces are at a time: the particles of the
- * system, and behind them the vertices of the colliders that are meshes, which are not in the
- * state.
+/* surface_points.h - positions and velocities of the points of all surfaces: the particles,
+ * followed by the vertices of mesh colliders, which are not part of the state.
  *
- * Arrays of points are (3, n_points of surfaces.h), as those of particles are (3,n); without
- * such colliders they are the same, and nothing is copied.
- */
+ * Arrays of points are (3, n_points of surfaces.h), those of particles (3,n). Without mesh
+ * colliders both are the same array, and nothing is copied. */
 #ifndef CS_CONTACT_SURFACE_POINTS_H
 #define CS_CONTACT_SURFACE_POINTS_H
 
@@ -12,22 +10,22 @@
 
 struct cs_points;
 
-/* Makes system->surfaces, and where colliders are meshes system->points, if they are not there.
+/* Builds system->surfaces, and system->points if a collider is a mesh, unless they exist.
  * CS_ERR_MEMORY. */
 enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error *error);
 
-/* Places of the points at t, with the particles at x (3,n). One place for each end of a step:
- * what it gives is good until it is asked for the same end again. */
+/* Positions of all points at t, with the particles at x (3,n). Each end of a step has a buffer
+ * of its own; the result is valid until the next call for the same end. */
 enum cs_points_end { CS_POINTS_BEGIN, CS_POINTS_END };
 const double *cs_surface_points_positions(const struct cs_system *system,
                                           enum cs_points_end end, double t, const double *x);
 
-/* The points' velocities at t, with v (3,n) those of the particles or NULL: 0; good until it is
- * called again. NULL where all are 0. */
+/* Velocities of all points at t, with those of particles in v (3,n), or 0 if v is NULL. Valid
+ * until the next call; NULL if all are 0. */
 const double *cs_surface_points_velocities(const struct cs_system *system, double t,
                                            const double *v);
 
-/* 1/kg; 0: a point that is held, or of an obstacle. */
+/* 1/kg; 0: a pinned particle or a point of a collider. */
 static inline double cs_surface_points_inverse_mass(const struct cs_system *system,
                                                     uint32_t point) {
     return point < system->view.n ? system->inv_mass[point] : 0;

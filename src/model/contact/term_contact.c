@@ -1,10 +1,10 @@
-/* Contact with obstacles as a force: each particle feels the law of touch.h from each obstacle
- * whose range it is in. Particles touch one by one, so that the matrix has a block at each and
- * nothing between them. Obstacles come in the scene's order; that is the order of the sums. */
+/* Contact of particles with colliders by force: each particle feels the law of point_contact.h
+ * from each collider in whose range it is. Particles act one by one, so the matrix has diagonal
+ * blocks only. Colliders come in the scene's order, which is the order of the sums. */
 #include "model/contact/contact_rows.h"
 #include "model/force/terms.h"
 
-/* meshes are met in pairs */
+/* Returns whether a collider is no mesh; meshes have contact by pairs. */
 static bool any_without_mesh(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         if (!cs_scene_colliders(scene)[c].mesh.present)
@@ -12,7 +12,7 @@ static bool any_without_mesh(const struct cs_scene *scene) {
     return false;
 }
 
-/* a scene with the other law has no line of it */
+/* A scene with contact by projection has no row in the plan. */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE,
                built = asked && any_without_mesh(scene);
@@ -37,7 +37,7 @@ static void read(const double *from, size_t n, size_t i, double to[3]) {
         to[c] = from ? from[c * n + i] : 0;
 }
 
-/* How particle i touches; false: it is out of range. v may be NULL: at rest. */
+/* Sets *touch for particle i; returns false if it is out of range. v NULL: at rest. */
 static bool touch_of(const struct cs_posed_collider_law *near, size_t n, const double *x,
                      const double *v, size_t i, struct cs_point_contact *touch) {
     double p[3], w[3];
@@ -51,6 +51,7 @@ static void add_at(double *f, size_t n, size_t i, const double a[3]) {
         f[c * n + i] += a[c];
 }
 
+/* Spheres and planes have a vectorised path with the same formulas. */
 static void add_force(const struct cs_system *system, const struct cs_eval *at, double *f) {
     const size_t n = system->view.n;
     const struct cs_contact_force_parts parts = cs_force_parts_of(at->parts);
@@ -70,7 +71,7 @@ static void add_force(const struct cs_system *system, const struct cs_eval *at, 
     }
 }
 
-/* what a direction does to a touching particle */
+/* Motion of a particle relative to the collider along the direction of a Jacobian product. */
 static struct cs_point_contact_motion move_of(const struct cs_posed_collider_law *near,
                                               size_t n, const struct cs_eval *at, size_t i) {
     double dp[3], dv[3];
@@ -95,6 +96,7 @@ static void add_jvp(const struct cs_system *system, const struct cs_eval *at, do
     }
 }
 
+/* Energy of the barrier law over the free particles. */
 static double energy(const struct cs_system *system, const struct cs_eval *at) {
     const size_t n = system->view.n;
     double sum = 0;

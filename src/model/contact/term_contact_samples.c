@@ -1,9 +1,9 @@
-/* Contact of what lies between particles with obstacles: the points of
- * model/contact/contact_samples.h as a term. Particles themselves have it from term_contact.c.
- */
+/* The force term of contact samples (contact_samples.h). Particles themselves have contact by
+ * term_contact.c. */
 #include "model/contact/contact_samples_force.h"
 #include "model/force/term.h"
 
+/* Returns whether a collider is round, so that it may need samples. */
 static bool any_round(const struct cs_scene *scene) {
     const struct cs_collider *colliders = cs_scene_colliders(scene);
     for (uint32_t c = 0; c < scene->colliders.n; c++)
@@ -12,7 +12,7 @@ static bool any_round(const struct cs_scene *scene) {
     return false;
 }
 
-/* Lengths are known to idle_why alone. */
+/* The plan does not know lengths yet; reason_idle reports short edges later. */
 static struct cs_plan_row plan(const struct cs_scene *scene) {
     const bool asked = scene->contact.law == CS_CONTACT_FORCE && scene->colliders.n,
                built = asked && any_round(scene);

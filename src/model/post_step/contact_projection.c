@@ -1,5 +1,10 @@
-/* contact_projection.c - all particles against all obstacles, and the energy of it; see
- * contact_projection.h. */
+/* contact_projection.c - projects all particles against all colliders and limits the energy of
+ * the result; see contact_projection.h.
+ *
+ * State of a particle: free and in front; pushed, if a projection moved it in this commit;
+ * resting, if that projection stopped it completely on a collider at rest (resting_on is set);
+ * sticking, if static friction holds it from the next step on. A push without rest clears
+ * resting_on, and so does a commit without contact. */
 #include "model/post_step/contact_projection.h"
 
 #include "base/vector.h"
@@ -8,18 +13,21 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* one commit */
+/* One commit. */
 struct step {
     struct cs_contact_projection *contact;
     double t, dt;
-    double *x, *v;               /* the state as the step has left it */
-    atomic_ullong tests, pushed; /* whole numbers: their sum has no order */
+    /* the state that the step left; changed in place */
+    double *x, *v;
+    /* integer counts: the order of their sum does not matter */
+    atomic_ullong tests, pushed;
 };
 
 static size_t count_of(const struct cs_contact_projection *contact) {
     return contact->system->view.n;
 }
 
+/* Reads, and below writes, one particle of (3,n). */
 static void take(const double *from, size_t n, size_t i, double out[3]) {
     for (size_t c = 0; c < 3; c++)
         out[c] = from[c * n + i];
@@ -30,7 +38,8 @@ static void put(const double value[3], size_t n, size_t i, double *to) {
         to[c * n + i] = value[c];
 }
 
-/* most particles are in front of all: of those only the place is looked at */
+/* Returns whether particle i is behind a collider. Most particles are not, and of these only
+ * the position is read. */
 static bool is_behind_any(const struct step *step, size_t i) {
     const struct cs_contact_projection *contact = step->contact;
     double p[3], normal[3];
@@ -44,7 +53,8 @@ static bool is_behind_any(const struct step *step, size_t i) {
     return false;
 }
 
-/* particle i against the obstacles, each after the one before; returns how many pushed it */
+/* Projects particle i against all colliders, each after the one before, into state_after.
+ * Returns how many pushed it. */
 static unsigned project_against_all(const struct step *step, size_t i) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
@@ -66,6 +76,7 @@ static unsigned project_against_all(const struct step *step, size_t i) {
     return pushed;
 }
 
+/* Projects the particles [begin, end). Pinned and sticking ones take no part. */
 static void project_block(void *arg, size_t begin, size_t end) {
     struct step *step = arg;
     struct cs_contact_projection *contact = step->contact;
@@ -84,8 +95,8 @@ static void project_block(void *arg, size_t begin, size_t end) {
     step->pushed += pushed;
 }
 
-/* the particles that were not pushed; to those that are held the body gives way as to pushed
- * ones */
+/* Copies the particles that were not pushed into state_after. Sticking ones then count as
+ * pushed: to the elastic response their positions are imposed like those of pushed ones. */
 static void complete(const struct step *step) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n = count_of(contact);
@@ -100,7 +111,7 @@ static void complete(const struct step *step) {
     }
 }
 
-/* what the pushes come to */
+/* Limits the energy of state_after and makes it the state. */
 static void push(const struct step *step) {
     struct cs_contact_projection *contact = step->contact;
     const size_t n3 = 3 * count_of(contact);
@@ -113,13 +124,15 @@ static void push(const struct step *step) {
                                             .corrected = contact->state_after,
                                             .is_pushed = contact->is_pushed};
     complete(step);
-    // who is left behind a surface is not at rest on it
+    // If the push was cut short, a particle may still be behind a surface and is not at rest.
     if (!cs_projection_energy_limit(&contact->energy_limit, &blow))
         cs_static_friction_reject(&contact->static_friction);
     memcpy(step->x, contact->state_after, n3 * sizeof *step->x);
     memcpy(step->v, contact->state_after + n3, n3 * sizeof *step->v);
 }
 
+/* Colliders are posed at the end of the step. Without a push the last energy is unknown to the
+ * next commit, and contact ends unless particles stick. */
 bool cs_contact_projection_resolve(struct cs_contact_projection *contact, double t, double dt,
                                    double *x, double *v) {
     const size_t n = count_of(contact);
@@ -161,6 +174,7 @@ void cs_contact_projection_serialise(struct cs_contact_projection *contact,
     cs_projection_energy_serialise(&contact->energy_limit, record);
 }
 
+/* No energy is known yet, and no contact exists. */
 void cs_contact_start(struct cs_contact_projection *contact, double t, const double *x,
                       const double *v) {
     cs_contact_projection_store(contact, x, v, false);

@@ -1,5 +1,6 @@
-/* elastic_response.c - A u = 0 at the particles that were not pushed, by conjugate gradients on
- * them alone: residuals and directions are 0 on the others (Baraff, Witkin 1998, sec. 5.3). */
+/* elastic_response.c - solves A u = 0 at the particles that were not pushed, by conjugate
+ * gradients restricted to them: residuals and directions are 0 elsewhere (Baraff, Witkin 1998,
+ * sec. 5.3). */
 #include "model/post_step/elastic_response.h"
 
 #include "base/vector.h"
@@ -7,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+/* Relative residual, and the largest number of iterations. The response shapes a correction
+ * whose energy is checked afterwards, so that few digits suffice. Chosen by trial. */
 #define RTOL 1e-2
 enum { ITERATIONS_MAX = 300 };
 
@@ -24,7 +27,7 @@ bool cs_elastic_response_is_needed(const struct cs_elastic_response *response, d
     return system && dt * system->view.omega > 1;
 }
 
-/* sets a vector to 0 where particles are pinned, the pushed ones too */
+/* Sets a vector to 0 at pinned particles; pushed ones are pinned at that time. */
 static void clear_pinned(const struct cs_system *system, double *p) {
     const size_t n = system->view.n;
     for (uint32_t k = 0; k < system->n_pinned; k++)
@@ -32,6 +35,7 @@ static void clear_pinned(const struct cs_system *system, double *p) {
             p[c * n + system->pinned[k]] = 0;
 }
 
+/* Sets u to 0 at particles that were not pushed: the start of the iteration. */
 static void clear_free(const struct cs_system *system, const bool *pushed, double *u) {
     const size_t n = system->view.n;
     for (size_t i = 0; i < n; i++)
@@ -39,7 +43,9 @@ static void clear_free(const struct cs_system *system, const bool *pushed, doubl
             u[i] = u[n + i] = u[2 * n + i] = 0;
 }
 
-/* from the pushes in u, at pinned particles and there alone */
+/* Preconditioned conjugate gradients (Saad 2003) from the pushes in u. The first residual -A u
+ * is not 0 at pushed particles either. The preconditioned one is, because clear_pinned follows
+ * the preconditioner; all directions are therefore 0 there too. */
 static void solve(struct cs_elastic_response *response, double *u) {
     struct cs_linear *linear = &response->linear;
     const struct cs_system *system = linear->system;

@@ -1,5 +1,10 @@
-/* initial_penetration.c - what starts inside an obstacle is refused, or moved out once; what
- * starts through what it keeps off is refused. */
+/* initial_penetration.c - refuses particles that start inside a collider, or moves them out
+ * once; refuses surfaces that start crossed.
+ *
+ * Contact forces keep separated surfaces apart but cannot untangle surfaces that already
+ * intersect. A particle is moved out of the collider in which it is deepest, along its normal
+ * by the depth, until it is in none. Colliders that overlap may push it to and fro, so the
+ * number of passes is limited. */
 #include "model/post_step/initial_penetration.h"
 
 #include "model/contact/ccd/crossings.h"
@@ -8,11 +13,13 @@
 
 #include <math.h>
 
-/* m: particles put on a surface by the scene's numbers are not inside */
+/* m, depth up to which a particle counts as on the surface: scenes give positions in decimals
+ */
 #define TOLERANCE 1e-9
+/* passes after which a particle counts as caught between colliders; chosen by trial */
 enum { PASSES = 16 };
 
-/* the obstacle that p is deepest in, its normal n and the depth; NULL: none */
+/* Sets *collider, n and *depth to the collider that p is deepest in; returns false if none. */
 static bool find(const struct cs_system *system, const double p[3], uint32_t *collider,
                  double n[3], double *depth) {
     *depth = TOLERANCE;
@@ -35,6 +42,7 @@ static bool find(const struct cs_system *system, const double p[3], uint32_t *co
     return found;
 }
 
+/* Reports particle i with its depth. */
 static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_t collider,
                              double depth, struct cs_error *error) {
     struct cs_text text = {0};
@@ -48,6 +56,7 @@ static enum cs_status refuse(const struct cs_system *system, uint32_t i, uint32_
     return error->status;
 }
 
+/* Moves particle i out of all colliders, or refuses it. */
 static enum cs_status clear(struct cs_system *system, uint32_t i,
                             struct cs_initial_penetration *inside, struct cs_error *error) {
     const size_t size = system->view.n;
@@ -70,7 +79,7 @@ static enum cs_status clear(struct cs_system *system, uint32_t i,
     return CS_OK;
 }
 
-/* a point of an edge or triangle that is inside the collider of its chunk */
+/* Refuses samples of an edge or triangle that are inside the collider of their chunk. */
 static enum cs_status check_between_particles(const struct cs_system *system,
                                               const struct cs_contact_sample_chunk *chunk,
                                               uint32_t item, struct cs_error *error) {
@@ -98,6 +107,7 @@ static enum cs_status check_between_particles(const struct cs_system *system,
     return CS_OK;
 }
 
+/* Checks the samples of all chunks. */
 static enum cs_status check_between(const struct cs_system *system, struct cs_error *error) {
     for (uint32_t l = 0; l < system->contact_samples->n_chunks; l++) {
         const struct cs_contact_sample_chunk *chunk = system->contact_samples->chunks + l;
@@ -108,7 +118,7 @@ static enum cs_status check_between(const struct cs_system *system, struct cs_er
     return CS_OK;
 }
 
-/* a force between surfaces holds apart what is apart, and cannot part what is through */
+/* Refuses surfaces with contact that cross at the start. */
 static enum cs_status check_crossings(const struct cs_system *system, struct cs_error *error) {
     if (!system->pairs || !system->crossings)
         return CS_OK;
@@ -125,6 +135,7 @@ static enum cs_status check_crossings(const struct cs_system *system, struct cs_
     return error->status;
 }
 
+/* Particles first, then samples, whose vertices may have been moved, then crossings. */
 enum cs_status cs_initial_penetration_resolve(struct cs_system *system,
                                               struct cs_initial_penetration *inside,
                                               struct cs_error *error) {

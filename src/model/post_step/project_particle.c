@@ -1,4 +1,4 @@
-/* project_particle.c - one particle against one obstacle: normal push, absorption and friction.
+/* project_particle.c - one particle against one collider: normal push, absorption and friction.
  */
 #include "model/post_step/project_particle.h"
 
@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* shortens the part of a that is across n by `lost`, or takes all of it: true */
+/* Shortens the part of a across n by `lost`; returns whether nothing of it is left. */
 static bool apply_friction(double a[3], const double n[3], double lost) {
     const double along = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
     double across[3], squared = 0;
@@ -20,13 +20,13 @@ static bool apply_friction(double a[3], const double n[3], double lost) {
     return kept == 0;
 }
 
-/* share of the inward velocity that is changed: above 1 it is turned round */
+/* Factor of the inward velocity that is taken away: above 1 the velocity is reflected. */
 static double fraction_of(const struct cs_collider *collider) {
     const double ka = collider->absorption;
     return ka < 0 ? 1 - ka : ka;
 }
 
-/* true: nothing of the velocity is left */
+/* Corrects the velocity relative to the collider; returns whether nothing of it is left. */
 static bool absorb(const struct cs_collider *collider, const double n[3], double v[3]) {
     const double inward = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
     if (inward >= 0)
@@ -47,7 +47,7 @@ enum cs_project_result cs_project_particle(const struct cs_posed_collider *obsta
     if (!(gap < 0))
         return CS_PROJECT_NONE;
 
-    /* where the particle would be had it moved with the obstacle */
+    /* position that the particle would have, had it moved with the collider */
     cs_posed_collider_velocity(obstacle, p, provenance);
     for (int c = 0; c < 3; c++) {
         from[c] = last[c] + dt * provenance[c];

@@ -1,5 +1,5 @@
-/* projection_energy.c - energies before and after, and what is done where there is too much;
- * see projection_energy.h. */
+/* projection_energy.c - energies before and after a correction, and its reduction if there is
+ * too much; see projection_energy.h. */
 #include "model/post_step/projection_energy.h"
 
 #include "base/vector.h"
@@ -8,10 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-/* share of what was lost since the first touch that one commit may give back, to lift what is
- * still behind a surface */
+/* Fraction of the energy lost since first contact that one commit may return, to lift particles
+ * that are still behind a surface. Chosen by trial. */
 #define GIVEN_BACK 0.01
-/* of the energy: what rounding may make of equal ones */
+/* relative difference that rounding may cause between equal energies */
 #define ROUNDING 1e-13
 enum { HALVINGS = 8 };
 
@@ -23,15 +23,15 @@ static struct cs_energy_with_scale energy_of(const struct cs_projection_energy *
                                                   fabs(energy.other) + balance->energy_scale};
 }
 
-/* of where the commit would take the state */
+/* energy of the corrected state */
 static struct cs_energy_with_scale energy_after(struct cs_projection_energy *balance,
                                                 const struct cs_projection_step *blow) {
     return energy_of(balance, blow->t, blow->corrected,
                      blow->corrected + 3 * balance->system->view.n);
 }
 
-/* The energy with obstacles having done their work: particles taken along, and the velocities
- * that they are given. */
+/* Energy after moving colliders have done their work: particles displaced by their motion, with
+ * the velocities that projection gives. */
 static double energy_with_collider_work(struct cs_projection_energy *balance,
                                         const struct cs_projection_step *blow) {
     const size_t n = balance->system->view.n;
@@ -55,7 +55,8 @@ static double energy_with_collider_work(struct cs_projection_energy *balance,
     return energy_of(balance, blow->t, balance->work, blow->corrected + 3 * n).total;
 }
 
-/* kinetic energy in J that the blows of this commit take away */
+/* J, kinetic energy that the projections of this commit remove: sum m (v^2 - v'^2)/2, at least
+ * 0. */
 static double energy_absorbed(struct cs_projection_energy *balance,
                               const struct cs_projection_step *blow) {
     const size_t n = balance->system->view.n;
@@ -69,7 +70,8 @@ static double energy_absorbed(struct cs_projection_energy *balance,
     return fmax(sum, 0);
 }
 
-/* J, of a fall through one step: a body that rests cannot be told from it by its energy */
+/* J, energy of a fall through one step, m g^2 dt^2 / 2: energy alone cannot tell a body at rest
+ * from one that falls so far. */
 static double find_fall(struct cs_projection_energy *balance,
                         const struct cs_projection_step *blow) {
     const struct cs_system *system = balance->system;
@@ -80,15 +82,15 @@ static double find_fall(struct cs_projection_energy *balance,
     return mass * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) * blow->dt * blow->dt / 2;
 }
 
-/* what the energy may come to beside work from outside: what the commit before has left, and a
- * little of what was lost, or is in this one, up to what there was at the first touch */
+/* J, limit without external work: the energy of the last commit plus GIVEN_BACK of the loss, up
+ * to that at first contact. */
 static double energy_allowed(const struct cs_projection_energy *balance) {
     const double kept = balance->energy.total;
     const double lost = fmax(balance->energy_limit - kept, balance->absorbed);
     return fmin(kept + GIVEN_BACK * lost, fmax(balance->energy_limit, kept));
 }
 
-/* with the work that the step has brought in, from outside and by obstacles */
+/* J, limit with the work of this step from outside and by colliders, and room for rounding. */
 static double find_allowed(struct cs_projection_energy *balance,
                            const struct cs_projection_step *blow) {
     const struct cs_energy_with_scale before = energy_of(balance, blow->t, blow->x, blow->v);
@@ -99,8 +101,9 @@ static double find_allowed(struct cs_projection_energy *balance,
     return allowed + ROUNDING * fmax(before.scale, balance->energy.scale);
 }
 
-/* 1/s, the change of velocity that goes with a push: g h with g h^2 in a step of implicit
- * Euler, with g h^2 / 2 in one of second order; of a blow no more than that */
+/* 1/s, change of velocity per displacement of the pushed particles, in the least-squares sense:
+ * u.dv / u.u. A step of implicit Euler has g h for g h^2; one of second order g h for g h^2 /
+ * 2, hence at most 2/dt. */
 static double find_rate(const struct cs_projection_step *blow, size_t n, const double *u) {
     double along = 0, squared = 0;
     for (size_t c = 0, k = 0; c < 3; c++)
@@ -113,7 +116,7 @@ static double find_rate(const struct cs_projection_step *blow, size_t n, const d
     return along > 0 ? fmin(along / squared, 2 / blow->dt) : 0;
 }
 
-/* the rest of the body follows the pushes, in its velocity too */
+/* Lets the other particles follow the pushes, in position and velocity. */
 static void apply_elastic_response(struct cs_projection_energy *balance,
                                    const struct cs_projection_step *blow) {
     const size_t n = balance->system->view.n;
@@ -137,13 +140,14 @@ static void apply_elastic_response(struct cs_projection_energy *balance,
         }
 }
 
-/* what of a correction is done */
+/* Fractions of a correction: of displacements, and of the velocities that belong to them. */
 struct share {
-    double way, speed; /* of the pushes and what follows them, of the velocity that it gets */
+    /* of displacements (way), and of the velocities that belong to them (speed) */
+    double way, speed;
 };
 
-/* The energy of the state that the step has left with a share of the correction; pushed
- * particles have their new velocity in any case. */
+/* Applies fractions of the correction to the state after the step, and returns its energy.
+ * Pushed particles have their new velocity in any case. */
 static struct cs_energy_with_scale try_share(struct cs_projection_energy *balance,
                                              const struct cs_projection_step *blow,
                                              struct share share) {
@@ -157,7 +161,7 @@ static struct cs_energy_with_scale try_share(struct cs_projection_energy *balanc
     return energy_after(balance, blow);
 }
 
-/* Of *part of share, from 0 to 1, as much as keeps to the energy. */
+/* Bisects *part, one of the fractions in *share, for the largest value within the limit. */
 static void bisect_fraction(struct cs_projection_energy *balance,
                             const struct cs_projection_step *blow, double allowed,
                             struct share *share, double *part) {
@@ -169,8 +173,8 @@ static void bisect_fraction(struct cs_projection_energy *balance,
     *part = low;
 }
 
-/* First the velocities, which take the momentum of the blow away, then the pushes; returns the
- * energy that is left. */
+/* Reduces the correction: first the velocities, which carry the momentum of the impact, then
+ * the displacements. Returns the energy that results. */
 static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
                                            const struct cs_projection_step *blow,
                                            double allowed) {
@@ -184,6 +188,8 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *balance,
     return try_share(balance, blow, share);
 }
 
+/* Energies are computed lazily: the limit with external work only if the simple one is
+ * exceeded, the elastic response only if that is exceeded too. */
 bool cs_projection_energy_limit(struct cs_projection_energy *balance,
                                 const struct cs_projection_step *blow) {
     const size_t n = balance->system->view.n;
@@ -213,7 +219,7 @@ bool cs_projection_energy_limit(struct cs_projection_energy *balance,
     return true;
 }
 
-/* size of the parts that gravity's energy is the sum of, which may cancel */
+/* J, sum of |m g.x|: the size of the terms of gravity's energy */
 static double gravity_scale(const struct cs_system *system) {
     const size_t n = system->view.n;
     const double *g = system->scene->forces.gravity, *x = system->state;

@@ -1,16 +1,19 @@
-/* projection_energy.h - no energy comes of the pushes of a commit.
+/* projection_energy.h - keeps contact projection from adding energy.
  *
- * A push of depth d on a particle of stiffness K adds K d^2 / 2 to the springs, while the
- * velocity that it takes away held m (d / dt)^2 / 2: dt^2 K / m times less. So the energy after
- * a commit is held at or below the larger of what there was before the push, and of what the
- * commit before has left with a hundredth of what was lost since the first touch:
- *   1. the pushes alone, where they keep to it;
- *   2. else the body gives way to them as in an implicit step (elastic_response.h), in its
- * velocity by as much as goes with the way in the step of the method;
- *   3. else a share of it, by bisection; the rest is pushed in later commits. Velocities never
- *      point inwards.
- * At the first touch there was what the state before it had, and what a fall through one step
- * adds, for a body at rest has nothing to lose. Obstacles that move do work beside that. */
+ * A push of depth d on a particle with stiffness K adds K d^2 / 2 to the springs. The velocity
+ * that it removes had m (d / dt)^2 / 2, which is dt^2 K / m times less if the step is stiff.
+ * The energy after a commit is therefore limited to the larger of two: that before the push,
+ * and that of the last commit plus a hundredth of what was lost since first contact. In this
+ * order:
+ *
+ * 1. the pushes alone are accepted if they respect the limit;
+ * 2. otherwise the body follows them as in an implicit step (elastic_response.h), and its
+ *    velocity by as much as belongs to the displacement in a step of the method;
+ * 3. otherwise a fraction of the correction is applied, by bisection, and the rest in later
+ *    commits. Velocities never point inwards.
+ *
+ * At first contact the reference is the energy before the step, plus that of a fall through one
+ * step, because a body at rest has nothing to lose. Colliders that move do work in addition. */
 #ifndef CS_PROJECTION_ENERGY_H
 #define CS_PROJECTION_ENERGY_H
 
@@ -18,46 +21,55 @@
 #include "model/contact/posed_collider.h"
 #include "model/post_step/elastic_response.h"
 
-/* J: of all kinds, and the sum of their sizes, by which rounding is judged. */
+/* J: total energy, and the sum of the sizes of its parts, which scales rounding errors. */
 struct cs_energy_with_scale {
     double total, scale;
 };
 
+/* State of the limit between commits. */
 struct cs_projection_energy {
     const struct cs_system *system; /* borrowed */
     struct cs_elastic_response elastic_response;
-    double *work;                       /* (3,n) work */
-    double energy_scale;                /* J */
-    double velocity_per_push;           /* 1/s, velocity that a response gives for its way */
-    struct cs_energy_with_scale energy; /* that the last commit with a push has left */
-    double absorbed;                    /* J, of kinetic energy by the pushes of this commit */
-    double energy_limit; /* J: what there was before anything touched, or was added since */
+    /* (3,n) work array */
+    double *work;
+    /* J, size of the terms of gravity's energy, which may cancel */
+    double energy_scale;
+    /* 1/s, velocity per displacement of an elastic response */
+    double velocity_per_push;
+    /* energy that the last commit with a push left */
+    struct cs_energy_with_scale energy;
+    /* J, kinetic energy that the pushes of this commit removed */
+    double absorbed;
+    /* J, energy before first contact, and what was added since */
+    double energy_limit;
     bool has_last_energy,
         in_contact; /* energy is that of the state before; most is of this contact */
     uint64_t
         n_scaled_commits; /* commits in which pushes were cut to the energy that was there */
 };
 
-/* One commit with a push. */
+/* One commit with a push; all is borrowed. */
 struct cs_projection_step {
     double t, dt;
     const struct cs_posed_collider *colliders;
     const double *before_step; /* (6,n) the state before the step */
     const double *x, *v;       /* (3,n) as the step has left them */
     double *corrected;         /* (6,n) as the pushes leave them */
-    const bool *is_pushed; /* (n) particles that are where they have to be: pushed or held */
+    /* (n) particles whose position is imposed: pushed or held */
+    const bool *is_pushed;
 };
 
-/* Takes the arrays from arena. CS_ERR_MEMORY. */
+/* Allocates the arrays in the arena. CS_ERR_MEMORY. */
 enum cs_status cs_projection_energy_init(struct cs_projection_energy *balance,
                                          struct cs_system *system, struct cs_arena *arena,
                                          struct cs_error *error);
 
-/* Corrects blow->to as said above. false: particles are left behind a surface. */
+/* Corrects blow->corrected as described above. Returns false if particles are left behind a
+ * surface. */
 bool cs_projection_energy_limit(struct cs_projection_energy *balance,
                                 const struct cs_projection_step *blow);
 
-/* What it leaves to the next commit, for a checkpoint. */
+/* Reads or writes what it leaves to the next commit, for a checkpoint. */
 void cs_projection_energy_serialise(struct cs_projection_energy *balance,
                                     struct cs_serialiser *record);
 

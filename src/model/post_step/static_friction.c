@@ -1,5 +1,5 @@
-/* static_friction.c - the cone of friction, and pins that come and go with it; see
- * static_friction.h. */
+/* static_friction.c - static friction: pins particles inside the friction cone and releases
+ * them outside it; see static_friction.h. */
 #include "model/post_step/static_friction.h"
 
 #include "base/vec3.h"
@@ -10,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* m: on a surface, as far as the scene's numbers tell */
+/* m, distance up to which a particle counts as on a surface: scenes give positions in decimals
+ */
 #define TOUCHING 1e-9
 
 enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
@@ -34,6 +35,7 @@ void cs_static_friction_unpin(struct cs_static_friction *stick) {
     cs_temporary_pins_clear(&stick->pins, stick->is_sticking);
 }
 
+/* The mass, not the inverse mass, is used: the latter is 0 while a particle is pinned. */
 bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, const double *last,
                                 double *x, double *v) {
     const size_t n = stick->system->view.n;
@@ -50,13 +52,15 @@ bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, con
     return moved;
 }
 
+/* Sticking particles keep resting_on: their collider did not change. */
 void cs_static_friction_reject(struct cs_static_friction *stick) {
     for (uint32_t i = 0; i < stick->system->view.n; i++)
         if (!stick->is_sticking[i])
             stick->resting_on[i] = 0;
 }
 
-/* whether friction can hold particle i at p under the load */
+/* Returns whether particle at p sticks under a load in N: N = -load.n > 0 and |T|^2 <= (mu
+ * N)^2, with T = load + N n. */
 static bool can_stick(const struct cs_posed_collider *obstacle, const double p[3],
                       const double load[3]) {
     const double mu = obstacle->collider->friction;
@@ -70,6 +74,7 @@ static bool can_stick(const struct cs_posed_collider *obstacle, const double p[3
     return inward > 0 && across <= mu * mu * inward * inward;
 }
 
+/* Returns whether a particle rests or sticks. */
 static bool any(const struct cs_static_friction *stick) {
     for (uint32_t i = 0; i < stick->system->view.n && stick->n_sticking == 0; i++)
         if (stick->resting_on[i])
@@ -77,6 +82,8 @@ static bool any(const struct cs_static_friction *stick) {
     return stick->n_sticking > 0;
 }
 
+/* f is the sum of all force terms; colliders have none under this law. A sticking particle has
+ * its recorded load in addition. */
 bool cs_static_friction_update(struct cs_static_friction *stick,
                                const struct cs_posed_collider *obstacles, double t,
                                const double *x, const double *v, double *f) {
@@ -112,7 +119,8 @@ void cs_static_friction_clear(struct cs_static_friction *stick) {
     memset(stick->is_sticking, 0, n * sizeof *stick->is_sticking);
 }
 
-/* the obstacle on which a particle at p with the velocity v is at rest + 1; 0: none */
+/* Number plus 1 of the collider that a particle at p with velocity v rests on; 0: none. Both
+ * must be at rest, and the collider must absorb all of the normal velocity. */
 static uint32_t find_resting_on(const struct cs_static_friction *stick,
                                 const struct cs_posed_collider *obstacles, const double p[3],
                                 const double v[3]) {
@@ -128,6 +136,7 @@ static uint32_t find_resting_on(const struct cs_static_friction *stick,
     return 0;
 }
 
+/* Sets resting_on of all particles at rest on a collider, then decides by the cone. */
 void cs_static_friction_start(struct cs_static_friction *stick,
                               const struct cs_posed_collider *obstacles, double t,
                               const double *x, const double *v, double *f) {

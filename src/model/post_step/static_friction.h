@@ -1,14 +1,26 @@
-/* static_friction.h - particles that friction holds on an obstacle at rest: pinned until the
- * load on them leaves the cone of friction.
+/* static_friction.h - static friction: particles on a collider at rest are pinned until their
+ * load leaves the friction cone.
  *
- * A push after each step cannot hold them by itself: within a step they would fall, the springs
- * would follow, and what a method remembers of the fall would come back in the steps after. So
- * a particle that a commit has brought to rest altogether takes no part in the steps that
- * follow (Baraff, Witkin 1998, sec. 5: constraints), while
+ * Projection after a step cannot hold a particle by itself. Within the step it would fall, its
+ * springs would follow, and whatever a method remembers of the fall would return in later
+ * steps. So a particle that a commit has stopped completely takes no part in the next
+ * steps (cf. the constraints of Baraff, Witkin 1998, sec. 5), as long as
+ *
  *   N > 0 and |T| <= mu N
- * with N, T the load on it, along the inward normal and across: the force at the end of the
- * step, and what would have moved it in the step if it were free.
- */
+ *
+ * with N and T the load along the inward normal and across it. The load is the force at the end
+ * of the step, plus, for a pinned particle, m dx/dt^2 from the displacement dx that
+ * cs_static_friction_restore took back.
+ *
+ * States of a particle and their transitions, once per commit:
+ *
+ *   free     -> resting    projection stops it (CS_PROJECT_STUCK)
+ *   resting  -> sticking   its load is inside the cone
+ *   resting  -> free       its load is outside, or the push was cut short
+ *   sticking -> sticking   its load is inside the cone
+ *   sticking -> free       its load is outside
+ *
+ * Resting lasts within a commit only; sticking is the state between commits. */
 #ifndef CS_STATIC_FRICTION_H
 #define CS_STATIC_FRICTION_H
 
@@ -16,49 +28,56 @@
 #include "model/contact/posed_collider.h"
 #include "model/post_step/temporary_pins.h"
 
+/* State of static friction; borrowed or owned by the arena. */
 struct cs_static_friction {
     struct cs_system *system; /* borrowed */
     struct cs_temporary_pins pins;
-    uint32_t *resting_on; /* (n) number of the obstacle that it rests on + 1; 0: none */
-    bool *is_sticking;    /* (n) */
-    double *load;         /* (3,n) in N */
-    uint32_t n_sticking;  /* held */
-    bool disabled;        /* the method's model has other forces than those of the system */
+    /* (n) number of the collider that it rests on, plus 1; 0: none */
+    uint32_t *resting_on;
+    /* (n) pinned by static friction */
+    bool *is_sticking;
+    /* (3,n) N, m dx/dt^2 of sticking particles in the last step */
+    double *load;
+    /* number of sticking particles */
+    uint32_t n_sticking;
+    /* the method has other forces than the system, so that loads are unknown */
+    bool disabled;
 };
 
-/* Takes the arrays from arena. CS_ERR_MEMORY. */
+/* Prepares the arrays, which the arena owns; nobody sticks. CS_ERR_MEMORY. */
 enum cs_status cs_static_friction_init(struct cs_static_friction *stick,
                                        struct cs_system *system, struct cs_arena *arena,
                                        struct cs_error *error);
 
-/* Pins the held particles, and unpins them: pinned within steps, free for all that follows a
- * step and all that looks on. */
+/* Pins the sticking particles before a step, and unpins them after it: they are free for the
+ * rest of the commit and for all that reads the state. */
 void cs_static_friction_pin(struct cs_static_friction *stick);
 void cs_static_friction_unpin(struct cs_static_friction *stick);
 
-/* Puts the held particles back to where they were, `last` (3,n), at rest; what had moved them
- * in dt is load. true: one was moved. */
+/* Moves the sticking particles back to their positions in `last` (3,n), at rest, and records
+ * the load of the step of dt seconds. Returns whether one had moved. */
 bool cs_static_friction_restore(struct cs_static_friction *stick, double dt, const double *last,
                                 double *x, double *v);
 
-/* Those whose `on` was set in this commit are not at rest after all. */
+/* Clears resting_on of all particles that do not stick: the push of this commit was cut short.
+ */
 void cs_static_friction_reject(struct cs_static_friction *stick);
 
-/* Decides at (x, v) at t who is held from now on, of those held and of those whose `on` was set
- * in this commit. f (3,n) is work. true: others than before. */
+/* Decides at (x, v) at t which particles stick from now on, among those that stick or rest. f
+ * (3,n) is work. Returns whether others do than before. */
 bool cs_static_friction_update(struct cs_static_friction *stick,
                                const struct cs_posed_collider *colliders, double t,
                                const double *x, const double *v, double *f);
 
-/* Decides it at the start of a run or after an event: of those at rest on a surface. */
+/* The same at the start of a run or after an event, for particles at rest on a surface. */
 void cs_static_friction_start(struct cs_static_friction *stick,
                               const struct cs_posed_collider *colliders, double t,
                               const double *x, const double *v, double *f);
 
-/* Nobody is held: the state or the system was changed from outside. */
+/* Releases all particles: the state or the system was changed from outside. */
 void cs_static_friction_clear(struct cs_static_friction *stick);
 
-/* What it leaves to the next commit, for a checkpoint. */
+/* Reads or writes what it leaves to the next commit, for a checkpoint. */
 void cs_static_friction_serialise(struct cs_static_friction *stick,
                                   struct cs_serialiser *record);
 

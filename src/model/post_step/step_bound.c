@@ -1,4 +1,4 @@
-/* step_bound.c - the time to a surface, and a little beyond, in free fall. */
+/* step_bound.c - time to a surface, and to the admissible depth behind it, in free fall. */
 #include "model/post_step/step_bound.h"
 
 #include <math.h>
@@ -7,7 +7,12 @@ double cs_step_bound_depth(const struct cs_system *system) {
     return system->springs.n > 0 ? 0.1 * cs_springs_shortest(&system->springs) : HUGE_VAL;
 }
 
-/* The time to go `way` > 0 with the speed s and the acceleration a towards it. */
+/* Time in s to cover the distance way > 0 at speed s with acceleration a, the root of way = s t
+ * + a t^2/2 in a form without cancellation:
+ *
+ *   t = 2 way / (s + sqrt(s^2 + 2 a way))
+ *
+ * HUGE_VAL if it turns back before, or stands. */
 static double time_to(double way, double s, double a) {
     const double squared = s * s + 2 * a * way;
     const double sum = s + sqrt(fmax(squared, 0));
@@ -15,6 +20,8 @@ static double time_to(double way, double s, double a) {
     return squared >= 0 && sum > 0 ? 2 * way / sum : HUGE_VAL;
 }
 
+/* Time in s of one particle to the depth behind one collider. speed and pull are the components
+ * of relative velocity and gravity against the normal. */
 static double time_of(const struct cs_system *system, const struct cs_posed_collider *collider,
                       double depth, const double p[3], const double v[3]) {
     const double *g = system->scene->forces.gravity;
@@ -28,6 +35,7 @@ static double time_of(const struct cs_system *system, const struct cs_posed_coll
     return time_to(fmax(gap, 0) + depth, speed, pull);
 }
 
+/* Minimum over all free particles and colliders. */
 double cs_step_bound_step(const struct cs_system *system,
                           const struct cs_posed_collider *obstacles, double depth,
                           const double *x, const double *v) {

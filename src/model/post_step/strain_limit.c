@@ -1,25 +1,29 @@
-/* Strain limiting: passes over the stretch springs of a body, forwards and backwards in turn.
- */
+/* Strain limiting: Gauss-Seidel passes over the stretch springs of a body, forwards and
+ * backwards in turn. */
 #include "model/post_step/strain_limit.h"
 
 #include "model/post_step/strain_limit_grid.h"
 
 #include <math.h>
 
-/* passes over a body */
+/* Parameters of the passes over one body. */
 struct pass {
     const struct cs_system *system;
     uint32_t body;
-    double limit;    /* of a length over that at rest */
-    double per_time; /* 1/s: what a move does to the velocity */
+    /* largest length over rest length (1) */
+    double limit;
+    /* 1/s: change of velocity per displacement */
+    double per_time;
     double *x, *v;
 };
 
+/* Returns whether a run of springs is limited in this pass. */
 static bool is_limited(const struct pass *pass, const struct cs_spring_run *run) {
     return run->body == pass->body && run->kind == CS_SPRING_STRETCH;
 }
 
-/* one spring of a mesh; true if it was too long */
+/* Shortens one spring of a mesh; returns whether it was too long. Displacements by inverse
+ * masses conserve the momentum of the pair. */
 static bool shorten(const struct pass *pass, const struct cs_spring_run *run, uint32_t i) {
     const struct cs_system *system = pass->system;
     const uint32_t a = cs_spring_a(run, i), b = cs_spring_b(run, i);
@@ -47,7 +51,7 @@ static bool shorten(const struct pass *pass, const struct cs_spring_run *run, ui
     return true;
 }
 
-/* one pass over a mesh, in the order of the springs */
+/* One pass over a mesh in the order of its springs. */
 static uint64_t mesh_pass(const struct pass *pass, bool backwards) {
     const struct cs_springs *springs = &pass->system->springs;
     uint64_t moves = 0;
@@ -60,8 +64,8 @@ static uint64_t mesh_pass(const struct pass *pass, bool backwards) {
     return moves;
 }
 
-/* The grid that a pass goes over; no rows: its body has none, or no stretch springs. The runs
- * of its first row tell all of it. */
+/* Describes the grid of a body; no rows: the body is no grid, or has no stretch springs. The
+ * runs of the first row define all of it. */
 static struct cs_strain_limit_grid grid_of(const struct pass *pass) {
     const struct cs_springs *springs = &pass->system->springs;
     struct cs_strain_limit_grid grid = {.n = pass->system->view.n,
@@ -84,6 +88,7 @@ static struct cs_strain_limit_grid grid_of(const struct pass *pass) {
     return grid;
 }
 
+/* Bodies one after the other; odd passes run backwards. */
 uint64_t cs_strain_limit_apply(const struct cs_system *system, double dt, double *x,
                                double *v) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);

@@ -1,6 +1,6 @@
-/* The strain limit of a grid. Down a row of particles is a vector as it lies; along the rows a
- * spring waits for the one before it, so that many rows go side by side, piece by piece in a
- * strip on the stack. */
+/* The strain limit of a grid. Springs between two rows are one vector as they lie in memory.
+ * Along a row each spring waits for the one before it; therefore sixteen rows are handled side
+ * by side, in strips of sixteen springs that are transposed on the stack. */
 #include "model/post_step/strain_limit_grid.h"
 
 #include <clothsim/clones.h>
@@ -14,18 +14,20 @@ enum {
     NUMBERS = 6  /* of a particle: x, y, z and its velocity */
 };
 
-/* some columns of some rows; the column before them is there from the strip before */
+/* Some columns of sixteen rows, transposed. Its first column is the last one of the strip
+ * before. */
 struct strip {
     _Alignas(64) double numbers[LENGTH + 1][NUMBERS][LANES];
     double inv_mass[LENGTH + 1][LANES];
 };
 
-/* which particles a strip holds: row `row` + l, column begin + j, from the last if backwards */
+/* Particles of a strip: rows row + l, columns begin + j, counted from the last if backwards. */
 struct place {
     size_t row, lanes, begin, count;
     bool backwards;
 };
 
+/* Index of the particle in lane `lane` and column j of a strip. */
 CS_INLINE size_t particle_of(const struct cs_strain_limit_grid *grid, const struct place *place,
                              size_t lane, size_t j) {
     const size_t column = place->begin + j;
@@ -52,13 +54,14 @@ CS_INLINE void store(const struct cs_strain_limit_grid *grid, const struct place
     }
 }
 
-/* w is the sum of both ends' inverse masses: nothing moves between two pinned ones. */
+/* Returns whether a spring is corrected; w is the sum of inverse masses, 0 between two pinned
+ * ends. */
 CS_INLINE bool is_moved(double squared, double longest, double w) {
     return (squared > longest * longest) & (w > 0);
 }
 
-/* What a spring is to lose of its length, over w; 0 where it is not too long. Without a branch,
- * so that loops vectorise: where w is 0, DBL_MIN keeps the quotient finite. */
+/* Relative excess of length over w; 0 for a spring that is short enough. Without a branch, so
+ * that loops vectorise; DBL_MIN keeps the quotient finite for w = 0. */
 CS_INLINE double fraction_of(double squared, double longest, double w) {
     const double excess = 1 - longest / sqrt(squared);
     return (excess > 0 ? excess : 0) / (w + DBL_MIN);
@@ -74,9 +77,8 @@ CS_INLINE void move_lane(double p[NUMBERS][LANES], size_t l, double to, const do
     p[5][l] += to * d[2] * per_time;
 }
 
-/* The springs between two columns of a strip, by inverse masses, so that a pair keeps its
- * momentum; between two pinned ends there is nothing to move. No spring is treated apart: those
- * that are short enough are moved by 0. */
+/* Springs between two columns of a strip, by inverse masses, which conserves momentum. All
+ * springs are treated alike: short ones move by 0. */
 CS_INLINE uint64_t shorten_columns(double a[NUMBERS][LANES], double b[NUMBERS][LANES],
                                    const double *wa, const double *wb, double longest,
                                    double per_time) {
@@ -94,7 +96,7 @@ CS_INLINE uint64_t shorten_columns(double a[NUMBERS][LANES], double b[NUMBERS][L
     return moves;
 }
 
-/* The springs of a strip, one column after the other. */
+/* Loads a strip, shortens its springs column by column, and stores it if any was too long. */
 CS_INLINE uint64_t shorten_strip(const struct cs_strain_limit_grid *grid,
                                  const struct place *place, struct strip *strip) {
     uint64_t moves = 0;
@@ -110,7 +112,7 @@ CS_INLINE uint64_t shorten_strip(const struct cs_strain_limit_grid *grid,
     return moves;
 }
 
-/* the square of the length of the spring between two particles, and its three parts in d */
+/* Squared length of the spring between two particles; its components go to d. */
 CS_INLINE double squared_of(const struct cs_strain_limit_grid *grid, size_t a, size_t b,
                             double d[3]) {
     for (size_t c = 0; c < 3; c++)
@@ -118,8 +120,8 @@ CS_INLINE double squared_of(const struct cs_strain_limit_grid *grid, size_t a, s
     return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
 }
 
-/* whether any of `count` springs, from particles first, first + 1 ... to those `to` behind
- * them, is too long */
+/* Returns whether one of `count` springs, between particles first + k and first + k + to, is
+ * too long. Most rows have none and are not transposed. */
 CS_INLINE bool any_long(const struct cs_strain_limit_grid grid, size_t first, size_t count,
                         size_t to, double longest) {
     uint64_t any = 0;
@@ -130,7 +132,7 @@ CS_INLINE bool any_long(const struct cs_strain_limit_grid grid, size_t first, si
     return any;
 }
 
-/* Some rows side by side. */
+/* Handles up to sixteen rows side by side. */
 CS_CLONES static uint64_t shorten_along(const struct cs_strain_limit_grid *grid,
                                         struct place place) {
     struct strip strip;
@@ -154,7 +156,7 @@ CS_INLINE void move(const struct cs_strain_limit_grid *grid, size_t i, double by
     grid->v[i] += by * grid->inverse_dt;
 }
 
-/* The springs from a row to the next; the formula is that of shorten_columns(). */
+/* Springs from a row to the next, by the formula of shorten_columns. */
 CS_INLINE uint64_t shorten_rows(const struct cs_strain_limit_grid grid, size_t row) {
     const size_t first = row * grid.columns, to = grid.columns, n = grid.n;
     uint64_t moves = 0;

@@ -1,4 +1,4 @@
-/* temporary_pins.c - a list of pins in place of the system's; see temporary_pins.h. */
+/* temporary_pins.c - exchanges the system's list of pins; see temporary_pins.h. */
 #include "model/post_step/temporary_pins.h"
 
 enum cs_status cs_temporary_pins_init(struct cs_temporary_pins *pins, struct cs_system *system,
@@ -8,6 +8,8 @@ enum cs_status cs_temporary_pins_init(struct cs_temporary_pins *pins, struct cs_
     return error->status;
 }
 
+/* Pinned particles of the system have inverse mass 0 already, and enter the list with the
+ * marked ones, in ascending order. */
 void cs_temporary_pins_set(struct cs_temporary_pins *pins, const bool *marks) {
     struct cs_system *system = pins->system;
     pins->scene_list = system->pinned;
@@ -22,6 +24,7 @@ void cs_temporary_pins_set(struct cs_temporary_pins *pins, const bool *marks) {
     }
 }
 
+/* Marked particles get 1/mass back, the inverse mass that they had before. */
 void cs_temporary_pins_clear(struct cs_temporary_pins *pins, const bool *marks) {
     struct cs_system *system = pins->system;
     if (!pins->scene_list)

@@ -1,4 +1,5 @@
-/* Items counted into blocks, sixteen to a cluster, and what of the grid a cluster spans. */
+/* Counting sort of items into blocks, sixteen to a cluster, with the rectangle of each cluster.
+ */
 #include "model/contact/broad_phase/aabb_cluster_build.h"
 
 #include <math.h>
@@ -9,6 +10,7 @@ static uint32_t point_of(const struct cs_cluster_input *order, uint32_t item, ui
                            : item;
 }
 
+/* Rectangle of the vertices of one item. */
 static struct cs_grid_rectangle span_of(const struct cs_cluster_input *order,
                                         const struct cs_flat_region *grid, uint32_t item) {
     struct cs_grid_rectangle span = {{HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF}};
@@ -24,7 +26,7 @@ static struct cs_grid_rectangle span_of(const struct cs_cluster_input *order,
     return span;
 }
 
-/* within the grid, of the corner where an item begins */
+/* Block, within its grid, of the first vertex of an item's rectangle. */
 static uint32_t block_of(const struct cs_cluster_input *order,
                          const struct cs_flat_region *grid, uint32_t item) {
     const struct cs_grid_rectangle span = span_of(order, grid, item);
@@ -36,8 +38,8 @@ static uint32_t clusters_of(uint32_t n_items) {
     return (n_items + CS_AABB_CLUSTER - 1) / CS_AABB_CLUSTER;
 }
 
-/* Items of a body one behind the other, blocks beginning a cluster each; at: the place of each
- * block's next item. */
+/* Stores the items of a grid body, with each block in clusters of its own. at: work, one per
+ * block; first counts, then the position of the next item. */
 static void put_grid(const struct cs_cluster_input *order, uint32_t body,
                      struct cs_aabb_clusters *clusters, uint32_t *at) {
     const struct cs_flat_region *grid = order->flat_regions[body];
@@ -55,6 +57,7 @@ static void put_grid(const struct cs_cluster_input *order, uint32_t body,
         clusters->items[at[block_of(order, grid, i)]++] = i;
 }
 
+/* Stores the items of any other body in their order. */
 static void put_body(const struct cs_cluster_input *order, uint32_t body,
                      struct cs_aabb_clusters *clusters) {
     const uint32_t n = order->first[body + 1] - order->first[body];
@@ -64,6 +67,7 @@ static void put_body(const struct cs_cluster_input *order, uint32_t body,
         clusters->grid_block[clusters->n++] = CS_NO_BLOCK;
 }
 
+/* Sets the rectangle of a cluster to that of its items; the whole plane if it is no grid. */
 static void set_span(const struct cs_cluster_input *order, const struct cs_flat_region *grid,
                      const struct cs_aabb_clusters *clusters, uint32_t cluster) {
     static const struct cs_grid_rectangle everywhere = {{-HUGE_VALF, -HUGE_VALF},
@@ -80,6 +84,7 @@ static void set_span(const struct cs_cluster_input *order, const struct cs_flat_
     }
 }
 
+/* largest item of a cluster */
 static uint32_t last_of(const uint32_t items[CS_AABB_CLUSTER]) {
     uint32_t last = items[0];
     for (uint32_t l = 1; l < CS_AABB_CLUSTER; l++)
@@ -87,7 +92,8 @@ static uint32_t last_of(const uint32_t items[CS_AABB_CLUSTER]) {
     return last;
 }
 
-/* most clusters, and most blocks of a grid; returns whether there is one */
+/* Upper bounds of the clusters, and of the blocks of a grid; returns whether there is a grid.
+ */
 static bool count(const struct cs_cluster_input *order, size_t *clusters, size_t *blocks) {
     *clusters = *blocks = 0;
     for (uint32_t b = 0; b < order->n_bodies; b++) {

@@ -1,12 +1,12 @@
-/* aabb_cluster_build.h - which items make a cluster together: those of a grid that are in one
- * block of it, others as they come. */
+/* aabb_cluster_build.h - assigns items to clusters: items of a grid by blocks, others in their
+ * order. */
 #ifndef CS_BROAD_PHASE_AABB_CLUSTER_BUILD_H
 #define CS_BROAD_PHASE_AABB_CLUSTER_BUILD_H
 
 #include "model/contact/broad_phase/aabb_clusters.h"
 #include "model/contact/broad_phase/flat_regions.h"
 
-/* Points, edges or triangles of bodies. */
+/* Points, edges or triangles of all bodies; everything is borrowed during the call. */
 struct cs_cluster_input {
     const uint32_t *vertices; /* (n, each) points of an item; NULL: it is one itself */
     uint32_t vertices_per_item;
@@ -15,8 +15,8 @@ struct cs_cluster_input {
     struct cs_flat_region *const *flat_regions; /* (n_bodies) NULL: the body is none */
 };
 
-/* Takes and fills what clusters have for good: all but their boxes. Spans where there is a
- * grid. CS_ERR_MEMORY. */
+/* Allocates and fills all of the clusters but their boxes. Rectangles exist if one body is a
+ * grid. The arena owns the arrays. CS_ERR_MEMORY. */
 enum cs_status cs_cluster_input_build(const struct cs_cluster_input *order,
                                       struct cs_aabb_clusters *clusters, struct cs_arena *arena,
                                       struct cs_error *error);

@@ -1,4 +1,4 @@
-/* Clusters near a box from the cells, then their items in lanes. */
+/* Clusters near a box from the cells of the grids, then their items in lanes. */
 #include "model/contact/broad_phase/aabb_clusters.h"
 
 #include "base/arena.h"
@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* times the side of usual boxes, above which one is large */
+/* Multiple of the usual longest side above which a box goes into the second grid. Chosen by
+ * trial. */
 #define LARGE 8
 
 void cs_aabb_cluster_set(struct cs_aabb_cluster *cluster, uint32_t lane,
@@ -20,9 +21,9 @@ void cs_aabb_cluster_set(struct cs_aabb_cluster *cluster, uint32_t lane,
     }
 }
 
-/* Two boxes meet in several cells. The one that counts is that of the lower corner of what they
- * share: the higher of both first cells along each axis. The other box is in the cell `at`, so
- * that its first cell is not above it. */
+/* Two boxes may share several cells. The pair is taken in one of them only: the lower corner of
+ * the intersection, which has the higher of both first cells along each axis. The other box is
+ * in the cell `at`, so its first cell is not above it. */
 static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_aabb *other,
                           const uint32_t first[3], const uint32_t at[3]) {
     bool counts = true;
@@ -32,6 +33,7 @@ static bool is_first_cell(const struct cs_uniform_grid *cells, const struct cs_a
     return counts;
 }
 
+/* Appends a cluster to the result; returns false if out of memory. */
 static bool add(struct cs_nearby_clusters *near, uint32_t cluster, const struct cs_aabb *box) {
     uint32_t *clusters = cs_arena_realloc(near->clusters, &near->clusters_capacity, near->n + 1,
                                           sizeof *clusters);
@@ -49,7 +51,7 @@ static bool add(struct cs_nearby_clusters *near, uint32_t cluster, const struct 
     return true;
 }
 
-/* mean longest side of boxes up to a length; 0: there is none */
+/* Mean longest side of the boxes up to a length; 0 if there are none. */
 static double mean_side(const struct cs_aabb_clusters *clusters, double most) {
     double sum = 0;
     uint32_t count = 0;
@@ -62,8 +64,9 @@ static double mean_side(const struct cs_aabb_clusters *clusters, double most) {
     return count ? sum / count : 0;
 }
 
-/* A few large triangles, as of a floor, would make cells so large that all else is in the same
- * ones: the mean of those below the mean is not theirs. */
+/* Few large triangles, as of a floor, would enlarge the cells until all else shares a few of
+ * them. The mean of the boxes below the mean is not affected, and LARGE times it separates
+ * both. */
 bool cs_aabb_clusters_sort(struct cs_aabb_clusters *clusters) {
     const double most = LARGE * mean_side(clusters, mean_side(clusters, HUGE_VAL));
     const struct cs_aabb_set small = {clusters->cluster_boxes, clusters->n, -1, most};
@@ -77,7 +80,7 @@ void cs_aabb_clusters_finish(struct cs_aabb_clusters *clusters) {
     cs_uniform_grid_finish(clusters->cells + 1);
 }
 
-/* a box that looks for clusters, and its first cell */
+/* A query by one box in one grid. */
 struct looking {
     const struct cs_aabb_clusters *clusters;
     const struct cs_uniform_grid *cells;
@@ -93,6 +96,7 @@ static bool is_in(const struct cs_grid_rectangle *span, const struct cs_grid_rec
     return is;
 }
 
+/* Appends the clusters of one cell that pass all restrictions, each from one cell only. */
 static bool add_cell(struct cs_nearby_clusters *near, const struct looking *looking,
                      const uint32_t at[3]) {
     const struct cs_aabb_clusters *clusters = looking->clusters;
@@ -112,6 +116,7 @@ static bool add_cell(struct cs_nearby_clusters *near, const struct looking *look
     return there;
 }
 
+/* Appends the clusters of all cells that the box touches. */
 static bool add_cells(struct cs_nearby_clusters *near, struct looking *looking) {
     uint32_t last[3], at[3];
     bool there = true;
@@ -140,7 +145,8 @@ bool cs_nearby_clusters_find(struct cs_nearby_clusters *near,
     return there && (items || !near->n);
 }
 
-/* the lanes whose boxes meet a box, as bits */
+/* Bit mask of the lanes whose boxes overlap a box. Comparisons with NaN are false, so that
+ * empty lanes never match. */
 CS_INLINE uint32_t overlap_mask(const struct cs_aabb_cluster *restrict cluster,
                                 const float low[3], const float high[3]) {
     uint32_t bits = 0;
@@ -156,6 +162,7 @@ CS_INLINE uint32_t overlap_mask(const struct cs_aabb_cluster *restrict cluster,
     return bits;
 }
 
+/* Items by two levels of masks: clusters, then their items. */
 CS_CLONES static uint32_t find_items(const struct cs_nearby_clusters *near,
                                      const struct cs_aabb_clusters *of, const float low[3],
                                      const float high[3], uint32_t *items) {

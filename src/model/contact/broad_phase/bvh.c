@@ -1,20 +1,31 @@
-/* A tree of boxes over items in the order of a space-filling curve, halved again and again. */
+/* A bounding volume hierarchy over items along a space-filling curve, halved recursively.
+ *
+ * Items of each group are sorted by their Morton codes (Morton 1966), so that items next to
+ * each other in the order are near in space. Halving the order then gives compact boxes in O(n
+ * log n) and needs no cost function. The upper levels are cut between groups where possible,
+ * since two bodies move apart and would inflate a common box.
+ *
+ * A query descends pairs of nodes. The pair (root, root) is refined breadth first until there
+ * are enough jobs for the threads; each job then descends depth first on its own. */
 #include "model/contact/broad_phase/bvh.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* jobs from which on pairs of nodes are not cut further */
+/* Number of jobs from which pairs of nodes are not refined further. A refinement gives at most
+ * three pairs for one, so that fewer than CS_BVH_PAIRS_MAX result. */
 enum { JOBS_ENOUGH = CS_BVH_PAIRS_MAX / 4 };
 
-/* places a side of the curve's cube */
+/* bits per coordinate: three of them fit into a 64-bit code */
 enum { CURVE_BITS = 20 };
 
+/* An item with its code. */
 struct placed {
     uint64_t code;
     uint32_t item;
 };
 
+/* Order by code, then by item: the result of qsort is unique. */
 static int by_code(const void *left, const void *right) {
     const struct placed *a = left, *b = right;
     if (a->code != b->code)
@@ -22,7 +33,8 @@ static int by_code(const void *left, const void *right) {
     return (a->item > b->item) - (a->item < b->item);
 }
 
-/* Morton's order: the bits of the three coordinates by turns. */
+/* Morton code of a point in the cube with corner `low` and edge `side`: the bits of the three
+ * coordinates interleaved, highest first. NaN counts as the lower side. */
 static uint64_t code_of(const double p[3], const double low[3], double side) {
     uint64_t code = 0, place[3];
     for (int c = 0; c < 3; c++) {
@@ -36,7 +48,7 @@ static uint64_t code_of(const double p[3], const double low[3], double side) {
     return code;
 }
 
-/* items first..end - 1 of one group */
+/* Sorts the items first..end - 1 of one group along the curve through their bounding cube. */
 static void sort_group(const double *centres, uint32_t first, uint32_t end,
                        struct placed *placed, uint32_t *items) {
     double low[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, high[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
@@ -53,8 +65,8 @@ static void sort_group(const double *centres, uint32_t first, uint32_t end,
         items[k] = placed[k].item;
 }
 
-/* the group within first..end - 1 where a next one begins nearest to the middle; or the middle
- */
+/* Position to cut [first, end) at: the begin of a group nearest to the middle, or the middle if
+ * all of it is one group. */
 static uint32_t place_to_cut(const uint32_t *groups, uint32_t n_groups, uint32_t first,
                              uint32_t end) {
     const uint32_t middle = first + (end - first) / 2;
@@ -69,6 +81,7 @@ static uint32_t place_to_cut(const uint32_t *groups, uint32_t n_groups, uint32_t
     return best;
 }
 
+/* Adds the node of [first, end) and, depth first, its descendants. */
 static void add_nodes(struct cs_bvh *tree, const uint32_t *groups, uint32_t n_groups,
                       uint32_t first, uint32_t end) {
     const uint32_t here = tree->n_nodes++;
@@ -83,10 +96,13 @@ static void add_nodes(struct cs_bvh *tree, const uint32_t *groups, uint32_t n_gr
     add_nodes(tree, groups, n_groups, cut, end);
 }
 
+/* A cut in the middle leaves leaves of at least two items; a cut at the end of a group may
+ * leave one. So there are at most n/2 + n_groups leaves, and fewer than n + 2 n_groups nodes.
+ */
 enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uint32_t *first,
                            uint32_t n_groups, struct cs_arena *arena, struct cs_error *error) {
     const uint32_t n = first[n_groups];
-    /* a cut leaves leaves of two items and more, but where groups end */
+
     const size_t nodes_most = n + 2 * (size_t)n_groups + 1;
     *tree = (struct cs_bvh){.n = n};
     struct placed *placed = calloc(n ? n : 1, sizeof *placed);
@@ -104,8 +120,10 @@ enum cs_status cs_bvh_init(struct cs_bvh *tree, const double *centres, const uin
     return error->status;
 }
 
+/* Refits all boxes in one pass from the last node to the first: children come after their
+ * parents in memory, so they are ready before them. */
 static void set_boxes(struct cs_bvh *tree) {
-    // children stand behind their parents
+    // children have higher numbers than their parents
     for (uint32_t k = tree->n_nodes; k-- > 0;) {
         struct cs_bvh_node *node = tree->nodes + k;
         node->box = cs_swept_aabb_empty();
@@ -118,8 +136,9 @@ static void set_boxes(struct cs_bvh *tree) {
     }
 }
 
-/* The pairs of children of a pair of nodes that may meet, at most three; 0 of a pair that does
- * not, and the pair itself of two leaves. */
+/* Refines a pair of nodes into at most three pairs that may meet. Returns 0 if the pair does
+ * not meet, and 1 with the pair itself for two leaves. A node paired with itself gives both
+ * children with themselves and with each other; otherwise the node with more items is split. */
 static uint32_t cut(const struct cs_bvh *tree, struct cs_bvh_pair pair,
                     struct cs_bvh_pair parts[3]) {
     const struct cs_bvh_node *a = tree->nodes + pair.a, *b = tree->nodes + pair.b;
@@ -146,11 +165,12 @@ static uint32_t cut(const struct cs_bvh *tree, struct cs_bvh_pair pair,
     return 2;
 }
 
+/* Returns whether a pair cannot be refined. */
 static bool is_leaf_pair(const struct cs_bvh *tree, struct cs_bvh_pair pair) {
     return !tree->nodes[pair.a].right && !tree->nodes[pair.b].right;
 }
 
-/* pass after pass every pair is cut, in place from the end */
+/* Refines all pairs once per pass, until there are enough jobs or only leaves. */
 static void distribute(struct cs_bvh *tree) {
     struct cs_bvh_pair next[CS_BVH_PAIRS_MAX];
     tree->jobs[0] = (struct cs_bvh_pair){0, 0};
@@ -169,12 +189,14 @@ static void distribute(struct cs_bvh *tree) {
     }
 }
 
+/* Refits in O(n) and distributes; the topology does not change. */
 void cs_bvh_update(struct cs_bvh *tree, double reach) {
     tree->max_distance = reach;
     set_boxes(tree);
     distribute(tree);
 }
 
+/* Visits the pairs of items of two leaves, or of one leaf with itself. */
 static void visit_items(const struct cs_bvh *tree, struct cs_bvh_pair pair,
                         cs_bvh_visitor *visit, void *arg) {
     const struct cs_bvh_node *a = tree->nodes + pair.a, *b = tree->nodes + pair.b;
@@ -186,6 +208,7 @@ static void visit_items(const struct cs_bvh *tree, struct cs_bvh_pair pair,
         }
 }
 
+/* Descends a pair of nodes depth first; at most three pairs per level are pending. */
 static void visit_pair(const struct cs_bvh *tree, struct cs_bvh_pair pair,
                        cs_bvh_visitor *visit, void *arg) {
     struct cs_bvh_pair parts[3];

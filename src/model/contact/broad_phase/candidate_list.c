@@ -1,12 +1,12 @@
-/* What was found of each item, chunk by chunk in the order of keys; places in single precision.
- */
+/* Merges the batches into chunks in the order of keys, and scales positions to single
+ * precision. */
 #include "model/contact/broad_phase/candidate_list.h"
 
 #include "base/pool.h"
 
 #include <string.h>
 
-/* pairs of the same first by their second: they are few */
+/* Insertion sort of the pairs of one item by their second number: they are few. */
 static void sort_row(uint32_t *pairs, size_t n) {
     for (size_t i = 1; i < n; i++) {
         const uint32_t second = pairs[2 * i + 1];
@@ -17,7 +17,8 @@ static void sort_row(uint32_t *pairs, size_t n) {
     }
 }
 
-/* brings what was found into the order of keys */
+/* Copies the pairs of the items of a chunk from their batches, item by item in ascending order.
+ */
 static void list_chunk(void *arg, uint32_t number) {
     const struct cs_candidates *candidates = arg;
     struct cs_candidate_chunk *chunk = candidates->chunks + number;
@@ -53,13 +54,13 @@ bool cs_candidates_merge_batches(struct cs_candidates *candidates) {
     return !failed;
 }
 
-/* a search and the state that is rounded */
+/* A list, and the state that is scaled. */
 struct rounding {
     struct cs_candidates *search;
     const double *x;
 };
 
-/* points that are rounded together */
+/* points per job */
 enum { ROUNDED = 2048 };
 
 static void round_block(void *arg, uint32_t number) {

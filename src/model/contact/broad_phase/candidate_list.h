@@ -1,4 +1,4 @@
-/* candidate_list.h - the list of pairs that are near at a state, in chunks. */
+/* candidate_list.h - the candidate list in chunks, and the data of the search. */
 #ifndef CS_BROAD_PHASE_CANDIDATE_LIST_H
 #define CS_BROAD_PHASE_CANDIDATE_LIST_H
 
@@ -6,11 +6,11 @@
 #include "model/contact/broad_phase/distance_filter.h"
 #include "model/contact/pair_distance.h"
 
-/* Points, or edges, whose pairs are in one chunk, and clusters of them for which pairs are
- * looked for together: they are one thread's. */
+/* Points or edges per chunk, and clusters per batch: the units of work of threads. The order of
+ * sums depends on the chunk size, never on threads. */
 enum { CS_CANDIDATE_CHUNK = 128, CS_CANDIDATE_BATCH = 8 };
 
-/* Pairs of the points or edges [begin, end). */
+/* Candidates of the points or edges [begin, end). */
 struct cs_candidate_chunk {
     enum cs_pair_kind kind;
     uint32_t begin, end;
@@ -18,60 +18,73 @@ struct cs_candidate_chunk {
     size_t n, capacity; /* room in pairs */
     bool failed;        /* there was no memory */
     uint32_t
-        *in_range; /* (n_close, 2) those of them in range, of cs_candidates_find_in_range */
+        /* (n_in_range, 2) pairs in range, of cs_candidates_find_in_range */
+        *in_range;
     size_t n_in_range, close_capacity;
-    double result; /* to a question about the pairs of each chunk: who asks sets it */
+    /* answer of one chunk to a query over all candidates; the query defines it */
+    double result;
 };
 
-/* Pairs of the points or edges in clusters [begin, end), one item after the other. */
+/* Candidates of the items in the clusters [begin, end), item by item. */
 struct cs_candidate_batch {
     enum cs_pair_kind kind;
     uint32_t begin, end;
     uint32_t *pairs; /* (n, 2) */
     size_t n, capacity;
-    bool failed;                        /* there was no memory */
-    struct cs_nearby_clusters query[2]; /* a cluster's, of its own body and of others */
+    bool failed; /* there was no memory */
+    /* work: clusters near the one at hand, of its own body and of others */
+    struct cs_nearby_clusters query[2];
 };
 
-/* Where those of an item are: pairs [begin, begin + n) of a batch. */
+/* Candidates of one item: pairs begin to begin + n - 1 of a batch. */
 struct cs_candidate_range {
     uint32_t batch, begin, n;
 };
 
+/* The candidate list of a system, its validity and the data of the search. */
 struct cs_candidates {
     const struct cs_system *system;              /* borrowed */
     const struct cs_body_pair_table *body_pairs; /* borrowed */
-    double margin;                               /* m, of new lists */
-    double margin_now;  /* m, of the list as it is: more after cs_candidates_cover_step */
-    uint32_t *body;     /* (n_points) of each point */
-    double *x_at_build; /* (3,n_points) where the list was made */
+    /* m, usual margin of a list */
+    double margin;
+    /* m, margin of the current list; larger after cs_candidates_cover_step */
+    double margin_now;
+    /* (n_points) body of each point */
+    uint32_t *body;
+    /* (3,n_points) m, state of the current list */
+    double *x_at_build;
     struct cs_aabb_clusters points, triangles, edges;
     struct cs_candidates_flat flat_regions;
     struct cs_candidate_batch *batches;
     struct cs_candidate_range *rows[2]; /* of points, and of edges */
     struct cs_candidate_chunk *chunks;  /* points first */
     uint32_t n_batches, n_chunks;
-    size_t n_listed;                       /* pairs in all chunks */
-    struct cs_scaled_point *scaled_points; /* (n_points) of the last state that was looked at */
-    double inverse_unit;                   /* 1/m, of their unit */
+    size_t n_listed; /* pairs in all chunks */
+    /* (n_points) positions of the last state that was scaled */
+    struct cs_scaled_point *scaled_points;
+    /* 1/m, scale of scaled_points */
+    double inverse_unit;
     double
         *body_motion; /* (4, n_bodies) middle of the moves of a body, and how far they reach */
     bool is_built;    /* the list was made */
-    double *x_at_close;   /* (3,n_points) where close pairs were found */
-    bool has_close_pairs; /* they were */
-    uint64_t close_count; /* how often */
-    uint64_t n_builds;    /* lists that were made */
+    /* (3,n_points) m, state of the pairs in range */
+    double *x_at_close;
+    /* pairs in range belong to x_at_close */
+    bool has_close_pairs;
+    /* number of times that pairs in range were found: a version */
+    uint64_t close_count;
+    /* number of lists built */
+    uint64_t n_builds;
 };
 
-/* Fills all chunks from the batches, in the order of keys, with all threads. false: no memory.
- */
+/* Fills all chunks from the batches in the order of keys, with all threads. Returns false if
+ * out of memory. */
 bool cs_candidates_merge_batches(struct cs_candidates *candidates);
 
-/* Sets search->rough to the places x (3, n_points), with all threads. */
+/* Sets scaled_points to the positions x (3, n_points), with all threads. */
 void cs_candidates_scale_points(struct cs_candidates *candidates, const double *x);
 
-/* m, within which a pair of the list is felt: where all ranges are one, the bodies are not
- * asked for. */
+/* m, range of a candidate. If all ranges are equal, the bodies of the points are not read. */
 static inline double cs_candidate_range_of(const struct cs_candidates *candidates,
                                            enum cs_pair_kind kind, const uint32_t at[4]) {
     const struct cs_body_pair_table *meetings = candidates->body_pairs;
@@ -84,7 +97,7 @@ static inline double cs_candidate_range_of(const struct cs_candidates *candidate
                                      kind == CS_PAIR_EDGE_EDGE);
 }
 
-/* Points of a pair. */
+/* Sets at[4] to the points of a pair: point and triangle, or both ends of both edges. */
 static inline void cs_candidate_vertices(const struct cs_surfaces *surfaces,
                                          enum cs_pair_kind kind, const uint32_t pair[2],
                                          uint32_t at[4]) {

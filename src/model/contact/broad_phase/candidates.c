@@ -1,4 +1,9 @@
-/* When a list is made, and for how long it is good. */
+/* Rebuilds the candidate list when particles have moved by more than its margin.
+ *
+ * Validity: the displacements of a body since the list was built lie in a box with middle m and
+ * half-diagonal r. Two points of bodies a and b have then moved relative to each other by at
+ * most r_a + r_b + |m_a - m_b|. The list is valid while this is at most 2 margins for all pairs
+ * of bodies with contact, a = b included. */
 #include "model/contact/broad_phase/candidates.h"
 
 #include "model/contact/broad_phase/candidates_find.h"
@@ -17,6 +22,7 @@ static void finish(void *object) {
     cs_candidates_find_finish(candidates);
 }
 
+/* Splits n points or edges into chunks. */
 static void cut(struct cs_candidate_chunk *chunks, enum cs_pair_kind kind, uint32_t n) {
     for (uint32_t begin = 0; begin < n; begin += CS_CANDIDATE_CHUNK)
         chunks[begin / CS_CANDIDATE_CHUNK] = (struct cs_candidate_chunk){
@@ -25,6 +31,8 @@ static void cut(struct cs_candidate_chunk *chunks, enum cs_pair_kind kind, uint3
             .end = n - begin > CS_CANDIDATE_CHUNK ? begin + CS_CANDIDATE_CHUNK : n};
 }
 
+/* Positions are scaled by the largest range, which is near the size of the primitives. Chunks
+ * of points come before those of edges. */
 enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_system *system,
                                   const struct cs_body_pair_table *meetings,
                                   struct cs_error *error) {
@@ -65,10 +73,10 @@ enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_sy
 
 /* --- how long the list is good --- */
 
-/* several vectors: of fewer the compiler makes single numbers */
+/* Lanes of the reduction, several vectors: with fewer the compiler uses scalars. */
 enum { LANES = 32 };
 
-/* least and greatest move of each lane */
+/* Smallest and largest displacement of each lane. */
 struct span {
     double low[LANES], high[LANES];
 };
@@ -81,8 +89,8 @@ CS_INLINE void widen(struct span *span, const double *now, const double *then) {
     }
 }
 
-/* Into lane 0: least and greatest of now - then, the first one where that is not a number. By
- * lanes, as each comparison waits for the one before it. */
+/* Sets lane 0 to the smallest and largest of now - then; NaN in the first number stays. Lanes
+ * are independent, because each comparison would otherwise wait for the one before. */
 CS_CLONES static void find_span(const double *now, const double *then, size_t count,
                                 struct span *out) {
     struct span span;
@@ -102,7 +110,7 @@ CS_CLONES static void find_span(const double *now, const double *then, size_t co
     *out = span;
 }
 
-/* middle of the box about a body's moves since `then`, and half its diagonal */
+/* Middle of the box of a body's displacements since `from`, and half its diagonal. */
 static void measure_drift(const struct cs_candidates *candidates, uint32_t body,
                           const double *from, const double *x) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
@@ -119,7 +127,7 @@ static void measure_drift(const struct cs_candidates *candidates, uint32_t body,
     drift[3] = sqrt(squared);
 }
 
-/* what two bodies have moved by against each other at most; NAN counts as too far */
+/* Bound of the relative displacement of two bodies in m; NaN fails every comparison. */
 static double apart(const double *a, const double *b) {
     double squared = 0;
     for (int c = 0; c < 3; c++)
@@ -127,6 +135,7 @@ static double apart(const double *a, const double *b) {
     return a[3] + b[3] + sqrt(squared);
 }
 
+/* Drifts of all bodies with contact. */
 static void measure_drifts(const struct cs_candidates *candidates, const double *from,
                            const double *x) {
     for (uint32_t b = 0; b < candidates->body_pairs->n_bodies; b++)
@@ -134,6 +143,7 @@ static void measure_drifts(const struct cs_candidates *candidates, const double 
             measure_drift(candidates, b, from, x);
 }
 
+/* Returns whether the list is valid at x. */
 static bool is_good(const struct cs_candidates *candidates, const double *x) {
     const struct cs_body_pair_table *meetings = candidates->body_pairs;
     bool good = candidates->is_built;
@@ -148,13 +158,13 @@ static bool is_good(const struct cs_candidates *candidates, const double *x) {
     return good;
 }
 
-/* m, that flat parts are to be good for in a list that is good for so much */
+/* m, margin of flat blocks for a list with the margin `margin` */
 static double flat_margin(const struct cs_candidates *candidates, double margin) {
     const double usual = CS_CANDIDATES_FLAT_MARGIN * candidates->body_pairs->range_min;
     return margin < usual ? margin : usual;
 }
 
-/* whether what was flat has not moved too far to be it still */
+/* Returns whether bodies have deformed by no more than the margin of flat blocks. */
 static bool is_flat(const struct cs_candidates *candidates, const double *x) {
     const struct cs_candidates_flat *flat = &candidates->flat_regions;
     bool good = true;
@@ -166,7 +176,7 @@ static bool is_flat(const struct cs_candidates *candidates, const double *x) {
     return good;
 }
 
-/* The list of the state `from`. false: no memory */
+/* Builds the list at x_at_build for both margins; returns false if out of memory. */
 static bool build(struct cs_candidates *candidates, double margin, double flat) {
     cs_candidates_flat_find(&candidates->flat_regions, candidates->x_at_build, flat);
     candidates->n_builds++;
@@ -177,6 +187,8 @@ static bool build(struct cs_candidates *candidates, double margin, double flat) 
     return candidates->is_built;
 }
 
+/* A list that is valid but whose flat blocks are too old is kept if these can be renewed at x.
+ */
 bool cs_candidates_update(struct cs_candidates *candidates, const double *x) {
     const double flat = flat_margin(candidates, candidates->margin);
     if (is_good(candidates, x) &&
@@ -189,7 +201,7 @@ bool cs_candidates_update(struct cs_candidates *candidates, const double *x) {
 
 /* --- for a whole move --- */
 
-/* box about a body at both ends of a move, grown */
+/* Box of a body at both ends of a move, grown. */
 static struct cs_aabb body_box(const struct cs_candidates *candidates, uint32_t body,
                                const double *x0, const double *x1, double grow) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
@@ -206,7 +218,7 @@ static struct cs_aabb body_box(const struct cs_candidates *candidates, uint32_t 
     return box;
 }
 
-/* whether two bodies come within their range of each other, as boxes, from x0 to x1 */
+/* Returns whether the boxes of two bodies come within their range during a move. */
 static bool may_come_near(const struct cs_candidates *candidates, uint32_t a, uint32_t b,
                           const double *x0, const double *x1) {
     const double range = cs_body_pair_params_of(candidates->body_pairs, a, b)->range;
@@ -215,8 +227,8 @@ static bool may_come_near(const struct cs_candidates *candidates, uint32_t a, ui
     return cs_aabbs_overlap(&first, &second);
 }
 
-/* The most by which particles that may meet move against each other, from x0 to x1; bodies that
- * stay away from each other do not count. */
+/* m, largest relative motion from x0 to x1 of particles that may meet; bodies that stay away
+ * from each other do not count. */
 static double largest_move(const struct cs_candidates *candidates, const double *x0,
                            const double *x1) {
     const struct cs_body_pair_table *meetings = candidates->body_pairs;
@@ -233,27 +245,33 @@ static double largest_move(const struct cs_candidates *candidates, const double 
     return most;
 }
 
+/* Returns whether the list is valid at both ends. It is then valid on the straight way too,
+ * because each relative displacement is a convex function along it. */
 static bool is_covered(const struct cs_candidates *candidates, const double *x0,
                        const double *x1) {
     return is_good(candidates, x0) && is_good(candidates, x1) && is_flat(candidates, x0) &&
            is_flat(candidates, x1);
 }
 
-/* ways of a step, at most, that the middle of a list lies ahead of it */
+/* Largest multiple of the step by which the state of a new list lies ahead of its start. */
 #define AHEAD 2
 
+/* The margin is at least a quarter of the largest relative motion. The factor 1 + 1e-9 exceeds
+ * the rounding of motions. */
 bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0,
                               const double *x1) {
     const size_t n = candidates->system->surfaces->n_points;
     if (is_covered(candidates, x0, x1))
         return true;
     const double move = largest_move(candidates, x0, x1) * (1 + 1e-9);
-    // half of the way lies to both sides of its middle, and each particle goes half of that
+    // A list built in the middle of the way must cover half of it in both directions: a
+    // relative motion of move/2 = 2 margins.
     const double margin = fmax(candidates->margin, 0.25 * move);
     if (!(margin <=
           CS_CANDIDATES_FAR_MARGINS * CS_CANDIDATES_MARGIN * candidates->body_pairs->range_min))
         return false;
-    // the next step goes on much as this one: the list is made as far along as it covers this
+    // The next step probably continues like this one, so that the list is built as far ahead as
+    // it still covers the start.
     const double along = fmin(2 * margin / move, AHEAD);
     for (size_t i = 0; i < 3 * n; i++)
         candidates->x_at_build[i] = x0[i] + along * (x1[i] - x0[i]);
@@ -261,6 +279,7 @@ bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0
                  fmax(flat_margin(candidates, candidates->margin), 0.5 * along * move));
 }
 
+/* Comparisons are written so that NaN wins and stays. */
 double cs_candidates_max_motion(const struct cs_candidates *candidates, const double *x0,
                                 const double *x1) {
     const struct cs_body_pair_table *meetings = candidates->body_pairs;

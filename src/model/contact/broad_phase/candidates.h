@@ -1,49 +1,52 @@
-/* candidates.h - which pairs of points and triangles, and of edges, may be in range.
+/* candidates.h - candidate list: pairs of points and triangles, and of edges, that may be in
+ * range, with a margin as in Verlet's list (Verlet 1967).
  *
- * A list holds all pairs whose true distance was below their range, of edges the share of it
- * that these feel, + 2 margins when it was made,
- * and is good until particles have moved by more than that against each other: each body's
- * moves are taken against the middle of the moves of its particles, so that what falls as a
- * whole costs nothing. The smooth distance is never below the true one, so that none is missed.
+ * The list holds all pairs whose true distance was below range + 2 margins when it was built
+ * (for edges, their fraction of the range). It is valid while no two points of a pair have
+ * moved relative to each other by more than 2 margins. Motion is measured per body against the
+ * middle of the displacements of its particles, so that a body that falls as a whole costs
+ * nothing. The smooth distance is never below the true one, so no pair in range is missed.
  *
- * What the list holds beyond the pairs in range is not seen by anyone: a pair out of range adds
- * nothing at all, not even 0, and the pairs stand in the order of their keys (kind, first,
- * second) whatever the list. Sums are therefore functions of the state, and their bits the same
- * for every margin and at every age of the list.
+ * The additional pairs have no effect: a pair out of range adds nothing at all, not even 0, and
+ * pairs are in the order of their keys (kind, first, second) in every list. Sums are therefore
+ * functions of the state; their bits are the same for every margin and every age of the list.
  */
 #ifndef CS_BROAD_PHASE_CANDIDATES_H
 #define CS_BROAD_PHASE_CANDIDATES_H
 
 #include "model/contact/broad_phase/candidate_list.h"
 
-/* the margin as a share of the least range */
+/* Margin in units of the smallest range. A larger one makes longer lists that are rebuilt less
+ * often. Chosen by trial. */
 #define CS_CANDIDATES_MARGIN 0.35
 
-/* Takes the fixed arrays from the system's arena, which then owns the lists too. CS_ERR_MEMORY.
- */
+/* Prepares an empty list. Fixed arrays come from the system's arena, which then owns the lists
+ * too. body_pairs is borrowed. CS_ERR_MEMORY. */
 enum cs_status cs_candidates_init(struct cs_candidates *candidates, struct cs_system *system,
                                   const struct cs_body_pair_table *body_pairs,
                                   struct cs_error *error);
 
-/* Makes the list good for x (3,n_points). false: there is no memory for it. */
+/* Makes the list valid at x (3,n_points) in m; rebuilds it if particles have moved by more than
+ * its margin. Returns false if out of memory. */
 bool cs_candidates_update(struct cs_candidates *candidates, const double *x);
 
-/* Makes the list good for all states on the straight way from x0 to x1 (3,n_points). false:
- * there is no memory, or bodies that are near each other move so far against each other, or a
- * body within itself, that it would be too long: more than CS_CANDIDATES_FAR_MARGINS margins,
- * whatever the one in use. */
+/* Makes the list valid for all states on the straight way from x0 to x1 (3,n_points). Returns
+ * false if out of memory, or if nearby bodies, or parts of one, move so far relative to each
+ * other that the list would become too long: more than CS_CANDIDATES_FAR_MARGINS usual margins.
+ */
 enum { CS_CANDIDATES_FAR_MARGINS = 8 };
 bool cs_candidates_cover_step(struct cs_candidates *candidates, const double *x0,
                               const double *x1);
 
-/* The most by which two bodies that meet, or one within itself, move against each other from x0
- * to x1, as a multiple of their range; not a number where a place is none. */
+/* Largest relative motion from x0 to x1 of two bodies with contact, or within one, in units of
+ * their range; NaN if a position is NaN. */
 double cs_candidates_max_motion(const struct cs_candidates *candidates, const double *x0,
                                 const double *x1);
 
-/* Up to that many, a list that covers the way has all pairs that may come as near to each other
- * on it as a tenth of where they start: for with the start s, the least gap g <= s/10 and the
- * move m, s <= g + m, and so g <= m/9, which must be less than what edges feel. */
+/* Largest motion, in ranges, up to which a list that covers the way contains all pairs that
+ * ACCD can stop. ACCD stops a pair whose gap g has fallen to a tenth of its start s. With the
+ * motion m, s <= g + m and g <= s/10 give g <= m/9. That must be below the range of edges; 8.9
+ * leaves room for rounding. */
 #define CS_CANDIDATES_ACCD_LIMIT (8.9 * CS_EDGE_RANGE_RATIO)
 
 #endif

@@ -1,5 +1,9 @@
-/* Boxes of triangles and edges in clusters, then for a cluster of points or edges at a time the
- * clusters near it, for each its items whose boxes meet, and of these what may be near. */
+/* The search for candidates, in four filters: the clusters of triangles or edges near a cluster
+ * of points or edges (uniform grid); the boxes of their items; the distance filter in single
+ * precision; what remains is listed.
+ *
+ * A batch of clusters is one thread's. Batches follow the order of clusters, which is spatial;
+ * candidate_list.c brings their pairs into the order of keys afterwards. */
 #include "model/contact/broad_phase/candidates_find.h"
 
 #include "base/pool.h"
@@ -22,7 +26,7 @@ static enum cs_status alloc_clusters(const struct cs_cluster_input *order,
     return error->status;
 }
 
-/* points have no boxes of their own */
+/* Clusters of triangles, edges and points; points need no boxes of their own. */
 static enum cs_status order_all(struct cs_candidates *candidates, struct cs_arena *arena,
                                 struct cs_error *error) {
     const struct cs_surfaces *s = candidates->system->surfaces;
@@ -37,7 +41,8 @@ static enum cs_status order_all(struct cs_candidates *candidates, struct cs_aren
                                   &candidates->points, arena, error);
 }
 
-/* which clusters a thread does, and where what is found of an item will be */
+/* Splits the clusters into batches, and allocates the rows that locate the pairs of each item.
+ */
 static enum cs_status alloc_batches(struct cs_candidates *candidates, struct cs_arena *arena,
                                     struct cs_error *error) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
@@ -87,13 +92,14 @@ static struct cs_item_boxes boxes_of(const struct cs_candidates *candidates,
         candidates->body,       candidates->body_pairs->has_partner};
 }
 
-/* A batch at work: pairs whose boxes meet wait until they are asked about together. */
+/* A batch at work: pairs whose boxes overlap wait in the distance filter. */
 struct work {
     const struct cs_candidates *search;
     struct cs_candidate_batch *batch;
     struct cs_distance_filter sieve;
 };
 
+/* Appends a pair to its batch. */
 static void store_pairs(struct cs_candidate_batch *batch, const uint32_t pair[2]) {
     uint32_t *pairs =
         cs_arena_realloc(batch->pairs, &batch->capacity, batch->n + 1, 2 * sizeof *pairs);
@@ -106,6 +112,7 @@ static void store_pairs(struct cs_candidate_batch *batch, const uint32_t pair[2]
     batch->n++;
 }
 
+/* Empties the filter, and keeps the pairs that pass. */
 static void measure(struct work *work) {
     const uint32_t n =
         cs_distance_filter_run(&work->sieve, work->batch->kind == CS_PAIR_EDGE_EDGE);
@@ -113,17 +120,20 @@ static void measure(struct work *work) {
         store_pairs(work->batch, work->sieve.pairs[l]);
 }
 
+/* Returns whether a pair has a point in common; such pairs have no contact. */
 static bool share_corner(const uint32_t at[4], enum cs_pair_kind kind) {
     if (kind == CS_PAIR_POINT_TRIANGLE)
         return at[0] == at[1] || at[0] == at[2] || at[0] == at[3];
     return at[0] == at[2] || at[0] == at[3] || at[1] == at[2] || at[1] == at[3];
 }
 
-/* the last bits of a reach are for rounding */
+/* m, distance up to which pairs are listed; the factor exceeds the rounding of boxes */
 static double reach_of(const struct cs_candidates *candidates, double range) {
     return (range + 2 * candidates->margin_now) * (1 + 1e-9);
 }
 
+/* Puts a pair into the filter, unless it has a common point or no contact. A pair of edges is
+ * listed with its smaller number first, once. */
 static void take(struct work *work, uint32_t item, uint32_t other) {
     const struct cs_candidates *candidates = work->search;
     const enum cs_pair_kind kind = work->batch->kind;
@@ -143,7 +153,7 @@ static void take(struct work *work, uint32_t item, uint32_t other) {
         measure(work);
 }
 
-/* m, how far what is of a body reaches for its own, or for others at most; 0: for none */
+/* m, largest reach of a body for itself (own) or for other bodies; 0: it has no contact */
 static double widest_reach(const struct cs_candidates *candidates, uint32_t body, bool own,
                            bool edges) {
     double widest = 0;
@@ -156,7 +166,7 @@ static double widest_reach(const struct cs_candidates *candidates, uint32_t body
     return widest > 0 ? reach_of(candidates, widest) : 0;
 }
 
-/* of all items of a cluster, that of edges as it was filled */
+/* Box of all items of a cluster, grown by the reach. */
 static struct cs_aabb group_box(const struct cs_candidates *candidates, bool edges,
                                 uint32_t cluster, double reach) {
     const struct cs_item_boxes points = boxes_of(candidates, NULL, 1);
@@ -173,14 +183,16 @@ static struct cs_aabb group_box(const struct cs_candidates *candidates, bool edg
     return all;
 }
 
-/* A cluster of points or edges, and how far it reaches for its own body and for others. */
+/* A cluster of points or edges, and how far it reaches. */
 struct group {
     const struct cs_aabb_clusters *of, *others;
     uint32_t cluster;
     bool edges;
-    double reach[2]; /* m; 0: not at all */
+    /* m: for its own body, and for others; 0: no contact */
+    double reach[2];
 };
 
+/* Describes a cluster: points are tested against triangles, edges against edges. */
 static struct group group_of(const struct cs_candidates *candidates, bool edges,
                              uint32_t cluster) {
     struct group group = {.of = edges ? &candidates->edges : &candidates->points,
@@ -192,7 +204,8 @@ static struct group group_of(const struct cs_candidates *candidates, bool edges,
     return group;
 }
 
-/* Sets near to the clusters of its own body, or of others, that a group may meet. */
+/* Finds the clusters near a group, of its own body or of others. Those within the flat
+ * neighbourhood of its block are skipped. Returns false if out of memory. */
 static bool find_clusters(const struct cs_candidates *candidates, const struct group *group,
                           bool own, struct cs_nearby_clusters *near) {
     const double reach = group->reach[!own];
@@ -216,6 +229,7 @@ static bool find_clusters(const struct cs_candidates *candidates, const struct g
              : NULL);
 }
 
+/* Tests the box of one item against the items of the clusters found. */
 static void find_item(struct work *work, const struct group *group, uint32_t item) {
     const struct cs_candidates *candidates = work->search;
     const struct cs_item_boxes boxes =
@@ -232,7 +246,7 @@ static void find_item(struct work *work, const struct group *group, uint32_t ite
     }
 }
 
-/* what the items of a cluster have near them */
+/* Finds all pairs of the items of one cluster. */
 static void query_cluster(struct work *work, uint32_t cluster) {
     const struct cs_candidates *candidates = work->search;
     struct cs_candidate_batch *batch = work->batch;
@@ -248,7 +262,7 @@ static void query_cluster(struct work *work, uint32_t cluster) {
             find_item(work, &group, items[k]);
 }
 
-/* notes where the pairs of each item are */
+/* Notes where the pairs of each item are in the batch; they are contiguous. */
 static void set_rows(const struct cs_candidates *candidates, const struct cs_aabb_clusters *of,
                      uint32_t number) {
     const struct cs_candidate_batch *batch = candidates->batches + number;
@@ -264,6 +278,7 @@ static void set_rows(const struct cs_candidates *candidates, const struct cs_aab
     }
 }
 
+/* Searches one batch. */
 static void find_batch(void *arg, uint32_t number) {
     const struct cs_candidates *candidates = arg;
     struct cs_candidate_batch *batch = candidates->batches + number;
@@ -281,12 +296,14 @@ static void find_batch(void *arg, uint32_t number) {
     set_rows(candidates, of, number);
 }
 
+/* Sets boxes and cells of one kind of clusters; returns false if out of memory. */
 static bool fill(const struct cs_candidates *candidates, struct cs_aabb_clusters *clusters,
                  const uint32_t *corners, uint32_t each) {
     const struct cs_item_boxes boxes = boxes_of(candidates, corners, each);
     return cs_item_boxes_fill(&boxes, clusters);
 }
 
+/* Boxes of triangles and edges are set first; then all batches run in parallel. */
 bool cs_candidates_find(struct cs_candidates *candidates) {
     const struct cs_surfaces *surfaces = candidates->system->surfaces;
     bool failed = !fill(candidates, &candidates->triangles, surfaces->triangles, 3) ||

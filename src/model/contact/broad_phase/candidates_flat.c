@@ -1,17 +1,19 @@
-/* Blocks of grids: which are flat, and what is then passed over. */
+/* Decides which blocks of grids are flat, and keeps the rectangles that the search skips. */
 #include "model/contact/broad_phase/candidates_flat.h"
 
 #include <math.h>
 #include <string.h>
 
+/* empty rectangle: the block is not flat */
 static const struct cs_grid_rectangle nowhere = {{HUGE_VALF, HUGE_VALF},
                                                  {-HUGE_VALF, -HUGE_VALF}};
 
 /* --- made once --- */
 
-/* points whose numbers are floats too */
+/* 2^24: rows and columns are compared as floats, which are exact up to there */
 enum { POINTS_MAX = 1 << 24 };
 
+/* Returns whether a body is a grid with self-contact and few enough points. */
 static bool is_grid(const struct cs_system *system, const struct cs_body_pair_table *meetings,
                     uint32_t body) {
     if (body >= system->scene->bodies.n ||
@@ -22,6 +24,7 @@ static bool is_grid(const struct cs_system *system, const struct cs_body_pair_ta
            range->first + range->count <= POINTS_MAX;
 }
 
+/* Adds a grid with its blocks numbered after those of the grids before. */
 static void add_grid(struct cs_candidates_flat *flat, const struct cs_body_range *range,
                      struct cs_flat_region **grid, struct cs_arena *arena,
                      struct cs_error *error) {
@@ -59,7 +62,7 @@ enum cs_status cs_candidates_flat_init(struct cs_candidates_flat *flat,
 
 /* --- at a state --- */
 
-/* the block in `down` and `across` with those round it */
+/* Rectangle of points of a block and the eight around it. */
 static struct cs_grid_rectangle neighbourhood_of(const struct cs_flat_region *grid,
                                                  uint32_t down, uint32_t across) {
     const uint32_t top = CS_FLAT_REGION_BLOCK * (down ? down - 1 : 0);
@@ -71,7 +74,7 @@ static struct cs_grid_rectangle neighbourhood_of(const struct cs_flat_region *gr
         {(float)(grid->first_row + last), (float)(CS_FLAT_REGION_BLOCK * (across + 2))}};
 }
 
-/* m, that parts of a body must be apart for a margin */
+/* m, distance that skipped pairs must have: the range, plus what both sides may move */
 static double needed(const struct cs_candidates_flat *flat, uint32_t body, bool edges,
                      double margin) {
     return cs_body_pair_params_range(cs_body_pair_params_of(flat->body_pairs, body, body),
@@ -79,6 +82,8 @@ static double needed(const struct cs_candidates_flat *flat, uint32_t body, bool 
            2 * margin;
 }
 
+/* Sets the rectangles of one grid to those of flat blocks; returns their number. A comparison
+ * with NaN is false, so that a block with positions that are not finite is not flat. */
 static uint32_t find_in(const struct cs_flat_region *grid, double apart,
                         struct cs_grid_rectangle *round) {
     uint32_t n = 0;
@@ -91,11 +96,13 @@ static uint32_t find_in(const struct cs_flat_region *grid, double apart,
     return n;
 }
 
+/* Restarts the margin of flat blocks at x. */
 static void store_state(struct cs_candidates_flat *flat, const double *x, double margin) {
     memcpy(flat->x_at_build, x, 3 * flat->n_points * sizeof *x);
     flat->margin_now = margin;
 }
 
+/* Both kinds of pairs have rectangles of their own, because edges have a smaller range. */
 void cs_candidates_flat_find(struct cs_candidates_flat *flat, const double *x, double margin) {
     flat->n_flat_blocks = 0;
     for (uint32_t b = 0; b < flat->body_pairs->n_bodies; b++) {
@@ -111,6 +118,7 @@ void cs_candidates_flat_find(struct cs_candidates_flat *flat, const double *x, d
         store_state(flat, x, margin);
 }
 
+/* Returns whether all blocks that were flat are so still. */
 static bool has_not_moved(const struct cs_flat_region *grid, double apart,
                           const struct cs_grid_rectangle *round) {
     bool still = true;

@@ -1,4 +1,8 @@
-/* Edges of blocks in boxes, then blocks with those round them. */
+/* Measures flat regions: boxes of the edges of each block, then the bound of (s - r) / sqrt(2)
+ * over each block and its neighbours. Theory: flat_regions.h.
+ *
+ * The cost is one pass over the edges and 9 boxes per block, a small part of a search for
+ * pairs. */
 #include "model/contact/broad_phase/flat_regions.h"
 
 #include "base/pool.h"
@@ -15,7 +19,7 @@ enum cs_status cs_flat_region_init(struct cs_flat_region *flat, struct cs_arena 
     return error->status;
 }
 
-/* a grid at a state */
+/* A grid at a state. */
 struct measuring {
     struct cs_flat_region *flat;
     const double *x;
@@ -27,12 +31,14 @@ static void extend_bounds(double *low, double *high, double low_too, double high
     *high = high_too > *high ? high_too : *high;
 }
 
+/* boxes of no edge */
 static const struct cs_flat_region_edges none = {
     {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}},
     {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}},
     0};
 
-/* edges from points of rows [top, end) and columns [left, right) to those a step further on */
+/* Adds the edges from the points in rows [top, end) and columns [left, right) to the next
+ * point; way 0: along the row, 1: across the rows. */
 static void add_edges(const struct measuring *at, const uint32_t top, uint32_t end,
                       uint32_t left, uint32_t right, int way,
                       struct cs_flat_region_edges *edges) {
@@ -48,6 +54,7 @@ static void add_edges(const struct measuring *at, const uint32_t top, uint32_t e
         }
 }
 
+/* Boxes of one row of blocks. Edges between blocks count in both. */
 static void box_row(void *arg, uint32_t down) {
     const struct measuring *at = arg;
     const struct cs_flat_region *flat = at->flat;
@@ -64,7 +71,7 @@ static void box_row(void *arg, uint32_t down) {
     }
 }
 
-/* box about those of a block and the blocks round it */
+/* Boxes of a block and those around it. */
 static struct cs_flat_region_edges join(const struct cs_flat_region *flat, uint32_t down,
                                         uint32_t across) {
     struct cs_flat_region_edges all = none;
@@ -81,7 +88,14 @@ static struct cs_flat_region_edges join(const struct cs_flat_region *flat, uint3
     return all;
 }
 
-/* (s - r) / sqrt(2), less what rounding may add */
+/* (s - r) / sqrt(2). A = (u v) has the columns of box centres, and s^2 is the smaller
+ * eigenvalue of A^T A = (a b; b c):
+ *
+ *   s^2 = (a + c - sqrt((a - c)^2 + 4 b^2)) / 2
+ *
+ * r is the Frobenius norm of the half-widths, an upper bound of the spectral norm. 0.707106 is
+ * 1.1e-6 below 1/sqrt(2), far more than the rounding of the rest. NaN if an edge is not finite,
+ * so that no comparison calls the block flat. */
 static double bound_of(const struct cs_flat_region_edges *edges) {
     double a = 0, b = 0, c = 0, reach = 0 * edges->sum;
     for (int k = 0; k < 3; k++) {
@@ -98,6 +112,7 @@ static double bound_of(const struct cs_flat_region_edges *edges) {
     return 0.707106 * (sqrt(least > 0 ? least : 0) - sqrt(reach));
 }
 
+/* Bounds of one row of blocks, after all boxes are set. */
 static void part_row(void *arg, uint32_t down) {
     const struct measuring *at = arg;
     const struct cs_flat_region *flat = at->flat;

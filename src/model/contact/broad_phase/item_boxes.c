@@ -1,4 +1,4 @@
-/* Boxes of items, joined to those of clusters. */
+/* Bounding boxes of items, merged into those of clusters. */
 #include "model/contact/broad_phase/item_boxes.h"
 
 #include "base/pool.h"
@@ -29,7 +29,7 @@ struct filling {
     struct cs_aabb_clusters *clusters;
 };
 
-/* clusters that are filled together */
+/* clusters per job */
 enum { TOGETHER = 64 };
 
 static void fill_cluster(const struct filling *filling, uint32_t number) {

@@ -1,4 +1,4 @@
-/* item_boxes.h - boxes about points, edges and triangles, alone and in their clusters. */
+/* item_boxes.h - bounding boxes of points, edges and triangles, and of their clusters. */
 #ifndef CS_BROAD_PHASE_ITEM_BOXES_H
 #define CS_BROAD_PHASE_ITEM_BOXES_H
 
@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* Items of one kind at a state. */
+/* Items of one kind at a state; all pointers are borrowed. */
 struct cs_item_boxes {
     const double *x; /* (3, n) */
     size_t n;
@@ -19,10 +19,12 @@ struct cs_item_boxes {
 static const struct cs_aabb cs_box_none = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
                                            {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 
-/* About an item, grown to all sides; empty for CS_NO_ITEM. */
+/* Box of an item, grown by `grow` in m to all sides; empty for CS_NO_ITEM, and for bodies
+ * without contact. */
 struct cs_aabb cs_item_box(const struct cs_item_boxes *boxes, uint32_t item, double grow);
 
-/* Sets the boxes of clusters and their cells, with all threads. false: no memory. */
+/* Sets the boxes of all clusters and sorts them into cells, with all threads. Returns false if
+ * out of memory. */
 bool cs_item_boxes_fill(const struct cs_item_boxes *boxes, struct cs_aabb_clusters *clusters);
 
 #endif

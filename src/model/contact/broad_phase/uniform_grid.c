@@ -1,4 +1,4 @@
-/* The grid of boxes: sized, counted, filled. */
+/* Uniform grid of boxes: chooses the cell size, counts, fills. */
 #include "model/contact/broad_phase/uniform_grid.h"
 
 #include "base/arena.h"
@@ -7,17 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* most cells, and most places in cells, a box on average */
+/* Limits per box: cells, and entries in cells; FEW is added to both. Beyond either the cells
+ * grow by LARGER = 2^(1/3) per side, so that their number halves. Chosen by trial. */
 enum { CELLS_EACH = 8, PLACES_EACH = 32, FEW = 4096 };
 #define LARGER 1.26
 
-/* empty, or for another grid */
+/* Returns whether a box is empty or belongs to another grid. */
 static bool is_out(const struct cs_aabb_set *boxes, uint32_t i) {
     const double side = cs_aabb_longest_side(boxes->boxes + i);
     return !(side >= 0 && side > boxes->side_min && side <= boxes->side_max);
 }
 
-/* low corner and extent of all boxes; returns their mean longest side, 0 where there is none */
+/* Sets lower corner and extent of all boxes; returns their mean longest side, 0 without boxes.
+ */
 static double measure(const struct cs_aabb_set *boxes, double low[3], double extent[3]) {
     double high[3], sum = 0;
     uint32_t count = 0;
@@ -41,7 +43,7 @@ static double measure(const struct cs_aabb_set *boxes, double low[3], double ext
     return count ? sum / count : 0;
 }
 
-/* cells along each axis; false: more than there may be */
+/* Sets the number of cells along each axis; returns false if there are more than `most`. */
 static bool divide(struct cs_uniform_grid *cells, const double extent[3], double size,
                    double most) {
     double all = 1;
@@ -64,7 +66,8 @@ void cs_uniform_grid_range(const struct cs_uniform_grid *cells, const struct cs_
     }
 }
 
-/* Adds 1 to each cell that a box touches, or puts the item where the cell's count says. */
+/* Adds 1 to each cell that a box touches, or stores the item at the position that the cell's
+ * count gives; returns the number of cells. */
 static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, uint32_t item,
                     bool put) {
     uint32_t first[3], last[3];
@@ -82,6 +85,7 @@ static size_t visit(struct cs_uniform_grid *cells, const struct cs_aabb *box, ui
     return places;
 }
 
+/* Counts the entries of all cells; stops early at too many. Returns false if out of memory. */
 static bool count_all(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes,
                       size_t *places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
@@ -98,7 +102,8 @@ static bool count_all(struct cs_uniform_grid *cells, const struct cs_aabb_set *b
     return true;
 }
 
-/* places from the last to the first, so that items come down to where the cell begins */
+/* Stores the items. Running sums make each start the end of its cell; filling from the last box
+ * to the first brings it down to the begin, with items in ascending order. */
 static bool fill_all(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes,
                      size_t places) {
     const size_t all = (size_t)cells->dim[0] * cells->dim[1] * cells->dim[2];
@@ -116,7 +121,7 @@ static bool fill_all(struct cs_uniform_grid *cells, const struct cs_aabb_set *bo
     return true;
 }
 
-/* false: no memory */
+/* Enlarges the cells until both limits hold; returns false if out of memory. */
 static bool fill(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes,
                  const double extent[3], double size) {
     size_t places;

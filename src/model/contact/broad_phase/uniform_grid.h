@@ -1,5 +1,5 @@
-/* uniform_grid.h - boxes sorted into the cells of a uniform grid by counting: integer keys, no
- * pointers, items of a cell ascending. */
+/* uniform_grid.h - axis-aligned boxes sorted into the cells of a uniform grid by counting:
+ * integer keys, no pointers, items of a cell in ascending order. */
 #ifndef CS_BROAD_PHASE_UNIFORM_GRID_H
 #define CS_BROAD_PHASE_UNIFORM_GRID_H
 
@@ -7,11 +7,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Axis-aligned bounding box in m; empty if high is below low. */
 struct cs_aabb {
     double low[3], high[3]; /* m */
 };
 
-/* Boxes that are not finite meet. */
+/* Boxes that touch overlap, and so do boxes with NaN: a broad phase must not lose them. */
 static inline bool cs_aabbs_overlap(const struct cs_aabb *a, const struct cs_aabb *b) {
     bool apart = false;
     for (int c = 0; c < 3; c++)
@@ -19,7 +20,7 @@ static inline bool cs_aabbs_overlap(const struct cs_aabb *a, const struct cs_aab
     return !apart;
 }
 
-/* Makes a box that is empty, or about others, one about another too. */
+/* Extends a box, which may be empty, to contain another. */
 static inline void cs_aabb_merge(struct cs_aabb *box, const struct cs_aabb *other) {
     for (int c = 0; c < 3; c++) {
         box->low[c] = other->low[c] < box->low[c] ? other->low[c] : box->low[c];
@@ -27,14 +28,18 @@ static inline void cs_aabb_merge(struct cs_aabb *box, const struct cs_aabb *othe
     }
 }
 
+/* Cells in compressed row format: cell c has items[cell_starts[c]] to [cell_starts[c + 1] - 1].
+ */
 struct cs_uniform_grid {
-    double origin[3], inverse_cell_size; /* corner of the grid, 1/edge of a cell */
+    /* lower corner in m; 1 / edge of a cell in 1/m */
+    double origin[3], inverse_cell_size;
     uint32_t dim[3];
-    uint32_t *cell_starts, *items; /* cell c holds items[starts[c]..starts[c + 1]) */
+    /* (cells + 1) and the items of all cells */
+    uint32_t *cell_starts, *items;
     size_t starts_capacity, items_capacity;
 };
 
-/* m, the longest; below 0: it is empty */
+/* m, longest side; negative: the box is empty */
 static inline double cs_aabb_longest_side(const struct cs_aabb *box) {
     double side = -1;
     for (int c = 0; c < 3; c++) {
@@ -44,24 +49,23 @@ static inline double cs_aabb_longest_side(const struct cs_aabb *box) {
     return side;
 }
 
-/* The boxes of one grid: those whose longest side is above `least` and not above `most`. */
+/* Boxes of one grid: those with side_min < longest side <= side_max. */
 struct cs_aabb_set {
     const struct cs_aabb *boxes; /* (n) */
     uint32_t n;
     double side_min, side_max; /* m */
 };
 
-/* Puts box i into every cell that it touches; empty boxes (high below low) into none. Cells are
- * about as large as the boxes on average, and larger where there would be too many. Where boxes
- * are not finite, or all empty, there is no cell (dim 0), and so it is where false says that
- * there was no memory. */
+/* Puts each box into every cell that it touches; empty boxes into none. Cells are about as
+ * large as the mean box, and larger if there would be too many. If boxes are not finite or all
+ * are empty, there are no cells (dim 0). Returns false if out of memory, again with dim 0. */
 bool cs_uniform_grid_fill(struct cs_uniform_grid *cells, const struct cs_aabb_set *boxes);
 
-/* Cells that a box touches, first and last along each axis. */
+/* First and last cell along each axis that a box touches. */
 void cs_uniform_grid_range(const struct cs_uniform_grid *cells, const struct cs_aabb *box,
                            uint32_t first[3], uint32_t last[3]);
 
-/* Cell along one axis of a place, the first or last one outside. */
+/* Cell along one axis of a coordinate; those outside the grid have the first or last one. */
 static inline uint32_t cs_uniform_grid_index(const struct cs_uniform_grid *cells, double place,
                                              int axis) {
     const double end = cells->dim[axis] - 1;
@@ -69,13 +73,13 @@ static inline uint32_t cs_uniform_grid_index(const struct cs_uniform_grid *cells
     return (uint32_t)(at > 0 ? at < end ? at : end : 0);
 }
 
-/* Number of a cell. */
+/* Number of a cell: x runs fastest. */
 static inline size_t cs_uniform_grid_cell(const struct cs_uniform_grid *cells, uint32_t x,
                                           uint32_t y, uint32_t z) {
     return ((size_t)z * cells->dim[1] + y) * cells->dim[0] + x;
 }
 
-/* Gives the memory back. */
+/* Frees the memory; the grid is empty afterwards. */
 void cs_uniform_grid_finish(struct cs_uniform_grid *cells);
 
 #endif

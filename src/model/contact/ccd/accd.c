@@ -1,15 +1,17 @@
-/* Distances by cases (Ericson 2005, sec. 5.1), and the search along a move. */
+/* Distances by cases (Ericson 2005, sec. 5.1), and additive advance along a move (Li et al.
+ * 2021). */
 #include "model/contact/ccd/accd.h"
 
 #include "base/vec3.h"
 
 #include <float.h>
 
-/* of the distance, a turn: the pair keeps a tenth of it */
+/* fraction of the safe advance per iteration, so that a tenth of the distance stays for
+ * rounding */
 #define ADVANCE 0.9
-/* of the first distance, at which the search ends */
+/* fraction of the first distance at which the search ends */
 #define LEFT 0.1
-/* more turns than that are slower than a shorter step would be */
+/* largest number of iterations; the fraction reached is still safe */
 enum { TURNS_MAX = 1000 };
 
 static void subtract(const double a[3], const double b[3], double out[3]) {
@@ -21,7 +23,7 @@ static double clamp(double t) {
     return t > 0 ? fmin(t, 1) : 0;
 }
 
-/* |w + s u - t v|^2 */
+/* |w + s u - t v|^2 in m2 */
 static double squared_at(const double w[3], double s, const double u[3], double t,
                          const double v[3]) {
     double sum = 0;
@@ -32,6 +34,7 @@ static double squared_at(const double w[3], double s, const double u[3], double 
     return sum;
 }
 
+/* squared distance of p from the segment a b; from a if it has no length */
 static double from_segment(const double p[3], const double a[3], const double b[3]) {
     double u[3], w[3];
     subtract(b, a, u);
@@ -40,6 +43,8 @@ static double from_segment(const double p[3], const double a[3], const double b[
     return squared_at(w, 0, u, uu > 0 ? clamp(cs_vec3_dot(u, w) / uu) : 0, u);
 }
 
+/* Squared distance of p[0] from its triangle: that of the foot if it is inside, else the least
+ * distance from an edge. */
 static double from_triangle(const double p[4][3]) {
     double u[3], v[3], w[3];
     subtract(p[2], p[1], u);
@@ -54,8 +59,9 @@ static double from_triangle(const double p[4][3]) {
                 fmin(from_segment(p[0], p[2], p[3]), from_segment(p[0], p[3], p[1])));
 }
 
-/* the inner points of both lines, by products that are right for the smallest angle, and each
- * end against the other edge */
+/* Squared distance of two edges: from the point of the first line nearest to the second,
+ * clamped, and from each end to the other edge. Cross products keep their accuracy for small
+ * angles, where the determinant of dot products cancels. */
 static double between_edges(const double p[4][3]) {
     double u[3], v[3], w[3], normal[3], across[3];
     subtract(p[1], p[0], u);
@@ -81,8 +87,7 @@ double cs_exact_distance_squared(enum cs_primitive_pair_kind kind, const double 
     return kind == CS_PRIMITIVE_POINT_TRIANGLE ? from_triangle(p) : between_edges(p);
 }
 
-/* Takes the mean off the moves; returns how much the two sides move against each other at most.
- */
+/* Takes the mean off the moves; returns the bound l of the relative motion of both sides. */
 static double relative_move(enum cs_primitive_pair_kind kind, const double moves[4][3],
                             double rest[4][3]) {
     double mean[3] = {0, 0, 0}, length[4];
@@ -98,6 +103,8 @@ static double relative_move(enum cs_primitive_pair_kind kind, const double moves
                                                : fmax(length[0], length[1]) + other;
 }
 
+/* Two quick exits precede the loop: no relative motion, and a first distance that exceeds the
+ * whole relative motion. Each advance is safe by itself, so an early end is safe too. */
 double cs_accd_safe_fraction(enum cs_primitive_pair_kind kind, const double p[4][3],
                              const double moves[4][3], double most) {
     double rest[4][3], at[4][3], share = 0;

@@ -1,4 +1,4 @@
-/* Pairs one after the other: it is asked once, where a run ends. */
+/* Finds the primitives that blocked a step by testing all pairs, once, where a run ends. */
 #include "model/contact/ccd/blocked_step.h"
 
 #include "model/contact/broad_phase/swept_aabb.h"
@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* pairs that are looked through in some ten seconds */
+/* points times triangles that are tested in about ten seconds */
 #define PAIRS_MAX 1e9
 
 enum cs_status cs_blocked_step_init(struct cs_blocked_step *blocked,
@@ -32,15 +32,17 @@ void cs_blocked_step_store(struct cs_blocked_step *blocked, const struct cs_syst
     }
 }
 
-/* The search for the pair that meets first. */
+/* Search for the pair that meets first. */
 struct search {
     const struct cs_surfaces *surfaces;
     const double *x[2];
     double share;
     enum cs_primitive_pair_kind kind;
-    uint32_t at[4]; /* where share is below 1 */
+    /* its points, valid if share is below 1 */
+    uint32_t at[4];
 };
 
+/* Takes a pair over if it meets earlier than the best one so far. */
 static void try_pair(struct search *search, enum cs_primitive_pair_kind kind,
                      const uint32_t at[4]) {
     const size_t n = search->surfaces->n_points,
@@ -70,6 +72,7 @@ static void try_pair(struct search *search, enum cs_primitive_pair_kind kind,
     memcpy(search->at, at, sizeof search->at);
 }
 
+/* Tests all pairs of a point and a triangle, and all pairs of edges. */
 static void try_all(struct search *search) {
     const struct cs_surfaces *s = search->surfaces;
     for (uint32_t i = 0; i < s->n_points; i++)
@@ -86,6 +89,7 @@ static void try_all(struct search *search) {
         }
 }
 
+/* Runs the same test as the tree, so that it finds the pair that limited the step. */
 void cs_blocked_step_print(const struct cs_blocked_step *blocked,
                            const struct cs_system *system, struct cs_text *out) {
     const struct cs_surfaces *s = system->surfaces;

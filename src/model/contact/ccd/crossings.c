@@ -1,4 +1,15 @@
-/* Counts crossings, and finds the first of a move, over the pairs of parts that may meet. */
+/* Counts crossings, and finds the collision-free fraction of a move, over all pairs of parts
+ * that may meet.
+ *
+ * A surface crosses another exactly if an edge of one pierces a triangle of the other, but for
+ * degenerate contact. Each pair of an edge and a triangle belongs to one pair of representative
+ * triangles, so none is counted twice (representative_triangles.h). During a move two surfaces
+ * first meet in a point-triangle or an edge-edge pair; these two kinds therefore suffice.
+ *
+ * The jobs of the tree run in parallel, each with its own result. Counts are integers and the
+ * fraction is a minimum: both are independent of the order of jobs. The fraction found so far
+ * in a job bounds the following pairs, which ends most of them early; a minimum does not change
+ * by that. */
 #include "model/contact/ccd/crossings.h"
 
 #include "base/pool.h"
@@ -11,9 +22,10 @@
 #include <math.h>
 #include <string.h>
 
-/* What one job found; the jobs are put together in their order. */
+/* Result of one job; results are combined in the order of jobs. */
 struct found {
     struct cs_crossing_count count;
+    /* collision-free fraction */
     double share;
 };
 
@@ -23,7 +35,8 @@ struct cs_crossings {
     struct found *found; /* (CS_BVH_PAIRS_MAX) */
 };
 
-/* only where the limit comes of the pairs of contact: others go through each other as ever */
+/* Marks the pairs of bodies with contact: the limit applies to them alone, others may pass
+ * through each other. */
 static void list_nonadjacent(const struct cs_scene *scene, bool *apart) {
     const uint32_t n = cs_scene_surfaces(scene);
     double friction;
@@ -47,14 +60,18 @@ enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *err
     return error->status;
 }
 
-/* One question to all pairs, and where the job at work puts its answer. */
+/* One query over all pairs. The result of each job goes to `found`. */
 struct question {
     const struct cs_representative_triangles *parts;
-    uint32_t n_bodies; /* that move freely: obstacles follow them */
+    /* bodies; colliders have higher numbers */
+    uint32_t n_bodies;
     const double *x0, *x1;
-    const bool *apart;               /* of struct cs_crossings */
-    const struct cs_scene *apart_by; /* whose bodies that keep off each other alone count */
-    uint8_t *marks;                  /* NULL: none are asked for */
+    /* pairs of bodies that count; NULL: all */
+    const bool *apart;
+    /* scene whose contact pairs alone count; NULL: all pairs */
+    const struct cs_scene *apart_by;
+    /* marks of triangles; NULL: not wanted */
+    uint8_t *marks;
     struct found *found;
     cs_bvh_visitor *visit;
 };
@@ -63,6 +80,7 @@ struct asking {
     struct found *found;
 };
 
+/* Runs one job of the tree with an empty result. */
 static void run_job(void *arg, uint32_t job) {
     const struct question *question = arg;
     struct asking asking = {question, question->found + job};
@@ -80,12 +98,14 @@ static void read_points(const struct cs_representative_triangles *parts, const d
 
 /* --- counting --- */
 
+/* Marks a triangle. Several threads may mark the same one, with the same value. */
 static void mark_triangle(uint8_t *marks, uint32_t t) {
     // several threads may mark the same triangle
     if (t != CS_NO_TRIANGLE)
         __atomic_store_n(marks + t, (uint8_t)1, __ATOMIC_RELAXED);
 }
 
+/* Counts edge e against triangle t, unless they have a particle in common. */
 static void count_pair(const struct asking *asking, uint32_t e, uint32_t t) {
     const struct question *question = asking->question;
     const struct cs_representative_triangles *parts = question->parts;
@@ -111,7 +131,7 @@ static void count_pair(const struct asking *asking, uint32_t e, uint32_t t) {
     mark_triangle(question->marks, parts->surfaces->edge_triangles[2 * (size_t)e + 1]);
 }
 
-/* own edges of one part against the triangle of the other */
+/* Tests the edges owned by a part against the triangle of another. */
 static void count_edges(const struct asking *asking, uint32_t part, uint32_t other) {
     const struct cs_representative_triangles *parts = asking->question->parts;
     const uint32_t t = parts->triangles[other];
@@ -121,13 +141,13 @@ static void count_edges(const struct asking *asking, uint32_t part, uint32_t oth
         count_pair(asking, parts->edges[k], t);
 }
 
-/* obstacles may go through each other, and are made as they are */
+/* Returns whether both parts are of colliders, which may pass through each other. */
 static bool are_obstacles(const struct question *question, uint32_t i, uint32_t j) {
     const uint32_t *bodies = question->parts->bodies;
     return bodies[i] >= question->n_bodies && bodies[j] >= question->n_bodies;
 }
 
-/* and only these are asked for, where the scene is given */
+/* Returns whether no contact is defined between the bodies of two parts. */
 static bool are_free(const struct question *question, uint32_t i, uint32_t j) {
     const uint32_t *bodies = question->parts->bodies;
     double friction;
@@ -143,7 +163,8 @@ static void count_parts(void *arg, uint32_t i, uint32_t j) {
     count_edges(arg, j, i);
 }
 
-/* marks, and whose bodies: may be NULL */
+/* Counts at one state; apart_by and marks may be NULL. The first pair is the least by (edge,
+ * triangle) of all jobs. */
 static struct cs_crossing_count count(const struct cs_system *system, double t, const double *x,
                                       const struct cs_scene *apart_by, uint8_t *marks) {
     struct cs_crossings *crossings = system->crossings;
@@ -199,6 +220,8 @@ void cs_crossings_print(const struct cs_system *system, const struct cs_crossing
 
 /* --- the first of a move --- */
 
+/* Reduces the fraction of the job if a pair meets. A swept-box test of its own points precedes
+ * the search; the boxes of the parts are larger. */
 static void try_pair(const struct asking *asking, enum cs_primitive_pair_kind kind,
                      const uint32_t particles[4]) {
     const struct question *question = asking->question;
@@ -224,7 +247,7 @@ static void try_pair(const struct asking *asking, enum cs_primitive_pair_kind ki
         kind, (const double(*)[3])p, (const double(*)[3])moves, asking->found->share);
 }
 
-/* own points of one part against the triangle of the other */
+/* Tests the points owned by a part against the triangle of another. */
 static void try_points(const struct asking *asking, uint32_t part, uint32_t other) {
     const struct cs_representative_triangles *parts = asking->question->parts;
     const uint32_t t = parts->triangles[other];
@@ -236,6 +259,7 @@ static void try_points(const struct asking *asking, uint32_t part, uint32_t othe
                  (const uint32_t[4]){parts->points[k], corners[0], corners[1], corners[2]});
 }
 
+/* Tests the edges owned by two parts against each other. */
 static void try_edges(const struct asking *asking, uint32_t part, uint32_t other) {
     const struct cs_representative_triangles *parts = asking->question->parts;
     for (uint32_t k = parts->first_edge[part]; k < parts->first_edge[part + 1]; k++)
@@ -247,6 +271,7 @@ static void try_edges(const struct asking *asking, uint32_t part, uint32_t other
         }
 }
 
+/* Tests all primitives of two parts: points and triangles both ways, and edges. */
 static void try_parts(void *arg, uint32_t i, uint32_t j) {
     const struct question *question = ((const struct asking *)arg)->question;
     const uint32_t *bodies = question->parts->bodies;

@@ -1,11 +1,11 @@
-/* crossing_policy.h - the surfaces of a system against each other and themselves: how many
- * edges go through triangles, and how far a move may go before the first does. */
+/* crossings.h - crossings of surfaces with each other and themselves: counts edges that pierce
+ * triangles, and finds the collision-free fraction of a step. */
 #ifndef CS_CROSSINGS_H
 #define CS_CROSSINGS_H
 
 #include "model/contact/ccd/representative_triangles.h"
 
-/* What a count found. */
+/* Number of crossings, and the first pair by (edge, triangle) if n > 0. */
 struct cs_crossing_count {
     uint64_t n;
     uint32_t edge, triangle; /* the first pair by their numbers, where n > 0 */
@@ -13,20 +13,22 @@ struct cs_crossing_count {
 
 struct cs_crossings;
 
-/* Makes system->crossings in the system's arena. CS_ERR_MEMORY. */
+/* Builds system->crossings in the system's arena, and the surfaces if they are missing.
+ * CS_ERR_MEMORY. */
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error);
 
-/* Counts the edges that go through triangles at x (3,n) and t: pairs of an edge and a triangle
- * without a particle in common, not both of obstacles, exactly as edge_triangle.h says. The
- * same on every machine and for every number of threads. */
+/* Counts the edges that pierce triangles at x (3,n) and t, exactly as edge_triangle.h defines
+ * it: pairs of an edge and a triangle without a common particle, not both of colliders. The
+ * result is the same on every machine and for any number of threads. */
 struct cs_crossing_count cs_crossings_count(const struct cs_system *system, double t,
                                             const double *x);
 
-/* The same at the start, of those alone that keep off each other (scene/body_pairs.h). */
+/* The same at the start, only for bodies between which contact is defined (scene/body_pairs.h).
+ */
 struct cs_crossing_count cs_crossings_start(const struct cs_system *system);
 
-/* The same as cs_crossings_count, and marks the triangles that are gone through and those
- * beside the edges that go through: marks (n_triangles of system->surfaces), 1 or 0. */
+/* As cs_crossings_count, and sets marks (n_triangles of system->surfaces) to 1 for pierced
+ * triangles and those next to piercing edges, else 0. */
 struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, double t,
                                            const double *x, uint8_t *marks);
 
@@ -34,10 +36,9 @@ struct cs_crossing_count cs_crossings_mark(const struct cs_system *system, doubl
 void cs_crossings_print(const struct cs_system *system, const struct cs_crossing_count *count,
                         struct cs_text *out);
 
-/* The largest share 0..1 of the straight move from x0 (3,n) at t0 to x1 at t1 in which no two
- * parts meet, by accd.h over all pairs of a point and a triangle and of two edges without a
- * particle in common. 0: a pair touches at x0, and moves. What crosses at x0 already is not
- * seen. */
+/* Collision-free fraction, 0 to 1, of the straight move from x0 (3,n) at t0 to x1 at t1: no
+ * point-triangle and no edge-edge pair without a common particle meets in it (accd.h). 0: a
+ * pair touches at x0 and moves. Pairs that cross at x0 already are not detected. */
 double cs_crossings_safe_fraction(const struct cs_system *system, double t0, const double *x0,
                                   double t1, const double *x1);
 

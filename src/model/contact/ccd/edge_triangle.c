@@ -1,4 +1,9 @@
-/* An edge against a triangle: five signs of determinants. */
+/* Edge against triangle by the signs of five determinants.
+ *
+ * The ends p, q are on both sides of the plane of a, b, c if orient(a, b, c, p) and orient(a,
+ * b, c, q) differ. The line then meets the triangle if orient(a, b, p, q), orient(b, c, p, q)
+ * and orient(c, a, p, q) have one sign. Two cheap certain tests come first: exact determinants
+ * of coplanar points take far longer. */
 #include "model/contact/ccd/edge_triangle.h"
 
 #include "base/vec3.h"
@@ -13,7 +18,7 @@ static double min_of(double a, double b) {
     return a < b ? a : b;
 }
 
-/* Whether their boxes lie apart, which is exact. */
+/* Returns whether the axis-aligned boxes are disjoint. Comparisons are exact. */
 static bool has_gap(const double edge[2][3], const double triangle[3][3]) {
     for (int c = 0; c < 3; c++) {
         const double a = triangle[0][c], b = triangle[1][c], d = triangle[2][c];
@@ -24,8 +29,9 @@ static bool has_gap(const double edge[2][3], const double triangle[3][3]) {
     return false;
 }
 
-/* Whether an edge and a triangle surely lie apart along an axis, whatever axis it is: rounding
- * of the projections is below the margin. */
+/* Returns whether the projections on an axis are certainly disjoint. Any axis may be used,
+ * rounded or not. `size` bounds the sum of magnitudes of a projection; 8 epsilon of it exceeds
+ * the rounding of three products and two sums. */
 static bool are_separated(const double edge[2][3], const double triangle[3][3],
                           const double axis[3]) {
     double at[5], size = 0;
@@ -41,8 +47,9 @@ static bool are_separated(const double edge[2][3], const double triangle[3][3],
            larger(at[0], at[1]) < min_of(min_of(at[2], at[3]), at[4]) - margin;
 }
 
-/* A flat body has no other certain answer than this for edges beside a triangle: every
- * determinant of points in a plane is 0 but for rounding. */
+/* Tests the axes at right angles to the triangle's sides and to the edge, within the plane. In
+ * a flat body nothing else gives a certain answer for edges beside a triangle, because all
+ * determinants of coplanar points are 0 but for rounding. */
 static bool are_on_same_side(const double edge[2][3], const double triangle[3][3]) {
     double sides[3][3], along[3], normal[3], axis[3];
     for (int k = 0; k < 3; k++)
@@ -60,6 +67,8 @@ static bool are_on_same_side(const double edge[2][3], const double triangle[3][3
     return are_separated(edge, triangle, axis);
 }
 
+/* A product of signs >= 0 rejects ends on one side, and ends in the plane, whose sign is 0. The
+ * last three signs use the moved end, so that none of them is 0 for a triangle with area. */
 bool cs_edge_crosses_triangle(const double edge[2][3], const double triangle[3][3]) {
     if (has_gap(edge, triangle) || are_on_same_side(edge, triangle))
         return false;

@@ -1,46 +1,47 @@
-/* Signs of determinants: a test in double, then sums of doubles without rounding. */
+/* Signs of determinants: an error-bounded test in double, then exact expansions. */
 #include "model/contact/ccd/orient3d.h"
 
 #include "base/vec3.h"
 
 #include <float.h>
 
-/* Of a product of three differences: each is a sum of two doubles, a product of three doubles
- * one of four, and a determinant has six of them. */
+/* Largest number of terms. A difference is a sum of two doubles; a product of three doubles is
+ * one of four; a determinant has six products of three differences, each of 2^3 terms. */
 enum { PARTS_MAX = 6 * 8 * 4 };
 
-/* Bounds of the rounding of a determinant over the sum of its magnitudes, with u = 2^-53:
- * (7 + 56 u) u (Shewchuk 1997, sec. 4.3). */
+/* Bound of the rounding error of a determinant over the sum of its magnitudes: (7 + 56 u) u
+ * with u = 2^-53 (Shewchuk 1997, sec. 4.3). */
 #define UNIT        (DBL_EPSILON / 2)
 #define ORIENT_NEAR ((7 + 56 * UNIT) * UNIT)
 
-/* The exact sum of doubles that do not overlap, from small to large, none of them 0. */
+/* Exact sum of doubles that do not overlap, in ascending order of magnitude, none of them 0. */
 struct expansion {
     int n;
     double parts[PARTS_MAX];
 };
 
-/* a + b and what its rounding lost */
+/* a + b rounded, and the exact rounding error in *lost (Knuth's two-sum, any order of a, b) */
 static double two_sum(double a, double b, double *lost) {
     const double sum = a + b, b_kept = sum - a, a_kept = sum - b_kept;
     *lost = (a - a_kept) + (b - b_kept);
     return sum;
 }
 
-/* the upper 26 bits of a */
+/* the upper 26 bits of a (Veltkamp's split with 2^27 + 1) */
 static double upper(double a) {
     const double c = 134217729 * a; // 2^27 + 1
     return c - (c - a);
 }
 
-/* a b and what its rounding lost */
+/* a b rounded, and the exact rounding error in *lost (Dekker 1971) */
 static double two_product(double a, double b, double *lost) {
     const double product = a * b, ah = upper(a), bh = upper(b), al = a - ah, bl = b - bh;
     *lost = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
     return product;
 }
 
-/* Shewchuk's GROW-EXPANSION, which keeps the order and that nothing overlaps. */
+/* Adds a double exactly: Shewchuk's GROW-EXPANSION, which keeps the order and the terms from
+ * overlapping. Zeros are dropped. */
 static void add(struct expansion *sum, double value) {
     int n = 0;
     for (int k = 0; k < sum->n; k++) {
@@ -54,6 +55,7 @@ static void add(struct expansion *sum, double value) {
     sum->n = n;
 }
 
+/* sum += sign a b, exactly */
 static void add_product(struct expansion *sum, double a, double b, double sign) {
     double lost;
     if (a == 0 || b == 0)
@@ -63,6 +65,7 @@ static void add_product(struct expansion *sum, double a, double b, double sign) 
     add(sum, sign * product);
 }
 
+/* sum += sign a b c, exactly: both parts of a b times c */
 static void add_product3(struct expansion *sum, double a, double b, double c, double sign) {
     double lost;
     if (a == 0 || b == 0)
@@ -76,16 +79,18 @@ static void add_product3(struct expansion *sum, double a, double b, double c, do
 static int sign_of(double value) {
     return (value > 0) - (value < 0);
 }
+/* the largest term has the sign of the sum */
 static int sign_of_sum(const struct expansion *sum) {
     return sum->n ? sign_of(sum->parts[sum->n - 1]) : 0;
 }
 
-/* a - b as two doubles, the rounded one first */
+/* a - b as two doubles: the rounded difference and its error */
 static void subtract(const double a[3], const double b[3], double out[3][2]) {
     for (int k = 0; k < 3; k++)
         out[k][0] = two_sum(a[k], -b[k], &out[k][1]);
 }
 
+/* Sign of the determinant in expansions, all 6 x 8 products of parts. */
 static int orient_exactly(const double a[3], const double b[3], const double c[3],
                           const double d[3]) {
     struct expansion sum = {.n = 0};
@@ -124,7 +129,7 @@ int cs_orient3d(const double a[3], const double b[3], const double c[3], const d
     return orient_exactly(a, b, c, d);
 }
 
-/* The sign of component i of (a - c) x (b - c). */
+/* Sign of component i of (a - c) x (b - c), exactly. */
 static int cross_sign(const double a[3], const double b[3], const double c[3], int i) {
     struct expansion sum = {.n = 0};
     double u[3][2], v[3][2];
@@ -138,6 +143,8 @@ static int cross_sign(const double a[3], const double b[3], const double c[3], i
     return sign_of_sum(&sum);
 }
 
+/* The determinant falls by the move times (a - c) x (b - c). e, e^2, e^3 are of decreasing
+ * order, so the first component that is not 0 decides. */
 int cs_orient3d_moved(const double a[3], const double b[3], const double c[3],
                       const double d[3]) {
     int sign = cs_orient3d(a, b, c, d);

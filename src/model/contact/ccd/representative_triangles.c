@@ -1,4 +1,5 @@
-/* Shares edges and points among triangles, and keeps the boxes of the parts. */
+/* Assigns edges and points to their representative triangles, and updates the boxes of parts.
+ */
 #include "model/contact/ccd/representative_triangles.h"
 
 #include "base/vector.h"
@@ -6,17 +7,20 @@
 
 #include <stdlib.h>
 
+/* Returns whether an edge has no triangle, as in a rope: it is a part itself. */
 static bool is_loose(const struct cs_surfaces *surfaces, uint32_t e) {
     return surfaces->edge_triangles[2 * (size_t)e] == CS_NO_TRIANGLE;
 }
 
-/* What is needed to number parts: body by body, triangles and then loose edges. */
+/* Temporary numbers of parts while they are assigned. */
 struct numbering {
     uint32_t *first;        /* (bodies + 1) parts of a body */
     uint32_t *of_triangles; /* (triangles) */
     uint32_t *of_edges;     /* (edges): the owner */
 };
 
+/* Numbers the parts of a body from `part` on, its triangles and then its loose edges, and
+ * returns the next number. An edge is owned by its first triangle. */
 static uint32_t number_body(const struct cs_surfaces *surfaces, uint32_t body, uint32_t part,
                             struct cs_representative_triangles *parts,
                             struct numbering *numbering) {
@@ -40,7 +44,8 @@ static uint32_t number_body(const struct cs_surfaces *surfaces, uint32_t body, u
     return part;
 }
 
-/* From the owner of each item, lists of the items of each of n owners. */
+/* Lists the items of each of n owners by counting: item i is in the list of owners[i], in
+ * ascending order. `first` must be 0 at the call. */
 static void list_owned(const uint32_t *owners, uint32_t n_items, uint32_t n, uint32_t *first,
                        uint32_t *items) {
     for (uint32_t i = 0; i < n_items; i++)
@@ -48,7 +53,7 @@ static void list_owned(const uint32_t *owners, uint32_t n_items, uint32_t n, uin
             first[owners[i] + 1]++;
     for (uint32_t k = 0; k < n; k++)
         first[k + 1] += first[k];
-    // the start of an owner's list stands one place further on, and becomes its end
+    // Filling advances first[owner + 1] from the begin of its list to the end.
     for (uint32_t k = n; k > 0; k--)
         first[k] = first[k - 1];
     first[0] = 0;
@@ -57,7 +62,7 @@ static void list_owned(const uint32_t *owners, uint32_t n_items, uint32_t n, uin
             items[first[owners[i] + 1]++] = i;
 }
 
-/* particles of a part, at most three */
+/* Particles of a part, two or three; returns their number. */
 static uint32_t corners_of(const struct cs_representative_triangles *parts, uint32_t part,
                            uint32_t corners[3]) {
     const uint32_t t = parts->triangles[part];
@@ -71,7 +76,8 @@ static uint32_t corners_of(const struct cs_representative_triangles *parts, uint
     return n;
 }
 
-/* the first part that has it owns a point; a single particle has none */
+/* Gives each point to the first part that contains it. A particle without edges has no owner.
+ */
 static void own_points(struct cs_representative_triangles *parts, uint32_t *owners) {
     for (uint32_t i = 0; i < parts->n_points; i++)
         owners[i] = CS_NO_TRIANGLE;
@@ -84,6 +90,7 @@ static void own_points(struct cs_representative_triangles *parts, uint32_t *owne
     list_owned(owners, parts->n_points, parts->n, parts->first_point, parts->points);
 }
 
+/* Centres of the parts (n, 3) at x: the mean of their particles. */
 static void find_centres(const struct cs_representative_triangles *parts, const double *x,
                          double *centres) {
     const size_t n = parts->n_points;
@@ -99,6 +106,7 @@ static void find_centres(const struct cs_representative_triangles *parts, const 
     }
 }
 
+/* number of edges without a triangle */
 static uint32_t count_loose(const struct cs_surfaces *surfaces) {
     uint32_t n = 0;
     for (uint32_t e = 0; e < surfaces->n_edges; e++)
@@ -117,8 +125,8 @@ static void alloc_arrays(struct cs_representative_triangles *parts, struct cs_ar
     parts->points = cs_arena_alloc_array(arena, parts->n_points, word, error);
 }
 
-/* work: as many words as bodies + 1, triangles, and the larger of edges and particles; then
- * the centres */
+/* Assigns everything after allocation. `work` holds bodies + 1, triangles, and the larger of
+ * edges and points, as words. */
 static void fill(struct cs_representative_triangles *parts, const struct cs_system *system,
                  double *centres, uint32_t *work, struct cs_arena *arena,
                  struct cs_error *error) {
@@ -164,11 +172,13 @@ enum cs_status cs_representative_triangles_build(struct cs_system *system,
     return error->status;
 }
 
+/* One update of boxes. */
 struct placing {
     struct cs_representative_triangles *parts;
     const double *x0, *x1;
 };
 
+/* Swept boxes of the parts [begin, end). */
 static void place_parts(void *arg, size_t begin, size_t end) {
     const struct placing *placing = arg;
     for (size_t part = begin; part < end; part++) {
@@ -181,6 +191,7 @@ static void place_parts(void *arg, size_t begin, size_t end) {
     }
 }
 
+/* Sets the boxes of parts in parallel, then refits the tree. */
 void cs_representative_triangles_update(struct cs_representative_triangles *parts,
                                         const double *x0, const double *x1, double reach) {
     struct placing placing = {parts, x0, x1};

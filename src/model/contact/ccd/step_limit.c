@@ -1,4 +1,5 @@
-/* Asks contact by force and the crossings of surfaces about a step. */
+/* Combines the step tests of contact with colliders, samples and pairs with the limit of
+ * crossings. */
 #include "model/contact/ccd/step_limit.h"
 
 #include "model/contact/ccd/crossings.h"
@@ -12,6 +13,8 @@ bool cs_step_limit_applies(const struct cs_system *system) {
            cs_scene_crossings(system->scene) == CS_CROSSINGS_LIMIT;
 }
 
+/* Cheap tests come first: particles, samples, pairs, crossings. The first that fails decides.
+ */
 double cs_step_limit_fraction(const struct cs_system *system, double t0, const double *x0,
                               double t1, const double *x1) {
     if (system->collider_params && t1 > t0 &&
@@ -35,6 +38,7 @@ bool cs_step_limit_failed(const struct cs_system *system) {
            (samples && (samples->current_set.failed || samples->matrix.failed));
 }
 
+/* Counts crossings only under the policy that stops a run at the first one. */
 bool cs_step_limit_ends_run(const struct cs_system *system, double t, const double *x,
                             struct cs_text *why) {
     if (cs_scene_crossings(system->scene) != CS_CROSSINGS_STOP)

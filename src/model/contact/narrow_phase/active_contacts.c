@@ -1,4 +1,7 @@
-/* From close pairs to what is in range of them. */
+/* Finds the active contacts among the pairs in range.
+ *
+ * Pairs of a chunk come in the order (point, triangle). The features of consecutive triangles
+ * of one point are collected and merged (feature_weights.h), until another point begins. */
 #include "model/contact/narrow_phase/active_contacts.h"
 
 #include "base/pool.h"
@@ -28,7 +31,8 @@ enum cs_status cs_active_contacts_init(struct cs_active_contacts *active,
                                           search->system->view.n, arena, error);
 }
 
-/* One chunk at work. */
+/* One chunk at work. Queries are collected so that feature_weights_find can measure in lanes.
+ */
 struct work {
     const struct cs_active_contacts *active;
     const double *x;
@@ -43,7 +47,7 @@ static struct cs_body_pair_params meeting_of(const struct cs_candidates *search,
                                    search->body[at[2]]);
 }
 
-/* a place for one pair more; NULL: no memory */
+/* Makes room for one pair more; NULL if out of memory. */
 static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
     const size_t n_blocks = chunk->n / CS_PAIR_LANES + 1;
     struct cs_active_lanes *blocks =
@@ -56,6 +60,7 @@ static struct cs_active_lanes *next(struct cs_active_chunk *chunk) {
     return blocks && at ? blocks + chunk->n / CS_PAIR_LANES : NULL;
 }
 
+/* Appends a feature or edge pair; share is the fraction of the range of its kind. */
 static void put(const struct work *work, const struct cs_weighted_feature *use, double share) {
     struct cs_active_chunk *chunk = work->chunk;
     const struct cs_body_pair_params params = meeting_of(work->active->candidates, use->points);
@@ -77,7 +82,8 @@ static void put(const struct work *work, const struct cs_weighted_feature *use, 
 
 /* --- points and triangles --- */
 
-/* the point that was at work has no more triangles */
+/* Appends the merged features of a point whose triangles have all been seen. Features whose
+ * weights cancelled are dropped. */
 static void finish_point(struct work *work) {
     for (uint32_t k = 0; k < work->n_felt; k++)
         if (cs_feature_weights_counts(work->chunk->features + k))
@@ -85,7 +91,7 @@ static void finish_point(struct work *work) {
     work->n_felt = 0;
 }
 
-/* n uses of one point */
+/* Merges n features of one point with those collected so far. */
 static void add_features(struct work *work, const struct cs_weighted_feature *uses,
                          uint32_t n) {
     struct cs_active_chunk *chunk = work->chunk;
@@ -101,6 +107,7 @@ static void add_features(struct work *work, const struct cs_weighted_feature *us
     work->n_felt = cs_feature_weights_join(felt, work->n_felt, n);
 }
 
+/* Finds the features of the waiting queries, and hands them on point by point. */
 static void find_facets(struct work *work) {
     struct cs_weighted_feature uses[CS_FEATURES_PER_TRIANGLE * CS_FEATURE_QUERY_PAIRS];
     const uint32_t n = cs_feature_weights_find(work->active->feature_weights, work->pairs,
@@ -114,6 +121,7 @@ static void find_facets(struct work *work) {
     work->waiting = 0;
 }
 
+/* Adds a point-triangle pair to the waiting queries. */
 static void queue_pair(struct work *work, const uint32_t at[4], uint32_t triangle) {
     const struct cs_candidates *search = work->active->candidates;
     struct cs_feature_query *pair = work->pairs + work->waiting++;
@@ -127,7 +135,7 @@ static void queue_pair(struct work *work, const uint32_t at[4], uint32_t triangl
 
 /* --- both kinds --- */
 
-/* what cannot move feels nothing, and holds nothing */
+/* Returns whether no point of a pair can move: such pairs have no effect. */
 static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
     bool fixed = true;
     for (int k = 0; k < 4; k++)
@@ -135,6 +143,7 @@ static bool is_fixed(const struct cs_system *system, const uint32_t at[4]) {
     return fixed;
 }
 
+/* Takes a pair in range: edges at once, a point and triangle into the queue. */
 static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_candidates *search = work->active->candidates;
     struct cs_weighted_feature edges = {.weight = 1, .psd_weight = 1};
@@ -189,6 +198,8 @@ bool cs_active_contacts_find(struct cs_active_contacts *active, const double *x)
     return !failed;
 }
 
+/* Assigns rows to the points of a chunk. Consecutive pairs share points, which saves most
+ * look-ups in the table. */
 static void number_chunk(void *arg, uint32_t number) {
     struct cs_active_contacts *active = arg;
     struct cs_active_chunk *chunk = active->chunks + number;

@@ -1,6 +1,6 @@
-/* active_contacts.h - the pairs in range at a state, found once for all that is asked there: of
- * a point and a triangle the features that the point feels, each once whatever the number of
- * triangles that have it. */
+/* active_contacts.h - the active contacts of a state, cached for all evaluations at it. A
+ * point-triangle pair contributes the features (face, edge, vertex) in range; a feature shared
+ * by several triangles is listed once. */
 #ifndef CS_NARROW_PHASE_ACTIVE_CONTACTS_H
 #define CS_NARROW_PHASE_ACTIVE_CONTACTS_H
 
@@ -9,7 +9,8 @@
 #include "model/contact/narrow_phase/force_gather.h"
 #include "model/contact/narrow_phase/pair_lanes.h"
 
-/* Eight pairs as lanes take them; after the last pair numbers mean nothing. */
+/* Parameters of eight pairs in the layout of struct cs_pair_lanes; unspecified after the last
+ * pair. */
 struct cs_active_lanes {
     double range[CS_PAIR_LANES], k[CS_PAIR_LANES], friction[CS_PAIR_LANES];
     double weight[CS_PAIR_LANES],
@@ -18,46 +19,54 @@ struct cs_active_lanes {
     double d[CS_PAIR_LANES]; /* m, of features */
 };
 
-/* Those of one chunk of the search. */
+/* Active contacts of one candidate chunk. */
 struct cs_active_chunk {
     enum cs_pair_kind kind;
     struct cs_active_lanes *blocks;
     uint32_t (*points)[4]; /* (n) points of each pair */
     uint32_t (*rows)[4];   /* (n) and their rows, of cs_active_contacts_gather */
-    size_t n;              /* pairs */
+    /* number of pairs */
+    size_t n;
     size_t capacity, points_capacity, rows_capacity;
     struct cs_weighted_feature *features; /* of one point, while they are found */
     size_t features_capacity;
-    double energy; /* J, where it was asked for */
-    bool failed;   /* there was no memory */
+    /* J, of the last energy query */
+    double energy;
+    /* out of memory: pairs are missing */
+    bool failed;
 };
 
+/* All active contacts of a state, with the versions of what they were found from. */
 struct cs_active_contacts {
     const struct cs_candidates *candidates; /* borrowed, as features are */
     const struct cs_feature_weights *feature_weights;
-    struct cs_active_chunk *chunks; /* those of the search */
-    uint64_t candidates_version;    /* the search's number of close pairs that they are of */
-    uint64_t friction_version;      /* and the meetings' of frictions */
-    size_t n;                       /* pairs of all chunks */
-    struct cs_gather force_gather;  /* with the chunks' numbers */
-    bool is_gathered;               /* it is set */
+    /* (n_chunks of the candidates) */
+    struct cs_active_chunk *chunks;
+    /* close_count of the candidates at that time; 0: none were found */
+    uint64_t candidates_version;
+    /* friction_version of the body pairs at that time */
+    uint64_t friction_version;
+    size_t n;                      /* pairs of all chunks */
+    struct cs_gather force_gather; /* with the chunks' numbers */
+    bool is_gathered;              /* it is set */
 };
 
-/* Fixed arrays from the arena, which then owns what grows too. CS_ERR_MEMORY. */
+/* Prepares an empty cache. search and facets are borrowed and must outlive it; the arena owns
+ * all memory. CS_ERR_MEMORY. */
 enum cs_status cs_active_contacts_init(struct cs_active_contacts *active,
                                        const struct cs_candidates *search,
                                        const struct cs_feature_weights *facets,
                                        struct cs_arena *arena, struct cs_error *error);
 
-/* Whether they are those of the search's close pairs. */
+/* Returns whether the cache still belongs to the close pairs and frictions in force. */
 bool cs_active_contacts_is_there(const struct cs_active_contacts *active);
 
-/* Sets them to those of the close pairs that were found at x (3, n_points). false: no memory.
- * With all threads. */
+/* Finds the active contacts among the pairs in range at x (3, n_points), with all threads.
+ * Returns false if out of memory; the cache is then invalid. */
 bool cs_active_contacts_find(struct cs_active_contacts *active, const double *x);
 
-/* Gives rows to all their points, where it is not done yet. false: no memory. With all threads.
- */
+/* Assigns rows to the points of all pairs, unless done already, with all threads. Returns false
+ * if out of memory. */
 bool cs_active_contacts_gather(struct cs_active_contacts *active);
 
 #endif

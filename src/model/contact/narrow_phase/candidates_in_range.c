@@ -1,4 +1,5 @@
-/* Candidates of a lot, measured in lanes. */
+/* Selects the candidates in range: by the single-precision filter, then by exact distances in
+ * lanes. */
 #include "model/contact/narrow_phase/candidates_in_range.h"
 
 #include "base/arena.h"
@@ -8,11 +9,11 @@
 
 #include <string.h>
 
-/* eights that are measured together: what was just written number by number is not at once read
- * as vectors */
+/* Blocks of eight that are measured together: a vector load directly after scalar stores to the
+ * same addresses would stall. */
 enum { TOGETHER = 4, WAITING = TOGETHER * CS_PAIR_LANES };
 
-/* One chunk at work. */
+/* One chunk at work: most pairs end in the distance filter. */
 struct work {
     const struct cs_candidates *search;
     struct cs_candidate_chunk *chunk;
@@ -21,8 +22,9 @@ struct work {
     uint32_t pairs[WAITING][2], waiting;
 };
 
-/* smooth distances of edges; of points and triangles the true ones, which features in range are
- * not above */
+/* Distances of a block. Edges have the smooth one, that of their force. Triangles have the true
+ * one, because their features may have smaller distances than the smooth one of the whole
+ * triangle; a feature in range implies a true distance in range (mesh_feature.h). */
 static void measure_lanes(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
     struct cs_exact_distance_lanes near;
     if (kind == CS_PAIR_EDGE_EDGE) {
@@ -35,6 +37,7 @@ static void measure_lanes(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) {
         lanes->d[l] = sqrt(near.squared[l]);
 }
 
+/* Appends those of the waiting pairs that are in range, without a branch. */
 static void measure(struct work *work) {
     struct cs_candidate_chunk *chunk = work->chunk;
     for (uint32_t k = 0; k < work->waiting; k += CS_PAIR_LANES)
@@ -49,6 +52,7 @@ static void measure(struct work *work) {
     work->waiting = 0;
 }
 
+/* Adds a pair that passed the filter to the waiting ones. */
 static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_candidates *candidates = work->search;
     const size_t n = candidates->system->surfaces->n_points;
@@ -65,6 +69,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
         measure(work);
 }
 
+/* Runs the filter on the pairs it holds. */
 static void filter_chunk(struct work *work) {
     const uint32_t n =
         cs_distance_filter_run(&work->sieve, work->chunk->kind == CS_PAIR_EDGE_EDGE);

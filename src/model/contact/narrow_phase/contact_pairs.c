@@ -1,12 +1,16 @@
-/* What is asked of the pairs: the list made good, and those in range answered. */
+/* Contact pairs: updates the candidate list and evaluates the pairs in range.
+ *
+ * Two lists of active contacts exist. The solver's matrix refers to one until it is replaced,
+ * while forces at other states use the other. A list is reused as long as its pairs are those
+ * in range. */
 #include "model/contact/narrow_phase/contact_pairs.h"
 
 #include "model/contact/narrow_phase/candidates_in_range.h"
 #include "model/contact/narrow_phase/narrow_phase.h"
 #include "model/contact/surface_points.h"
 
-/* those of the close pairs if they are there, else in the list that no product needs; NULL: no
- * memory */
+/* Active contacts at x: those of a list that fits, else found into the list that the solver's
+ * matrix does not use; NULL if out of memory. */
 static struct cs_active_contacts *find(struct cs_pairs *pairs, const double *x) {
     if (!cs_candidates_find_in_range(&pairs->candidates, x))
         return NULL;
@@ -18,7 +22,7 @@ static struct cs_active_contacts *find(struct cs_pairs *pairs, const double *x) 
     return cs_active_contacts_find(active, x) ? active : NULL;
 }
 
-/* false: no memory */
+/* Runs one query; returns false if out of memory. */
 static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     const struct cs_eval *at = &narrow->eval;
     narrow->x = cs_surface_points_positions(pairs->system, CS_POINTS_BEGIN, at->t, at->x);
@@ -38,6 +42,7 @@ static bool answer(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     return cs_narrow_phase_run(narrow);
 }
 
+/* Runs one query. Out of memory is remembered, and the query then has no pairs. */
 static void run(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     if (answer(pairs, narrow))
         return;
@@ -45,6 +50,7 @@ static void run(struct cs_pairs *pairs, struct cs_narrow_phase *narrow) {
     pairs->current_contacts->n = 0;
 }
 
+/* The query is a Jacobian product as soon as one direction is given. */
 void cs_pairs_set(struct cs_pairs *pairs, const struct cs_eval *at) {
     struct cs_narrow_phase narrow = {
         .query = at->dx || at->dv ? CS_CONTACT_QUERY_JVP : CS_CONTACT_QUERY_FORCE, .eval = *at};
@@ -68,6 +74,7 @@ double cs_pairs_energy(struct cs_pairs *pairs, const struct cs_eval *at) {
 
 /* --- matrices --- */
 
+/* Set of an exact matrix: the solver's, or another. */
 static struct cs_contact_set *set_of(struct cs_pairs *pairs, const struct cs_matrix *matrix,
                                      bool kept) {
     struct cs_contact_set *set = kept ? &pairs->solver_exact : &pairs->other_exact;
@@ -76,6 +83,7 @@ static struct cs_contact_set *set_of(struct cs_pairs *pairs, const struct cs_mat
     return set;
 }
 
+/* A new solver matrix first releases the list of active contacts that the old one used. */
 void cs_pairs_set_matrix(struct cs_pairs *pairs, const struct cs_matrix *matrix, bool kept) {
     struct cs_narrow_phase narrow = {
         .query = CS_CONTACT_QUERY_MATRIX,
@@ -108,6 +116,7 @@ void cs_pairs_add_blocks(const struct cs_pairs *pairs, size_t begin, size_t end,
                                    begin, end, blocks);
 }
 
+/* solver_psd.contacts is NULL while the solver's matrix is exact. */
 void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y) {
     if (pairs->failed)
         return;
@@ -117,6 +126,7 @@ void cs_pairs_multiply(const struct cs_pairs *pairs, const double *p, double *y)
         cs_contact_set_multiply(&pairs->solver_exact, p, y);
 }
 
+/* Damping follows stiffness in the same array, n_rows numbers later. */
 void cs_pairs_add_bound(struct cs_pairs *pairs, const struct cs_eval *at, double *stiffness,
                         double *damping) {
     struct cs_narrow_phase narrow = {.query = CS_CONTACT_QUERY_BOUND, .eval = *at};

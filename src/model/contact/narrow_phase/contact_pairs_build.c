@@ -1,9 +1,10 @@
-/* Makes the pairs of a system, and refuses what starts too near to itself. */
+/* Builds the contact pairs of a system, and refuses bodies that start too close to themselves.
+ */
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/contact/surface_points.h"
 
-/* Two parts of one body within its thickness would push it apart from the first step on: the
- * scene has a thickness that its edges have no room for. */
+/* Refuses a body with two primitives closer than its thickness: contact would push it apart
+ * from the first step on, because its edges leave no room for such a thickness. */
 static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error *error) {
     const struct cs_candidates *search = &pairs->candidates;
     const size_t n = pairs->system->view.n;
@@ -35,6 +36,7 @@ static enum cs_status check_start(const struct cs_pairs *pairs, struct cs_error 
     return CS_OK;
 }
 
+/* Prepares both lists of active contacts and the four matrices. */
 static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *arena,
                                    struct cs_error *error) {
     const uint32_t n = pairs->system->view.n, n_chunks = pairs->candidates.n_chunks;
@@ -49,6 +51,8 @@ static enum cs_status init_answers(struct cs_pairs *pairs, struct cs_arena *aren
     return cs_contact_set_init(&pairs->other_exact, n, n_chunks, arena, error);
 }
 
+/* Order: surfaces, parameters of pairs, candidate list, features, queries; then the first list,
+ * at the start positions, which check_start reads. */
 enum cs_status cs_pairs_build(struct cs_system *system, struct cs_error *error) {
     if (cs_surface_points_build(system, error))
         return error->status;

@@ -1,5 +1,6 @@
-/* True distances: that of the perpendicular where it meets the inside of both, else the least
- * of those from rims. */
+/* True distances by cases (Ericson 2005, sec. 5.1): the common perpendicular if it meets the
+ * inside of both primitives, else the least distance between an end or edge of one and the
+ * other. */
 #include "base/vectorise.h"
 
 #include "model/contact/narrow_phase/exact_distance.h"
@@ -8,7 +9,8 @@ CS_INLINE double min_of(double a, double b) {
     return a < b ? a : b;
 }
 
-/* of p from the segment a b; chosen, not branched to, so that loops over lanes vectorise */
+/* Squared distance of p from segment a b; selected without branches, so that loops over lanes
+ * vectorise. An edge without length has t = 0. */
 CS_INLINE double from_segment(const double p[3], const double a[3], const double b[3]) {
     const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
@@ -19,7 +21,9 @@ CS_INLINE double from_segment(const double p[3], const double a[3], const double
     return cs_vec3_dot(r, r);
 }
 
-/* The crossing of the perpendicular: shares of u and v over `whole`, and its length squared. */
+/* Feet of the common perpendicular: l and m are the parameters along u and v times `whole` = a
+ * c - b^2, and squared its squared length. whole is -1 for primitives that are parallel within
+ * sin^2 = 1e-10, whose division would amplify rounding; their edges then decide. */
 struct crossing {
     double l, m, whole, squared;
 };
@@ -30,7 +34,7 @@ CS_INLINE struct crossing cross_at(enum cs_pair_kind kind, double p[4][3]) {
     const double a = cs_vec3_dot(u, u), b = cs_vec3_dot(u, v), c = cs_vec3_dot(v, v);
     const double d = cs_vec3_dot(u, w), e = cs_vec3_dot(v, w);
     const double whole = a * c - b * b;
-    // where they are almost parallel the rims know it better
+    // nearly parallel: the edges decide
     struct crossing at = {c * d - b * e, a * e - b * d, whole > 1e-10 * a * c ? whole : -1, 0};
     const double l = at.l / at.whole, m = at.m / at.whole;
     const double r[3] = {w[0] - l * u[0] - m * v[0], w[1] - l * u[1] - m * v[1],
@@ -39,14 +43,15 @@ CS_INLINE struct crossing cross_at(enum cs_pair_kind kind, double p[4][3]) {
     return at;
 }
 
-/* least of l, m and what is left of the whole, or of the wholes of two edges: below 0 where the
- * crossing is outside */
+/* Least of the barycentric coordinates times whole: negative if the perpendicular misses the
+ * inside of a primitive. */
 CS_INLINE double room_of(enum cs_pair_kind kind, struct crossing at) {
     const double left = kind == CS_PAIR_EDGE_EDGE ? min_of(at.whole - at.l, at.whole - at.m)
                                                   : at.whole - (at.l + at.m);
     return min_of(min_of(at.l, at.m), min_of(left, at.whole));
 }
 
+/* Least squared distance that involves an end of an edge, or an edge of the triangle. */
 CS_INLINE double from_rims(enum cs_pair_kind kind, double p[4][3]) {
     if (kind == CS_PAIR_EDGE_EDGE)
         return min_of(min_of(from_segment(p[0], p[2], p[3]), from_segment(p[1], p[2], p[3])),

@@ -1,6 +1,7 @@
-/* How the triangles of surfaces hang together. */
+/* Adjacency of the triangles of surfaces, and the weights of their vertices. */
 #include "model/contact/narrow_phase/feature_weights.h"
 
+/* index 0..2 of the vertex of a triangle that is not on the edge */
 static uint32_t corner_opposite(const uint32_t *corners, const uint32_t *edge) {
     uint32_t k = 0;
     while (k < 2 && (corners[k] == edge[0] || corners[k] == edge[1]))
@@ -8,8 +9,10 @@ static uint32_t corner_opposite(const uint32_t *corners, const uint32_t *edge) {
     return k;
 }
 
-/* Of a corner whose fan of triangles is cut by its inner rims: 1 - triangles + rims of it are
- * left to be counted, so that all count 1. */
+/* Weights of the vertices. For inclusion and exclusion to give 1 at a vertex, triangles count
+ * +1, inner edges -1, and so the vertex must count 1 - triangles + inner edges. That is 1
+ * inside a surface, where both numbers are equal, and 0 at its border. Each of its triangles
+ * measures an equal fraction. */
 static void share_corners(struct cs_feature_weights *features, const uint32_t *inner) {
     const struct cs_surfaces *s = features->surfaces;
     for (size_t c = 0; c < 3 * (size_t)s->n_triangles; c++)
@@ -20,6 +23,8 @@ static void share_corners(struct cs_feature_weights *features, const uint32_t *i
                 (1 - features->vertex_share[i] + inner[i]) / features->vertex_share[i];
 }
 
+/* Sets the opposite vertices, and counts the inner edges of each point and the edges of each
+ * first end. An edge with one triangle is at the border. */
 static void cross_edges(struct cs_feature_weights *features, uint32_t *inner) {
     const struct cs_surfaces *s = features->surfaces;
     for (size_t c = 0; c < 3 * (size_t)s->n_triangles; c++)
@@ -39,6 +44,8 @@ static void cross_edges(struct cs_feature_weights *features, uint32_t *inner) {
     }
 }
 
+/* vertex_edges is built by counting into place i + 1 and summing: edges are sorted by their
+ * first end. `inner` stays in the arena, unused afterwards. */
 enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
                                        const struct cs_surfaces *surfaces,
                                        struct cs_arena *arena, struct cs_error *error) {

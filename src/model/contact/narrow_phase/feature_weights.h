@@ -1,60 +1,79 @@
-/* feature_weights.h - which features of a triangle a point feels, and how often each counts. */
+/* feature_weights.h - selects the features of a triangle that a point feels, with the
+ * inclusion-exclusion weight of each. Theory: mesh_feature.h. */
 #ifndef CS_NARROW_PHASE_FEATURE_WEIGHTS_H
 #define CS_NARROW_PHASE_FEATURE_WEIGHTS_H
 
 #include "model/contact/narrow_phase/mesh_feature.h"
 #include "model/system/surfaces.h"
 
-/* How the triangles of all surfaces hang together. */
+/* Adjacency of the triangles of all surfaces; built once, constant afterwards. */
 struct cs_feature_weights {
     const struct cs_surfaces *surfaces; /* borrowed */
-    uint32_t *opposite_vertex; /* (n_triangles, 3) the corner beyond the rim opposite each
-                         corner; CS_NO_POINT: it is the surface's border */
-    double *vertex_share;      /* (n_points) of a corner in each of its triangles */
-    uint32_t *vertex_edges;    /* (n_points + 1) the edges whose first end a point is */
+    /* (n_triangles, 3) for each vertex of a triangle, the far vertex of the neighbour across
+     * the edge opposite to it; CS_NO_POINT at the border of the surface */
+    uint32_t *opposite_vertex;
+    /* (n_points) weight of a vertex in each of its triangles; they sum to 1 - t + e over t
+     * triangles and e inner edges: 1 at an inner vertex, 0 at a border */
+    double *vertex_share;
+    /* (n_points + 1) edges that have point i as first end: vertex_edges[i] to vertex_edges[i +
+     * 1] - 1 in surfaces->edges */
+    uint32_t *vertex_edges;
 };
 #define CS_NO_POINT UINT32_MAX
 
-/* Needs the surfaces; memory from the arena. CS_ERR_MEMORY. */
+/* Builds the adjacency. surfaces is borrowed and must outlive it; the arena owns the arrays.
+ * CS_ERR_MEMORY; the content is then unspecified. */
 enum cs_status cs_feature_weights_init(struct cs_feature_weights *features,
                                        const struct cs_surfaces *surfaces,
                                        struct cs_arena *arena, struct cs_error *error);
 
-/* A feature in range, as the first rim of its triangle. */
+/* A feature in range. Its points are rotated so that the feature is the first edge of the
+ * triangle, points[1] to points[2], or its first end, or the plane. */
 struct cs_weighted_feature {
     uint32_t points[4];
-    double d;          /* m */
-    double weight;     /* how often it counts: below 0 it is taken away */
-    double psd_weight; /* and where nothing may be taken away, so that a sum is not negative: of
-                     the feature that is nearest alone. Over a flat mesh the same is left. */
+    /* m, distance of mesh_feature.h */
+    double d;
+    /* multiplicity in the energy of the triangle: negative for an edge whose energy is
+     * subtracted */
+    double weight;
+    /* multiplicity in a positive semi-definite matrix: that of the nearest feature alone, never
+     * negative. Over a flat mesh both weights have the same sums per point. */
+    double psd_weight;
     struct cs_feature_kind form;
-    uint32_t shared_feature[2]; /* the ends of a rim, or a corner and CS_NO_POINT, that is the
-                          same seen from all its triangles; twice that: it is not */
+    /* identity of a feature that all its triangles measure alike: both ends of an edge in
+     * ascending order, or a vertex and CS_NO_POINT; CS_NO_POINT twice if it still depends on
+     * the plane of its triangle */
+    uint32_t shared_feature[2];
 };
 
-/* Three rims, three corners and the plane. */
+/* Three edges, three vertices and the plane; and the largest number of queries of one call. */
 enum { CS_FEATURES_PER_TRIANGLE = 7, CS_FEATURE_QUERY_PAIRS = 32 };
 
-/* A point and a triangle. */
+/* A point and a triangle that are candidates. */
 struct cs_feature_query {
-    uint32_t points[4], triangle; /* the point and the corners */
-    bool same_body;               /* the triangle is of the point's own body */
-    double range;                 /* m */
+    /* the point and the vertices; the number of the triangle */
+    uint32_t points[4], triangle;
+    bool same_body; /* the triangle is of the point's own body */
+    double range;   /* m */
 };
 
-/* Fills uses (n CS_FEATURES_PER_TRIANGLE) with what the points of n <= CS_FEATURE_QUERY_PAIRS
- * pairs feel of their triangles at x (3, n_points), one pair after the other, and returns how
- * many they are. What is the same function of the state is one: rims and corners near the foot
- * are the plane, and a rim beyond its end is a corner. */
+/* Finds the features that the points of n <= CS_FEATURE_QUERY_PAIRS pairs feel at x (3,
+ * n_points), and returns their number. `uses` must hold n CS_FEATURES_PER_TRIANGLE of them;
+ * they come pair by pair in the order of the queries.
+ *
+ * Features with the same distance as a function of the state are merged: edges and vertices
+ * near the foot become the plane, and an edge beyond its end becomes the vertex. */
 uint32_t cs_feature_weights_find(const struct cs_feature_weights *features,
                                  const struct cs_feature_query *pairs, uint32_t n,
                                  const double *x, struct cs_weighted_feature *uses);
 
-/* Adds to `n` uses of one point, without any that is there twice, `more` that stand behind
- * them, and returns how many that makes. */
+/* Merges `more` features behind the first n into these, and returns the new number. All are of
+ * one point. Equal shared features are merged by adding their weights; the first n must contain
+ * none twice. */
 uint32_t cs_feature_weights_join(struct cs_weighted_feature *uses, uint32_t n, uint32_t more);
 
-/* Whether anything is left of it: counts are whole shares of a triangle. */
+/* Returns whether a feature has any weight left. Weights are multiples of a vertex share, far
+ * above 1e-9, so that only the rounding of cancelled weights is below it. */
 static inline bool cs_feature_weights_counts(const struct cs_weighted_feature *use) {
     return fabs(use->weight) > 1e-9 || fabs(use->psd_weight) > 1e-9;
 }

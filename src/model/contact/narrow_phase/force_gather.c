@@ -1,9 +1,10 @@
-/* Points of chunks in tables with open addresses, and their rows by particles. */
+/* Hash tables of the points of chunks, and lists of their rows by particles. */
 #include "model/contact/narrow_phase/force_gather.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* log2 of the slots of the smallest table */
 enum { BITS_MIN = 9 };
 
 static void finish(void *object) {
@@ -26,9 +27,10 @@ enum cs_status cs_gather_init(struct cs_gather *gather, uint32_t n_chunks, uint3
     return error->status;
 }
 
-/* --- rows of a lot --- */
+/* --- rows of a chunk --- */
 
-/* where a point is, or would be */
+/* Slot of a point, or the free one where it would go: linear probing from a multiplicative hash
+ * (2654435769 = 2^32 / golden ratio). */
 static uint32_t *slot_of(const struct cs_gather_chunk *chunk, uint32_t point) {
     const uint32_t mask = (1u << chunk->bits) - 1;
     uint32_t at = (point * 2654435769u) >> (32 - chunk->bits);
@@ -37,7 +39,7 @@ static uint32_t *slot_of(const struct cs_gather_chunk *chunk, uint32_t point) {
     return chunk->slots + at;
 }
 
-/* a table of that size, with the points that there are; false: no memory */
+/* Builds a table of 2^bits slots with the points so far; returns false if out of memory. */
 static bool grow_table(struct cs_gather_chunk *chunk, uint32_t bits) {
     uint32_t *slots = cs_arena_realloc(chunk->slots, &chunk->slots_capacity, (size_t)1 << bits,
                                        sizeof *slots);
@@ -57,7 +59,7 @@ void cs_gather_clear(struct cs_gather_chunk *chunk) {
     chunk->failed = false;
 }
 
-/* for one more, the table at most half full; false: no memory */
+/* Makes room for one row more, with the table at most half full; false if out of memory. */
 static bool make_room(struct cs_gather_chunk *chunk) {
     uint32_t *points = cs_arena_realloc(chunk->points, &chunk->points_capacity,
                                         (size_t)chunk->n + 1, sizeof *points);
@@ -97,7 +99,7 @@ static bool count_rows(struct cs_gather *gather) {
     return !failed;
 }
 
-/* false: no memory */
+/* Reserves rows and sums; returns false if out of memory. */
 static bool take_rows(struct cs_gather *gather) {
     uint32_t *rows =
         cs_arena_realloc(gather->rows, &gather->rows_capacity, gather->n_rows, sizeof *rows);
@@ -123,7 +125,8 @@ static void put_points(const struct cs_gather *gather, uint32_t *starts) {
                     gather->chunks[l].row_offset + row;
 }
 
-/* Counted two places on, so that filling moves the starts to where they belong. */
+/* Counting sort by particle. Counts go two places on, so that filling moves each start to where
+ * it belongs. */
 bool cs_gather_set(struct cs_gather *gather) {
     uint32_t *starts = gather->starts + 1;
     if (!count_rows(gather) || (gather->n_rows && !take_rows(gather)))
@@ -138,7 +141,7 @@ bool cs_gather_set(struct cs_gather *gather) {
     return true;
 }
 
-/* --- what rows read, and have --- */
+/* --- data of rows --- */
 
 bool cs_gather_reserve(struct cs_gather *gather, size_t width) {
     double *read = cs_arena_realloc(gather->gathered, &gather->gathered_capacity,

@@ -1,48 +1,75 @@
-/* mesh_feature.h - how far a point is from the plane, a rim or a corner of a triangle, so that
- * sums over all triangles of a mesh count nothing twice.
+/* mesh_feature.h - distance of a point from the plane, an edge or a vertex of a triangle, for
+ * sums over the triangles of a mesh that count nothing twice.
  *
- * A point over a mesh is near to several triangles that share a rim or a corner. With f the
- * same growing function for all of them, psi the law's energy and h^2 the squared height over
- * the plane of the triangle
+ * A point over a mesh is near several triangles that share an edge or a vertex. With psi the
+ * barrier energy, h the height over the plane of a triangle and f one growing function, the
+ * energy of a point is, by inclusion and exclusion,
  *
- *   E = sum of triangles psi(d) - sum of inner rims psi(d) + sum of inner corners psi(d),
- *   d^2 = h^2 + f(m),   m = squared distance of the foot from triangle, rim or corner
+ *   E = sum of triangles psi(d) - sum of inner edges psi(d) + sum of inner vertices psi(d)
+ *   d^2 = h^2 + f(m),   m = squared distance of the foot from triangle, edge or vertex
  *
- * is psi(h) exactly over a flat mesh, wherever its rims and corners are: inclusion and
- * exclusion of what is within a distance, of which any f changes the scale alone. A triangle
- * whose foot is outside has the distance of its nearest rim, one whose foot is inside that of
- * its plane: so plane, rims and corners are all there is to measure. An inner rim is measured
- * half by either of its triangles, a corner in equal shares by all of its.
+ * Flat mesh: E = psi(h) exactly, wherever the edges and vertices are. Proof. All terms have the
+ * same h and the same foot q, so each is phi(m) = psi(sqrt(h^2 + f(m))), which falls from
+ * phi(0) = psi(h) to 0. It is a superposition of steps [m <= r^2] over radii r, and each step
+ * counts the features that meet the closed disc B of radius r about q. Let S be the surface,
+ * and 1_X the indicator function of a set X. At every point
+ *
+ *   1_S = sum of triangles 1_T - sum of inner edges 1_e + sum of inner vertices 1_v
+ *
+ * It is 1 inside a triangle, 2 - 1 on an inner edge, k - k + 1 at an inner vertex with k
+ * triangles, and k - (k - 1) at a border vertex. Multiply by 1_B and take the Euler
+ * characteristic, which is additive, and 1 for every convex set that is not empty. The right
+ * side becomes the signed count, and the left side the Euler characteristic of the intersection
+ * of S and B. This is 1 if B lies inside S, and also at a convex border. So all steps have the
+ * factor 1, and their sum is phi(0) = psi(h). The proof holds for any f;
+ * f only changes the scale of phi.
+ *
+ * The smooth clamp zeta below does not spoil this. A triangle whose foot is outside has the
+ * distance of its nearest edge, so each edge near q occurs once with + and once with -. At an
+ * inner vertex one edge is left over, which points away from q. There the clamp is exact: its
+ * distance is that of the vertex, which cancels it.
+ *
+ * Bent mesh: the heights differ, and so do the terms of one feature. Both triangles of an edge
+ * give the same squared distance l = h^2 + m from it, and so d^2 between l - 0.35 e^2 and l.
+ * With e = 0.2 D their distances differ by at most 0.007 D^2/d; from m = e^2 on they are equal.
+ * Each term is smooth, so E is smooth: only its size near bent edges is approximate.
  *
  *   f(m) = m step((m - e^2/8) / (7 e^2/8)),   step(x) = x^4 (35 - 84x + 70x^2 - 20x^3)
  *
- * is flat where the foot comes to a rim, and true beyond e: the sum has three continuous
- * derivatives over a bent mesh too. At m < e^2 a distance is below the true one, by at most
- * 0.35 e^2 in its square. The foot on a rim is clamped smoothly, exactly outside its ends and
- * bent by less than 0.3 e inside.
+ * is flat where the foot comes to an edge, and exact from m = e^2 on. step has three zero
+ * derivatives at 0 and 1, so E has three continuous derivatives over a bent mesh too. The
+ * largest value of m - f(m) is 0.3451 e^2 (evaluated numerically).
  *
  *   t = u.w/u.u   b = e / sqrt(u.u + 4 e^2)   zeta = t step(t/b), and 1 - (1-t) step((1-t)/b)
- */
+ *
+ * clamps the foot on an edge u: exactly outside its ends, and by less than 0.3 e inside, since
+ * b |u| < e and x (1 - step(x)) is at most 0.2845. b is below 1/2, so both ends never overlap.
+ *
+ * Each inner edge is measured half by either of its triangles, and each vertex in equal parts
+ * by all its triangles: feature_weights_find.c. */
 #ifndef CS_NARROW_PHASE_MESH_FEATURE_H
 #define CS_NARROW_PHASE_MESH_FEATURE_H
 
 #include "model/contact/pair_distance.h"
 
-/* Of the range: e, and the range of the law within which no true distance is above the range.
- */
+/* Fractions of the range D of a pair. The blend radius is e. The range of the features is
+ * smaller than D, so that candidates with a true distance below D miss none: from d < r D
+ * follows a true distance below D sqrt(r^2 + 0.3451 0.2^2), which is 0.9990 D for r = 0.992. */
 #define CS_FEATURE_BLEND_RADIUS 0.2
 #define CS_FEATURE_RANGE_RATIO  0.992
-/* Of e^2: m up to which f is 0. */
+/* Fraction of e^2 up to which f(m) is 0. */
 #define CS_FEATURE_BLEND_START 0.125
 
-/* Which feature the first rim of a triangle stands for: the rim, its first end, or the plane.
- */
+/* The feature that the first edge of a triangle stands for: the edge (1, 1), its first end (0,
+ * 1) or the plane (0, 0). The flags are factors in the formulas, which have no branches. */
 struct cs_feature_kind {
     double is_edge, is_off_plane; /* 1, 1; 0, 1; or 0, 0 */
-    double e;                     /* m */
+    /* blend radius in m */
+    double e;
 };
 
-/* value and two derivatives of the step */
+/* Value and two derivatives of step, constant outside [0, 1]. step' = 140 x^3 (1-x)^3 and
+ * step'' = 420 x^2 (1-x)^2 (1 - 2x). */
 CS_INLINE void cs_smoothstep7(double x, double out[3]) {
     const double low = x > 0 ? x : 0, z = low < 1 ? low : 1, left = 1 - z;
     const double square = z * z, both = z * left;
@@ -51,22 +78,39 @@ CS_INLINE void cs_smoothstep7(double x, double out[3]) {
     out[2] = 420 * both * both * (left - z);
 }
 
-/* A feature at one state. The point, the two ends of the rim, and the third corner. */
+/* A feature at one state. The points are in the order of struct cs_weighted_feature: the point,
+ * both ends of the edge, the third vertex. Vectors are in m. */
 struct cs_mesh_feature {
-    struct cs_pair_distance plane;         /* u, v, w and l; its distance is not set */
-    double d, g[3][3];                     /* m; its gradient by u, v, w */
-    double length, n[3];                   /* m; between the two contact points */
-    double weights_uv[2];                  /* of u and v in what they are apart by */
-    double from_foot[3], from_edge[3];     /* m, to the point from its foot, and from the rim */
-    double t, y, b, half_b_over_w, zeta;   /* narrow = b / 2 (u.u + 4 e^2) */
+    /* frame of the plane: u, v, w and unclamped l; its distance is not set */
+    struct cs_pair_distance plane;
+    /* distance in m; its gradient by u, v, w */
+    double d, g[3][3];
+    /* length in m and direction of the vector between both contact points */
+    double length, n[3];
+    /* weights of u and v in that vector; that of w is 1 */
+    double weights_uv[2];
+    /* vectors to the point: from its foot in the plane, and from the clamped point of the edge
+     * ("leg") */
+    double from_foot[3], from_edge[3];
+    /* y = t/b or (1-t)/b, whichever end is near; half_b_over_w = b / (2 (u.u + 4 e^2)) */
+    double t, y, b, half_b_over_w, zeta;
     double dzeta_dt, dzeta_db, d2zeta_dt2; /* zeta's derivatives */
-    double f1, f2;                         /* f's */
+    /* f' and f'' at m */
+    double f1, f2;
+    /* gradients of h^2 and of leg^2 by u, v, w, in m */
     double h2_gradient[3][3],
         edge_gradient[3][3]; /* gradients of h^2 and of leg^2 by u, v, w */
     double dleg2_dzeta;      /* -2 leg.u: slope of leg^2 by zeta */
     struct cs_feature_kind kind;
 };
 
+/* Sets t, b, zeta and its derivatives. With s = step and y as in the struct, z = b y s(y):
+ *
+ *   dzeta/dt = s + y s'                          for both ends
+ *   dzeta/db = +-(y s - y (s + y s')),  d2zeta/dt2 = +-(2 s' + y s'') / b     - at the far end
+ *
+ * Being zero for a plane or vertex, is_edge then moves the point of the edge to its first end.
+ */
 CS_INLINE void cs_mesh_feature_clamp(struct cs_mesh_feature *s) {
     const double first = s->plane.a + DBL_MIN, wide = s->plane.a + 4 * s->kind.e * s->kind.e;
     s->t = cs_vec3_dot(s->plane.u, s->plane.w) / first;
@@ -84,7 +128,13 @@ CS_INLINE void cs_mesh_feature_clamp(struct cs_mesh_feature *s) {
     s->d2zeta_dt2 = side * (2 * step[1] + s->y * step[2]) / s->b;
 }
 
-/* gradients of the two squares */
+/* Gradients of h^2 and of leg^2 by u, v, w:
+ *
+ *   h^2 = min over l of |w - l1 u - l2 v|^2:   -2 l1 foot,  -2 l2 foot,  2 foot
+ *   leg^2 = |w - zeta u|^2:   -2 zeta leg + c dzeta/du,  0,  2 leg + c dzeta/dw
+ *
+ * The derivative of the minimum by l vanishes. c = -2 leg.u is dleg2_dzeta, and dt/du = (w - 2
+ * t u)/u.u, dt/dw = u/u.u, db/du = -2 half_b_over_w u. */
 CS_INLINE void cs_mesh_feature_gradients(struct cs_mesh_feature *s) {
     const double *u = s->plane.u, *w = s->plane.w, *l = s->plane.unclamped;
     const double first = s->plane.a + DBL_MIN;
@@ -103,7 +153,8 @@ CS_INLINE void cs_mesh_feature_gradients(struct cs_mesh_feature *s) {
     }
 }
 
-/* f's derivatives; f itself */
+/* Returns f(m), and sets f' = s + m s' k and f'' = (2 s' + m s'' k) k, with k the slope of the
+ * argument of step. All are 0 for the plane. */
 CS_INLINE double cs_mesh_feature_blend(struct cs_mesh_feature *s, double m) {
     const double e2 = s->kind.e * s->kind.e, span = 1 / ((1 - CS_FEATURE_BLEND_START) * e2);
     double step[3];
@@ -113,7 +164,8 @@ CS_INLINE double cs_mesh_feature_blend(struct cs_mesh_feature *s, double m) {
     return s->kind.is_off_plane * m * step[0];
 }
 
-/* The distance, and what its derivatives need. */
+/* Sets the distance, and all that its derivatives need. least is added to d^2 so that d has
+ * derivatives at 0. */
 CS_INLINE void cs_mesh_feature_measure(struct cs_mesh_feature *s, struct cs_feature_kind form,
                                        double p[4][3]) {
     const double least = CS_PAIR_DISTANCE_MIN * CS_PAIR_DISTANCE_MIN;
@@ -131,7 +183,13 @@ CS_INLINE void cs_mesh_feature_measure(struct cs_mesh_feature *s, struct cs_feat
     s->d = sqrt(height + bent + least);
 }
 
-/* Distance, gradient and contact points. */
+/* Sets distance, gradient and contact points. From d^2 = h^2 + f(leg^2 - h^2),
+ *
+ *   g = ((1 - f') grad h^2 + f' grad leg^2) / 2d
+ *   r = (1 - f') foot + f' leg,   n = r/|r|
+ *
+ * r joins the point to the contact point on the triangle, which moves from the foot to the edge
+ * as f' goes from 0 to 1. Friction and damping act there. */
 CS_INLINE void cs_mesh_feature_set(struct cs_mesh_feature *s, struct cs_feature_kind form,
                                    double p[4][3]) {
     const double least = CS_PAIR_DISTANCE_MIN * CS_PAIR_DISTANCE_MIN;
@@ -152,7 +210,7 @@ CS_INLINE void cs_mesh_feature_set(struct cs_mesh_feature *s, struct cs_feature_
         s->n[c] = r[c] / s->length;
 }
 
-/* by the three differences, to the four points */
+/* Converts slopes by u, v, w into slopes by the four points. */
 CS_INLINE void cs_mesh_feature_to_points(double by[3][3], double out[4][3]) {
     for (int c = 0; c < 3; c++) {
         double four[4];
@@ -162,7 +220,7 @@ CS_INLINE void cs_mesh_feature_to_points(double by[3][3], double out[4][3]) {
     }
 }
 
-/* Shares of the four points in the difference of the two contact points; their sum is 0. */
+/* Weights of the four points in the difference of both contact points; they sum to 0. */
 CS_INLINE void cs_mesh_feature_weights(const struct cs_mesh_feature *s, double out[4]) {
     cs_pair_distance_to_points(CS_PAIR_POINT_TRIANGLE, s->weights_uv[0], s->weights_uv[1], 1,
                                out);

@@ -1,12 +1,22 @@
-/* mesh_feature_tangent.h - how the gradient of a feature's distance changes: its derivative
- * forwards, value and change side by side. */
+/* mesh_feature_tangent.h - exact derivative of the gradient of a feature's distance along a
+ * direction: d(g) = H dp, with H the Hessian of d by the four points.
+ *
+ * Forward differentiation of mesh_feature.h, value and change side by side. With G = (1 - f')
+ * grad h^2 + f' grad leg^2, so that g = G / 2d, and m = leg^2 - h^2:
+ *
+ *   dG = (1 - f') d(grad h^2) + f' d(grad leg^2) + f'' dm (grad leg^2 - grad h^2)
+ *   dm = (grad leg^2 - grad h^2) . dp
+ *   d(g) = H dp = dG / 2d - g dd/d,   dd = g . dp
+ *
+ * The cost is about that of the gradient twice, where H itself would need 12 directions. */
 #ifndef CS_NARROW_PHASE_MESH_FEATURE_TANGENT_H
 #define CS_NARROW_PHASE_MESH_FEATURE_TANGENT_H
 
 #include "model/contact/narrow_phase/mesh_feature.h"
 #include "model/contact/narrow_phase/pair_distance_tangent.h"
 
-/* The changes along a direction, in the order in which they follow from each other. */
+/* Changes along the direction, named as the values in struct cs_mesh_feature, in the order in
+ * which they follow from each other. */
 struct cs_mesh_feature_tangents {
     struct cs_pair_distance_tangents plane; /* of u, v, w, a and l */
     double t, zeta, dzeta_dt, dzeta_db, half_b_over_w;
@@ -14,6 +24,11 @@ struct cs_mesh_feature_tangents {
     double h[3][3], edge_gradient[3][3], f1;
 };
 
+/* Changes of t, zeta, its derivatives and both legs:
+ *
+ *   dt = (du.w + u.dw - t da) / a          a = u.u
+ *   db = -half_b_over_w da                 d(half_b_over_w) = -3/2 half_b_over_w da / (a + 4
+ * e^2) dy = (+-dt - y db) / b                 - at the far end; y below is b dy */
 CS_INLINE void cs_mesh_feature_tangent_clamp(const struct cs_mesh_feature *s,
                                              struct cs_mesh_feature_tangents *d) {
     const double *u = s->plane.u, first = s->plane.a + DBL_MIN;
@@ -38,6 +53,9 @@ CS_INLINE void cs_mesh_feature_tangent_clamp(const struct cs_mesh_feature *s,
         -2 * (cs_vec3_dot(d->from_edge, u) + cs_vec3_dot(s->from_edge, d->plane.u));
 }
 
+/* Changes of the gradients of h^2 and leg^2, by the product rule. way = dt/du, along = dt/dw
+ * and thin = -(db/du of zeta) per u, as in cs_mesh_feature_gradients; d... is the change of
+ * each. */
 CS_INLINE void cs_mesh_feature_tangent_gradients(const struct cs_mesh_feature *s,
                                                  struct cs_mesh_feature_tangents *d) {
     const double *l = s->plane.unclamped, *u = s->plane.u, *w = s->plane.w, *du = d->plane.u;
@@ -63,7 +81,7 @@ CS_INLINE void cs_mesh_feature_tangent_gradients(const struct cs_mesh_feature *s
     }
 }
 
-/* change of f' by those of leg^2 and h^2 */
+/* d(f') = f'' dm */
 CS_INLINE double cs_mesh_feature_tangent_blend(const struct cs_mesh_feature *s,
                                                const struct cs_mesh_feature_tangents *d) {
     return s->f2 * (cs_vec3_dot(s->edge_gradient[0], d->plane.u) +
@@ -73,7 +91,8 @@ CS_INLINE double cs_mesh_feature_tangent_blend(const struct cs_mesh_feature *s,
                     cs_vec3_dot(s->h2_gradient[2], d->plane.w));
 }
 
-/* dg, dweights = change of the gradient and of the weights when the points move by dp. */
+/* Sets dg (4,3) = H dp in 1, and dweights (4) = the change of the weights in 1, for moves dp
+ * (4,3) in m. s is the feature at the state, after cs_mesh_feature_set. */
 CS_INLINE void cs_mesh_feature_tangent(const struct cs_mesh_feature *s, double dp[4][3],
                                        double dg[4][3], double dweights[4]) {
     struct cs_mesh_feature_tangents d;

@@ -1,5 +1,18 @@
-/* Pairs in range of a lot: forces, their changes, energies and shares of a clamped matrix are
- * worked out in lanes, what is asked more seldom one by one. */
+/* Evaluates the pairs in range of each chunk: forces, Jacobian products, energies and positive
+ * semi-definite matrices in lanes, exact matrices pair by pair.
+ *
+ * Order of one chunk: gather x, v and directions of its points into rows; fill four blocks of
+ * eight pairs; evaluate them; add their results to the rows of the chunk in the order of pairs.
+ * Particles sum their rows afterwards, in the order of chunks (force_gather.h). No sum depends
+ * on the number of threads.
+ *
+ * Positive semi-definite surrogate. The exact derivative of the force of a pair is -K g g^T + F
+ * H. With ck < 0 the first part enters the solver's matrix with the right sign; F H has
+ * eigenvalues of both signs and is left out, as in a Gauss-Newton method. A feature with
+ * negative weight would subtract stiffness, so that psd_weight replaces the weight: the nearest
+ * feature alone counts. What remains is a sum of K g g^T with factors >= 0. An
+ * iteration of Newton that converges with it has the exact solution, because its residual has
+ * the exact force. */
 #include "model/contact/narrow_phase/narrow_phase.h"
 
 #include "base/pool.h"
@@ -7,8 +20,8 @@
 
 #include <string.h>
 
-/* eights that wait for each other: what was just written number by number is not at once read
- * as vectors */
+/* Blocks that are filled before any is evaluated: a vector load directly after scalar stores to
+ * the same addresses would stall. */
 enum { TOGETHER = 4 };
 
 /* One chunk at work. */
@@ -16,17 +29,18 @@ struct work {
     const struct cs_narrow_phase *narrow;
     struct cs_active_chunk *chunk;
     uint32_t number;
-    const double *rows; /* what was read of its points; NULL: they are read one by one */
+    /* gathered data of its points; NULL: they are read one by one */
+    const double *rows;
 };
 
-/* what an obstacle has no place in is 0 for it */
+/* Reads four points of an array (3, n); points from n on, which it does not have, are 0. */
 static void read(const double *from, size_t n, const uint32_t at[4], double to[4][3]) {
     for (size_t k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
             to[k][c] = from && at[k] < n ? from[c * n + at[k]] : 0;
 }
 
-/* three columns of rows */
+/* Copies three columns of the rows of a pair into its lane. */
 static void read_lane(const double *rows, size_t width, const uint32_t to[4], uint32_t lane,
                       double out[4][3][CS_PAIR_LANES]) {
     for (size_t k = 0; k < 4; k++)
@@ -36,7 +50,7 @@ static void read_lane(const double *rows, size_t width, const uint32_t to[4], ui
 
 /* --- one by one --- */
 
-/* beside the share of the pair that was put last */
+/* Appends ck F H of the pair that was put last. Pairs and Hessians have the same index. */
 static void add_turn(const struct work *work, const struct cs_pair_contact *reaction) {
     struct cs_contact_chunk *chunk = work->narrow->exact_set->chunks + work->number;
     struct cs_contact_hessian *full =
@@ -48,6 +62,7 @@ static void add_turn(const struct work *work, const struct cs_pair_contact *reac
     cs_pair_contact_hessian(reaction, work->narrow->matrix, full + chunk->n - 1);
 }
 
+/* Appends a pair to the exact set: its gradient, matrix terms and Hessian. */
 static void add_alone(const struct work *work, const struct cs_pair_lanes *from, uint32_t lane,
                       const uint32_t at[4]) {
     const struct cs_narrow_phase *narrow = work->narrow;
@@ -88,7 +103,7 @@ static void read_positions(const struct work *work, struct cs_pair_lanes *lanes,
                 lanes->p[k][c][l] = narrow->x[c * n + work->chunk->points[first + l][k]];
 }
 
-/* distances of features are known */
+/* Adds the energies of a block to its chunk. The distances of features are known already. */
 static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     if (work->chunk->kind == CS_PAIR_EDGE_EDGE) {
         read_positions(work, lanes, first);
@@ -98,6 +113,7 @@ static void add_energy(const struct work *work, struct cs_pair_lanes *lanes, siz
         work->chunk->energy += cs_barrier_energy(lanes->d[l], lanes->range[l], lanes->k[l]);
 }
 
+/* Sets out of a block to forces or their change. */
 static void push(const struct work *work, struct cs_pair_lanes *lanes) {
     const struct cs_narrow_phase *narrow = work->narrow;
     const struct cs_pair_lane_constants law = {
@@ -109,6 +125,7 @@ static void push(const struct work *work, struct cs_pair_lanes *lanes) {
         cs_pair_lanes_force(work->chunk->kind, lanes, &law);
 }
 
+/* Adds the results of a block to the rows of its points, pair by pair. */
 static void add_pushes(const struct work *work, const struct cs_pair_lanes *lanes,
                        size_t first) {
     const struct cs_gather *gather = &work->narrow->contacts->force_gather;
@@ -120,6 +137,7 @@ static void add_pushes(const struct work *work, const struct cs_pair_lanes *lane
                 sums[3 * (size_t)to[l][k] + (size_t)c] += lanes->out[k][c][l];
 }
 
+/* Stores the matrix factors of a block, which the operator multiplies with later. */
 static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_narrow_phase *narrow = work->narrow;
     cs_pair_lanes_matrix(work->chunk->kind, lanes,
@@ -127,7 +145,7 @@ static void share(const struct work *work, struct cs_pair_lanes *lanes, size_t f
                          narrow->psd->chunks[work->number].factors + first / CS_PAIR_LANES);
 }
 
-/* stiffness in the first number of each row, damping in as many behind them all */
+/* Adds bounds to rows: stiffness in row_sums[row], damping in row_sums[n_rows + row]. */
 static void add_bounds(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     const struct cs_active_contacts *active = work->narrow->contacts;
     const struct cs_gather *gather = &active->force_gather;
@@ -147,15 +165,17 @@ static bool is_force(const struct cs_narrow_phase *narrow) {
     return narrow->query == CS_CONTACT_QUERY_FORCE || narrow->query == CS_CONTACT_QUERY_JVP;
 }
 
+/* an exact matrix, whose pairs go into a set */
 static bool is_in_set(const struct cs_narrow_phase *narrow) {
     return narrow->query == CS_CONTACT_QUERY_MATRIX && !narrow->matrix->psd;
 }
 
+/* points are gathered for all queries but energies and exact matrices */
 static bool has_rows(const struct cs_narrow_phase *narrow) {
     return narrow->query != CS_CONTACT_QUERY_ENERGY && !is_in_set(narrow);
 }
 
-/* pairs from `first` on */
+/* Evaluates a block whose pairs begin at `first`. */
 static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes, size_t first) {
     if (work->narrow->query == CS_CONTACT_QUERY_ENERGY)
         add_energy(work, lanes, first);
@@ -170,11 +190,12 @@ static void evaluate_block(const struct work *work, struct cs_pair_lanes *lanes,
             add_alone(work, lanes, l, work->chunk->points[first + l]);
 }
 
-/* --- what is in range --- */
+/* --- active contacts of a chunk --- */
 
-/* The stiffness of a matrix that must not be negative is that of the nearest feature alone;
- * friction and damping are those of all, since methods that are linear in a step take their
- * exact slope from the matrix, unless bounds are asked for. */
+/* Sets the stiffness of one lane. In a positive semi-definite matrix the barrier's curvature
+ * has the weight of the nearest feature alone. Friction and damping keep the full weights,
+ * because methods that are linear in a step take their exact slope from the matrix; they give
+ * this up only if matrix.bound asks for an upper bound. */
 static void psd_stiffness(const struct cs_narrow_phase *narrow,
                           const struct cs_active_lanes *from, uint32_t l,
                           struct cs_pair_lanes *lanes) {
@@ -186,6 +207,7 @@ static void psd_stiffness(const struct cs_narrow_phase *narrow,
     lanes->psd_stiffness[l] = (positive ? from->psd_weight[l] : count) * from->k[l];
 }
 
+/* Copies the parameters of a block of active contacts. */
 static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_lanes *from,
                  struct cs_pair_lanes *lanes) {
     memcpy(lanes->range, from->range, sizeof lanes->range);
@@ -198,7 +220,7 @@ static void fill(const struct cs_narrow_phase *narrow, const struct cs_active_la
         psd_stiffness(narrow, from, l, lanes);
 }
 
-/* where the lanes' points are, and what they do: x, v, and changes */
+/* Copies positions, velocities and directions of a block from the rows: columns 0, 3, 6, 9. */
 static void fill_points(const struct work *work, size_t first, struct cs_pair_lanes *lanes) {
     const size_t width = work->narrow->contacts->force_gather.width;
     uint32_t(*to)[4] = work->chunk->rows + first;
@@ -212,7 +234,8 @@ static void fill_points(const struct work *work, size_t first, struct cs_pair_la
     }
 }
 
-/* step by step, for the sake of stores and loads; pairs from `first` on */
+/* Handles up to TOGETHER blocks from pair `first` on, in three passes: fill, evaluate, add.
+ * Separate passes keep scalar stores away from vector loads. */
 static void do_some(const struct work *work, size_t first) {
     struct cs_pair_lanes lanes[TOGETHER];
     const size_t left = work->chunk->n - first, most = TOGETHER * CS_PAIR_LANES;
@@ -230,7 +253,7 @@ static void do_some(const struct work *work, size_t first) {
         add_pushes(work, lanes + p / CS_PAIR_LANES, first + p);
 }
 
-/* of one chunk's rows */
+/* Clears the rows of one chunk. */
 static void clear_sums(const struct cs_narrow_phase *narrow,
                        const struct cs_gather_chunk *rows) {
     const struct cs_gather *gather = &narrow->contacts->force_gather;
@@ -243,7 +266,7 @@ static void clear_sums(const struct cs_narrow_phase *narrow,
     }
 }
 
-/* false: there is nothing to do */
+/* Prepares a chunk; returns false if it has no pairs or no memory. */
 static bool begin(const struct work *work) {
     const struct cs_narrow_phase *narrow = work->narrow;
     const struct cs_gather *gather = &narrow->contacts->force_gather;
@@ -258,7 +281,8 @@ static bool begin(const struct work *work) {
            cs_psd_operator_chunk_begin(narrow->psd, work->number);
 }
 
-/* all that is needed of the chunk's points */
+/* Gathers x, v, and for a Jacobian product dx and dv, of the points of a chunk. Directions
+ * exist for particles only: points of colliders have 0. */
 static const double *read_rows(const struct cs_narrow_phase *narrow, uint32_t number) {
     const struct cs_system *system = narrow->contacts->candidates->system;
     const struct cs_gather *gather = &narrow->contacts->force_gather;
@@ -284,6 +308,7 @@ static void do_chunk(void *arg, uint32_t number) {
         cs_psd_operator_chunk_end(narrow->psd, number);
 }
 
+/* A row has 6 columns, or 12 for a Jacobian product. Exact sets are gathered by particles. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow) {
     const size_t width = narrow->query == CS_CONTACT_QUERY_JVP ? 12 : 6;
     if (has_rows(narrow) && !cs_gather_reserve(&narrow->contacts->force_gather, width))

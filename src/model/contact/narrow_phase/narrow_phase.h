@@ -1,11 +1,12 @@
-/* narrow_phase.h - what the pairs in range at a state do. */
+/* narrow_phase.h - forces, Jacobian products, energies, matrix terms and bounds of the pairs in
+ * range at a state. */
 #ifndef CS_NARROW_PHASE_NARROW_PHASE_H
 #define CS_NARROW_PHASE_NARROW_PHASE_H
 
 #include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/psd_operator.h"
 
-/* what the pairs in range are asked for */
+/* Quantity that is evaluated. */
 enum cs_contact_query {
     CS_CONTACT_QUERY_FORCE,
     CS_CONTACT_QUERY_JVP, /* of the force */
@@ -14,19 +15,29 @@ enum cs_contact_query {
     CS_CONTACT_QUERY_BOUND
 };
 
+/* One evaluation; the caller fills it. All pointers are borrowed. */
 struct cs_narrow_phase {
-    struct cs_active_contacts *contacts; /* those of x */
-    const double *x, *v;                 /* (3, n_points) at the state; v NULL: at rest */
+    /* active contacts of the positions x */
+    struct cs_active_contacts *contacts;
+    /* (3, n_points) positions in m and velocities in m/s; v NULL: at rest */
+    const double *x, *v;
     enum cs_contact_query query;
     struct cs_eval eval;
-    const struct cs_matrix *matrix;   /* of CS_CONTACT_QUERY_MATRIX */
-    struct cs_psd_operator *psd;      /* of a matrix that is psd */
-    struct cs_contact_set *exact_set; /* of any other */
+    const struct cs_matrix *matrix; /* of CS_CONTACT_QUERY_MATRIX */
+    /* receives a positive semi-definite matrix */
+    struct cs_psd_operator *psd;
+    /* receives an exact matrix */
+    struct cs_contact_set *exact_set;
 };
 
-/* Answers into the sums of the active pairs' rows, which are there but for energies: forces
- * (n_rows, 3), or bounds (2, n_rows), stiffness and damping; into their chunks' energies; or
- * fills the product or the set. false: no memory. With all threads. */
+/* Evaluates all active contacts with all threads. The result goes to
+ *
+ * - contacts->force_gather.row_sums: forces (n_rows, 3), or bounds (2, n_rows), stiffness
+ *   before damping; rows must exist, except for energies;
+ * - contacts->chunks[].energy for energies;
+ * - psd or exact_set for a matrix.
+ *
+ * Returns false if out of memory; results are then incomplete and the run must end. */
 bool cs_narrow_phase_run(struct cs_narrow_phase *narrow);
 
 #endif

@@ -1,7 +1,8 @@
-/* What is asked of pairs one by one. */
+/* The exact Hessian term of a pair, which is not vectorised. */
 #include "model/contact/narrow_phase/pair_contact.h"
 
-/* column by column; the half above the diagonal is taken for both, so that it is symmetric */
+/* ck F H, column by column: column j is the tangent of the gradient along unit vector j. The
+ * upper triangle is used for both halves, so that rounding leaves it symmetric. */
 void cs_pair_contact_hessian(const struct cs_pair_contact *reaction,
                              const struct cs_matrix *matrix, struct cs_contact_hessian *turn) {
     const struct cs_point_contact *touch = &reaction->contact;

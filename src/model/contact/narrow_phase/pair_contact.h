@@ -1,4 +1,5 @@
-/* pair_contact.h - what one pair in range does to its four particles. */
+/* pair_contact.h - force, Jacobian product, matrix and bounds of one pair in range on its four
+ * particles. Formulas: contact_pairs.h and point_contact.h. */
 #ifndef CS_NARROW_PHASE_PAIR_CONTACT_H
 #define CS_NARROW_PHASE_PAIR_CONTACT_H
 
@@ -7,24 +8,29 @@
 #include "model/contact/narrow_phase/mesh_feature_tangent.h"
 #include "model/contact/point_contact.h"
 
-/* What a pair has in a matrix beside its gradient, as in struct cs_contact_entry. */
+/* Terms of a pair's matrix P = c g g^T + (w w^T) x B besides the gradient g, as in struct
+ * cs_contact_entry. */
 struct cs_pair_matrix_terms {
-    double weight[4]; /* w */
+    /* w of the four points */
+    double weight[4];
+    /* c = -ck K */
     double gradient_weight;
-    double block[6]; /* xx, xy, xz, yy, yz, zz */
+    /* B: xx, xy, xz, yy, yz, zz */
+    double block[6];
 };
 
-/* One pair at one state, found in range: of edges the stencil, of a point and a triangle one
- * feature. */
+/* One pair at one state. Edge-edge pairs use `distance`, features of triangles use `feature`.
+ */
 struct cs_pair_contact {
     enum cs_pair_kind kind;
     struct cs_pair_distance distance;
     struct cs_mesh_feature feature;
-    struct cs_point_contact contact; /* of the contact points: g = n, v = V */
+    /* both contact points as a point and a surface: g = n, v = sum w_k v_k */
+    struct cs_point_contact contact;
     double g[4][3], weight[4];
 };
 
-/* The distance of edges, or of a feature. */
+/* Sets the distance, its gradient and the weights by the four points p. */
 CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs_pair_kind kind,
                                        struct cs_feature_kind form, double p[4][3]) {
     reaction->kind = kind;
@@ -39,7 +45,9 @@ CS_INLINE void cs_pair_contact_measure(struct cs_pair_contact *reaction, enum cs
     }
 }
 
-/* Sets everything of a reaction that is measured. v (4) velocities of its particles. */
+/* Sets `contact` after the measurement; v (4,3) velocities in m/s. The vector between the
+ * contact points has direction n and length l, so the Hessian of its length is (I - n n^T)/l.
+ */
 CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
                                    const struct cs_body_pair_params *params,
                                    const struct cs_contact_keys *keys, double v[4][3]) {
@@ -61,18 +69,21 @@ CS_INLINE void cs_pair_contact_set(struct cs_pair_contact *reaction,
             reaction->contact.v[c] += reaction->weight[k] * v[k][c];
 }
 
-/* what the touch alone does: the elastic part has a gradient of its own */
+/* Parts of the contact points alone: the elastic force acts along g, which is not their
+ * direction n. */
 CS_INLINE struct cs_contact_force_parts
+/* Parts of `contact` alone: the elastic force acts along g and not along n. */
 cs_pair_contact_friction_parts(struct cs_contact_force_parts parts) {
     return (struct cs_contact_force_parts){.elastic = 0, .friction = parts.friction};
 }
 
+/* Returns whether friction or damping act and are wanted. */
 CS_INLINE bool cs_pair_contact_has_friction(const struct cs_point_contact *touch,
                                             struct cs_contact_force_parts parts) {
     return parts.friction * (touch->friction + touch->damping) > 0;
 }
 
-/* f = the forces on the four particles; the parts as in touch.h. */
+/* f_k = F g_k + w_k R in N, with R friction and damping of the contact points. */
 CS_INLINE void cs_pair_contact_force(const struct cs_pair_contact *reaction,
                                      struct cs_contact_force_parts parts, double f[4][3]) {
     const struct cs_point_contact *touch = &reaction->contact;
@@ -85,11 +96,11 @@ CS_INLINE void cs_pair_contact_force(const struct cs_pair_contact *reaction,
             f[k][c] = push * reaction->g[k][c] + reaction->weight[k] * rub[c];
 }
 
-/* df = their change, exact, when the particles move from p by dp and their velocities v change
- * by dv. */
+/* State and direction of a Jacobian product. */
 struct cs_pair_contact_motion {
     double p[4][3], v[4][3], dp[4][3], dv[4][3];
 };
+/* dg = H dp and dw = change of the weights, by the tangent of the distance in use. */
 CS_INLINE void cs_pair_contact_tangent(const struct cs_pair_contact *reaction, double dp[4][3],
                                        double dg[4][3], double dw[4]) {
     if (reaction->kind == CS_PAIR_EDGE_EDGE)
@@ -98,6 +109,8 @@ CS_INLINE void cs_pair_contact_tangent(const struct cs_pair_contact *reaction, d
         cs_mesh_feature_tangent(&reaction->feature, dp, dg, dw);
 }
 
+/* df_k = -K dd g_k + F (H dp)_k + dw_k R + w_k dR, exact. The relative move of the contact
+ * points includes the change of the weights: dp = sum dw_k p_k + w_k dp_k. */
 CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
                                    struct cs_contact_force_parts parts,
                                    struct cs_pair_contact_motion *move, double df[4][3]) {
@@ -128,8 +141,8 @@ CS_INLINE void cs_pair_contact_jvp(const struct cs_pair_contact *reaction,
                 dpush * reaction->g[k][c] + push * dg[k][c] + dw[k] * rub[c] + w[k] * drub[c];
 }
 
-/* The share of a matrix, and g in to[4][3]: the law along the gradient, and friction and
- * damping with the weights as they are. How the gradient turns is not in it. */
+/* Matrix terms of the pair, and its gradient in to[4][3]. ck F H is not among them
+ * (cs_pair_contact_hessian), nor is the change of the weights. */
 CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
                                       const struct cs_matrix *matrix, double to[4][3],
                                       struct cs_pair_matrix_terms *share) {
@@ -148,15 +161,18 @@ CS_INLINE void cs_pair_contact_matrix(const struct cs_pair_contact *reaction,
         share->block[e] = 0;
     cs_point_contact_add_block(touch, &rubbing, share->block);
 }
-/* That: ck F times the second derivative of the distance, which has both signs. */
+/* Sets turn to ck F H, with H the Hessian of the distance, which has eigenvalues of both signs.
+ */
 void cs_pair_contact_hessian(const struct cs_pair_contact *reaction,
                              const struct cs_matrix *matrix, struct cs_contact_hessian *turn);
 
-/* Sums of the norms of the blocks in the row of each particle: N/m and N s/m. */
+/* Gershgorin bounds in N/m and N s/m. The block of df/dx at points k and j is -K g_k g_j^T, of
+ * norm K |g_k| |g_j|, so the row of k sums to K |g_k| sum |g_j|; likewise |w_k| sum |w_j| for
+ * damping. F H is left out. */
 CS_INLINE void cs_pair_contact_bound(const struct cs_pair_contact *reaction,
                                      double stiffness[4], double damping[4]) {
     double length[4], sum = 0, shares = 0, own, rub;
-    // what is taken away bounds as what is there
+    // What is subtracted counts with its absolute value.
     struct cs_point_contact touch = reaction->contact;
     touch.k = fabs(touch.k);
     cs_point_contact_bound(&touch, &own, &rub);

@@ -1,11 +1,22 @@
-/* pair_distance_tangent.h - how the gradient of a pair's distance changes: its derivative
- * forwards, value and change side by side. */
+/* pair_distance_tangent.h - exact derivative of the gradient of a pair's distance along a
+ * direction: d(g) = H dp, with H the Hessian of d by the four points.
+ *
+ * Forward differentiation of pair_distance.h, value and change side by side. l solves A l = k
+ * with A = ((1+q) a, b; b, (1+q) c), k = (u.w + q a/2, v.w + q c/2), and z solves A z = dd/dl:
+ *
+ *   dl = A^-1 (dk - dA l),   dz = A^-1 (d(dd/dl) - dA z)
+ *   dL by the smooth clamp,  dr = dw - L1 du - L2 dv - dL1 u - dL2 v,  dd = n.dr
+ *   dn = (dr - n dd) / d
+ *   d(g) = H dp:  the product rule on g by u, v, w, then the transposed differences
+ *
+ * One solution of a 2 x 2 system more than the gradient; no 12 x 12 matrix is formed. */
 #ifndef CS_NARROW_PHASE_PAIR_DISTANCE_TANGENT_H
 #define CS_NARROW_PHASE_PAIR_DISTANCE_TANGENT_H
 
 #include "model/contact/pair_distance.h"
 
-/* The changes along a direction, in the order in which they follow from each other. */
+/* Changes along the direction, named as the values in struct cs_pair_distance and struct
+ * cs_pair_distance_gradients, in the order in which they follow from each other. */
 struct cs_pair_distance_tangents {
     double u[3], v[3], w[3];
     double a, b, c;
@@ -13,7 +24,7 @@ struct cs_pair_distance_tangents {
     double dd_dweight_dot[2], k[2], z[2], y[3];
 };
 
-/* change of the solution of the two equations, when their right side changes by `right` */
+/* Change of a solution of A z = k: out = A^-1 (right - dA solution), right = dk. */
 CS_INLINE void cs_pair_distance_jvp_solution(const struct cs_pair_distance *s,
                                              const struct cs_pair_distance_tangents *d,
                                              const double solution[2], const double right[2],
@@ -24,6 +35,7 @@ CS_INLINE void cs_pair_distance_jvp_solution(const struct cs_pair_distance *s,
     cs_pair_distance_solve(s, rest, out);
 }
 
+/* Changes of a, b, c and l from those of u, v, w. */
 CS_INLINE void cs_pair_distance_jvp_positions(const struct cs_pair_distance *s,
                                               struct cs_pair_distance_tangents *d) {
     d->a = 2 * cs_vec3_dot(s->u, d->u);
@@ -35,7 +47,8 @@ CS_INLINE void cs_pair_distance_jvp_positions(const struct cs_pair_distance *s,
     cs_pair_distance_jvp_solution(s, d, s->unclamped, right, d->l);
 }
 
-/* of a triangle: change of S(l0) + S(l1) + S(l2), and of the weights */
+/* Triangle: change of the weights L_i = S_i / sum, dL_i = (S_i' dl_i - L_i dsum) / sum; returns
+ * dsum. dl0 = -dl1 - dl2. */
 CS_INLINE double cs_pair_distance_jvp_triangle(const struct cs_pair_distance *s,
                                                struct cs_pair_distance_tangents *d) {
     const double sum = s->blend[0][0] + s->blend[1][0] + s->blend[2][0];
@@ -46,6 +59,7 @@ CS_INLINE double cs_pair_distance_jvp_triangle(const struct cs_pair_distance *s,
     return dsum;
 }
 
+/* Changes of n and of the slopes dd/dL = (-n.u, -n.v). */
 CS_INLINE void cs_pair_distance_jvp_direction(const struct cs_pair_distance *s,
                                               struct cs_pair_distance_tangents *d) {
     double dr[3];
@@ -59,6 +73,8 @@ CS_INLINE void cs_pair_distance_jvp_direction(const struct cs_pair_distance *s,
     d->dd_dweight_dot[1] = -cs_vec3_dot(d->n, s->v) - cs_vec3_dot(s->n, d->v);
 }
 
+/* Change of k = dd/dl, the slopes of d before the clamp: for edges k_i = dd/dL_i S_i', for a
+ * triangle k_i = h_i - h_0 with h_i = (dd/dL_i - mean) S_i' / sum. */
 CS_INLINE void cs_pair_distance_jvp_slopes(const struct cs_pair_distance *s,
                                            const struct cs_pair_distance_gradients *at,
                                            double dsum, struct cs_pair_distance_tangents *d) {
@@ -84,7 +100,8 @@ CS_INLINE void cs_pair_distance_jvp_slopes(const struct cs_pair_distance *s,
     d->k[1] = dh[2] - dh[0];
 }
 
-/* change of the gradient by the differences, component c, to the four points */
+/* Component c of the change of the gradient at the four points. r is the component of w - l1 u
+ * - l2 v without clamp, and pull = q (1 - 2 l) the part of the regularisation. */
 CS_INLINE void cs_pair_distance_jvp_gradient(const struct cs_pair_distance *s,
                                              const struct cs_pair_distance_gradients *at,
                                              const struct cs_pair_distance_tangents *d, int c,
@@ -105,7 +122,8 @@ CS_INLINE void cs_pair_distance_jvp_gradient(const struct cs_pair_distance *s,
                                d->y[c] + d->n[c], out);
 }
 
-/* dg, dweights = change of the gradient and of the weights when the points move by dp. */
+/* Sets dg (4,3) = H dp, and dweights (4) = the change of the weights, for moves dp (4,3) in m.
+ * s is the pair at the state, after cs_pair_distance_set. */
 CS_INLINE void cs_pair_distance_tangent(const struct cs_pair_distance *s, double dp[4][3],
                                         double dg[4][3], double dweights[4]) {
     struct cs_pair_distance_gradients at;

@@ -1,8 +1,26 @@
-/* Loops over lanes that hold a whole pair each, which compilers turn into vectors. */
+/* Evaluates pairs in lanes: forces, Jacobian products, bounds, matrix factors and products.
+ *
+ * Each loop over lanes holds a whole pair per iteration and has no branch on data, so that
+ * compilers turn it into vectors. Pair kind and matrix type are compile-time constants in each
+ * clone; a test of them inside the loop would prevent that.
+ *
+ * Formulas, with the distance d, its gradient g_k and the weights w_k of point k, the velocity
+ * V = sum w_k v_k of the contact points, n their direction and T = V - n (n.V):
+ *
+ *   force     f_k  = F g_k - w_k (tau K n (n.V) + mu F T / sqrt(T.T + ev^2))
+ *   change    df_k = -K dd g_k + F (H dp)_k + dw_k R + w_k dR,  dd = sum g_j.dp_j
+ *   matrix    P    = c g g^T + (w w^T) x B,  c = -ck K
+ *   product   (P p)_k = c (sum g_j.p_j) g_k + w_k B (sum w_j p_j)
+ *   diagonal  P_kk = c g_k g_k^T + w_k^2 B
+ *
+ * R is the bracket of the force with its sign, H the Hessian of d, F and K the barrier law, B
+ * the block of friction and damping of point_contact.h. Product and diagonal work on the
+ * factors that the matrix has stored. */
 #include "base/vectorise.h"
 
 #include "model/contact/narrow_phase/pair_lanes.h"
 
+/* Copies one lane to or from a pair in point order. */
 CS_INLINE void read_lane(double from[4][3][CS_PAIR_LANES], int lane, double to[4][3]) {
     CS_UNROLLED
     for (int k = 0; k < 12; k++)
@@ -15,6 +33,7 @@ CS_INLINE void write_lane(double from[4][3], int lane, double to[4][3][CS_PAIR_L
         to[k / 3][k % 3][lane] = from[k / 3][k % 3];
 }
 
+/* d of all lanes: cs_pair_distance_set */
 CS_INLINE void measure(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
         double p[4][3];
@@ -40,6 +59,8 @@ void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes) 
         measure_triangles(lanes);
 }
 
+/* Measures the pair of one lane: distance, gradient, weights, relative velocity. The law is
+ * evaluated afterwards by the function that needs it. */
 CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, int lane,
                           const struct cs_pair_lane_constants *law,
                           struct cs_pair_contact *reaction) {
@@ -54,6 +75,7 @@ CS_INLINE void lane_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes, i
     cs_pair_contact_set(reaction, &params, &law->keys, v);
 }
 
+/* out = f_k of every lane: cs_pair_contact_force */
 CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                      struct cs_pair_lane_constants law) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
@@ -65,6 +87,7 @@ CS_INLINE void force(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lane
     }
 }
 
+/* out = df_k of every lane: cs_pair_contact_jvp */
 CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                    struct cs_pair_lane_constants law) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
@@ -81,7 +104,8 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
     }
 }
 
-/* a kernel for both kinds, each with clones of its own */
+/* Defines a kernel for both kinds of pairs. Each kind has clones of its own, because the kind
+ * must be a constant for the loop to vectorise. */
 #define KERNEL(name)                                                                           \
     CS_CLONES static void name##_triangles(struct cs_pair_lanes *restrict lanes,               \
                                            struct cs_pair_lane_constants law) {                \
@@ -102,6 +126,8 @@ CS_INLINE void jvp(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
 KERNEL(force)
 KERNEL(jvp)
 
+/* Row sums of block norms: stiffness K |g_k| sum |g_j| and damping |w_k| sum |w_j| times the
+ * largest damping of the contact point. */
 CS_INLINE void find_bounds(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                            struct cs_contact_keys keys, struct cs_pair_bounds *restrict to) {
     const struct cs_pair_lane_constants law = {.keys = keys};
@@ -139,6 +165,7 @@ void cs_pair_lanes_bound(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
         bound_triangles(lanes, *keys, bounds);
 }
 
+/* Stores the terms of one pair by the differences u, v, w; see struct cs_pair_factors. */
 CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
                              const struct cs_pair_matrix_terms *share, int lane,
                              struct cs_pair_factors *factors) {
@@ -161,7 +188,8 @@ CS_INLINE void write_factors(enum cs_pair_kind kind, double g[4][3],
     }
 }
 
-/* a definite matrix; `bound` known to the compiler, or the loop would have a branch */
+/* Matrix factors of all lanes. The barrier's curvature uses psd_stiffness, whose weight is
+ * never negative; B uses k. `bound` must be a constant, or the loop would have a branch. */
 CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                            struct cs_contact_keys keys, struct cs_matrix matrix,
                            struct cs_pair_factors *restrict factors) {
@@ -179,6 +207,7 @@ CS_INLINE void share_bound(enum cs_pair_kind kind, struct cs_pair_lanes *restric
     }
 }
 
+/* Chooses the clone for matrix.bound, with both flags as constants. */
 CS_INLINE void share_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *restrict lanes,
                             struct cs_contact_keys keys, struct cs_matrix matrix,
                             struct cs_pair_factors *restrict factors) {
@@ -212,6 +241,7 @@ void cs_pair_lanes_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
         share_triangles(lanes, *keys, *matrix, factors);
 }
 
+/* out = B v for the symmetric block of lane l */
 CS_INLINE void lane_tangent(const struct cs_pair_factors *factors, int l, const double v[3],
                             double out[3]) {
     const double xx = factors->block[0][l], xy = factors->block[1][l],
@@ -222,6 +252,9 @@ CS_INLINE void lane_tangent(const struct cs_pair_factors *factors, int l, const 
     out[2] = xz * v[0] + yz * v[1] + zz * v[2];
 }
 
+/* Product of P and the points in p, lane by lane, by the differences: with D the 3 x 4 matrix
+ * of the differences, P = D^T (c g g^T + (w w^T) x B) D for g and w by u, v, w.
+ * cs_pair_distance_differences applies D, and cs_pair_distance_to_points applies D^T. */
 CS_INLINE void multiply(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
                         double p[restrict 4][3][CS_PAIR_LANES]) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {
@@ -250,7 +283,7 @@ CS_INLINE void multiply(enum cs_pair_kind kind, struct cs_pair_factors *restrict
     }
 }
 
-/* by the points */
+/* Converts the factors of one lane from differences to points by D^T. */
 CS_INLINE void read_factors(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
                             int lane, double g[4][3], struct cs_pair_matrix_terms *share) {
     const double(*by)[3][CS_PAIR_LANES] = factors->g;
@@ -275,8 +308,14 @@ void cs_pair_factors_read(enum cs_pair_kind kind, const struct cs_pair_factors *
     read_factors(kind, factors, lane, g, share);
 }
 
-/* by how much the blocks of the gradients, or of the weights, must grow for all together to be
- * above what the pair couples */
+/* growth_k = (sum_j size_j) / size_k, by which the diagonal blocks must grow to bound the whole
+ * matrix of the pair. By Cauchy's inequality for any numbers a_j = g_j.p_j,
+ *
+ *   (sum a_j)^2 = (sum sqrt(size_j) a_j / sqrt(size_j))^2 <= (sum size_j) sum a_j^2 / size_j
+ *
+ * so that c g g^T <= diag(growth_k c g_k g_k^T) for c >= 0 and size_j = |g_j|, and (w w^T) x B
+ * <= diag(growth_k w_k^2 B) for B >= 0 and size_j = |w_j|. A point with size 0 has a zero
+ * block, and any growth serves. */
 CS_INLINE void find_growth(const double size[4], double growth[4]) {
     const double sum = size[0] + size[1] + size[2] + size[3];
     CS_UNROLLED
@@ -284,7 +323,8 @@ CS_INLINE void find_growth(const double size[4], double growth[4]) {
         growth[k] = size[k] > 0 ? sum / size[k] : 1;
 }
 
-/* line by line: a loop in the loop over lanes would keep that from being vectors */
+/* The six numbers of one diagonal block, written out: an inner loop would keep the loop over
+ * lanes from being vectorised. */
 CS_INLINE void write_own(const double g[3], double along, double rub,
                          const struct cs_pair_matrix_terms *share, int l,
                          double own[6][CS_PAIR_LANES]) {
@@ -296,6 +336,7 @@ CS_INLINE void write_own(const double g[3], double along, double rub,
     own[5][l] = along * (g[2] * g[2]) + rub * share->block[5];
 }
 
+/* Diagonal blocks of all lanes, times find_growth if `alone` is true. */
 CS_INLINE void diagonal_blocks(enum cs_pair_kind kind, struct cs_pair_factors *restrict factors,
                                bool alone, double own[restrict 4][6][CS_PAIR_LANES]) {
     for (int l = 0; l < CS_PAIR_LANES; l++) {

@@ -1,5 +1,12 @@
-/* pair_lanes.h - eight pairs at a time: each lane is one pair's own arithmetic, so that the
- * bits are those of one pair alone. */
+/* pair_lanes.h - evaluates eight pairs at a time in vector lanes.
+ *
+ * Each lane holds one whole pair and does the arithmetic of that pair alone, in the order of
+ * pair_contact.h. The bits of a pair therefore depend neither on its lane nor on the pairs
+ * beside it, and are the same for every width of vectors.
+ *
+ * Layout: the lane is the last index of every array, so that one component of eight pairs is
+ * one contiguous load. A feature of a point and a triangle has the kind CS_PAIR_POINT_TRIANGLE.
+ */
 #ifndef CS_NARROW_PHASE_PAIR_LANES_H
 #define CS_NARROW_PHASE_PAIR_LANES_H
 
@@ -7,63 +14,80 @@
 
 enum { CS_PAIR_LANES = 8 };
 
-/* Pairs of one kind at a state. Lanes from n on have numbers that mean nothing. */
+/* Pairs of one kind at a state: up to CS_PAIR_LANES of them. Lanes from n on hold unspecified
+ * numbers; the caller ignores their results. */
 struct cs_pair_lanes {
-    double p[4][3][CS_PAIR_LANES], v[4][3][CS_PAIR_LANES]; /* m, m/s */
+    /* positions in m and velocities in m/s of the four points */
+    double p[4][3][CS_PAIR_LANES], v[4][3][CS_PAIR_LANES];
+    /* parameters of the barrier law: range D in m, stiffness k in N/m (times the weight of the
+     * feature, so it may be negative), friction coefficient */
     double range[CS_PAIR_LANES], k[CS_PAIR_LANES], friction[CS_PAIR_LANES];
-    double dp[4][3][CS_PAIR_LANES], dv[4][3][CS_PAIR_LANES]; /* of a change */
-    double d[CS_PAIR_LANES];                                 /* m, the smooth distance */
-    double out[4][3][CS_PAIR_LANES];                         /* forces, or their changes */
-    double is_edge[CS_PAIR_LANES], is_off_plane[CS_PAIR_LANES],
-        blend_radius[CS_PAIR_LANES];     /* form of a feature */
-    double psd_stiffness[CS_PAIR_LANES]; /* N/m, of the law in a matrix */
+    /* direction of a Jacobian product: changes of p and v */
+    double dp[4][3][CS_PAIR_LANES], dv[4][3][CS_PAIR_LANES];
+    /* smooth distance in m; cs_pair_lanes_measure sets it */
+    double d[CS_PAIR_LANES];
+    /* result in N: forces on the four points, or their changes */
+    double out[4][3][CS_PAIR_LANES];
+    /* struct cs_feature_kind of each lane; ignored for edge-edge pairs */
+    double is_edge[CS_PAIR_LANES], is_off_plane[CS_PAIR_LANES], blend_radius[CS_PAIR_LANES];
+    /* N/m: k that the barrier's curvature has in a positive semi-definite matrix, never
+     * negative */
+    double psd_stiffness[CS_PAIR_LANES];
     uint32_t n;
 };
 
-/* Sets d from p. */
+/* Sets d from p by the smooth distance of pair_distance.h. For features of triangles d comes
+ * from feature_weights.h instead. */
 void cs_pair_lanes_measure(enum cs_pair_kind kind, struct cs_pair_lanes *lanes);
 
-/* What is the same for all lanes. */
+/* Parameters that all lanes share: damping and friction speed of the scene, and the parts of
+ * the force that are wanted. */
 struct cs_pair_lane_constants {
     struct cs_contact_keys keys;
     struct cs_contact_force_parts parts;
 };
 
-/* Sets `to` to the forces, or to their change: of edges, or of features of triangles. */
+/* Sets `out` to the forces, or to their exact change along (dp, dv), for edges or for features
+ * of triangles. Formulas: contact_pairs.h. */
 void cs_pair_lanes_force(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                          const struct cs_pair_lane_constants *law);
 void cs_pair_lanes_jvp(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                        const struct cs_pair_lane_constants *law);
 
-/* Bounds of each pair's particles, as cs_pair_contact_bound. */
+/* Gershgorin bounds of each pair's particles, as cs_pair_contact_bound. */
 struct cs_pair_bounds {
     double stiffness[4][CS_PAIR_LANES], damping[4][CS_PAIR_LANES]; /* N/m, N s/m */
 };
 void cs_pair_lanes_bound(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                          const struct cs_contact_keys *keys, struct cs_pair_bounds *bounds);
 
-/* What a matrix has of as many pairs, by the differences u, v, w of their points: half as many
- * numbers as by the points. */
+/* Factors of the matrix of eight pairs, P = c g g^T + (w w^T) x B with a 3 x 3 block B.
+ *
+ * They are stored by the three differences u, v, w of the points (pair_distance.h) and not by
+ * the four points: g then has 9 numbers and not 12, and w has 2 and not 4. No information is
+ * lost, because both the gradient and the weights sum to 0 over the points. */
 struct cs_pair_factors {
-    double g[3][3][CS_PAIR_LANES], weight[2][CS_PAIR_LANES]; /* the weight by w is 1 */
+    /* gradient by u, v and w; weights of u and v, that of w being 1 */
+    double g[3][3][CS_PAIR_LANES], weight[2][CS_PAIR_LANES];
+    /* c in the unit of the matrix; B as xx, xy, xz, yy, yz, zz */
     double gradient_weight[CS_PAIR_LANES], block[6][CS_PAIR_LANES];
 };
 
-/* One pair's by its points: the gradient g, and the rest. */
+/* Reads the factors of one lane by its points: gradient g and the other terms. */
 void cs_pair_factors_read(enum cs_pair_kind kind, const struct cs_pair_factors *factors,
                           int lane, double g[4][3], struct cs_pair_matrix_terms *share);
 
-/* Sets them, as cs_pair_contact_matrix of a matrix that is psd. */
+/* Sets the factors to those of cs_pair_contact_matrix for a positive semi-definite matrix. */
 void cs_pair_lanes_matrix(enum cs_pair_kind kind, struct cs_pair_lanes *lanes,
                           const struct cs_contact_keys *keys, const struct cs_matrix *matrix,
                           struct cs_pair_factors *factors);
 
-/* In place of p: the share of each pair times p. How gradients turn is not in it. */
+/* Replaces p by P p for each pair. The Hessian of the distance is not part of P. */
 void cs_pair_lanes_multiply(enum cs_pair_kind kind, struct cs_pair_factors *factors,
                             double p[4][3][CS_PAIR_LANES]);
 
-/* own = the diagonal blocks of each pair. alone: so much larger that they are above all of it,
- * as in cs_contact_set_add_blocks. */
+/* Sets `own` to the four 3 x 3 diagonal blocks of P of each pair. alone: enlarges them until
+ * the block-diagonal matrix bounds P from above, as in cs_contact_set_add_blocks. */
 void cs_pair_lanes_diagonal(enum cs_pair_kind kind, struct cs_pair_factors *factors, bool alone,
                             double own[4][6][CS_PAIR_LANES]);
 

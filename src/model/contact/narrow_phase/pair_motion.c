@@ -1,8 +1,9 @@
-/* Short ways, eight at a time. */
+/* Checks short steps of pairs, eight at a time: only their end is compared with the model. */
 #include "base/vectorise.h"
 
 #include "model/contact/narrow_phase/pair_motion.h"
 
+/* Copies one lane to a pair in point order. */
 CS_INLINE void read_motion(struct cs_pair_motion_lanes *lanes, int lane,
                            struct cs_pair_motion *way) {
     CS_UNROLLED
@@ -15,6 +16,7 @@ CS_INLINE void read_motion(struct cs_pair_motion_lanes *lanes, int lane,
         way->inverse_mass[k] = lanes->inverse_mass[k][lane];
 }
 
+/* Result of one lane. A pair that is out of range at both ends counts as resolved. */
 CS_INLINE double ask(struct cs_pair_motion *way, double h, double range, double k) {
     struct cs_pair_distance at, to;
     struct cs_pair_motion_start start;

@@ -1,5 +1,10 @@
-/* pair_motion.h - a pair on the straight way of its particles during a step, and how much of
- * the contact there the state at its start does not foretell. */
+/* pair_motion.h - a pair whose points move along straight lines during a step, and the contact
+ * energy that a second-order model at the start of the step misses.
+ *
+ *   e = |psi(d(s)) - (psi + F a + K a^2/2)|,   a = -s g.dx
+ *
+ * with psi, F, K at the start, dx the whole displacement and s the fraction of it. The step
+ * resolves the contact if e is at most CS_UNRESOLVED_ENERGY_MAX of the energy of the pair. */
 #ifndef CS_NARROW_PHASE_PAIR_MOTION_H
 #define CS_NARROW_PHASE_PAIR_MOTION_H
 
@@ -9,12 +14,14 @@
 
 #include <math.h>
 
+/* Positions at the start and displacements of the whole step, in m. */
 struct cs_pair_motion {
     enum cs_pair_kind kind;
     double x0[4][3], displacement[4][3]; /* m */
     double inverse_mass[4];              /* 1/kg */
 };
 
+/* m2, squared relative displacement of points i and j */
 CS_INLINE double cs_pair_motion_relative_squared(struct cs_pair_motion *way, int i, int j) {
     const double *a = way->displacement[i], *b = way->displacement[j];
     const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -25,7 +32,9 @@ CS_INLINE double cs_pair_motion_max(double most, double squared) {
     return squared > most ? squared : most;
 }
 
-/* the most that a point of one side moves by against one of the other */
+/* m, largest relative displacement of a point of one side and a point of the other. Contact
+ * points are convex combinations of the points, so none moves further relative to the other
+ * side. */
 CS_INLINE double cs_pair_motion_longest(struct cs_pair_motion *way) {
     const bool edges = way->kind == CS_PAIR_EDGE_EDGE;
     double most = edges ? 0 : cs_pair_motion_max(0, cs_pair_motion_relative_squared(way, 0, 1));
@@ -36,14 +45,19 @@ CS_INLINE double cs_pair_motion_longest(struct cs_pair_motion *way) {
     return sqrt(most);
 }
 
-/* What the start foretells. */
+/* The second-order model, at the start of a step. */
 struct cs_pair_motion_start {
     struct cs_barrier law;
-    double contact_energy, total_energy; /* J: psi, and what the pair has in all */
-    double approach; /* m, by how much the gradient says that they come nearer */
+    /* J: psi(d); and the energy of the pair, psi(d) + kinetic energy of the relative motion of
+     * its contact points + psi(D/2) */
+    double contact_energy, total_energy;
+    /* m, first-order decrease -g.dx of the distance over the whole step */
+    double approach;
 };
 
-/* h: s of the whole way */
+/* Sets the model from the pair s at the start; h: seconds of the whole step. The effective mass
+ * of the contact points is 1 / sum (w_k^2 / m_k), infinite if all are pinned. psi(D/2) keeps
+ * pairs that barely touch from being judged. */
 CS_INLINE void cs_pair_motion_begin(struct cs_pair_motion *way,
                                     const struct cs_pair_distance *s, double h, double range,
                                     double k, struct cs_pair_motion_start *start) {
@@ -64,7 +78,7 @@ CS_INLINE void cs_pair_motion_begin(struct cs_pair_motion *way,
                           cs_barrier_energy(0.5 * range, range, k);
 }
 
-/* J, which the start does not foretell where the way has gone by `share` to a distance d */
+/* e in J after the fraction `share` of the step, where the distance is d. */
 CS_INLINE double cs_pair_motion_unresolved_energy(const struct cs_pair_motion_start *start,
                                                   double share, double d, double range,
                                                   double k) {
@@ -74,12 +88,13 @@ CS_INLINE double cs_pair_motion_unresolved_energy(const struct cs_pair_motion_st
     return fabs(cs_barrier_energy(d, range, k) - seen);
 }
 
-/* Points of a way, beside its start, are at most half a range of motion apart. */
+/* Number of samples of a step after its start: they are at most half a range of relative motion
+ * apart, so that no contact is passed over. */
 CS_INLINE double cs_pair_motion_samples(double longest, double range) {
     return longest / (0.5 * range);
 }
 
-/* Eight at a time; lanes that hold none have numbers that mean nothing. */
+/* Eight pairs in lanes; lanes without a pair hold unspecified numbers. */
 enum { CS_PAIR_MOTION_LANES = 8 };
 struct cs_pair_motion_lanes {
     double x0[4][3][CS_PAIR_MOTION_LANES], displacement[4][3][CS_PAIR_MOTION_LANES],
@@ -88,8 +103,8 @@ struct cs_pair_motion_lanes {
     double result[CS_PAIR_MOTION_LANES];
 };
 
-/* Sets answer: 1 where too much of the energy of contact is unseen, else 0; but 2 where the way
- * is so long that it must be looked at in more points than its end. h: s of the whole way. */
+/* Sets result: 1 if the energy missed at the end of the step is above the limit, 0 if it is
+ * not, 2 if the step is too long to be judged by its end alone. h: seconds of the step. */
 void cs_pair_motion_lanes_check(enum cs_pair_kind kind, struct cs_pair_motion_lanes *lanes,
                                 double h);
 

@@ -1,4 +1,8 @@
-/* The energy of pairs that a step does not see, pair by pair. */
+/* Energy of pairs that a step does not predict, from the candidates that cover the step.
+ *
+ * Three filters come in turn: swept boxes; the end of short steps in lanes; all samples of long
+ * steps, one pair at a time. The chunk that rejected the last step is asked first, because a
+ * step that is halved is often rejected by the same pair again. */
 #include "model/contact/narrow_phase/pair_step_check.h"
 
 #include "base/pool.h"
@@ -7,19 +11,20 @@
 
 #include <string.h>
 
-/* points of one move, at most */
+/* largest number of samples of one step; longer steps have coarser samples */
 enum { POINTS_MAX = 64 };
-/* pairs that are sieved at a time */
+/* pairs per call of the swept-box filter */
 enum { SOME = 256 };
 #define NONE UINT32_MAX
 
 struct job {
     struct cs_pairs *pairs;
-    double h;        /* s */
-    uint32_t unseen; /* a lot that has a pair that goes unseen; NONE */
+    double h; /* s */
+    /* a chunk with an unresolved pair; NONE */
+    uint32_t unseen;
 };
 
-/* One chunk at work: ways wait until they are asked about together. */
+/* One chunk at work; pairs are collected until a block of lanes is full. */
 struct work {
     const struct job *job;
     enum cs_pair_kind kind;
@@ -28,9 +33,8 @@ struct work {
     bool unseen;
 };
 
-/* d (points + 1, and up to a lane less than CS_PAIR_LANES behind) = the smooth distances at the
- * start and at `points` places of the way, the last of them its end; returns whether one is
- * within range */
+/* d[0..points] = smooth distances at the start and at `points` equal fractions of the step. d
+ * needs room for CS_PAIR_LANES - 1 numbers more. Returns whether one is below the range. */
 static bool measure(struct cs_pair_motion *way, int points, double range, double *d) {
     struct cs_pair_lanes lanes;
     bool near = false;
@@ -50,7 +54,7 @@ static bool measure(struct cs_pair_motion *way, int points, double range, double
     return near;
 }
 
-/* a way of any length */
+/* Judges a step of any length by its samples. */
 static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, double range,
                           double k) {
     const double along = cs_pair_motion_samples(cs_pair_motion_longest(way), range);
@@ -68,6 +72,7 @@ static bool is_unresolved(const struct job *job, struct cs_pair_motion *way, dou
     return unseen > CS_UNRESOLVED_ENERGY_MAX * start.total_energy;
 }
 
+/* Uses the result of a lane, or samples the pair if its step is long. */
 static bool is_lane_unresolved(const struct work *work, uint32_t l) {
     const struct cs_pair_motion_lanes *lanes = &work->lanes;
     struct cs_pair_motion way = {.kind = work->kind};
@@ -83,6 +88,7 @@ static bool is_lane_unresolved(const struct work *work, uint32_t l) {
     return is_unresolved(work->job, &way, lanes->range[l], lanes->k[l]);
 }
 
+/* Checks the collected pairs. */
 static void ask(struct work *work) {
     if (work->waiting)
         cs_pair_motion_lanes_check(work->kind, &work->lanes, work->job->h);
@@ -91,7 +97,7 @@ static void ask(struct work *work) {
     work->waiting = 0;
 }
 
-/* the pair waits for others of its kind */
+/* Collects a pair until its block of lanes is full. */
 static void take(struct work *work, const uint32_t pair[2]) {
     const struct cs_pairs *pairs = work->job->pairs;
     const struct cs_candidates *search = &pairs->candidates;
@@ -115,7 +121,7 @@ static void take(struct work *work, const uint32_t pair[2]) {
         ask(work);
 }
 
-/* of a lot, those pairs that may come into range */
+/* Checks those pairs of a chunk whose swept boxes come within the range. */
 static void check_chunk(struct work *work, const struct cs_candidate_chunk *chunk) {
     const struct cs_pairs *pairs = work->job->pairs;
     const bool edges = chunk->kind == CS_PAIR_EDGE_EDGE;
@@ -133,6 +139,8 @@ static void check_chunk(struct work *work, const struct cs_candidate_chunk *chun
     ask(work);
 }
 
+/* Checks one chunk, unless another has been rejected already. The order of chunks affects the
+ * time only: the answer is whether any pair is unresolved. */
 static void find_unresolved(void *arg, uint32_t number) {
     struct job *job = arg;
     const struct cs_candidates *search = &job->pairs->candidates;
@@ -146,8 +154,7 @@ static void find_unresolved(void *arg, uint32_t number) {
         __atomic_store_n(&job->unseen, l, __ATOMIC_RELAXED);
 }
 
-/* of the pairs in the first chunks of the list as it is, the one that was refused last before
- * others */
+/* Checks `chunks` chunks of the list as it is, from the last rejected one on. */
 static bool are_seen(struct cs_pairs *pairs, uint32_t chunks, double h) {
     struct job job = {pairs, h, NONE};
     cs_pool_run(chunks, find_unresolved, &job);
@@ -162,7 +169,7 @@ bool cs_contact_pairs_resolve_step(struct cs_pairs *pairs, double t0, const doub
     const double *from = cs_surface_points_positions(pairs->system, CS_POINTS_BEGIN, t0, x0);
     const double *to = cs_surface_points_positions(pairs->system, CS_POINTS_END, t1, x1);
     cs_point_motion_set(pairs->system, from, to, pairs->point_motion);
-    // what is refused again needs no list that covers the way
+    // A pair that rejects the step again makes a list that covers the step unnecessary.
     if (search->is_built && !are_seen(pairs, 1, t1 - t0))
         return false;
     return cs_candidates_cover_step(search, from, to) &&

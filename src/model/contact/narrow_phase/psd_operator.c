@@ -1,4 +1,17 @@
-/* Factors of pairs in lanes, multiplied chunk by chunk. */
+/* The positive semi-definite contact matrix: factors per chunk, diagonal blocks and products.
+ *
+ * Why P >= 0: a pair contributes p^T P p = c (sum g_j.p_j)^2 + V^T B V with V = sum w_j p_j,
+ * and neither term is negative for c >= 0 and B >= 0.
+ *
+ * Bound of the diagonal, for a preconditioner or a decoupled solve that sees the blocks alone.
+ * Cauchy's inequality gives
+ *
+ *   (sum g_j.p_j)^2 <= (sum |g_j|) sum (g_j.p_j)^2 / |g_j|
+ *   V^T B V <= (sum |w_j|) sum |w_j| p_j^T B p_j
+ *
+ * so that P <= diag(blocks) with each gradient block times (sum |g_j|) / |g_k| and each B block
+ * w_k^2 B times (sum |w_j|) / |w_k|: find_growth of pair_lanes.c. The product uses exact
+ * blocks; diagonal_bound is for matrices whose blocks alone are wanted. */
 #include "model/contact/narrow_phase/psd_operator.h"
 
 #include "base/pool.h"
@@ -23,12 +36,13 @@ enum cs_status cs_psd_operator_init(struct cs_psd_operator *product, uint32_t n_
     return error->status;
 }
 
-/* pairs of a lot from that of a block on, as many as there are lanes at most */
+/* pairs of one block: CS_PAIR_LANES but in the last */
 static uint32_t count_at(const struct cs_active_chunk *chunk, size_t block) {
     const size_t left = chunk->n - block * CS_PAIR_LANES;
     return left < CS_PAIR_LANES ? (uint32_t)left : CS_PAIR_LANES;
 }
 
+/* blocks of factors of a chunk */
 static size_t blocks_of(const struct cs_active_chunk *chunk) {
     return (chunk->n + CS_PAIR_LANES - 1) / CS_PAIR_LANES;
 }
@@ -58,6 +72,7 @@ struct cs_pair_factors *cs_psd_operator_chunk_begin(struct cs_psd_operator *prod
     return factors;
 }
 
+/* Adds the diagonal blocks of eight pairs to the rows of their points. */
 static void add_own(struct cs_psd_operator *product, uint32_t number, size_t block,
                     double *rows) {
     const struct cs_active_chunk *chunk = product->contacts->chunks + number;
@@ -95,15 +110,17 @@ void cs_psd_operator_add_blocks(const struct cs_psd_operator *product, size_t be
 
 /* --- times a vector --- */
 
+/* One product: y += (P - diagonal) p. */
 struct job {
     const struct cs_psd_operator *product;
     const double *p;
     double *y;
 };
 
-/* blocks of eight that are multiplied together */
+/* blocks of eight pairs that are multiplied between one pass of loads and one of stores */
 enum { TOGETHER = 8 };
 
+/* vectors of four points, by lanes */
 typedef double vectors[4][3][CS_PAIR_LANES];
 
 static void read_lanes(const double *rows, uint32_t (*to)[4], uint32_t count, vectors p) {
@@ -120,8 +137,8 @@ static void add_lanes(vectors by, uint32_t (*to)[4], uint32_t count, double *sum
                 sums[3 * (size_t)to[l][k] + c] += by[k][c][l];
 }
 
-/* step by step for several blocks: what was just written number by number is not at once read
- * as vectors */
+/* Multiplies up to TOGETHER blocks: loads all, multiplies all, adds all. A vector load directly
+ * after scalar stores to the same addresses would stall. */
 static void multiply_some(const struct job *job, uint32_t number, size_t first, const double *p,
                           double *sums) {
     const struct cs_active_chunk *chunk = job->product->contacts->chunks + number;
@@ -137,8 +154,8 @@ static void multiply_some(const struct job *job, uint32_t number, size_t first, 
         add_lanes(by[b], to + b * CS_PAIR_LANES, count_at(chunk, first + b), sums);
 }
 
-/* sums = less what the solver has by the diagonal blocks already, in each row once for all of
- * its pairs */
+/* sums = -(diagonal block) p per row: the solver applies the diagonal itself. Once per row is
+ * cheaper than once per pair. */
 static void take_own(const double *own, const double *p, size_t n, double *sums) {
     for (size_t row = 0; row < n; row++) {
         const double *s = own + 6 * row, x = p[3 * row], y = p[3 * row + 1], z = p[3 * row + 2];
@@ -148,7 +165,7 @@ static void take_own(const double *own, const double *p, size_t n, double *sums)
     }
 }
 
-/* obstacles do not move */
+/* Product of one chunk, into its rows. Points of colliders have p = 0 and do not move. */
 static void multiply_chunk(void *arg, uint32_t number) {
     const struct job *job = arg;
     const struct cs_gather *gather = &job->product->contacts->force_gather;
@@ -171,7 +188,7 @@ static void add_part(void *arg, size_t begin, size_t end) {
 
 void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y) {
     struct job job = {product, p, y};
-    // the room is there: rows were wider where the matrix was made
+    // Never fails: the rows were at least 6 wide when the matrix was made.
     if (!product->contacts->n || !cs_gather_reserve(&product->contacts->force_gather, 3))
         return;
     cs_pool_run(product->n_chunks, multiply_chunk, &job);

@@ -1,11 +1,17 @@
-/* psd_operator.h - a matrix of pairs that is not exact: its diagonal blocks, and products with
- * it, in lanes. */
+/* psd_operator.h - the positive semi-definite contact matrix as an operator: diagonal blocks,
+ * and products with vectors in lanes, from stored factors.
+ *
+ *   P = sum of pairs c g g^T + (w w^T) x B,   c >= 0, B >= 0 with matrix.bound
+ *
+ * per pair 12 x 12, never formed. The solver keeps the diagonal blocks; the operator applies
+ * the rest. Without matrix.bound the friction of subtracted features may make single B
+ * negative. */
 #ifndef CS_NARROW_PHASE_PSD_OPERATOR_H
 #define CS_NARROW_PHASE_PSD_OPERATOR_H
 
 #include "model/contact/narrow_phase/active_contacts.h"
 
-/* What one chunk has. */
+/* Factors of one chunk of active contacts. */
 struct cs_psd_chunk {
     struct cs_pair_factors *factors; /* CS_PAIR_LANES pairs each */
     size_t capacity;
@@ -14,34 +20,38 @@ struct cs_psd_chunk {
 
 struct cs_psd_operator {
     struct cs_active_contacts
-        *contacts;       /* whose pairs it is of, which stay while it does; NULL: none */
-    bool diagonal_bound; /* blocks are above the whole of it */
+        *contacts; /* whose pairs it is of, which stay while it does; NULL: none */
+    /* diagonal blocks are enlarged to bound P from above: P <= diag(blocks) */
+    bool diagonal_bound;
     struct cs_psd_chunk *chunks;
     uint32_t n_chunks;
-    double *diagonal; /* (rows, 6) diagonal blocks of what each chunk has */
+    /* (rows, 6) diagonal blocks, summed per row of each chunk */
+    double *diagonal;
     size_t diagonal_capacity;
 };
 
-/* The arena owns what it takes. CS_ERR_MEMORY. */
+/* Prepares an empty operator; the arena owns its memory. CS_ERR_MEMORY. */
 enum cs_status cs_psd_operator_init(struct cs_psd_operator *product, uint32_t n_chunks,
                                     struct cs_arena *arena, struct cs_error *error);
 
-/* Makes it that of some pairs, whose blocks of factors are put then. false: no memory. */
+/* Binds the operator to active contacts, which it borrows until the next call. alone: the
+ * blocks must bound all of P. Returns false if out of memory. */
 bool cs_psd_operator_begin(struct cs_psd_operator *product, struct cs_active_contacts *active,
                            bool alone);
-/* The factors of a lot, to be filled; NULL: no memory. Different lots at the same time. */
+/* Returns the factors of a chunk, which the caller fills; NULL if out of memory. Threads may
+ * call it for different chunks. */
 struct cs_pair_factors *cs_psd_operator_chunk_begin(struct cs_psd_operator *product,
                                                     uint32_t number);
-/* After they are: takes their diagonal blocks. */
+/* Sums the diagonal blocks of a chunk, after its factors were filled. */
 void cs_psd_operator_chunk_end(struct cs_psd_operator *product, uint32_t number);
-/* After all; false: no memory. */
+/* Returns false if a chunk ran out of memory. */
 bool cs_psd_operator_end(struct cs_psd_operator *product);
 
 /* blocks (6,n) += the diagonal blocks at particles [begin, end). */
 void cs_psd_operator_add_blocks(const struct cs_psd_operator *product, size_t begin, size_t end,
                                 double *blocks);
 
-/* y (3,n) += the matrix without its diagonal blocks, times p. With all threads. */
+/* y (3,n) += (P - its diagonal blocks) p, with all threads. Sums are those of one thread. */
 void cs_psd_operator_apply(const struct cs_psd_operator *product, const double *p, double *y);
 
 #endif

@@ -1,5 +1,5 @@
-/* Contact of bodies with themselves, each other and meshes: the pairs of model/pair as a term.
- */
+/* The force term of contact between surfaces: a body with itself, two bodies, or a body and a
+ * mesh collider. */
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/force/term.h"
 #include "scene/body_pairs.h"
