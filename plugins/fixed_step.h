@@ -4,9 +4,9 @@
  * advance is cut into the fewest equal steps that are not longer than dt.
  *
  * In scenes with contact by force (fixed_step_guard) a step may be cut (step_subdivision.h):
- * where it would pass over contact that it cannot see (host->max_share), or where a method that
- * chose dt by its stability limit has a smaller limit in contact (host->rate). Each part is
- * committed by itself.
+ * where it would pass over contact that it cannot see (host->max_step_fraction), or where a
+ * method that chose dt by its stability limit has a smaller limit in contact (host->bounds_at).
+ * Each part is committed by itself.
  */
 #ifndef FIXED_STEP_H
 #define FIXED_STEP_H

@@ -9,9 +9,9 @@
  * a tenth of the impulse it is the exact one, unless that is indefinite, which gives Newton's
  * convergence back.
  *
- * Line search: u + a du with a = 1, 1/2, ..., or from the share that host->max_share allows of
- * the move to X(u + du), is taken where |r| falls, or where the incremental
- * potential (Martin et al. 2011; Gast et al. 2015)
+ * Line search: a starts at the fraction of the displacement to X(u + du) that
+ * host->max_step_fraction allows, 1 without limits, and is halved until |r| falls at u + a du,
+ * or until the incremental potential (Martin et al. 2011; Gast et al. 2015)
  *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (potential energy)(X) - s w.(u - u0)
  * falls by 1e-4 of what its slope r.du promises. Forces without energy, such as dampers, drag
  * and wind, have no potential: their force w is frozen at the start u0 of the search, where P

@@ -2,8 +2,8 @@
  *
  * As fixed_step.h, the span of an advance is cut into equal steps of at most dt. A step that
  * its method refuses (Newton does not converge, springs turn too far), or that passes over
- * contact by force (host->max_share), is halved, at most HALVINGS_MAX times; then the run
- * fails.
+ * contact by force (host->max_step_fraction), is halved, at most STEP_HALVINGS_MAX times, in
+ * scenes with contact by force STEP_HALVINGS_IN_CONTACT times; then the run fails.
  */
 #ifndef CS_STEP_HALVING_H
 #define CS_STEP_HALVING_H
