@@ -48,8 +48,9 @@
     X(PINS, "pins")                                                                            \
     X(VALUES, "values")                                                                        \
     X(INTEGRATOR, "integrator")                                                                \
-    X(LIMIT, "strain_limit") X(PROJECTION, "projection") X(ABSORPTION, "absorption")           \
-        X(LOSS, "velocity_loss") X(EVENTS, "events")
+    X(LIMIT, "strain_limit")                                                                   \
+    X(PROJECTION, "projection") X(ABSORPTION, "absorption") X(LOSS, "velocity_loss")           \
+        X(EVENTS, "events")
 
 /* Rows of cs_energy_ledger.energies. */
 enum cs_ledger_energy {
