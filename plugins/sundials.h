@@ -1,7 +1,7 @@
-/* sundials.h - a library of SUNDIALS and the state of a method on it.
+/* sundials.h - a library of SUNDIALS (CVODE or ARKODE), and the state of a method on it.
  *
- * Steps, the passing of frames and the linear solver stand on it, each in its own file.
- */
+ * The loop over steps, steps that pass frames, and the linear solver use it, each in its own
+ * file. */
 #ifndef SUNDIALS_H
 #define SUNDIALS_H
 
@@ -29,8 +29,9 @@ struct sundials_library {
     int (*on_state_changed)(struct sundials *self, double t, double dt);
 };
 
+/* The common part of a method's object, which starts with it. */
 struct sundials {
-    const struct cs_host *host;
+    const struct cs_host *host; /* borrowed */
     const struct sundials_library *library;
     SUNContext context; /* owned */
     void *memory;       /* owned by the method */
@@ -50,7 +51,8 @@ struct sundials {
     char message[256];   /* the library's last */
 };
 
-/* The library's code as the method's failure, unless the host's solver has failed before. */
+/* Fails with the library's code and last message at t, unless the host's own calls failed
+ * before: their status is returned then. */
 enum cs_step sundials_fail(struct sundials *self, int code, double t);
 
 #endif
