@@ -38,6 +38,7 @@ static const struct cs_option lossy_rows[] = {
  * half the damping rate. */
 typedef double step_limit(const struct fixed_step *loop, double omega, double delta);
 
+/* The limits of the head comment. Without frequency only damping counts. */
 static double explicit_euler_limit(const struct fixed_step *loop, double w, double delta) {
     (void)loop;
     const double r = 2 * delta;
@@ -79,6 +80,8 @@ static double rk4_limit(const struct fixed_step *loop, double w, double delta) {
     return RK4_REACH / (w > r ? w : r);
 }
 
+/* The automatic dt: 0.9 of the limit at rest. If nothing limits it, one step per advance; if no
+ * step is stable, that of symplectic Euler. Noted in the report. */
 static void choose_dt(struct fixed_step *loop, double limit) {
     const struct cs_host *host = loop->host;
     const struct cs_view *view = host->view;

@@ -1,9 +1,10 @@
-/* explicit_steps.h - the steps of the explicit methods and the struct that they share. */
+/* explicit_steps.h - the steps of the explicit methods, and the struct that they share. */
 #ifndef EXPLICIT_STEPS_H
 #define EXPLICIT_STEPS_H
 
 #include "fixed_step.h"
 
+/* The object of an explicit method. */
 struct explicit_method {
     struct fixed_step fixed; /* first: the loop's functions take it for the whole */
     double *a;               /* (3,n) in m/s2 of the last evaluation, or still in N */
@@ -14,7 +15,8 @@ struct explicit_method {
     double velocity_loss;
 };
 
-/* Each moves (x, v) from t to t + h. */
+/* Each steps (x, v) from t to t + h in place, without the commit; formulas are in
+ * explicit_steps.c. */
 enum cs_step step_explicit_euler(struct fixed_step *loop, double t, double h, double *x,
                                  double *v);
 enum cs_step step_symplectic_euler(struct fixed_step *loop, double t, double h, double *x,

@@ -21,8 +21,8 @@
  * converges quadratically, and far from it it may not point downhill. Chosen by trial. */
 #define NEAR 0.1
 
-/* Halvings of a line search, and the fraction of the promised decrease that it asks for: 1e-4
- * as usual for Armijo's condition. */
+/* Halvings of a line search, and the fraction of the promised decrease that it asks for:
+ * small, so that nearly any decrease is accepted. */
 #define LINE_HALVINGS 12
 #define LINE_DECREASE 1e-4
 
