@@ -55,6 +55,10 @@ static void follow_looks(struct cs_blow_up_check *bound, struct cs_system *syste
     cs_events_move_values(system, t);
 }
 
+/* Two bounds are made, with the values at the begin and at the end of the segment that begins,
+ * and the larger energies and forces count: ramps are linear, and each force grows with its
+ * value. The speed w of paths adds 2 m w^2 for every particle, since a grab may pull all along.
+ */
 void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_system *system,
                                    double t) {
     struct cs_blow_up_check now;

@@ -148,6 +148,7 @@ static void correct(struct cs_run_host *host, double t, double dt, double *x, do
     }
 }
 
+/* A step that ends the run is observed and booked too: outputs then show where it ended. */
 enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
                             bool *changed) {
     struct cs_run_host *host = ctx;

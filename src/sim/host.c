@@ -390,6 +390,8 @@ void cs_run_host_fail_solves(struct cs_run_host *host) {
     host->table.solve = failing_solve;
 }
 
+/* Everything that depends on the state follows an event: blow-up bound, ledger, trace, and the
+ * particles that static friction holds. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
     const bool changed = cs_events_apply(system, t);

@@ -1,4 +1,13 @@
-/* method.c - the parser of NAME:key=value,... that every command uses. */
+/* method.c - the parser of NAME:key=value,... that every command uses.
+ *
+ * The grammar of a list of methods:
+ *   list   = method { "," method }
+ *   method = [ SERIES "=" ] NAME [ ":" pair { "," pair } ]
+ *   pair   = key "=" value
+ *
+ * A comma separates both methods and pairs. A token between commas is a pair if it has a '=',
+ * unless a ':' follows the token after the '=': then it is SERIES=NAME:... . A SERIES
+ * therefore needs a method with options. */
 #include "sim/method.h"
 
 #include "base/options.h"

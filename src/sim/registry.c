@@ -267,6 +267,7 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
         nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");
 }
 
+/* A module that was refused is blamed if its bytes contain the name: the user meant it. */
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
                                 const struct cs_registry_entry **found,
                                 struct cs_error *error) {

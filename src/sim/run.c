@@ -134,6 +134,8 @@ static enum cs_step advance_frame(struct cs_run *run, double end) {
     return step;
 }
 
+/* Order: the host's table and memory, the method's create, its restart at 0, then the budget:
+ * it counts from the first step on. */
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
                             const struct cs_run_settings *settings, struct cs_error *error) {
@@ -167,6 +169,7 @@ static void count_method(struct cs_run *run) {
     found->setups += before->setups;
 }
 
+/* The time of a frame is computed from its number: fps need not divide it without rounding. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
@@ -217,6 +220,7 @@ void cs_run_note(struct cs_run *run, const char *format, ...) {
     run->host->table.note(run->host, "%s", message);
 }
 
+/* destroy comes before the arena is freed, since the method's object lies in it. */
 void cs_run_finish(struct cs_run *run) {
     if (!run->host)
         return;

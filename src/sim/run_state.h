@@ -38,7 +38,12 @@ enum cs_stage {
     CS_STAGES
 };
 
-/* Counts of calls and events of a run: exact, and the same on every machine. */
+/* Counts of a run: exact, and the same on every machine.
+ *
+ * steps counts commits. The names up to solve_iterations are calls of the host by the method:
+ * force_diagonal counts as one force and one diagonal, contact_blocks as one diagonal,
+ * matrix_product as one jvp. solve_iterations is the sum over all solves of
+ * conjugate-gradient iterations. */
 struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
     uint64_t

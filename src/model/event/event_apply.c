@@ -56,6 +56,8 @@ static void add_impulse(const struct cs_system *system, const struct cs_impact *
                 out[c * n + i] += impact->direction[c] * (momentum / mass);
 }
 
+/* Computed again from all active events, instead of added and subtracted: no rounding remains
+ * when an event ends. */
 void cs_event_sum_pushes(struct cs_system *system) {
     struct cs_events *events = system->events;
     if (!system->event_force)
@@ -152,6 +154,7 @@ static void end_value(struct cs_system *system, uint32_t event) {
     memcpy(wind->direction, state->wind_ends[1], sizeof wind->direction);
 }
 
+/* A ramp is linear in time; t may lie past its end, see cs_events_move_values. */
 void cs_event_set_value(struct cs_system *system, uint32_t event, double t) {
     struct cs_events *events = system->events;
     const struct cs_event_state *state = events->states + event;
@@ -199,6 +202,7 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
     }
 }
 
+/* A particle is freed only by the event that holds it: a later one may have taken it over. */
 void cs_event_finish(struct cs_system *system, uint32_t event) {
     struct cs_events *events = system->events;
     const struct cs_event *of = cs_scene_events(&events->scene) + event;

@@ -110,6 +110,9 @@ static void refresh(struct cs_system *system) {
         cs_system_set_masses(system);
 }
 
+/* Sets every ramped number to its extreme, frees every particle that an event may release,
+ * computes the bounds, and restores all. Numbers are restored in reverse order: if two ramps
+ * change one number, the first of them has stored the original. */
 void cs_events_set_bounds(struct cs_system *system, double *work) {
     struct cs_events *events = system->events;
     const uint32_t n_events = events->scene.events.n;
@@ -206,6 +209,7 @@ bool cs_events_apply(struct cs_system *system, double t) {
     return turns || others;
 }
 
+/* Values are set once per time: a method asks for several results at one stage. */
 void cs_events_move_values(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
     // a stage may lie past the end of its step; forces are continued smoothly there
@@ -219,6 +223,9 @@ void cs_events_move_values(struct cs_system *system, double t) {
     cs_event_refresh_springs(system);
 }
 
+/* Position = offset + point of the path: chord_from + rate (t - chord_begin), and exactly
+ * chord_to at its end. Offsets are constant, so that grabbed particles move as a rigid whole.
+ */
 void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v) {
     const struct cs_events *events = system->events;
     const size_t n = system->view.n;

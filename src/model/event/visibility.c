@@ -42,6 +42,9 @@ static inline double most(double a, double b) {
     return a > b ? a : b;
 }
 
+/* The image plane is at distance 1: a point (right, up, forward) has the image (right /
+ * forward, up / forward). Its half height is tan(fov / 2), as a quotient of sines that have the
+ * same bits everywhere; the rectangle is given from the top left in 0..1. */
 void cs_visibility_query_make(struct cs_visibility_query *visibility,
                               const struct cs_viewpoint_force *viewpoint_force) {
     const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
