@@ -68,7 +68,7 @@ bool step_halving_is_fresh(const struct step_halving *self, double h);
 
 /* True if the ends of a spring moved against each other by more than half its length from x0
  * to x1, or to NaN. The length is the larger of those at rest and at x0. Beyond that a
- * linearised step has no relation to the true motion: a spring that turns by 30 degrees moves
+ * linearised step has no relation to the true motion: a spring that turns by 29 degrees moves
  * its ends by that much. Needs CS_NEED_SPRINGS. */
 bool springs_rotated_far(const struct cs_view *view, const double *x0, const double *x1);
 

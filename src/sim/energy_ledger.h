@@ -49,8 +49,8 @@
     X(VALUES, "values")                                                                        \
     X(INTEGRATOR, "integrator")                                                                \
     X(LIMIT, "strain_limit")                                                                   \
-    X(PROJECTION, "projection") X(ABSORPTION, "absorption") X(LOSS, "velocity_loss")           \
-        X(EVENTS, "events")
+    X(PROJECTION, "projection")                                                                \
+    X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
 
 /* Rows of cs_energy_ledger.energies. */
 enum cs_ledger_energy {

@@ -27,7 +27,7 @@ const char *cs_outcome_text(enum cs_outcome outcome) {
 
 /* Turns the end of a call into the method into a status. A change of the process state is an
  * error whatever the call returned. CS_STEP_HALT is no error if an outcome explains it. After
- * a failed allocation a failure without a message counts as CS_ERR_MEMORY. */
+ * a failed allocation any failure of the method counts as CS_ERR_MEMORY. */
 static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_error *error) {
     const char *name = run->integrator->name,
                *changed = cs_process_state_restore(&run->host->process_state);
