@@ -140,7 +140,7 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
                                  asked->atol > 0 ? asked->atol : asked->rtol);
     if (code == ARK_SUCCESS)
         code = ARK(SetMaxErrTestFails)(base->memory, ERROR_FAILURES_MAX);
-    // steps end at the frame: the default interpolant would cost an evaluation a step
+    // steps end at the frame: the default interpolant would cost an evaluation per step
     if (code == ARK_SUCCESS)
         code = ARK(SetInterpolantType)(base->memory, ARK_INTERP_LAGRANGE);
     if (code == ARK_SUCCESS)

@@ -137,8 +137,8 @@ static int change_order(struct cvode *self, double t, double h, double stop) {
                : code;
 }
 
-/* One step from *reached, before which the last one may change the order: not behind that one,
- * whose interpolant may be asked for. */
+/* One step from *reached. The length of the last step may change the order first, and only
+ * here: right after that step its interpolant may still be needed. */
 static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached, int task) {
     void *object = NULL;
     double h = 0; // before the first step since a start it is 0

@@ -191,7 +191,7 @@ static enum cs_step verlet_archive(void *object, const struct cs_archive *archiv
     .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance, .stats = fixed_step_stats,     \
     .save = archive_, .load = archive_
 
-/* the eigenvalues of a step lie outside the unit circle wherever nothing damps */
+/* without damping the eigenvalues of a step lie outside the unit circle */
 static const char *const gains_energy[] = {"energy", "contact-energy", NULL};
 
 /* The output v is computed with the old acceleration, because the new one belongs to the next

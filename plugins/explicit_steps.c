@@ -5,7 +5,7 @@
  *   symplectic-euler  v' = v + h a,              x' = x + h v'   (flag thesis; HLW 2006, I.1.2)
  *   averaged-euler    v' = v + h a,              x' = x + h (v + v')/2   (cloth article)
  *   velocity-verlet   x' = x + h v + h^2/2 a,    v' = v + h/2 (a + a'),
- *                     a' = a(x', v + h a): one evaluation a step, a' is kept for the next
+ *                     a' = a(x', v + h a): one evaluation per step, a' is stored for the next
  *   position-verlet   x' = (2 - l) x - (1 - l) x_old + h^2 a(x, (x - x_old)/h)
  *                     (flag thesis, with its loss l), v' = (x' - x)/h + h/2 a
  *   rk4               y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), y = (x, v), k1 = F(t, y),
@@ -57,7 +57,7 @@ static void move_part(void *arg, size_t begin, size_t end) {
             .weight = move->weight,
             .forth = move->forth,
         };
-        /* the method's own arrays (3,n) lie one behind the other */
+        /* the method's history arrays (3,n) follow each other in memory */
         for (size_t k = 0; k < self->n_history; k++)
             row.kept[k] = self->history + 3 * n * k + at;
         move->row(&row);

@@ -10,7 +10,7 @@ struct explicit_method {
     double *a;               /* (3,n) in m/s2 of the last evaluation, or still in N */
     double *history;  /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet;
                        * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
-    size_t n_history; /* arrays (3,n) in kept */
+    size_t n_history; /* arrays (3,n) in history */
     double h;         /* s, of the last step of position-verlet; 0: none since the restart */
     double velocity_loss;
 };

@@ -29,14 +29,14 @@ typedef enum cs_step fixed_step_try_callback(struct fixed_step *self, double t, 
 /* The loop of one method; made by fixed_step_of. */
 struct fixed_step {
     const struct cs_host *host; /* borrowed */
-    double dt;                  /* longest step in s; HUGE_VAL: one step an advance */
+    double dt;                  /* longest step in s; HUGE_VAL: one step per advance */
     bool history_void; /* the state was changed from outside: the method's history is void */
     bool noted;        /* the report says already that dt was reduced */
     bool dt_automatic; /* dt was chosen here, not by the user */
     fixed_step_callback *step;
 
     struct step_subdivision subdivision;
-    uint64_t rejected;                 /* steps that were worked out and thrown away */
+    uint64_t rejected;                 /* steps that were computed and then refused */
     fixed_step_try_callback *try_step; /* takes a step, or refuses it */
     /* fails by host->fail, with the reason why a part of length h was refused */
     enum cs_step (*report_failure)(struct fixed_step *self, double t, double h);

@@ -1,4 +1,4 @@
-/* Implicit Euler methods that solve one linear system a step.
+/* implicit.c - implicit Euler methods that solve one linear system per step.
  *
  * With K = df/dx, D = df/dv of CS_PART_LINEARISED at (x, v), and step h:
  *
@@ -290,7 +290,8 @@ static const struct cs_integrator implicit_linearised = {
     .load = archive_linearised,
 };
 
-/* h K_ii v is a drag that a falling or sliding sheet feels, and no pair of particles shares */
+/* h K_ii v drags a falling or sliding sheet as a whole: it is not internal to a pair of
+ * particles */
 static const char *const false_drag[] = {"free-fall", "translation", "momentum", NULL};
 
 static const struct cs_integrator implicit_block = {

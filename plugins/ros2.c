@@ -1,4 +1,4 @@
-/* ros2.c - Rosenbrock method of two stages with one matrix: two linear solves a step.
+/* ros2.c - Rosenbrock method of two stages with one matrix: two linear solves per step.
  *
  * For y = (x, v), y' = F(t, y), J about dF/dy at (t, y), g = (1 - 1/sqrt 2) h:
  *   (I - g J) k1 = F(t, y)
@@ -16,8 +16,8 @@
  *
  * For rates far above 1/h the first stage multiplies by 1 - h/g = -2.4. The second undoes that
  * for the forces in J. The slope of friction by its load is not in J: friction under the
- * loads of such a place made energy. Where friction acts and a step does not resolve all rates,
- * g is (1 + 1/sqrt 2) h, of the same order and L-stable too, with 1 - h/g = 0.41.
+ * loads of such a state created energy. Where friction acts and a step does not resolve all
+ * rates, g is (1 + 1/sqrt 2) h, of the same order and L-stable too, with 1 - h/g = 0.41.
  */
 #include "newton_methods.h"
 

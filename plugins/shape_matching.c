@@ -287,7 +287,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         !(self->weight = host->alloc(host->ctx, sizeof(double) * n_items)) ||
         !(self->clusters = host->alloc(host->ctx, sizeof(struct cluster) * view->n_clusters)))
         return CS_STEP_FAIL;
-    /* counted, then inverted: its share in each of its clusters */
+    /* the number of its clusters first, then 1 over it: its weight in each of them */
     for (uint32_t item = 0; item < n_items; item++)
         self->held[view->cluster_items[item]]++;
     for (size_t i = 0; i < view->n; i++)

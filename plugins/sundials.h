@@ -25,7 +25,7 @@ struct sundials_library {
     int (*interpolate)(void *memory, sunrealtype t, int k, N_Vector y);
     /* where the nonlinear solver stands, and its g: see sundials_solver.c */
     int (*system)(void *memory, double *t, N_Vector *y, double *g);
-    /* the state was moved at t after a step of dt; 0: from outside, forget all */
+    /* the state was changed at t after a step of dt in s; dt 0: from outside, forget all */
     int (*on_state_changed)(struct sundials *self, double t, double dt);
 };
 
@@ -43,7 +43,7 @@ struct sundials {
     struct _generic_SUNLinearSolver_Ops solver_ops;
     double linear_rtol; /* relative residual of the linear solves */
     double *b;          /* (3,n), right-hand side of the reduced system */
-    int64_t max_steps;  /* in a frame */
+    int64_t max_steps;  /* in an advance */
     double
         *y_before; /* (6n) the state before the step; NULL: no step is refused for its move */
     bool equal_steps;    /* without error control: no step is cut but to meet a frame */

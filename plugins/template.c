@@ -55,7 +55,7 @@ static enum cs_step restart(void *self, double t, const double *x, const double 
     return CS_STEP_OK;
 }
 
-/* out = y + h (velocity, f/m), where y and out are positions with velocities behind them. A
+/* out = y + h (velocity, f/m), where y and out are positions followed by velocities. A
  * pinned particle has f = 0 and 1/m = 0, and needs no case of its own. */
 static void move(const struct midpoint *self, double h, const double *y, const double *velocity,
                  double *out) {

@@ -10,7 +10,7 @@
  * spring. Outer forces, drag too, are those at the start of the step.
  *
  * Contact by force comes after the springs in each pass, particle by particle: with its force F
- * at x and at the velocity (x - x_old)/h, its share B of an implicit step's matrix and the
+ * at x and at the velocity (x - x_old)/h, its part B of an implicit step's matrix and the
  * impulse p that it has given so far,
  *   dx = (m + B)^-1 (h h F - p), p += m dx, x += dx,
  * a Newton step for p = h h F. For a force along one direction that is a constraint of
@@ -19,9 +19,9 @@
  *
  * As the iterations grow the result settles, but not on implicit Euler: the directions that the
  * multipliers l belong to are those at which they were found. The difference vanishes with h.
- * Mode pbd forgets the multipliers after every iteration, so that each corrects the same share
- * (w_a + w_b) / (w_a + w_b + a) of what is left (Mueller et al. 2007, eq. 10 and 11, with that
- * share as k): springs are the stiffer the more iterations, and nothing settles.
+ * Mode pbd forgets the multipliers after every iteration, so that each corrects the same
+ * fraction (w_a + w_b) / (w_a + w_b + a) of what is left (Mueller et al. 2007, eq. 10 and 11,
+ * with that fraction as k): springs become stiffer with each iteration, and nothing converges.
  * Contact keeps its impulses in either mode.
  */
 #include "fixed_step.h"

@@ -18,7 +18,7 @@
  * view->inv_mass and the springs' constants may change in place, and then restart is called.
  * view->omega and view->delta hold for the whole run. Within an advance forces may depend on t
  * (ramps are linear in it): pass the time of the stage. The list of springs always shows the
- * constants at the t that the last call named. A matrix that a method has kept does not follow.
+ * constants at the t of the last call. A matrix that a method has stored does not follow.
  *
  * Marks in brackets say during which calls of the module a call of the host is allowed, and in
  * which order the calls of the module come. Not on offer, on purpose: random numbers, a clock,
@@ -79,7 +79,7 @@ enum cs_part {
     CS_PART_STRETCH = 1u << 0, /* springs along the threads; edges of a mesh */
     CS_PART_SHEAR = 1u << 1,   /* springs across the cells; inside a mesh */
     CS_PART_BEND = 1u << 2,    /* springs over two cells; across the edges of a mesh */
-    CS_PART_DAMPING = 1u << 3, /* the dampers beside the springs */
+    CS_PART_DAMPING = 1u << 3, /* the dampers of the springs */
     CS_PART_GRAVITY = 1u << 4, /* m g: has an energy, and no derivative */
     CS_PART_DRAG = 1u << 5,    /* -c v of still air */
     CS_PART_WIND = 1u << 6,    /* pressure on the cloth; has a jvp, is not in the matrix */
@@ -125,8 +125,8 @@ enum cs_trait {
     CS_LIBRARY_BITS = 1u << 4,
     /* A uniform velocity changes the internal forces. */
     CS_NOT_GALILEAN = 1u << 5,
-    /* All forces but the springs are taken as they are where a step begins, whatever the step:
-     * scenes with stiff ones, such as contact by force, are refused. */
+    /* All forces but the springs are evaluated at the begin of a step only, whatever its
+     * length: scenes with stiff ones, such as contact by force, are refused. */
     CS_EXPLICIT_OUTER = 1u << 6
 };
 
@@ -169,7 +169,7 @@ struct cs_host {
      * Returns CS_STEP_FAIL, so that `return host->fail(...)` is all you need. */
     enum cs_step (*fail)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
 
-    /* [create, restart, advance] A remark for the report. A repeated one is kept once. */
+    /* [create, restart, advance] A remark for the report; a repeated one is stored once. */
     void (*note)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
 
     /* [restart, advance] f (3,n) in N = the sum of the chosen parts. Overwrites f. */
@@ -267,7 +267,7 @@ struct cs_host {
 /* Counts that only the method knows. */
 struct cs_stats {
     uint32_t size;
-    /* Steps thrown away. */
+    /* Rejected steps. */
     uint64_t rejected;
     /* Nonlinear iterations. */
     uint64_t newton;
@@ -284,8 +284,8 @@ struct cs_option_use {
     uint32_t values;
 };
 
-/* A method's memory on its way into a checkpoint, or back. save and load make the same calls
- * with the same counts in the same order, so that one function may be both. */
+/* The passage of a method's history into a checkpoint, or back. save and load make the same
+ * calls with the same counts in the same order, so that one function may be both. */
 struct cs_archive {
     /* sizeof at the host's build: see CS_HAS. */
     uint32_t size;
