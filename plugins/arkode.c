@@ -4,7 +4,7 @@
  *   ark-dirk  diagonally implicit: one Newton iteration a stage
  *   ark-imex  additive pairs: x' = v and all forces that can be stiff by
  *             the implicit table, the other forces by the explicit one
- * One-step methods lose nothing but a slope where the state was moved.
+ * After a change of the state one-step methods lose nothing but a slope.
  */
 #include "arkode_calls.h"
 #include "arkode_tables.h"
@@ -13,13 +13,16 @@
 
 #define EXPLICIT_PARTS (CS_PART_ALL & ~CS_PART_STIFF)
 
-/* Of state, error weights, work, interpolation and Newton, and some to spare. */
+/* Vectors besides the slopes of stages: state, error weights, scratch, interpolation, Newton,
+ * and some spare. */
 enum { WORK_VECTORS = 20 };
 
-/* A rejected step may follow a jump of the forces: the library's 7 are few. */
+/* Rejections of a step before the run fails. The library's default of 7 is too few after a
+ * jump of the forces. */
 enum { ERROR_FAILURES_MAX = 20 };
 
-/* The library's 3 throw steps away at a loose tolerance, and end runs of fixed step. */
+/* Newton iterations of a stage. The library's default of 3 rejects steps at a loose
+ * tolerance, and ends runs of fixed step. */
 enum { NEWTON_MAX = 20 };
 
 struct ark_options {
@@ -47,12 +50,14 @@ static const struct cs_option erk_rows[] = {COMMON_ROWS(5, 2, 8)};
 static const struct cs_option dirk_rows[] = {COMMON_ROWS(4, 2, 5), LINEAR_ROW};
 static const struct cs_option imex_rows[] = {COMMON_ROWS(4, 3, 5), LINEAR_ROW};
 
+/* The object of a method. */
 struct ark {
     struct sundials base; /* first: its functions take it for the whole */
     struct ark_options asked;
     struct fixed_step steps; /* only to cut frames into steps of dt */
 };
 
+/* The two parts of ark-imex: x' = v and the forces that can be stiff; the other forces. */
 static int implicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *object) {
     return sundials_slope(object, t, y, CS_PART_STIFF, true, slope);
 }
@@ -61,6 +66,7 @@ static int explicit_slope(sunrealtype t, N_Vector y, N_Vector slope, void *objec
     return sundials_slope(object, t, y, EXPLICIT_PARTS, false, slope);
 }
 
+/* `system` of struct sundials_library: time, state and g of the running Newton iteration. */
 static int newton_system(void *memory, double *t, N_Vector *y, double *g) {
     N_Vector unused;
     void *object;
@@ -81,7 +87,8 @@ static void stats(const void *object, struct cs_stats *out) {
     out->setups = (uint64_t)setups;
 }
 
-/* A reset keeps counts and step; a state from outside has its first step chosen anew. */
+/* on_state_changed: a reset keeps counts and step length. For a state from outside (dt 0)
+ * with error control the library chooses the first step again. */
 static int moved(struct sundials *base, double t, double dt) {
     const struct ark *self = (const struct ark *)base;
     int code = ARK(Reset)(base->memory, t, base->state);
@@ -100,6 +107,7 @@ static const struct sundials_library library = {
     .on_state_changed = moved,
 };
 
+/* With fixed steps, sets their length to cut the advance into equal ones not longer than dt. */
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     struct ark *self = object;
     if (self->asked.dt > 0) {
@@ -132,7 +140,7 @@ static int open_memory(struct ark *self, ARKRhsFn explicit_part, ARKRhsFn implic
                                  asked->atol > 0 ? asked->atol : asked->rtol);
     if (code == ARK_SUCCESS)
         code = ARK(SetMaxErrTestFails)(base->memory, ERROR_FAILURES_MAX);
-    // steps end at the frame: the default interpolant would cost an evaluation a step
+    // steps end at the frame: the default interpolant would cost an evaluation per step
     if (code == ARK_SUCCESS)
         code = ARK(SetInterpolantType)(base->memory, ARK_INTERP_LAGRANGE);
     if (code == ARK_SUCCESS)

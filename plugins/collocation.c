@@ -1,10 +1,14 @@
-/* Coefficients of Gauss's collocation methods, from the zeros of Legendre's polynomials. */
+/* collocation.c - coefficients of Gauss's collocation methods, from the zeros of Legendre's
+ * polynomials.
+ *
+ * Polynomials are arrays of ascending coefficients, and integrals are exact. The tables are
+ * computed, not typed: only the nodes are constants. */
 #include "collocation.h"
 
 #include <stdbool.h>
 #include <string.h>
 
-/* zeros of Legendre's polynomials, moved to (0, 1) */
+/* Zeros of Legendre's polynomials of degree 2, 3 and 4, mapped to (0, 1) by (1 + z)/2. */
 static const double nodes[][COLLOCATION_STAGES] = {
     {0.2113248654051871177454, 0.7886751345948128822546},
     {0.1127016653792583114821, 0.5, 0.8872983346207416885179},
@@ -12,7 +16,7 @@ static const double nodes[][COLLOCATION_STAGES] = {
      0.930568155797026287612},
 };
 
-/* The coefficients of l_j, ascending. */
+/* The coefficients of l_j, the product over m != j of (z - c_m)/(c_j - c_m), ascending. */
 static void expand(const struct collocation *self, size_t j, double *coefficients) {
     const double *node = self->node;
     memset(coefficients, 0, COLLOCATION_STAGES * sizeof *coefficients);
@@ -27,7 +31,7 @@ static void expand(const struct collocation *self, size_t j, double *coefficient
     }
 }
 
-/* the value of a polynomial at z; integral: from 0 to z */
+/* The value of a polynomial at z, or its integral from 0 to z, by Horner's scheme. */
 static double evaluate(const double *coefficients, double z, bool integral) {
     double sum = 0;
     for (size_t p = COLLOCATION_STAGES; p-- > 0;)

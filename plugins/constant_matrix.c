@@ -1,9 +1,11 @@
-/* The matrix as a list of entries, and when it is factored anew. */
+/* constant_matrix.c - assembles the matrix as a list of entries, and decides when to factor
+ * it again; the decisions are listed in constant_matrix.h. */
 #include "constant_matrix.h"
 
 #include <math.h>
 #include <string.h>
 
+/* The arrays that the factor is compared with; false if out of memory. */
 static bool alloc_arrays(struct constant_matrix *matrix) {
     const struct cs_host *host = matrix->host;
     const size_t vector = sizeof(double) * (size_t)host->view->n;
@@ -24,7 +26,7 @@ enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct c
     matrix->started = true;
     matrix->common.print = 0;
     matrix->common.supernodal = CHOLMOD_SIMPLICIAL;
-    // one ordering, not the best of those that this build of the library knows
+    // one fixed ordering: the best of several would depend on the build of the library
     matrix->common.nmethods = 1;
     matrix->common.method[0].ordering = CHOLMOD_AMD;
     return CS_STEP_OK;
@@ -32,10 +34,11 @@ enum cs_step constant_matrix_init(struct constant_matrix *matrix, const struct c
 
 void constant_matrix_restart(struct constant_matrix *matrix) {
     matrix->h = 0;
-    // its order of elimination too: what follows hangs on nothing that was before
+    // its elimination order too: results after a restart depend on nothing before it
     cholmod_free_factor(&matrix->factor, &matrix->common);
 }
 
+/* drag (n) in N s/m at t: minus the force on velocities of 1 m/s. ones, f: (3,n). */
 static void read_drag(const struct constant_matrix *matrix, double t, const double *x,
                       const double *ones, double *f, double *drag) {
     const struct cs_host *host = matrix->host;
@@ -49,18 +52,18 @@ void constant_matrix_read_drag(struct constant_matrix *matrix, double t0, double
     const size_t n = matrix->host->view->n;
     for (size_t i = 0; i < 3 * n; i++)
         ones[i] = 1;
-    // the end first: the scene's values are then those of the begin, from where steps go on
+    // the end first: the host's values are then those of the begin, where the steps start
     read_drag(matrix, t1, x, ones, f, matrix->drag_end);
     read_drag(matrix, t0, x, ones, f, matrix->drag_begin);
     matrix->begin = t0;
     matrix->end = t1;
-    // from one advance to the next drag can change by an event, and a restart follows
+    // between two advances drag changes only by an event, which a restart follows
     matrix->drag_changes =
         memcmp(matrix->drag_begin, matrix->drag_end, n * sizeof *matrix->drag_begin) != 0;
     memcpy(matrix->drag, matrix->drag_begin, n * sizeof *matrix->drag);
 }
 
-/* Drag at the end of the step, as it is implicit. */
+/* Sets drag to its value at t, the end of the step: it is implicit. */
 static void follow_drag(struct constant_matrix *matrix, double t) {
     const double share = (t - matrix->begin) / (matrix->end - matrix->begin);
     for (size_t i = 0; i < matrix->host->view->n; i++)
@@ -68,7 +71,7 @@ static void follow_drag(struct constant_matrix *matrix, double t) {
             matrix->drag_begin[i] + (matrix->drag_end[i] - matrix->drag_begin[i]) * share;
 }
 
-/* Takes over the springs as they are; whether the factor has others. */
+/* Copies the springs' constants of now; true if the factor has others. */
 static bool follow_springs(struct constant_matrix *matrix) {
     const struct cs_view *view = matrix->host->view;
     const size_t bytes = view->n_springs * sizeof(double);
@@ -82,8 +85,7 @@ static bool follow_springs(struct constant_matrix *matrix) {
     return true;
 }
 
-/* Takes over the pins as they are, which a commit may have changed; whether the factor has
- * others. */
+/* Copies the pins of now, which a commit may have changed; true if the factor has others. */
 static bool follow_pins(struct constant_matrix *matrix) {
     const struct cs_view *view = matrix->host->view;
     const size_t bytes = view->n * sizeof *matrix->inv_mass;
@@ -93,13 +95,15 @@ static bool follow_pins(struct constant_matrix *matrix) {
     return true;
 }
 
+/* Appends an entry; entries in the same position are summed by CHOLMOD. */
 static void add_entry(cholmod_triplet *list, size_t row, size_t column, double value) {
     ((int *)list->i)[list->nnz] = (int)row;
     ((int *)list->j)[list->nnz] = (int)column;
     ((double *)list->x)[list->nnz++] = value;
 }
 
-/* the lower triangle; entries in one place are added up */
+/* Lists the lower triangle of A: M + h drag on the diagonal, and h c + h^2 k of each spring
+ * in the rows of its free ends. */
 static void list_entries(const struct constant_matrix *matrix, double h,
                          cholmod_triplet *list) {
     const struct cs_view *view = matrix->host->view;
@@ -118,6 +122,7 @@ static void list_entries(const struct constant_matrix *matrix, double h,
     }
 }
 
+/* A as a sparse matrix, which the caller frees; NULL if out of memory. */
 static cholmod_sparse *assemble(struct constant_matrix *matrix, double h) {
     const struct cs_view *view = matrix->host->view;
     const size_t n = view->n, most = n + 3 * (size_t)view->n_springs;
@@ -131,6 +136,7 @@ static cholmod_sparse *assemble(struct constant_matrix *matrix, double h) {
     return sparse;
 }
 
+/* Factors A for steps of h: ordering by AMD at the first time since a restart, then numbers. */
 static enum cs_step factor(struct constant_matrix *matrix, double h) {
     const struct cs_host *host = matrix->host;
     matrix->h = 0;
@@ -155,7 +161,7 @@ enum cs_step constant_matrix_prepare(struct constant_matrix *matrix, double t, d
     const bool springs = follow_springs(matrix), others = follow_pins(matrix) || springs;
     if (matrix->drag_changes)
         follow_drag(matrix, t + h);
-    // frames differ in length by rounding
+    // the lengths of frames differ by rounding: decision 4
     if (!others && !matrix->drag_changes && fabs(h - matrix->h) <= 1e-9 * h)
         return CS_STEP_OK;
     return factor(matrix, h);

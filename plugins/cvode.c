@@ -11,25 +11,26 @@
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-/* Below this damping ratio the orders above 2 of BDF are held back by their stability near the
- * imaginary axis: see cvode_order_control.h. */
+/* Below this damping ratio, stability near the imaginary axis holds back the orders above 2
+ * of BDF: see cvode_order_control.h. Chosen by trial. */
 #define WEAK_DAMPING 0.05
 
-/* A step whose best length is within these factors of the last keeps its length. CVODE lets it
- * grow by 1.5 and more only, to spare factorisations; here a change costs nothing. */
+/* A step whose best length is within these factors of the last keeps its length. CVODE's
+ * default lets steps grow by 1.5 at least, to save factorisations; here a change of length
+ * costs nothing. Chosen by trial. */
 #define KEPT_FROM 0.9
 #define KEPT_TO   1.2
 
-/* The share of the local error that the nonlinear iteration may leave. CVODE's 0.1 suits a
- * matrix of long ago; here each iteration has its own. */
+/* The fraction of the local error that the nonlinear iteration may leave. CVODE's default 0.1
+ * suits an outdated matrix; here each iteration has its own. */
 #define NONLINEAR_SHARE 1
 
-/* Most that a step may grow by after a new start; CVODE allows 1e4 there, after which the next
- * is mostly thrown away. */
+/* The largest growth of a step after a restart. CVODE allows 1e4 there, and the step is then
+ * mostly rejected. */
 #define GROWTH_MAX 10
 
-/* History of orders 0 to 5 or 12, CVODE's work (7), the nonlinear solver's (3), the state, one
- * to check with, and some to spare. */
+/* Vectors: history of orders 0 to 5 (BDF) or 12 (Adams), CVODE's scratch (7), the nonlinear
+ * solver's (3), the state, one for checks, and some spare. */
 enum { BDF_VECTORS = 19, ADAMS_VECTORS = 27 };
 
 struct cvode_options {
@@ -71,6 +72,7 @@ struct cvode {
     struct cs_stats done; /* counted before the last start */
 };
 
+/* `system` of struct sundials_library: time, state and g of the running Newton iteration. */
 static int newton_system(void *memory, double *t, N_Vector *y, double *g) {
     N_Vector unused;
     void *object;
@@ -79,6 +81,7 @@ static int newton_system(void *memory, double *t, N_Vector *y, double *g) {
                                        &object);
 }
 
+/* out = the counts of the runs of CVODE before its last restart, plus those since. */
 static void add_counts(const struct cvode *self, struct cs_stats *out) {
     long error_failures = 0, solve_failures = 0, newton = 0, setups = 0;
     if (self->base.memory) {
@@ -134,8 +137,8 @@ static int change_order(struct cvode *self, double t, double h, double stop) {
                : code;
 }
 
-/* One step from *reached, before which the last one may change the order: not behind that one,
- * whose interpolant may be asked for. */
+/* One step from *reached. The length of the last step may change the order first, and only
+ * here: right after that step its interpolant may still be needed. */
 static int evolve(void *memory, sunrealtype t1, N_Vector y, sunrealtype *reached, int task) {
     void *object = NULL;
     double h = 0; // before the first step since a start it is 0
@@ -161,7 +164,8 @@ static const struct sundials_library library = {
     .on_state_changed = moved,
 };
 
-/* the highest order to begin with */
+/* The highest order to start with: the user's; else 2 with automatic control, if damping is
+ * weak or the tolerance loose; else 5. */
 static int choose_bdf_order(struct cvode *self) {
     const struct cs_host *host = self->base.host;
     const double omega = host->view->omega, delta = host->view->delta;
@@ -176,6 +180,8 @@ static int choose_bdf_order(struct cvode *self) {
     return self->order.is_automatic ? CVODE_ORDER_LOW : CVODE_ORDER_HIGH;
 }
 
+/* BDF: Newton with the host's solver; stability-limit detection for orders above 2, unless the
+ * order is automatic. Returns the first code that is not CV_SUCCESS. */
 static int set_bdf_solver(struct cvode *self, int order) {
     void *memory = self->base.memory;
     int code = CVodeSetLinearSolver(memory, &self->base.solver, NULL);
@@ -186,6 +192,7 @@ static int set_bdf_solver(struct cvode *self, int order) {
     return code == CV_SUCCESS ? CVodeSetNonlinConvCoef(memory, NONLINEAR_SHARE) : code;
 }
 
+/* Adams: fixed-point iteration, without a matrix. */
 static int set_adams_solver(struct cvode *self) {
     self->iteration = SUNNonlinSol_FixedPoint(self->base.state, 0, self->base.context);
     return self->iteration ? CVodeSetNonlinearSolver(self->base.memory, self->iteration)
@@ -218,6 +225,7 @@ static int open_memory(struct cvode *self, int family) {
     return code;
 }
 
+/* family: CV_BDF or CV_ADAMS. */
 static enum cs_step create(const struct cs_host *host, const void *options, int family,
                            void **out) {
     struct cvode *self = host->alloc(host->ctx, sizeof *self);

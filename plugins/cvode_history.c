@@ -1,9 +1,11 @@
-/* Finds and moves CVODE's history; see cvode_history.h. */
+/* cvode_history.c - finds CVODE's value vector, checks it, and writes the changed state to
+ * it. */
 #include "cvode_history.h"
 
 #include <cvode/cvode.h>
 #include <string.h>
 
+/* Bytes of a state (6n). */
 static size_t bytes_of(const struct sundials *base) {
     return 6 * sizeof(double) * (size_t)base->host->view->n;
 }
@@ -19,7 +21,8 @@ void cvode_history_find(struct cvode_history *history, const struct sundials *ba
         history->value = base->vectors.copied_to;
 }
 
-/* Does CVODE itself say that the state is where it was moved to? */
+/* True if CVODE's own interpolant gives the changed state, bit for bit, at the end of the
+ * last step. */
 static bool is_moved(const struct cvode_history *history, struct sundials *base) {
     double t; /* the end of the last step: the stop time is met up to rounding only */
     return CVodeGetCurrentTime(base->memory, &t) == CV_SUCCESS &&

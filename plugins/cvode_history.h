@@ -1,31 +1,34 @@
-/* cvode_history.h - moves CVODE's history along with a state that a commit has moved.
+/* cvode_history.h - moves CVODE's history with a state that a commit has changed.
  *
- * The history is a polynomial in time, kept as its value and its scaled derivatives at the last
- * step (Nordsieck form). An impulse, as of a contact, shifts the whole of it: the value is
- * moved, the derivatives stay, and the error control meets what the move changes in the forces.
- * A new start, at order 1 with a step to match, would follow every step in which anything
- * touches: on a sphere with rtol = 1e-5 five times the steps, and no smaller an error.
+ * The history is a polynomial in time, stored as its value and its scaled derivatives at the
+ * last step (Nordsieck form). An impulse, as of a contact, shifts all of it: the value
+ * changes, the derivatives stay, and error control sees the change of the forces. A restart
+ * instead, at order 1 with a step to match, would follow every step in which anything
+ * touches: on a sphere with rtol = 1e-5 that takes five times the steps, at no smaller error.
  *
- * CVODE has no call for that. Its value vector is the one into which a start copies the state;
- * that it is the right one is checked by CVodeGetDky at the first move. Where it is not, there
- * is no moving, and the method starts anew.
- */
+ * CVODE has no call for that. Its value vector is the one into which a start copies the
+ * state: sundials_vector.h remembers the target of that copy. CVodeGetDky checks at the first
+ * change that it is the right vector. If it is not, the history cannot be moved and the
+ * method restarts. */
 #ifndef CVODE_HISTORY_H
 #define CVODE_HISTORY_H
 
 #include "sundials_common.h"
 
+/* Access to the value of the polynomial. */
 struct cvode_history {
     N_Vector value;   /* borrowed from CVODE; NULL: not known */
-    N_Vector scratch; /* to check with */
-    bool is_checked;
+    N_Vector scratch; /* for the check */
+    bool is_checked;  /* CVodeGetDky has confirmed `value`, or refuted it */
 };
 
-/* Before and after CVodeReInit. */
+/* Call update before CVodeReInit, to forget the vector, and find after it, to take the target
+ * of the copy. */
 void cvode_history_update(struct cvode_history *history, struct sundials *base);
 void cvode_history_find(struct cvode_history *history, const struct sundials *base);
 
-/* Moves the history to base->state; false: it cannot be done, start anew. */
+/* Sets the value of the history to base->state. Returns false if that is impossible: the
+ * caller must restart CVODE. */
 bool cvode_history_move(struct cvode_history *history, struct sundials *base);
 
 #endif

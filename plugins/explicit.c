@@ -1,13 +1,21 @@
 /* explicit.c - explicit methods: their options, step limits and descriptors.
  *
- * Step limits for x'' + r x' + w^2 x = 0, from the characteristic polynomials; the automatic dt
- * is 0.9 of them, with bounds for w and r that hold at rest:
+ * Step limits for x'' + r x' + w^2 x = 0. The automatic dt is 0.9 of them, with bounds for w
+ * and r that hold at rest:
  *   explicit-euler    h < r/w^2, and 4/(r + sqrt(r^2 - 4 w^2)) where overdamped
  *   averaged-euler    h < 2 r/w^2, and h < 2/r
  *   rk4               h |l| < RK4_REACH for both roots l, which are at most max(w, r)
  *   the others        h^2 w^2 + q r h < s with s = 4 (4 - 2 l with loss l) and q = 2, but 4 for
  *                     velocity-verlet, whose damping sees a predicted velocity
- */
+ *
+ * Derivation. A step maps (x, v) by a 2x2 matrix with trace T and determinant D. Both its
+ * eigenvalues lie inside the unit circle if D < 1, 1 + T + D > 0 and 1 - T + D > 0. The last
+ * is h^2 w^2 > 0 in these three cases:
+ *   explicit-euler    T = 2 - r h, D = 1 - r h + h^2 w^2. D < 1 is the first limit, and the
+ *                     second is |1 + h l| < 1 for the larger real root l
+ *   averaged-euler    T = 2 - r h - h^2 w^2/2, D = 1 - r h + h^2 w^2/2: D < 1 is h < 2 r/w^2,
+ *                     1 + T + D = 4 - 2 r h
+ *   symplectic-euler  T = 2 - r h - h^2 w^2, D = 1 - r h: 1 + T + D = 4 - 2 r h - h^2 w^2 */
 #include "explicit_steps.h"
 #include "leapfrog_limit.h"
 
@@ -38,6 +46,7 @@ static const struct cs_option lossy_rows[] = {
  * half the damping rate. */
 typedef double step_limit(const struct fixed_step *loop, double omega, double delta);
 
+/* The limits of the head comment. Without frequency only damping counts. */
 static double explicit_euler_limit(const struct fixed_step *loop, double w, double delta) {
     (void)loop;
     const double r = 2 * delta;
@@ -79,6 +88,8 @@ static double rk4_limit(const struct fixed_step *loop, double w, double delta) {
     return RK4_REACH / (w > r ? w : r);
 }
 
+/* The automatic dt: 0.9 of the limit at rest. If nothing limits it, one step per advance; if no
+ * step is stable, that of symplectic Euler. Noted in the report. */
 static void choose_dt(struct fixed_step *loop, double limit) {
     const struct cs_host *host = loop->host;
     const struct cs_view *view = host->view;
@@ -98,7 +109,8 @@ static void choose_dt(struct fixed_step *loop, double limit) {
                    loop->dt, view->omega, view->delta);
 }
 
-/* n_arrays: of (3,n) that the method keeps. */
+/* Allocates a method with n_arrays arrays (3,n): the force, and n_arrays - 1 of history.
+ * limit is the stability limit, which also watches contact if dt is automatic. */
 static enum cs_step create(const struct cs_host *host, const struct lossy_options *asked,
                            step_limit *limit, fixed_step_callback *step, int n_arrays,
                            void **out) {
@@ -124,7 +136,7 @@ static enum cs_step create(const struct cs_host *host, const struct lossy_option
                                                         : symplectic_euler_limit);
 }
 
-/* a method whose options are explicit_rows */
+/* create for a method whose options are explicit_rows. */
 static enum cs_step create_lossless(const struct cs_host *host, const void *options,
                                     step_limit *limit, fixed_step_callback *step, int n_arrays,
                                     void **self) {
@@ -162,7 +174,8 @@ static enum cs_step create_rk4(const struct cs_host *host, const void *options, 
     return create_lossless(host, options, rk4_limit, step_rk4, 5, self);
 }
 
-/* an evaluation, or a half step, is kept from step to step */
+/* save and load of the Verlet methods, which store an evaluation, or a half step, from step
+ * to step. */
 static enum cs_step verlet_archive(void *object, const struct cs_archive *archive) {
     struct explicit_method *self = object;
     const size_t n3 = 3 * (size_t)self->fixed.host->view->n;
@@ -178,11 +191,11 @@ static enum cs_step verlet_archive(void *object, const struct cs_archive *archiv
     .fidelity = CS_FIDELITY_ODE, .advance = fixed_step_advance, .stats = fixed_step_stats,     \
     .save = archive_, .load = archive_
 
-/* the eigenvalues of a step lie outside the unit circle wherever nothing damps */
+/* without damping the eigenvalues of a step lie outside the unit circle */
 static const char *const gains_energy[] = {"energy", "contact-energy", NULL};
 
-/* the v that is shown takes the old acceleration, as the new one is the next step's: the method
- * is symplectic and symmetric in (x - x_old)/h, not in this v */
+/* The output v is computed with the old acceleration, because the new one belongs to the next
+ * step. The method is symplectic and symmetric in (x - x_old)/h, not in this v. */
 static const char *const late_velocity[] = {"angular-momentum", "reversible", NULL};
 
 static const struct cs_integrator explicit_euler = {

@@ -1,11 +1,11 @@
-/* One step of each explicit method.
+/* explicit_steps.c - one step of each explicit method.
  *
  * With a = f(t, x, v) / m and step h, ' marking the new state:
  *   explicit-euler    x' = x + h v,              v' = v + h a    (cloth thesis, eq. 5.15)
  *   symplectic-euler  v' = v + h a,              x' = x + h v'   (flag thesis; HLW 2006, I.1.2)
  *   averaged-euler    v' = v + h a,              x' = x + h (v + v')/2   (cloth article)
  *   velocity-verlet   x' = x + h v + h^2/2 a,    v' = v + h/2 (a + a'),
- *                     a' = a(x', v + h a): one evaluation a step, a' is kept for the next
+ *                     a' = a(x', v + h a): one evaluation per step, a' is stored for the next
  *   position-verlet   x' = (2 - l) x - (1 - l) x_old + h^2 a(x, (x - x_old)/h)
  *                     (flag thesis, with its loss l), v' = (x' - x)/h + h/2 a
  *   rk4               y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), y = (x, v), k1 = F(t, y),
@@ -20,7 +20,7 @@ static struct explicit_method *method_of(struct fixed_step *loop) {
     return (struct explicit_method *)loop;
 }
 
-/* one component of the particles of a range: what the loop over a row reads and writes */
+/* One component of a range of particles, as a loop over a row reads and writes it. */
 struct row {
     size_t count;
     const double *inv_mass;
@@ -30,14 +30,15 @@ struct row {
     double h, loss, weight, forth;
 };
 
-/* A loop over all particles, shared among the host's threads: by ranges, and so that the three
- * components of a range meet its masses in the cache. */
+/* A loop over all particles, split into ranges for the host's threads. The three components
+ * of a range are done in a row, with its masses in the cache. */
 struct move {
     void (*row)(const struct row *row);
     const struct explicit_method *self;
     double *x, *v, h, weight, forth;
 };
 
+/* The part of a loop for the particles [begin, end): three rows. */
 static void move_part(void *arg, size_t begin, size_t end) {
     const struct move *move = arg;
     const struct explicit_method *self = move->self;
@@ -56,13 +57,14 @@ static void move_part(void *arg, size_t begin, size_t end) {
             .weight = move->weight,
             .forth = move->forth,
         };
-        /* the method's own arrays (3,n) lie one behind the other */
+        /* the method's history arrays (3,n) follow each other in memory */
         for (size_t k = 0; k < self->n_history; k++)
             row.kept[k] = self->history + 3 * n * k + at;
         move->row(&row);
     }
 }
 
+/* Runs a loop on the host's threads, or here if the host has no such call. */
 static void share(struct move *move) {
     const struct cs_host *host = move->self->fixed.host;
     const struct cs_vector_kernels *vector = host->vector;
@@ -72,14 +74,15 @@ static void share(struct move *move) {
         move_part(move, 0, host->view->n);
 }
 
-/* moves x and v by a loop over rows */
+/* Runs a loop over rows that updates x and v. */
 static void move_all(const struct explicit_method *self, double h, double *x, double *v,
                      void (*row)(const struct row *row)) {
     struct move move = {.row = row, .self = self, .x = x, .v = v, .h = h};
     share(&move);
 }
 
-/* a is then the force, which the next loop divides by the mass */
+/* Stores the force in a. The next loop divides it by the mass, which saves a pass over
+ * memory. */
 static void evaluate(struct explicit_method *self, double t, const double *x, const double *v) {
     const struct cs_host *host = self->fixed.host;
     host->force(host->ctx, t, x, v, CS_PART_ALL, self->a);
@@ -141,7 +144,8 @@ CS_CLONES static void accelerate_row(const struct row *row) {
         a[i] *= w[i];
 }
 
-/* v goes through v + h a, which is what damping and drag see at the new time */
+/* The position of velocity-verlet. v becomes the prediction v + h a, which damping and drag
+ * see at the new time. */
 CS_CLONES static void drift_row(const struct row *row) {
     const double h = row->h, *restrict a = row->a;
     double *restrict x = row->x, *restrict v = row->v, *restrict old_a = row->kept[0];
@@ -152,6 +156,7 @@ CS_CLONES static void drift_row(const struct row *row) {
     }
 }
 
+/* Corrects the prediction v + h a to v + h/2 (a + a'). */
 CS_CLONES static void kick_row(const struct row *row) {
     const double h = row->h, *restrict w = row->inv_mass, *restrict old_a = row->kept[0];
     double *restrict v = row->v, *restrict a = row->a;
@@ -174,6 +179,7 @@ enum cs_step step_velocity_verlet(struct fixed_step *loop, double t, double h, d
     return CS_STEP_OK;
 }
 
+/* Starts u of position-verlet as v - h/2 a. */
 CS_CLONES static void last_half_step_row(const struct row *row) {
     const double h = row->h, *restrict v = row->v, *restrict a = row->a;
     double *restrict u = row->kept[0];
@@ -191,9 +197,10 @@ CS_CLONES static void position_verlet_row(const struct row *row) {
     }
 }
 
-/* In u = (x - x_old)/h the recurrence is u' = (1 - l) u + h a, x' = x + h u': the same in exact
- * arithmetic, without the difference of near positions. Where u is not known (at the start, or
- * where commit moved v or h is another) it is v - h/2 a: a Taylor step. */
+/* In u = (x - x_old)/h the recurrence is u' = (1 - l) u + h a, x' = x + h u': the same in
+ * exact arithmetic, without the cancellation of nearly equal positions. If u is unknown
+ * (after a restart, a commit that changed the state, or another h) it starts as v - h/2 a, a
+ * Taylor step. */
 enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, double *x,
                                   double *v) {
     struct explicit_method *self = method_of(loop);
@@ -213,7 +220,7 @@ enum cs_step step_position_verlet(struct fixed_step *loop, double t, double h, d
     return CS_STEP_OK;
 }
 
-/* kept: a stage's x and v, and the sums of both slopes */
+/* rk4: kept holds the stage's x and v, and the weighted sums of both slopes. */
 CS_CLONES static void rk4_begin_row(const struct row *row) {
     const double *restrict x = row->x, *restrict v = row->v;
     double *restrict stage_x = row->kept[0], *restrict stage_v = row->kept[1];

@@ -1,20 +1,22 @@
-/* explicit_steps.h - the steps of the explicit methods and the struct that they share. */
+/* explicit_steps.h - the steps of the explicit methods, and the struct that they share. */
 #ifndef EXPLICIT_STEPS_H
 #define EXPLICIT_STEPS_H
 
 #include "fixed_step.h"
 
+/* The object of an explicit method. */
 struct explicit_method {
     struct fixed_step fixed; /* first: the loop's functions take it for the whole */
     double *a;               /* (3,n) in m/s2 of the last evaluation, or still in N */
     double *history;  /* (3,n): (x - x_old)/h of position-verlet, old a of velocity-verlet;
                        * (12,n): a stage's x and v, and the sums of both slopes, of rk4 */
-    size_t n_history; /* arrays (3,n) in kept */
+    size_t n_history; /* arrays (3,n) in history */
     double h;         /* s, of the last step of position-verlet; 0: none since the restart */
     double velocity_loss;
 };
 
-/* Each moves (x, v) from t to t + h. */
+/* Each steps (x, v) from t to t + h in place, without the commit; formulas are in
+ * explicit_steps.c. */
 enum cs_step step_explicit_euler(struct fixed_step *loop, double t, double h, double *x,
                                  double *v);
 enum cs_step step_symplectic_euler(struct fixed_step *loop, double t, double h, double *x,

@@ -22,7 +22,7 @@
 #include <math.h>
 #include <string.h>
 
-/* what springs and matrix do not hold */
+/* The forces that neither the springs nor the matrix contain. */
 #define EXPLICIT_PARTS (CS_PART_OUTER & ~CS_PART_DRAG)
 
 struct local_global_options {
@@ -48,13 +48,15 @@ struct local_global {
     uint64_t passes; /* local and global halves */
 };
 
+/* d = x_b - x_a of the ends of a spring. */
 static void difference(size_t n, const uint32_t ends[2], const double *x, double d[3]) {
     for (size_t c = 0; c < 3; c++)
         d[c] = x[c * n + ends[1]] - x[c * n + ends[0]];
 }
 
-/* What spring s pulls its second end by, in kg m: h^2 k (L n - e_y), and of its damper
- * - h c (e_y - e_old), with h c (I - n n^T)(e - e_old) given back to an axial one. */
+/* The pull of spring s on its second end, in kg m: h^2 k (L n - e_y), and of its damper - h c
+ * (e_y - e_old). An axial damper gets h c (I - n n^T)(e - e_old) back. The first end gets the
+ * opposite. */
 static void spring_impulse(const struct local_global *self, size_t s, const double *x,
                            double pull[3]) {
     const struct cs_view *view = self->loop.host->view;
@@ -80,7 +82,7 @@ static void spring_impulse(const struct local_global *self, size_t s, const doub
     }
 }
 
-/* the local half: all of the right-hand side */
+/* The local half: the whole right-hand side at x, with 0 for pinned particles. */
 static void fill_rhs(struct local_global *self, const double *x) {
     const struct cs_view *view = self->loop.host->view;
     const size_t n = view->n;

@@ -1,16 +1,33 @@
-/* fixed_step.c - see fixed_step.h. */
+/* fixed_step.c - cuts an advance into equal steps, and steps into parts if they must be
+ * shorter.
+ *
+ * The decisions of one step, in order:
+ * 1. Choose the length of the part: as the part before; twice as long if that is aligned,
+ *    stable and looks admissible; halved until it is not longer than 0.9 of the stability
+ *    limit at the state. After a refusal step 1 is left out, because the state is the same.
+ * 2. More than max_depth halvings: the run fails with the reason of the last refusal.
+ * 3. Take the part. If the host does not admit the displacement, restore the state, halve,
+ *    and go to 2.
+ * 4. Commit the part. If the commit changed the state, the method's history is void.
+ * 5. Continue until all parts are done.
+ *
+ * Times are computed from the begin of the step and of the advance, not summed: the last is
+ * t1 to the bit. */
 #include "fixed_step.h"
 
 #include <math.h>
 #include <string.h>
 
-/* More steps than that in one advance are a wrong dt. */
+/* More steps in one advance mean a wrong dt. */
 #define MOST_STEPS 1e9
-/* A dt that falls short of a whole number of steps by that share was meant to be one. */
+/* A dt that misses a whole number of steps by this fraction was meant to meet it: 1/120 typed
+ * as 0.0083333 misses by 4e-6. */
 #define TYPED 1e-5
 
+/* Halvings of a step before the run fails: parts of 1/65536. Chosen by trial. */
 enum { MOST_CUTS = 16 };
 
+/* try_step of a method whose steps cannot fail by themselves: the host may refuse them. */
 static enum cs_step take(struct fixed_step *self, double t, double h, double *x, double *v,
                          bool *cut) {
     const struct cs_host *host = self->host;
@@ -27,6 +44,7 @@ static enum cs_step take(struct fixed_step *self, double t, double h, double *x,
     return status;
 }
 
+/* The failure of a step that was refused at the shortest length. */
 static enum cs_step fail_at_shortest_part(struct fixed_step *self, double t, double h) {
     return self->host->fail(
         self->host->ctx,
@@ -96,7 +114,8 @@ enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n) {
     return CS_STEP_OK;
 }
 
-/* The longest stable step at a state, in s. */
+/* 0.9 of the longest stable step at a state, in s: the margin of the automatic dt. HUGE_VAL
+ * for a method that did not choose dt by its limit. */
 static double longest_at(const struct fixed_step *self, double t, const double *x,
                          const double *v) {
     double omega, delta;
@@ -106,7 +125,9 @@ static double longest_at(const struct fixed_step *self, double t, const double *
     return 0.9 * self->limit(self, omega, delta);
 }
 
-/* Contact would let the way straight on pass: where it does not, it mostly refuses the step. */
+/* True if the host admits the straight displacement h v, which predicts the step's own: one
+ * that it refuses would mostly be refused afterwards. Many accepted parts in a row earn a try
+ * without this test. Uses saved_state as scratch. */
 static bool is_growth_admissible(const struct fixed_step *self, double t, double h,
                                  const double *x, const double *v) {
     const struct cs_host *host = self->host;
@@ -118,8 +139,8 @@ static bool is_growth_admissible(const struct fixed_step *self, double t, double
     return host->max_step_fraction(host->ctx, t, x, t + h, self->saved_state) >= 1;
 }
 
-/* How long a part to take from a state on: as the one before, twice as long where that may be
- * tried, and no longer than is stable. */
+/* Chooses the length of the next part, step 1 of the list above. Stops one halving past
+ * max_depth, for the caller to fail. */
 static void choose_cuts(struct fixed_step *self, double t, double h, const double *x,
                         const double *v) {
     const double longest = longest_at(self, t, x, v);
@@ -132,7 +153,8 @@ static void choose_cuts(struct fixed_step *self, double t, double h, const doubl
         step_subdivision_refuse(cuts);
 }
 
-/* One step of length h from t, whole or in parts; it ends at `end`. */
+/* One step of length h from t, whole or in parts. It ends at `end`, which is t + h up to
+ * rounding. */
 static enum cs_step take_step_in_parts(struct fixed_step *self, double t, double h, double end,
                                        double *x, double *v) {
     const struct cs_host *host = self->host;

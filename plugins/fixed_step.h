@@ -3,11 +3,14 @@
  * A method's own struct starts with struct fixed_step and gives it the step. The span of an
  * advance is cut into the fewest equal steps that are not longer than dt.
  *
- * In scenes with contact by force (fixed_step_guard) a step may be cut (step_subdivision.h):
- * where it would pass over contact that it cannot see (host->max_share), or where a method that
- * chose dt by its stability limit has a smaller limit in contact (host->rate). Each part is
- * committed by itself.
- */
+ * In scenes with contact by force (fixed_step_guard) a step may be cut into parts
+ * (step_subdivision.h) for two reasons:
+ * 1. It would pass over contact that it cannot see, or through a surface
+ *    (host->max_step_fraction).
+ * 2. The method chose dt by its stability limit, which is shorter in contact
+ *    (host->bounds_at).
+ *
+ * Each part is committed by itself. */
 #ifndef FIXED_STEP_H
 #define FIXED_STEP_H
 
@@ -15,49 +18,56 @@
 
 struct fixed_step;
 
-/* from (x, v) at t to t + h, without the commit */
+/* Steps from (x, v) at t to t + h, in place, without the commit. */
 typedef enum cs_step fixed_step_callback(struct fixed_step *self, double t, double h, double *x,
                                          double *v);
-/* the same; *cut: the step was not taken, x and v are as they were, it has to be shorter */
+/* The same for a step that may be refused. *cut: it was refused, x and v are unchanged, and
+ * it must be shorter. */
 typedef enum cs_step fixed_step_try_callback(struct fixed_step *self, double t, double h,
                                              double *x, double *v, bool *cut);
 
+/* The loop of one method; made by fixed_step_of. */
 struct fixed_step {
-    const struct cs_host *host;
-    double dt;         /* longest step in s; HUGE_VAL: one step an advance */
-    bool history_void; /* the state was moved from outside: what the method remembers is void */
-    bool noted;        /* that dt was shortened */
-    bool dt_automatic; /* dt was chosen here, not asked for */
+    const struct cs_host *host; /* borrowed */
+    double dt;                  /* longest step in s; HUGE_VAL: one step per advance */
+    bool history_void; /* the state was changed from outside: the method's history is void */
+    bool noted;        /* the report says already that dt was reduced */
+    bool dt_automatic; /* dt was chosen here, not by the user */
     fixed_step_callback *step;
 
     struct step_subdivision subdivision;
-    uint64_t rejected;                 /* steps that were worked out and thrown away */
+    uint64_t rejected;                 /* steps that were computed and then refused */
     fixed_step_try_callback *try_step; /* takes a step, or refuses it */
-    /* says why a step cannot be cut any more, for host->fail */
+    /* fails by host->fail, with the reason why a part of length h was refused */
     enum cs_step (*report_failure)(struct fixed_step *self, double t, double h);
-    uint32_t max_depth; /* a step has 2^most_cuts parts at most */
+    uint32_t max_depth; /* a step has 2^max_depth parts at most */
 
     /* only in scenes with contact by force, see fixed_step_guard */
-    double *saved_state; /* (6n) the state before a step; NULL: none is judged */
-    double (*limit)(const struct fixed_step *self, double omega, double delta); /* s, or NULL */
+    double *saved_state; /* (6n) the state before a step; NULL: no step is judged */
+    double (*limit)(const struct fixed_step *self, double omega,
+                    double delta); /* s; NULL: none */
 };
 
-/* dt as options have it: 0 is one step an advance. */
+/* The loop of a method with step length dt in s, as options have it: 0 means one step per
+ * advance. */
 struct fixed_step fixed_step_of(const struct cs_host *host, double dt,
                                 fixed_step_callback *step);
 
-/* Lets steps be judged where the scene has contact by force; [create]. limit: the method's
- * largest stable step where it chose dt by it, else NULL. */
+/* Makes steps subject to host->max_step_fraction, if the host has it; [create]. limit: the
+ * method's largest stable step in s for bounds omega and delta, if it chose dt by that; else
+ * NULL. CS_STEP_FAIL if out of memory. */
 enum cs_step fixed_step_guard(struct fixed_step *self,
                               double (*limit)(const struct fixed_step *, double, double));
 
-/* Into how many equal steps a span is cut; tells once where that shortens dt. */
+/* Sets *n to the number of equal steps of a span in s. Notes once in the report if that
+ * reduces dt. Fails if there are more than 1e9. */
 enum cs_step fixed_step_count(struct fixed_step *self, double span, double *n);
 
+/* Calls of the descriptor. */
 enum cs_step fixed_step_restart(void *self, double t, const double *x, const double *v);
 enum cs_step fixed_step_advance(void *self, double t0, double t1, double *x, double *v);
 void fixed_step_stats(const void *self, struct cs_stats *out);
-/* What the loop remembers, for save and load. */
+/* save and load of the loop: what survives from one advance to the next. */
 enum cs_step fixed_step_archive(void *self, const struct cs_archive *archive);
 
 #endif

@@ -1,4 +1,4 @@
-/* Gauss's collocation methods of order 4, 6 and 8, for results of many digits.
+/* gauss.c - Gauss's collocation methods of order 4, 6 and 8, for results of many digits.
  *
  * For y = (x, v), y' = F(t, y), with s stages at Gauss's nodes c_i in (0, 1):
  *   y_i = y + h sum_j a_ij F(t + c_j h, y_j),   y' = y + h sum_j b_j F(t + c_j h, y_j)
@@ -18,8 +18,8 @@
 #include <math.h>
 #include <string.h>
 
-/* How far below the bound on rounding the stages go: steps are many, and what is left adds up.
- */
+/* The stages are converged to this fraction of the rounding bound, because the remaining
+ * errors accumulate over many steps. */
 #define NOISE_SHARE 0.0625
 
 struct gauss_options {
@@ -64,7 +64,8 @@ static void combine(const struct method *self, const double *y, double h, const 
         host->vector->linear_sum(n3, 1, z, h * a[j], k[j], z);
 }
 
-/* Stages for the first sweep: the accelerations of the step before, carried on, or none. */
+/* Stages for the first sweep: accelerations extrapolated from the polynomial of the last
+ * step, or 0 without history. */
 static void predict_stages(struct method *self, double h, const double *v) {
     const size_t n3 = 3 * (size_t)self->base.base.fixed.host->view->n, s = self->table.stages;
     const bool fresh = step_halving_is_fresh(&self->base.base, h);
@@ -80,8 +81,9 @@ static void predict_stages(struct method *self, double h, const double *v) {
         combine(self, v, h, self->table.a[i], k, self->v.now[i]);
 }
 
-/* What of stage i is known: y, the stages as they stand, and for those before it, which are
- * new, what L leaves of their change. */
+/* The known terms of stage i, with a_ij on the stages as they are. Those before i are new
+ * already: their change since the last sweep is corrected by l_ij - a_ij, so that it counts
+ * with l_ij. */
 static void set_known_terms(const struct method *self, size_t i, double h, const double *y,
                             const struct slopes *slopes, double *known) {
     const struct collocation *table = &self->table;
@@ -104,11 +106,13 @@ static double mass_norm_squared(const struct cs_view *view, const double *z) {
     return sum;
 }
 
-/* What a sweep came to, in sqrt(J): change and impulse of the stages, and their rounding. */
+/* The result of a sweep in sqrt(J), the largest over the stages: change and impulse, and the
+ * rounding floor. */
 struct sweep {
     double change, impulse, noise;
 };
 
+/* Stores the solution u of stage i: velocity, acceleration (u - ub)/s, and their changes. */
 static void renew(struct method *self, size_t i, double h, struct sweep *sweep) {
     const struct cs_host *host = self->base.base.fixed.host;
     const size_t n3 = 3 * (size_t)host->view->n;
@@ -125,6 +129,7 @@ static void renew(struct method *self, size_t i, double h, struct sweep *sweep) 
         fmax(sweep->impulse, h * sqrt(mass_norm_squared(host->view, self->k.now[i])));
 }
 
+/* One sweep over the stages; *accepted is false if a stage did not converge. */
 static enum cs_step sweep_once(struct method *self, const struct way *way, struct sweep *sweep,
                                bool *accepted) {
     struct newton *newton = &self->base.newton;

@@ -1,4 +1,4 @@
-/* Implicit Euler methods that solve one linear system a step.
+/* implicit.c - implicit Euler methods that solve one linear system per step.
  *
  * With K = df/dx, D = df/dv of CS_PART_LINEARISED at (x, v), and step h:
  *
@@ -64,6 +64,7 @@ struct block {
     double *kxx, *dvv; /* (6,n) in N/m and N s/m, one after the other */
 };
 
+/* An array of some doubles per particle; NULL if out of memory. */
 static void *take(const struct cs_host *host, size_t doubles_a_particle) {
     return host->alloc(host->ctx, doubles_a_particle * sizeof(double) * host->view->n);
 }
@@ -85,6 +86,7 @@ static void start_solve(struct linearised *self, double h) {
             self->dv[c * n + i] = falls ? h * self->external[c * n + i] * view->inv_mass[i] : 0;
 }
 
+/* v += dv, x += h v with the new v. */
 CS_CLONES static void move(size_t n, double h, const double *dv, double *x, double *v) {
     for (size_t i = 0; i < 3 * n; i++) {
         v[i] += dv[i];
@@ -288,7 +290,8 @@ static const struct cs_integrator implicit_linearised = {
     .load = archive_linearised,
 };
 
-/* h K_ii v is a drag that a falling or sliding sheet feels, and no pair of particles shares */
+/* h K_ii v drags a falling or sliding sheet as a whole: it is not internal to a pair of
+ * particles */
 static const char *const false_drag[] = {"free-fall", "translation", "momentum", NULL};
 
 static const struct cs_integrator implicit_block = {

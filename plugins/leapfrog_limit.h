@@ -5,8 +5,9 @@
 #include <clothsim/integrator.h>
 #include <math.h>
 
-/* Root h of h^2 w^2 + q r h = s with the frequency w = omega and the damping rate r = 2 delta;
- * HUGE_VAL where nothing limits the step. Symplectic Euler: q = 2, s = 4. */
+/* The positive root h of h^2 w^2 + q r h = s, with the frequency w = omega and the damping
+ * rate r = 2 delta; HUGE_VAL if both are 0. Symplectic Euler has q = 2, s = 4. The form 2 s /
+ * (q r + sqrt(...)) has no cancellation when damping dominates. */
 static inline double leapfrog_limit(double omega, double delta, double q, double s) {
     const double w = omega, qr = q * 2 * delta;
     return 2 * s / (qr + sqrt(qr * qr + 4 * s * w * w));

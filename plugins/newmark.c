@@ -1,15 +1,16 @@
-/* Newmark's family: average acceleration, HHT, generalised-alpha.
+/* newmark.c - Newmark's family: average acceleration, HHT, generalised-alpha.
  *
  *   M ((1 - am) a' + am a) = f(t + (1 - af) h, (1 - af) x' + af x, (1 - af) v' + af v)
  *   x' = x + h v + h^2 ((1/2 - beta) a + beta a'),   v' = v + h ((1 - gamma) a + gamma a')
- * of order 2 where gamma = 1/2 - am + af. By r = rho_inf, the share that the fastest modes keep
- * of their amplitude in a step:
+ * of order 2 where gamma = 1/2 - am + af. By r = rho_inf, the fraction of their amplitude
+ * that the fastest modes keep in a step:
  *   newmark            am = af = 0: beta = 1/4, gamma = 1/2, nothing is damped (Newmark 1959)
  *   hht                am = 0, af = (1 - r)/(1 + r), r >= 1/2 (Hilber, Hughes, Taylor 1977)
  *   generalised-alpha  am = (2 r - 1)/(r + 1), af = r/(r + 1) (Chung, Hulbert 1993)
  * with gamma as above and beta = (1/2 + gamma)^2 / 4. With v' as the unknown,
  *   a' = (v' - v)/(gamma h) - (1 - gamma)/gamma a
- * a is kept from step to step, and found anew as M^-1 f where the state was moved from outside.
+ * a is stored from step to step, and computed again as M^-1 f after a change of the state from
+ * outside.
  */
 #include "newton_methods.h"
 

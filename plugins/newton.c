@@ -1,17 +1,28 @@
-/* Newton's method with a line search for the equation of one implicit stage; formulas and
- * sources are in newton.h. */
+/* newton.c - Newton's method with a line search for the equation of one implicit stage;
+ * formulas and sources are in newton.h.
+ *
+ * One iteration, in order:
+ * 1. Converged if |r| <= goal = rtol impulse + residual_floor times the rounding floor. Also
+ *    if |r| is below rtol impulse + floor and the last iteration gained less than a factor 2.
+ * 2. The linear solve gets the tolerance 1e-3, or a looser one that suffices: half of goal /
+ *    |r|. The impulse, and with it the goal, moves with u.
+ * 3. du from A du = -r. A is clamped while |r| >= 0.1 impulse, else exact.
+ * 4. The line search accepts a length, or the iteration ends. */
 #include "newton.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* Each linear solve gains that much, until the last, which need not gain more than is asked. */
+/* Relative residual of the linear solves; the last one may be looser. Chosen by trial. */
 #define LINEAR_RTOL 1e-3
 
-/* Below this residual, relative to the impulse, the exact matrix is taken. */
+/* Below this residual, relative to the impulse, A is the exact matrix: near the solution it
+ * converges quadratically, and far from it it may not point downhill. Chosen by trial. */
 #define NEAR 0.1
 
+/* Halvings of a line search, and the fraction of the promised decrease that it asks for:
+ * small, so that nearly any decrease is accepted. */
 #define LINE_HALVINGS 12
 #define LINE_DECREASE 1e-4
 
@@ -30,6 +41,7 @@ enum cs_step newton_init(struct newton *newton, const struct cs_host *host, doub
     return CS_STEP_OK;
 }
 
+/* X = xb + gx u, V = vb + gv u. */
 static void set_positions(struct newton *newton, const struct newton_stage *stage,
                           const double *u) {
     const size_t n3 = 3 * (size_t)newton->host->view->n;
@@ -38,7 +50,7 @@ static void set_positions(struct newton *newton, const struct newton_stage *stag
     vector->linear_sum(n3, 1, stage->vb ? stage->vb : newton->zeros, stage->gv, u, newton->v);
 }
 
-/* X, V, r and the norms of u */
+/* Sets X, V, r, |r| and the impulse for u. Norms weight with 1/m: pinned particles count 0. */
 static void evaluate(struct newton *newton, const struct newton_stage *stage, const double *u) {
     const struct cs_host *host = newton->host;
     const struct cs_view *view = host->view;
@@ -73,14 +85,14 @@ double newton_rounding_floor(const struct newton *newton, const struct newton_st
            (stage->s * omega * omega * length + (1 + 2 * stage->s * stage->gv * delta) * speed);
 }
 
-/* du from A du = -r. A free fall has M du = -r, which is the better start of the linear solver
- * than 0 where it is a good one: no tolerance may spoil it. */
+/* du from A du = -r. In free fall M du = -r: this du starts the linear solver, instead of 0,
+ * if it halves |r|. No tolerance can spoil a free fall then. */
 static enum cs_step find_direction(struct newton *newton, const struct newton_stage *stage,
                                    double rtol) {
     const struct cs_host *host = newton->host;
     const struct cs_view *view = host->view;
     const size_t n = view->n;
-    /* far from the solution only the clamped matrix surely leads downhill */
+    /* far from the solution only the clamped matrix is sure to give a direction downhill */
     const uint32_t flags =
         newton->norm < NEAR * newton->impulse ? 0 : CS_SOLVE_PSD | CS_SOLVE_BOUND;
     enum cs_step status =
@@ -94,7 +106,7 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
             newton->rhs[c * n + i] = -newton->r[c * n + i];
             newton->du[c * n + i] = view->inv_mass[i] * newton->rhs[c * n + i];
         }
-    /* the free fall is kept if it halves the residual */
+    /* free fall stays the start if it halves the residual */
     host->matrix_product(host->ctx, newton->du, newton->f);
     host->vector->linear_sum(3 * n, 1, newton->rhs, -1, newton->f, newton->f);
     const double left = host->vector->dot(3 * n, newton->f, newton->f);
@@ -103,7 +115,7 @@ static enum cs_step find_direction(struct newton *newton, const struct newton_st
     return host->solve(host->ctx, newton->rhs, rtol, newton->du);
 }
 
-/* P(u) + s w.(u - u0), and X, V of u */
+/* P(u) + s w.(u - u0): inertia and (s/gx) times the potential energy at X. Sets X and V. */
 static double potential(struct newton *newton, const struct newton_stage *stage,
                         const double *u) {
     const struct cs_host *host = newton->host;
@@ -119,12 +131,13 @@ static double potential(struct newton *newton, const struct newton_stage *stage,
            stage->s / stage->gx * host->energy(host->ctx, stage->t, newton->x, newton->zeros);
 }
 
+/* True if steps must not carry surfaces through each other, or pass over contact. */
 static bool is_limited(const struct newton *newton) {
     return CS_HAS(newton->host, max_step_fraction) && newton->host->max_step_fraction;
 }
 
-/* Where steps must not carry surfaces through each other: a start u from which nothing has
- * crossed on the way from xb. What paths move stays as it is. */
+/* Shortens the start u until nothing crosses on the way from xb to xb + gx u. Particles on
+ * paths keep their velocity. */
 static void shorten_start(struct newton *newton, const struct newton_stage *stage, double *u) {
     const struct cs_host *host = newton->host;
     const size_t n = host->view->n;
@@ -137,7 +150,7 @@ static void shorten_start(struct newton *newton, const struct newton_stage *stag
             u[c * n + i] *= host->view->inv_mass[i] > 0 ? share : 1;
 }
 
-/* The longest a of u0 + a du that carries no surface through another. */
+/* The largest a in 0..1 for which u0 + a du carries no surface through another. */
 static double longest_move(struct newton *newton, const struct newton_stage *stage) {
     const struct cs_host *host = newton->host;
     const size_t n3 = 3 * (size_t)host->view->n;
@@ -151,7 +164,9 @@ static double longest_move(struct newton *newton, const struct newton_stage *sta
     return share;
 }
 
-/* Goes from u along du; false where no length is good. */
+/* Line search from u along du: accepts the first a that lowers |r| by 1e-4 a, or P by 1e-4 of
+ * what its slope promises. P is evaluated only if |r| fails at first: it costs an energy and
+ * a force more. Returns false if no length is accepted; u is then the last one tried. */
 static bool search(struct newton *newton, const struct newton_stage *stage, double *u) {
     const struct cs_host *host = newton->host;
     const size_t n3 = 3 * (size_t)host->view->n;
@@ -166,7 +181,7 @@ static bool search(struct newton *newton, const struct newton_stage *stage, doub
         if (newton->norm <= (1 - LINE_DECREASE * a) * norm)
             return true;
         if (isnan(start)) {
-            // only now, for most searches end above
+            // only now: most searches end above
             start = potential(newton, stage, newton->u_start);
             host->force(host->ctx, stage->t, newton->x, newton->v, CS_PART_WITHOUT_ENERGY,
                         newton->f);
@@ -189,14 +204,14 @@ enum cs_step newton_solve(struct newton *newton, const struct newton_stage *stag
     for (int64_t k = 0; isfinite(newton->norm); k++) {
         const double noise = newton_rounding_floor(newton, stage, u), rtol = newton->rtol;
         const double goal = rtol * newton->impulse + newton->residual_floor * noise;
-        // below the noise an iteration that gains little is the last
+        // below the rounding floor an iteration that gains little is the last
         const bool ends =
             newton->norm <= rtol * newton->impulse + noise && newton->norm > before / 2;
         *converged = newton->norm <= goal || ends;
         if (*converged || k == newton->iterations)
             break;
         before = newton->norm;
-        // the goal moves with the impulse: half of it is safe to aim at
+        // the goal moves with the impulse: aim at half of it
         const double enough = 0.5 * goal / newton->norm;
         const enum cs_step status =
             find_direction(newton, stage, enough > LINEAR_RTOL ? enough : LINEAR_RTOL);

@@ -9,9 +9,9 @@
  * a tenth of the impulse it is the exact one, unless that is indefinite, which gives Newton's
  * convergence back.
  *
- * Line search: u + a du with a = 1, 1/2, ..., or from the share that host->max_share allows of
- * the move to X(u + du), is taken where |r| falls, or where the incremental
- * potential (Martin et al. 2011; Gast et al. 2015)
+ * Line search: a starts at the fraction of the displacement to X(u + du) that
+ * host->max_step_fraction allows, 1 without limits, and is halved until |r| falls at u + a du,
+ * or until the incremental potential (Martin et al. 2011; Gast et al. 2015)
  *   P(u) = (u - ub)^T M (u - ub) / 2 + (s/gx) (potential energy)(X) - s w.(u - u0)
  * falls by 1e-4 of what its slope r.du promises. Forces without energy, such as dampers, drag
  * and wind, have no potential: their force w is frozen at the start u0 of the search, where P
@@ -36,18 +36,22 @@
         CS_OPTION(struct_, iterations, "", 30, 1, 1000,                                        \
                   "most Newton iterations; then the step is halved, up to 8 times")
 
+/* The equation of one stage, in the symbols above; the vectors are borrowed. */
 struct newton_stage {
+    /* time of the force in s; its factor s in s; dX/du in s; dV/du */
     double t, s, gx, gv;
     const double *xb, *ub; /* (3,n) in m and m/s */
     const double *vb;      /* (3,n) in m/s; NULL: 0 */
 };
 
+/* The solver of a method: its settings, scratch, and the result of the last evaluation. */
 struct newton {
     const struct cs_host *host;
     double rtol;
     int64_t iterations;
-    /* Share of newton_noise that a residual is brought below, 1 after newton_init: for methods
-     * of many digits. Where rounding ends the search before, newton_noise itself is enough. */
+    /* Fraction of newton_rounding_floor that a residual must fall below, 1 after newton_init:
+     * smaller for methods of many digits. If rounding ends the iteration before, the floor
+     * itself is enough. */
     double residual_floor;
     double *x, *v;              /* (3,n): X and V of the last u */
     double *r, *f;              /* (3,n) */
@@ -60,23 +64,24 @@ struct newton {
     uint64_t converged;         /* iterations so far */
 };
 
-/* Takes the memory; [create]. */
+/* Fills *newton and allocates its arrays; [create]. */
 enum cs_step newton_init(struct newton *newton, const struct cs_host *host, double rtol,
                          int64_t iterations);
 
-/* Solves a stage from the start u (3,n), in place; X and V of the solution are left in
- * newton->x and newton->v. *converged is false where the iterations or the line search came to
- * their end; u is then of no use. */
+/* Solves a stage from the start u (3,n), in place; newton->x and newton->v then hold X and V
+ * of the solution. *converged is false if the iterations or the line search ended before; u
+ * is useless then. */
 typedef enum cs_step newton_solver(struct newton *newton, const struct newton_stage *stage,
                                    double *u, bool *converged);
 newton_solver newton_solve;
 
-/* One Newton step of full length and no test but for numbers that are finite; newton->rtol is
- * the relative residual of its linear solve. */
+/* One Newton step of full length, tested only for finite numbers. newton->rtol is the
+ * relative residual of its linear solve. */
 newton_solver newton_step;
 
-/* |r| in sqrt(J) that rounding causes: of x, times a stiffness of m omega^2, and of u. X and V
- * are those of the last stage that was solved. */
+/* |r| in sqrt(J) that rounding causes, with X and V of the stage that was solved last: 4 eps
+ * sqrt(m) (s omega^2 max|X| + (1 + 2 s gv delta) max|u|). The first term is the rounding of x
+ * times a stiffness of m omega^2, the second that of u in inertia and dampers. */
 double newton_rounding_floor(const struct newton *newton, const struct newton_stage *stage,
                              const double *u);
 

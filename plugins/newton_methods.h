@@ -1,5 +1,5 @@
-/* newton_methods.h - the methods of the module `newton`, and the one step that two of them
- * share. */
+/* newton_methods.h - the methods of the module `newton`, and the SDIRK2 step that sdirk2 and
+ * bdf2 use. */
 #ifndef NEWTON_METHODS_H
 #define NEWTON_METHODS_H
 

@@ -1,4 +1,4 @@
-/* Rosenbrock method of two stages with one matrix: two linear solves a step.
+/* ros2.c - Rosenbrock method of two stages with one matrix: two linear solves per step.
  *
  * For y = (x, v), y' = F(t, y), J about dF/dy at (t, y), g = (1 - 1/sqrt 2) h:
  *   (I - g J) k1 = F(t, y)
@@ -10,14 +10,14 @@
  * and g^2 K p = M p - g D p - A p, so that it is the K of A: the exact one of a nearly closed
  * spring would be huge here and clamped there.
  *
- * A step that turns a spring by more than half its length, in a stage or in all, is refused and
- * halved: the linearisation knows nothing of a rotation of a radian. So is one whose stage
- * passes over contact.
+ * A step is refused and halved if it moves the ends of a spring against each other by more than
+ * half its length, in a stage or as a whole: the linearisation has no relation to large
+ * rotations. So is one whose stage passes over contact.
  *
- * For rates far above 1/h the first stage multiplies by 1 - h/g = -2.4. The second takes that
- * back for what J holds. The slope of friction by its load is not in J: friction under the
- * loads of such a place made energy. Where friction acts and a step does not resolve all rates,
- * g is (1 + 1/sqrt 2) h, of the same order and L-stable too, with 1 - h/g = 0.41.
+ * For rates far above 1/h the first stage multiplies by 1 - h/g = -2.4. The second undoes that
+ * for the forces in J. The slope of friction by its load is not in J: friction under the
+ * loads of such a state created energy. Where friction acts and a step does not resolve all
+ * rates, g is (1 + 1/sqrt 2) h, of the same order and L-stable too, with 1 - h/g = 0.41.
  */
 #include "newton_methods.h"
 
@@ -66,7 +66,8 @@ static enum cs_step solve(struct method *self, double *kv) {
     return host->solve(host->ctx, self->b, self->rtol, kv);
 }
 
-/* Friction or damping by contact act at a state, and h is not below all rates there. */
+/* True if friction or damping by contact acts at a state, and h omega > 1 there: the step
+ * does not resolve all rates. */
 static bool has_unresolved_friction(struct method *self, double t, double h, const double *x,
                                     const double *v) {
     const struct cs_host *host = self->base.fixed.host;
@@ -85,9 +86,11 @@ static bool has_unresolved_friction(struct method *self, double t, double h, con
 struct span {
     double t, h, g;
     bool narrow; /* the smaller g: not to be used where friction is not resolved */
-    bool rubs;   /* so it was, and the step was not taken */
+    bool rubs;   /* friction was not resolved, and the step was not taken */
 };
 
+/* Takes a step with span->g. *accepted stays false if the step is refused, or if the smaller g
+ * meets unresolved friction (span->rubs); x and v are unchanged then. */
 static enum cs_step take(struct method *self, struct span *span, double *x, double *v,
                          bool *accepted) {
     struct step_halving *base = &self->base;
@@ -143,6 +146,8 @@ static enum cs_step take(struct method *self, struct span *span, double *x, doub
     return CS_STEP_OK;
 }
 
+/* The smaller g first, unless friction acts unresolved at the start; else, or if the first
+ * stage meets it, the larger g. */
 static enum cs_step step(struct step_halving *base, double t, double h, double *x, double *v,
                          bool *accepted) {
     struct method *self = (struct method *)base;

@@ -1,4 +1,4 @@
-/* Bodies that are drawn back to their shape instead of held by springs.
+/* shape_matching.c - bodies that are drawn back to their shape instead of held by springs.
  *
  * A step of length h, with particles of mass m, their positions q at time 0 and all forces f,
  * those of other bodies' springs too:
@@ -11,9 +11,9 @@
  *
  * (Mueller et al. 2005, eq. 3 to 12, in the order of the soft-body thesis, sec. 2: the goals
  * are those of the positions after the free step.) That order is an implicit Euler step of
- * springs between particles and their goals, 1/(1 + (k/m) h^2) = 1 - alpha; so that alpha of a
- * step alpha_step becomes alpha_h = alpha h^2 / ((1 - alpha) alpha_step^2 + alpha h^2) in one
- * of h, with the same stiffness k = m alpha/((1 - alpha) alpha_step^2).
+ * springs between particles and their goals, 1/(1 + (k/m) h^2) = 1 - alpha. The alpha of a step
+ * alpha_step therefore becomes alpha_h = alpha h^2 / ((1 - alpha) alpha_step^2 + alpha h^2) in
+ * one of h, with the same stiffness k = m alpha/((1 - alpha) alpha_step^2).
  *
  * A particle in several clusters has w = m/their number in each and takes the mean of its
  * d. Then d has no momentum and, about x, no angular momentum: A_pq R^T is symmetric. A pinned
@@ -50,7 +50,8 @@ static const struct cs_option rows[] = {
         "= A_pq or the linear transformation A: to show what that does, no use otherwise"),
 };
 
-/* what the positions at time 0 and the pins make of a cluster */
+/* The constants of a cluster, from the positions at time 0 and the pins, and its last
+ * rotation. */
 struct cluster {
     double weight;     /* kg */
     double centre[3];  /* m, of the positions at time 0 */
@@ -69,17 +70,18 @@ struct shape {
     struct cluster *clusters;
 };
 
+/* Component c of the particle of a cluster item. */
 static double coordinate(const struct cs_view *view, const double *x, size_t c, uint32_t item) {
     return x[c * view->n + view->cluster_items[item]];
 }
 
-/* weighted mean of the positions x of a cluster */
+/* The weighted mean of the positions x of a cluster. */
 static void find_centre(const struct shape *self, uint32_t k, const double *x,
                         double centre[3]) {
     const struct cs_view *view = self->loop.host->view;
     const uint32_t begin = view->cluster_begin[k], end = view->cluster_begin[k + 1];
     for (size_t c = 0; c < 3; c++) {
-        // about a particle of its own, so that a far place costs no figures
+        // relative to its first particle: large coordinates do not cancel
         const double origin = coordinate(view, x, c, begin);
         double sum = 0;
         for (uint32_t item = begin; item < end; item++)
@@ -88,7 +90,8 @@ static void find_centre(const struct shape *self, uint32_t k, const double *x,
     }
 }
 
-/* sum of w (x - centre) (q - q_cm)^T */
+/* moments = sum of w (x - centre) (q - q_cm)^T: A_pq for positions x, A_qq for those at time
+ * 0. */
 static void find_moments(const struct shape *self, uint32_t k, const double *x,
                          const double centre[3], double moments[9]) {
     const struct cs_view *view = self->loop.host->view;
@@ -103,14 +106,16 @@ static void find_moments(const struct shape *self, uint32_t k, const double *x,
         }
 }
 
-/* b (b^T b)^-1 instead of b (b^T b)^-1/2: no rotation unless b is one */
+/* The options other than polar: b (b^T b)^-1 instead of b (b^T b)^-1/2, which is no rotation
+ * unless b is one. */
 static void leave_out_root(const struct shape *self, const double a_pq[9], const double a[9],
                            double r[9]) {
     if (self->rotation != POLAR)
         shape_inverse_transposed(self->rotation == UNROOTED_PQ ? a_pq : a, r);
 }
 
-/* t takes q - q_cm to the goal less x_cm; turn is that of the cluster, which follows */
+/* t maps q - q_cm to goal - x_cm: beta A/cbrt(det A) + (1 - beta) R, with beta reduced below
+ * an eighth of the volume. turn: the cluster's last rotation, which becomes the new one. */
 static void find_transformation(const struct shape *self, uint32_t k, const double a_pq[9],
                                 double turn[4], double t[9]) {
     const struct cluster *cluster = self->clusters + k;
@@ -155,9 +160,9 @@ static void add_goal_displacements(const struct shape *self, uint32_t k, double 
     }
 }
 
-/* alpha of a step of h, for the stiffness that the cluster's alpha means in its own step, or,
- * where it holds for whatever step there is, in one before it was cut: parts of a step that
- * went as far as the whole would never get by contact */
+/* alpha of a step of h, for the stiffness that the cluster's alpha means in cluster_step. If
+ * alpha holds for any step, the reference is the step before it was cut: parts that moved as
+ * far as the whole step would never pass contact. */
 static double alpha_of(const struct shape *self, uint32_t k, double h) {
     const struct cs_view *view = self->loop.host->view;
     const double alpha = view->cluster_alpha[k], own = view->cluster_step[k];
@@ -169,6 +174,8 @@ static double alpha_of(const struct shape *self, uint32_t k, double h) {
     return stiff > 0 ? stiff / (soft + stiff) : 0;
 }
 
+/* Moves the particles that a cluster holds towards their goals, and their velocities with
+ * them; pinned particles stay. */
 static void match(struct shape *self, double h, double *x, double *v) {
     const struct cs_view *view = self->loop.host->view;
     double *d = self->f;
@@ -197,7 +204,8 @@ static enum cs_step step(struct fixed_step *loop, double t, double h, double *x,
     return CS_STEP_OK;
 }
 
-/* the weights of a cluster's items, and their sum */
+/* Sets the weights of a cluster's items and their sum. Pinned ones together weigh HEAVY times
+ * the free ones. */
 static void set_weights(struct shape *self, uint32_t k) {
     const struct cs_view *view = self->loop.host->view;
     const uint32_t begin = view->cluster_begin[k], end = view->cluster_begin[k + 1];
@@ -214,8 +222,8 @@ static void set_weights(struct shape *self, uint32_t k) {
     self->clusters[k].weight = free + factor * pinned;
 }
 
-/* The pins may be others now. The last rotations are kept: positions alone do not say from
- * which side a body that has become a line got there. */
+/* Recomputes the constants of all clusters, as the pins may have changed. The last rotations
+ * stay: positions alone do not show from which side a body became a line. */
 static enum cs_step restart(void *object, double t, const double *x, const double *v) {
     struct shape *self = object;
     const struct cs_view *view = self->loop.host->view;
@@ -231,7 +239,8 @@ static enum cs_step restart(void *object, double t, const double *x, const doubl
     return fixed_step_restart(self, t, x, v);
 }
 
-/* where alpha = 1 would put the particles of x; the rotations of the run stay as they are */
+/* g = the positions that alpha = 1 would give the particles at x. Works on copies of the
+ * rotations: the run does not change. */
 static void goals(const void *object, const double *x, double *g) {
     const struct shape *self = object;
     const struct cs_view *view = self->loop.host->view;
@@ -245,7 +254,7 @@ static void goals(const void *object, const double *x, double *g) {
         g[i] += x[i];
 }
 
-/* of symplectic Euler, which moves what no shape holds */
+/* The stability limit of symplectic Euler, which moves particles under springs and drag. */
 static double limit_of(const struct fixed_step *loop, double omega, double delta) {
     (void)loop;
     return leapfrog_limit(omega, delta, 2, 4);
@@ -278,7 +287,7 @@ static enum cs_step create(const struct cs_host *host, const void *options, void
         !(self->weight = host->alloc(host->ctx, sizeof(double) * n_items)) ||
         !(self->clusters = host->alloc(host->ctx, sizeof(struct cluster) * view->n_clusters)))
         return CS_STEP_FAIL;
-    /* counted, then inverted: its share in each of its clusters */
+    /* the number of its clusters first, then 1 over it: its weight in each of them */
     for (uint32_t item = 0; item < n_items; item++)
         self->held[view->cluster_items[item]]++;
     for (size_t i = 0; i < view->n; i++)

@@ -1,15 +1,24 @@
-/* The rotation nearest to a 3x3 matrix, by Horn's quaternion (Horn 1987, sec. 4) and Jacobi's
- * eigenvalue method; in + - * / and sqrt alone. */
+/* shape_rotation.c - the rotation nearest to a 3x3 matrix, by Horn's quaternion (Horn 1987,
+ * sec. 4) and Jacobi's eigenvalue method; in + - * / and sqrt alone.
+ *
+ * trace(r^T a), which the nearest rotation r maximises, is the quadratic form q^T m q of the
+ * unit quaternion q of r, with the symmetric 4x4 matrix m of horn_matrix. Its maximum is the
+ * largest eigenvalue of m, at the eigenvector of it. */
 #include "shape_rotation.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+/* Most sweeps of Jacobi's method, and its largest matrix. It converges quadratically; the limit
+ * ends it for NaN too. */
 enum { SWEEPS = 12, LARGEST = 4 };
-#define SAME 1e-12 /* of the size: eigenvalues that near are the same */
-#define FLAT 1e-10 /* of the largest eigenvalue */
+/* Relative to the size: eigenvalues this near count as equal. */
+#define SAME 1e-12
+/* Relative to the largest eigenvalue: a direction below it counts as flat. */
+#define FLAT 1e-10
 
+/* Sum of |a| over the diagonal, or over the rest of a matrix (n,n). */
 static double size_of(int n, const double *a, bool diagonal) {
     double sum = 0;
     for (int i = 0; i < n; i++)
@@ -18,7 +27,7 @@ static double size_of(int n, const double *a, bool diagonal) {
     return sum;
 }
 
-/* columns p and q of m, then rows, turned by the angle of tangent s/c */
+/* Rotate columns p and q of m, or rows, by the angle with cosine c and sine s. */
 static void turn_columns(int n, double *m, int p, int q, double c, double s) {
     for (int i = 0; i < n; i++) {
         const double left = m[n * i + p], right = m[n * i + q];
@@ -34,7 +43,8 @@ static void turn_rows(int n, double *m, int p, int q, double c, double s) {
     }
 }
 
-/* makes a[p][q] zero; the smaller of the two angles that do */
+/* Makes a[p][q] zero by the smaller of the two possible rotations (t = tan, |t| <= 1), and
+ * applies it to the eigenvectors (Golub, Van Loan 2013, sec. 8.5). */
 static void jacobi_rotate(int n, double *a, double *vectors, int p, int q) {
     if (a[n * p + q] == 0)
         return;
@@ -69,7 +79,7 @@ void shape_rotation_of(const double quaternion[4], double r[9]) {
     memcpy(r, turned, sizeof turned);
 }
 
-/* Horn's matrix: its value at a unit quaternion is trace(r^T a) */
+/* Horn's matrix: its quadratic form at a unit quaternion is trace(r^T a). */
 static void horn_matrix(const double a[9], double m[16]) {
     const double trace = a[0] + a[4] + a[8];
     for (int i = 0; i < 3; i++) {
@@ -81,8 +91,8 @@ static void horn_matrix(const double a[9], double m[16]) {
     m[15] = trace;
 }
 
-/* the last quaternion's shadow among those of the largest eigenvalue; one of them where it has
- * none */
+/* last = the normalised projection of the last quaternion on the eigenvectors of the largest
+ * eigenvalue. If it is almost orthogonal to them, one of them. */
 static void choose_eigenvector(const double m[16], const double vectors[16], double same,
                                double last[4]) {
     int best = 0;
@@ -101,7 +111,7 @@ static void choose_eigenvector(const double m[16], const double vectors[16], dou
     }
     for (int i = 0; i < LARGEST; i++)
         squared += shadow[i] * shadow[i];
-    // a turn by nearly half a circle leaves a shadow of roundings
+    // after a rotation by nearly 180 degrees the projection is only rounding
     const double length = sqrt(squared);
     for (int i = 0; i < LARGEST; i++)
         last[i] = length > 1e-6 ? shadow[i] / length : vectors[4 * i + best];
@@ -115,6 +125,7 @@ void shape_rotation(const double a[9], double size, double last[4], double r[9])
     shape_rotation_of(last, r);
 }
 
+/* Cofactor of a[i][j], with its sign from cyclic indices. */
 static double cofactor(const double a[9], int i, int j) {
     const int p = (i + 1) % 3, q = (i + 2) % 3, s = (j + 1) % 3, t = (j + 2) % 3;
     return a[3 * p + s] * a[3 * q + t] - a[3 * p + t] * a[3 * q + s];

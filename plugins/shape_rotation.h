@@ -1,7 +1,6 @@
 /* shape_rotation.h - small matrices for shape matching, in + - * / and sqrt alone.
  *
- * A 3x3 matrix is 9 doubles by rows; a quaternion is x, y, z, w.
- */
+ * A 3x3 matrix is 9 doubles by rows; a quaternion is x, y, z, w. */
 #ifndef SHAPE_ROTATION_H
 #define SHAPE_ROTATION_H
 
@@ -21,18 +20,19 @@ void shape_eigen(int n, double *a, double *vectors);
  * last: the last one in, this one out. size: of an undeformed a, the sum of its eigenvalues. */
 void shape_rotation(const double a[9], double size, double last[4], double r[9]);
 
+/* The rotation matrix of a unit quaternion. */
 void shape_rotation_of(const double quaternion[4], double r[9]);
 
 double shape_determinant(const double a[9]);
 
-/* a b */
+/* out = a b; out must be another matrix. */
 void shape_product(const double a[9], const double b[9], double out[9]);
 
-/* a^-T = a (a^T a)^-1; false where the determinant is 0, and out is as it was */
+/* out = a^-T = a (a^T a)^-1. Returns false if the determinant is 0; out is then unchanged. */
 bool shape_inverse_transposed(const double a[9], double out[9]);
 
-/* Pseudo-inverse of a symmetric a without negative eigenvalues, and the projector on what it
- * takes to 0: a direction in which it is less than 1e-10 of its largest eigenvalue. */
+/* Pseudo-inverse of a symmetric positive semi-definite a, and the projector on its null
+ * space: the directions in which a is less than 1e-10 of its largest eigenvalue. */
 void shape_pseudo_inverse(const double a[9], double inverse[9], double null[9]);
 
 /* Cube root of d > 0 to a few roundings. */

@@ -12,14 +12,14 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define STEP_SHRINK 0.2 /* most that one rejection may shorten a step by */
-#define STEP_GROW   5   /* most that a step may grow by */
+#define STEP_SHRINK 0.2 /* least factor of a step after a rejection */
+#define STEP_GROW   5   /* largest factor of a step after a success */
 #define STEP_SAFETY 0.9
 
 struct step_control {
     double h;               /* s, the next step to try */
     double last_error_root; /* r of the last accepted step of free length; 0: none */
-    bool rejected;          /* the last try was thrown away: the next step may not grow */
+    bool rejected;          /* the last try was rejected: the next step must not grow */
 };
 
 /* e^(1/5) for e in 1e-12..1e12; outside the nearer end is taken. */
@@ -36,7 +36,7 @@ static inline double step_fifth_root(double e) {
  * cut: h was cut to meet a time, so that the step that was planned still holds. */
 static inline bool step_control_judge(struct step_control *control, double h, double e,
                                       bool cut) {
-    // an overflow is no number that a step could be chosen from
+    // an infinite or NaN error gives no length: the step shrinks by STEP_SHRINK
     const double root = e < HUGE_VAL ? step_fifth_root(e) : HUGE_VAL;
     if (!(e <= 1)) {
         const double factor = STEP_SAFETY / root;

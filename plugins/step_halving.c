@@ -1,9 +1,23 @@
-/* step_halving.c - see step_halving.h. */
+/* step_halving.c - tries a step, undoes one that is refused, and names the reason if no part
+ * of it can be taken.
+ *
+ * One part of a step, in order:
+ * 1. The state is saved, if the host can refuse displacements.
+ * 2. The method steps. It refuses by leaving *accepted false, with x and v unchanged.
+ * 3. The host judges the displacement. A fraction below 1 restores the saved state, and voids
+ *    the method's history, which belongs to the undone step.
+ * 4. fixed_step.c halves a refused part, or commits an accepted one.
+ *
+ * The factor of shortening is 1/2 whatever the admissible fraction is: times of parts stay
+ * exact multiples of a power of 1/2, and a part of twice the length can be tried again where
+ * two parts end. */
 #include "step_halving.h"
 
 #include <math.h>
 #include <string.h>
 
+/* Ends the run with the reason of the last refusal: contact, rotation, else Newton's residual.
+ * h: the length in s of the part that was refused. */
 static enum cs_step fail_at_shortest_part(struct fixed_step *loop, double t, double h) {
     const struct step_halving *self = (const struct step_halving *)loop;
     const struct cs_host *host = loop->host;
@@ -24,7 +38,7 @@ static enum cs_step fail_at_shortest_part(struct fixed_step *loop, double t, dou
                       self->newton->rtol);
 }
 
-/* The step, refused also where it passes over contact. */
+/* Takes the method's step, and undoes it if the host does not admit the whole displacement. */
 static enum cs_step take_step(struct step_halving *self, double t, double h, double *x,
                               double *v, bool *accepted) {
     const struct cs_host *host = self->fixed.host;
@@ -38,12 +52,12 @@ static enum cs_step take_step(struct step_halving *self, double t, double h, dou
         memcpy(x, saved, bytes);
         *accepted = false;
         self->refused_by_contact = true;
-        self->fixed.history_void =
-            true; // what the method kept is of the step that was taken back
+        self->fixed.history_void = true; // the method's history is of the step that was undone
     }
     return status;
 }
 
+/* try_step of fixed_step.h: *cut for any refusal. */
 static enum cs_step attempt(struct fixed_step *loop, double t, double h, double *x, double *v,
                             bool *cut) {
     struct step_halving *self = (struct step_halving *)loop;
@@ -105,11 +119,11 @@ enum cs_step step_halving_archive(void *object, const struct cs_archive *archive
 }
 
 bool step_halving_is_fresh(const struct step_halving *self, double h) {
-    // frames of 1/60 s differ in their last bits
+    // the lengths of frames of 1/60 s differ by rounding
     return self->fixed.history_void || fabs(h - self->last_h) > 1e-9 * h;
 }
 
-/* m2, of two particles */
+/* Squared distance in m2 of two particles. */
 static double square_between(const double *x, size_t n, size_t a, size_t b) {
     double squared = 0;
     for (size_t c = 0; c < 3 * n; c += n)
@@ -126,7 +140,7 @@ bool springs_rotated_far(const struct cs_view *view, const double *x0, const dou
             const double d = (x1[c + b] - x1[c + a]) - (x0[c + b] - x0[c + a]);
             squared += d * d;
         }
-        // not >, so that it is true of what is not a number
+        // !(<=) instead of >: true for NaN too
         if (!(squared <= 0.25 * view->length[s] * view->length[s]) &&
             !(squared <= 0.25 * square_between(x0, n, a, b)))
             return true;

@@ -1,28 +1,35 @@
 /* step_halving.h - the loop over steps that may be refused: a refused step is halved.
  *
- * As fixed_step.h, the span of an advance is cut into equal steps of at most dt. A step that
- * its method refuses (Newton does not converge, springs turn too far), or that passes over
- * contact by force (host->max_share), is halved, at most HALVINGS_MAX times; then the run
- * fails.
- */
+ * As in fixed_step.h, the span of an advance is cut into equal steps of at most dt. A step is
+ * refused for one of three reasons:
+ * 1. Newton's iteration does not converge.
+ * 2. A linearised step moves the ends of a spring against each other by more than half its
+ *    length.
+ * 3. It passes over contact by force, or through a surface (host->max_step_fraction < 1).
+ *
+ * It is then halved, at most STEP_HALVINGS_MAX times, in scenes with such limits
+ * STEP_HALVINGS_IN_CONTACT times; then the run fails and says for which reason.
+ * step_subdivision.h decides how long the steps stay short. */
 #ifndef CS_STEP_HALVING_H
 #define CS_STEP_HALVING_H
 
 #include "fixed_step.h"
 #include "newton.h"
 
+/* Halvings of a step before the run fails: to 1/256, in scenes where host->max_step_fraction
+ * can refuse a step to 1/4096. Chosen by trial. */
 #define STEP_HALVINGS_MAX        8
-#define STEP_HALVINGS_IN_CONTACT 12 /* in scenes with contact by force */
+#define STEP_HALVINGS_IN_CONTACT 12
 
 /* A method's own struct starts with this. */
 struct step_halving {
     struct fixed_step fixed;  /* its step is not used */
     struct newton *newton;    /* NULL: the method has none */
     double last_h;            /* length of the last accepted step in s */
-    bool refused_by_contact;  /* the last step was taken back, for it passed over contact */
-    bool refused_by_rotation; /* the last step was refused by springs_turned */
-    /* From (x, v) at t to t + h, without the commit; where *accepted stays false, x and v are
-     * left as they were. */
+    bool refused_by_contact;  /* the last step was undone because it passed over contact */
+    bool refused_by_rotation; /* the last step was refused by springs_rotated_far */
+    /* Steps from (x, v) at t to t + h, without the commit. If *accepted stays false, x and v
+     * are unchanged. */
     enum cs_step (*step)(struct step_halving *self, double t, double h, double *x, double *v,
                          bool *accepted);
 };
@@ -33,33 +40,39 @@ struct newton_method {
     struct newton newton;
 };
 
+/* The type of `step` above. */
 typedef enum cs_step step_halving_callback(struct step_halving *, double, double, double *,
                                            double *, bool *);
 
-/* Memory of a method: a struct of `bytes` that starts with struct halving, or with struct
- * newton_method; NULL: already reported; [create]. */
+/* Allocates a method: a struct of `bytes` that starts with struct step_halving, or with
+ * struct newton_method. Returns NULL if out of memory, which the host has reported; [create].
+ */
 struct step_halving *step_halving_create(const struct cs_host *host, size_t bytes, double dt,
                                          step_halving_callback *step);
 struct newton_method *newton_method_create(const struct cs_host *host, size_t bytes, double dt,
                                            double rtol, int64_t iterations,
                                            step_halving_callback *step);
 
-/* Takes `n` arrays (3,n) of doubles; [create]. */
+/* Allocates n arrays (3, particles) of doubles and stores them where arrays[k] points;
+ * [create]. */
 enum cs_step step_halving_alloc(const struct cs_host *host, double **const arrays[], size_t n);
 
+/* stats of the descriptor: rejected steps and Newton iterations. */
 void step_halving_stats(const void *self, struct cs_stats *out);
-/* What the loop remembers, for save and load. */
+/* save and load of the loop: last step length, iterations, and the state of fixed_step.h. */
 enum cs_step step_halving_archive(void *self, const struct cs_archive *archive);
 
-/* What the last step remembers cannot be used for one of length h. */
+/* True if the method's history cannot serve a step of length h: the state was changed from
+ * outside, or the last step had another length. */
 bool step_halving_is_fresh(const struct step_halving *self, double h);
 
-/* A spring's ends have moved against each other by more than half its length from x0 to x1, the
- * larger of those at rest and at x0, or to what is not a number: beyond that a linearised step
- * knows nothing of the true motion. Needs CS_NEED_SPRINGS. */
+/* True if the ends of a spring moved against each other by more than half its length from x0
+ * to x1, or to NaN. The length is the larger of those at rest and at x0. Beyond that a
+ * linearised step has no relation to the true motion: a spring that turns by 29 degrees moves
+ * its ends by that much. Needs CS_NEED_SPRINGS. */
 bool springs_rotated_far(const struct cs_view *view, const double *x0, const double *x1);
 
-/* The common part of the descriptors. */
+/* The common part of the descriptors of these methods. */
 #define STEP_HALVING_METHOD(struct_, rows_, archive_)                                          \
     .size = sizeof(struct cs_integrator), .fidelity = CS_FIDELITY_ODE, .options = rows_,       \
     .n_options = sizeof rows_ / sizeof rows_[0], .options_size = sizeof(struct_),              \

@@ -1,4 +1,4 @@
-/* How a library's failure becomes the method's; see sundials.h. */
+/* sundials.c - turns a library's failure into the method's; see sundials.h. */
 #include "sundials.h"
 
 #include <stdlib.h>

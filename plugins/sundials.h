@@ -1,7 +1,7 @@
-/* sundials.h - a library of SUNDIALS and the state of a method on it.
+/* sundials.h - a library of SUNDIALS (CVODE or ARKODE), and the state of a method on it.
  *
- * Steps, the passing of frames and the linear solver stand on it, each in its own file.
- */
+ * The loop over steps, steps that pass frames, and the linear solver use it, each in its own
+ * file. */
 #ifndef SUNDIALS_H
 #define SUNDIALS_H
 
@@ -25,12 +25,13 @@ struct sundials_library {
     int (*interpolate)(void *memory, sunrealtype t, int k, N_Vector y);
     /* where the nonlinear solver stands, and its g: see sundials_solver.c */
     int (*system)(void *memory, double *t, N_Vector *y, double *g);
-    /* the state was moved at t after a step of dt; 0: from outside, forget all */
+    /* the state was changed at t after a step of dt in s; dt 0: from outside, forget all */
     int (*on_state_changed)(struct sundials *self, double t, double dt);
 };
 
+/* The common part of a method's object, which starts with it. */
 struct sundials {
-    const struct cs_host *host;
+    const struct cs_host *host; /* borrowed */
     const struct sundials_library *library;
     SUNContext context; /* owned */
     void *memory;       /* owned by the method */
@@ -42,7 +43,7 @@ struct sundials {
     struct _generic_SUNLinearSolver_Ops solver_ops;
     double linear_rtol; /* relative residual of the linear solves */
     double *b;          /* (3,n), right-hand side of the reduced system */
-    int64_t max_steps;  /* in a frame */
+    int64_t max_steps;  /* in an advance */
     double
         *y_before; /* (6n) the state before the step; NULL: no step is refused for its move */
     bool equal_steps;    /* without error control: no step is cut but to meet a frame */
@@ -50,7 +51,8 @@ struct sundials {
     char message[256];   /* the library's last */
 };
 
-/* The library's code as the method's failure, unless the host's solver has failed before. */
+/* Fails with the library's code and last message at t, unless the host's own calls failed
+ * before: their status is returned then. */
 enum cs_step sundials_fail(struct sundials *self, int code, double t);
 
 #endif

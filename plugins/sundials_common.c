@@ -1,5 +1,19 @@
-/* Context, right-hand side, messages and the loop; see sundials_common.h.
- */
+/* sundials_common.c - context, right-hand side, messages, and the loop over steps of the
+ * methods on SUNDIALS.
+ *
+ * The decisions of one step of sundials_advance, in order:
+ * 1. Stop time: the end of the advance; earlier if contact by projection bounds the step
+ *    (host->longest_step) and the library controls its steps. It is set again after every
+ *    step then, and after every change of the state, because a restart can forget it.
+ * 2. More than max_steps steps in the advance: the run fails.
+ * 3. Save the state, if the host can refuse displacements, and let the library take one step.
+ * 4. The step carries surfaces through each other: restore the saved state, restart the
+ *    library there, and go to 1. The run fails if the step was shorter than 1/65536 of the
+ *    advance, or if the library has steps of equal length, which would only be repeated.
+ * 5. Commit. If it changed the state, tell the library: CVODE moves its history, the others
+ *    restart.
+ *
+ * Contact by force is not among the refusals: error control sees it through the forces. */
 #include "sundials_common.h"
 
 #include "sundials_overstep.h"
@@ -9,6 +23,8 @@
 #include <math.h>
 #include <string.h>
 
+/* Messages of the library go to self->message, the last one counts, instead of to stderr. Since
+ * version 7 the context has the handler, before each library has its own. */
 #if SUNDIALS_VERSION_MAJOR >= 7
 static void store_message(int line, const char *function, const char *file, const char *message,
                           SUNErrCode code, void *object, SUNContext context) {
@@ -37,14 +53,16 @@ static bool open_context(struct sundials *self) {
 }
 #endif
 
-/* The way from the state before the step to x carries surfaces through each other. Contact by
- * force is left to error control. */
+/* True if the displacement from the state before the step to x carries surfaces through each
+ * other. Both times are t: then max_step_fraction tests nothing else, and contact by force is
+ * left to error control. False without limits. */
 static bool passes_through(const struct sundials *self, double t, const double *x) {
     const struct cs_host *host = self->host;
     return self->y_before && host->max_step_fraction(host->ctx, t, self->y_before, t, x) < 1;
 }
 
-/* from forces; true where one is not a number, or infinite */
+/* Turns forces into accelerations; true if one is NaN or infinite. Without a branch, for
+ * vector units. */
 CS_CLONES static bool accelerate(size_t n, const double *restrict inv_mass,
                                  double *restrict f) {
     int broken = 0;
@@ -91,8 +109,9 @@ enum cs_step sundials_restart(void *object, double t, const double *x, const dou
     return code < 0 ? sundials_fail(self, code, t) : CS_STEP_OK;
 }
 
-/* A library ends a step at its stop time, here also where contact asks for it: it would hear of
- * a longest step only when it chooses the one after the next. */
+/* Sets the stop time: t1, or earlier by host->longest_step if `limited`. A stop time holds
+ * for the very next step, while a library applies a new maximal step length only one step
+ * later. */
 static int set_stop(const struct sundials *self, bool limited, double t, double t1,
                     const double *x) {
     const struct cs_host *host = self->host;
@@ -101,12 +120,13 @@ static int set_stop(const struct sundials *self, bool limited, double t, double 
     return self->library->set_stop(self->memory, most < t1 - t ? t + most : t1);
 }
 
-/* Parts of a frame below which a step is not shortened. */
+/* A step shorter than the advance by this factor is not shortened further: as 16 halvings in
+ * fixed_step.c. */
 #define PARTS_MAX 65536
 
-/* The end of a step need not have been asked about: the step from t to `reached` is taken back,
- * and the library starts anew with a small one. Steps of equal length would only be repeated.
- */
+/* Undoes the step from t to `reached` and restarts the library, which then takes a small
+ * first step. Needed although the right-hand side refuses such states: the end of a step need
+ * not be a point where it was evaluated. Returns a code below 0 on failure. */
 static int restore_state(struct sundials *self, double t, double reached, double frame,
                          double *x) {
     const struct cs_host *host = self->host;

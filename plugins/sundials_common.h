@@ -1,27 +1,29 @@
-/* sundials_common.h - what the methods on SUNDIALS share: context, state, right-hand side,
+/* sundials_common.h - shared by the methods on SUNDIALS: context, state, right-hand side,
  * error messages, the loop over steps, and the linear solver of the implicit ones.
  *
- * y = (x, v), y' = (v, f/m). A library is driven step by step, and after each step comes the
- * commit. Where something acts between steps the frame time is its stop time; where nothing
- * does it steps as it likes, and frames are interpolated: see sundials_overstep.h. It keeps its
- * history across frames, and hears of it where the state was moved from outside.
- */
+ * y = (x, v), y' = (v, f/m). A library is driven step by step, and the commit follows each
+ * step. If something acts between steps, the end of the advance is the library's stop time.
+ * If nothing does, the library steps as it likes and frames are interpolated: see
+ * sundials_overstep.h. It keeps its history across frames, and is told when the state was
+ * changed from outside. */
 #ifndef SUNDIALS_COMMON_H
 #define SUNDIALS_COMMON_H
 
 #include "sundials.h"
 
-/* Makes context, vectors and state. linear_rtol above 0: the linear solver too. CS_STEP_FAIL:
- * the host was told. */
+/* Creates context, n_vectors vectors and the state; with linear_rtol above 0 the linear
+ * solver too. Returns CS_STEP_FAIL after a failure that the host has reported; call
+ * sundials_close then too. */
 enum cs_step sundials_open(struct sundials *self, const struct cs_host *host,
                            const struct sundials_library *library, int n_vectors,
                            double linear_rtol);
-/* After the library's memory was freed; self may be half made. */
+/* Frees the context; call it after the library's memory was freed. self may be half made. */
 void sundials_close(struct sundials *self);
 
-/* y' with the chosen parts of the force; moves: x' = v, else 0. Returns 1, which lets the
- * library try a smaller step, where it is not finite, or where the way to y carries surfaces
- * through each other and the library recovers from that. */
+/* slope = y' with the chosen parts of the force; moves: x' = v, else x' = 0. Returns 1, a
+ * recoverable failure after which the library tries a smaller step, if a force is not finite.
+ * Likewise if the displacement to y carries surfaces through each other, for a library that
+ * recovers from that at a stage. */
 int sundials_slope(const struct sundials *self, double t, N_Vector y, uint32_t parts,
                    bool moves, N_Vector slope);
 /* The same of the whole force, as SUNDIALS calls it; object is the struct sundials. */
@@ -33,6 +35,8 @@ void sundials_keep_message(int code, const char *module, const char *function, c
                            void *object);
 #endif
 
+/* Calls of the descriptor: restart forgets the library's history, advance is the loop over
+ * steps. */
 enum cs_step sundials_restart(void *object, double t, const double *x, const double *v);
 enum cs_step sundials_advance(void *object, double t0, double t1, double *x, double *v);
 

@@ -1,13 +1,20 @@
-/* Steps as the library likes, and what the host sees of them; see sundials_overstep.h. */
+/* sundials_overstep.c - lets the library step as it likes, and shows the host the
+ * interpolated state.
+ *
+ * The library's time t_internal is ahead of the host's t or equal to it. One turn of the
+ * loop: if they are equal the library takes a step; then the host's time moves to the end of
+ * that step or to the frame, whichever is first, and that state is committed. */
 #include "sundials_overstep.h"
 
 #include <string.h>
 
-/* s ahead, where a step is told to head for: the first one is at most a tenth of it, and later
- * ones ignore it. No frame's time, so that steps are the same whatever the frames are; with 1 s
- * a loose tolerance begins too far. */
+/* s, distance of the target time that a step is given. CVODE limits its first step to a tenth
+ * of it; later steps ignore it. A constant instead of the frame's time makes steps
+ * independent of frames. Chosen by trial: with 1 s a loose tolerance starts with too long a
+ * step. */
 #define AHEAD 0.1
 
+/* Bytes of a state (6n). */
 static size_t bytes_of(const struct sundials *self) {
     return 6 * sizeof(double) * (size_t)self->host->view->n;
 }
@@ -23,7 +30,8 @@ void sundials_overstep_restart(struct sundials *self, double t, const double *x)
     self->t_internal = t;
 }
 
-/* an interpolant's weights are rounded: what does not move is put where it was */
+/* Restores pinned particles to their bits: the interpolant's weights do not sum to 1 exactly.
+ */
 static void restore_pins(const struct sundials *self, double *x) {
     const size_t n = self->host->view->n;
     const double *inv_mass = self->host->view->inv_mass, *kept = sundials_data(self->state);
@@ -32,7 +40,7 @@ static void restore_pins(const struct sundials *self, double *x) {
             x[c * n + i] = kept[c * n + i];
 }
 
-/* x = the state at t, in the last step; the library's code */
+/* x = the state at t within the last step. Returns the library's code. */
 static int show(struct sundials *self, double t, double *x) {
     if (t == self->t_internal) {
         memcpy(x, sundials_data(self->state), bytes_of(self));
@@ -44,7 +52,8 @@ static int show(struct sundials *self, double t, double *x) {
     return code;
 }
 
-/* commit has moved what it was shown at t, after dt: the library goes on from there */
+/* commit changed the interpolated state at t: restarts the library from it. dt, the length of
+ * the part, counts as a step only if the part ended where the library's step did. */
 static int restart_if_changed(struct sundials *self, double t, double dt, const double *x) {
     const bool whole = t == self->t_internal;
     sundials_overstep_restart(self, t, x);

@@ -1,21 +1,26 @@
-/* Solves (I - g J) z = b of a Newton iteration, by the host's solver.
+/* sundials_solver.c - solves (I - g J) z = b of a Newton iteration by the host's solver.
  *
- * Eliminating z_x leaves half the unknowns and the host's matrix, with K = df/dx, D = df/dv:
+ * J is the Jacobian of y' = (v, M^-1 f): with K = df/dx, D = df/dv the two rows are
+ *   z_x - g z_v = b_x,   M z_v - g (K z_x + D z_v) = M b_v.
+ * Eliminating z_x leaves half the unknowns and the host's matrix:
  *   (M - g D - g^2 K) z_v = M b_v + g K b_x,   z_x = b_x + g z_v.
- * Nothing is kept from one iteration to the next.
- */
+ * Nothing is kept from one iteration to the next: the matrix costs no factorisation. */
 #include "sundials_solver.h"
 
 #include <string.h>
 
+/* A solver that needs no matrix of the library's. */
 static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
     (void)solver;
     return SUNLINEARSOLVER_MATRIX_EMBEDDED;
 }
 
-/* A code that the library knows: any other that is not 0, -1 too, it takes for success. */
+/* An unrecoverable failure. The library takes codes that it does not know, such as -1, for
+ * success. */
 #define SOLVE_FAILED SUNLS_PSOLVE_FAIL_UNREC
 
+/* solve of the library's interface: z from b at the state and g of the Newton iteration. The
+ * tolerance of the library is not used: linear_rtol is relative to the right-hand side. */
 static int solve_reduced(SUNLinearSolver solver, SUNMatrix none, N_Vector z, N_Vector b,
                          sunrealtype tolerance) {
     (void)none, (void)tolerance;
@@ -41,8 +46,8 @@ static int solve_reduced(SUNLinearSolver solver, SUNMatrix none, N_Vector z, N_V
     if (self->status != CS_STEP_OK)
         return SOLVE_FAILED;
 
-    // no force acts on pinned particles; b is not 0 there while the library has a history of
-    // them
+    // no force acts on pinned particles, where z_v = b_v; b is not 0 there while the library's
+    // history of them is not
     for (size_t c = 0; c < 3; c++)
         for (size_t i = 0; i < n; i++)
             if (host->view->inv_mass[i] == 0)

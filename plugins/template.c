@@ -14,7 +14,7 @@
 #include <clothsim/integrator.h>
 #include <math.h>
 
-/* What a user can set, and its table: type, unit, default, range, meaning. A method of fixed
+/* The options and their table: type, unit, default, range, meaning. A method of fixed
  * steps calls its step dt, an adaptive one its tolerance rtol: the card sets them by these
  * names. */
 struct options {
@@ -25,7 +25,7 @@ static const struct cs_option rows[] = {
     CS_OPTION(struct options, dt, "s", 0.0005, 1e-9, 1, "longest step"),
 };
 
-/* What the method remembers. */
+/* The method's object: everything it remembers. */
 struct midpoint {
     const struct cs_host *host;
     double dt;
@@ -55,7 +55,7 @@ static enum cs_step restart(void *self, double t, const double *x, const double 
     return CS_STEP_OK;
 }
 
-/* out = y + h (velocity, f/m), where y and out are positions with velocities behind them. A
+/* out = y + h (velocity, f/m), where y and out are positions followed by velocities. A
  * pinned particle has f = 0 and 1/m = 0, and needs no case of its own. */
 static void move(const struct midpoint *self, double h, const double *y, const double *velocity,
                  double *out) {
@@ -88,14 +88,14 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
         const double t = t0 + i * h, end = i + 1 < n ? t0 + (i + 1) * h : t1;
         bool changed;
         step(self, t, h, x, v);
-        // contact, strain limit, blow-up: what is not CS_STEP_OK goes up at once, and where
-        // changed is true a method with a memory starts anew
+        // contact, strain limit, blow-up: return anything but CS_STEP_OK at once; if
+        // changed is true a method with a history restarts
         status = host->commit(host->ctx, end, h, x, v, &changed);
     }
     return status;
 }
 
-/* What is claimed here is what `clothsim conform` measures. */
+/* The claims of the method, which `clothsim conform` measures. */
 static const struct cs_integrator midpoint = {
     .size = sizeof midpoint,
     .name = "midpoint",

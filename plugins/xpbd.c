@@ -1,4 +1,4 @@
-/* Extended position based dynamics: springs as constraints with compliance.
+/* xpbd.c - extended position based dynamics: springs as constraints with compliance.
  *
  * With h the step, y = x + h v + h^2 f/m the position that the outer forces alone lead to, and
  * for a spring of stiffness k and rest length L, unit direction n, C = |x_b - x_a| - L and
@@ -10,7 +10,7 @@
  * spring. Outer forces, drag too, are those at the start of the step.
  *
  * Contact by force comes after the springs in each pass, particle by particle: with its force F
- * at x and at the velocity (x - x_old)/h, its share B of an implicit step's matrix and the
+ * at x and at the velocity (x - x_old)/h, its part B of an implicit step's matrix and the
  * impulse p that it has given so far,
  *   dx = (m + B)^-1 (h h F - p), p += m dx, x += dx,
  * a Newton step for p = h h F. For a force along one direction that is a constraint of
@@ -19,9 +19,9 @@
  *
  * As the iterations grow the result settles, but not on implicit Euler: the directions that the
  * multipliers l belong to are those at which they were found. The difference vanishes with h.
- * Mode pbd forgets the multipliers after every iteration, so that each corrects the same share
- * (w_a + w_b) / (w_a + w_b + a) of what is left (Mueller et al. 2007, eq. 10 and 11, with that
- * share as k): springs are the stiffer the more iterations, and nothing settles.
+ * Mode pbd forgets the multipliers after every iteration, so that each corrects the same
+ * fraction (w_a + w_b) / (w_a + w_b + a) of what is left (Mueller et al. 2007, eq. 10 and 11,
+ * with that fraction as k): springs become stiffer with each iteration, and nothing converges.
  * Contact keeps its impulses in either mode.
  */
 #include "fixed_step.h"
@@ -30,7 +30,7 @@
 #include <float.h>
 #include <string.h>
 
-/* what a scene with contact by force has of these parts is contact */
+/* The parts that contact by force consists of, in scenes that have it. */
 #define CONTACT (CS_PART_POTENTIAL | CS_PART_DISSIPATIVE)
 
 enum mode { XPBD, PBD };
@@ -71,7 +71,7 @@ struct xpbd {
     double *speed;   /* (3,n) in m/s */
 };
 
-/* Moves the ends of a spring apart by what m l is at each; push (3). */
+/* Moves the ends of a spring apart by push (3) in kg m, over their masses. */
 static void move_ends(const struct cs_view *view, const uint32_t ends[2], const double push[3],
                       double *x) {
     const size_t n = view->n;
@@ -81,12 +81,14 @@ static void move_ends(const struct cs_view *view, const uint32_t ends[2], const 
     }
 }
 
+/* d = x_b - x_a of the ends of a spring. */
 static void difference(const struct cs_view *view, const uint32_t ends[2], const double *x,
                        double d[3]) {
     for (size_t c = 0; c < 3; c++)
         d[c] = x[c * view->n + ends[1]] - x[c * view->n + ends[0]];
 }
 
+/* One correction of spring s with its axial damper; weight = w_a + w_b in 1/kg. */
 static void project_spring(struct xpbd *self, size_t s, double h, double weight, double *x) {
     const struct cs_view *view = self->loop.host->view;
     const uint32_t *ends = view->ends + 2 * s;
@@ -110,6 +112,7 @@ static void project_spring(struct xpbd *self, size_t s, double h, double weight,
     move_ends(view, ends, d, x);
 }
 
+/* One correction of the relative damper of spring s: the constraint d = d_old. */
 static void project_damper(struct xpbd *self, size_t s, double h, double weight, double *x) {
     const struct cs_view *view = self->loop.host->view;
     const uint32_t *ends = view->ends + 2 * s;
@@ -124,6 +127,7 @@ static void project_damper(struct xpbd *self, size_t s, double h, double weight,
     move_ends(view, ends, d, x);
 }
 
+/* Sets all multipliers of springs and dampers to 0. */
 static void forget(struct xpbd *self) {
     const size_t n_springs = self->loop.host->view->n_springs;
     memset(self->spring, 0, n_springs * sizeof *self->spring);
@@ -131,7 +135,8 @@ static void forget(struct xpbd *self) {
         memset(self->damper, 0, 3 * n_springs * sizeof *self->damper);
 }
 
-/* one pass, in the order of forces */
+/* One pass over the springs, in the order of forces: Gauss-Seidel, each sees the corrections
+ * before it. */
 static void sweep(struct xpbd *self, double h, double *x) {
     const struct cs_view *view = self->loop.host->view;
     for (size_t s = 0; s < view->n_springs; s++) {
@@ -147,7 +152,8 @@ static void sweep(struct xpbd *self, double h, double *x) {
     self->passes++;
 }
 
-/* One Newton step of each particle towards p = h h F, at the end t of the step; f: work. */
+/* One Newton step of each particle towards p = h h F, at the end t of the step. Uses self->f
+ * as scratch. */
 static void touch(struct xpbd *self, double t, double h, double *x) {
     const struct cs_host *host = self->loop.host;
     const size_t n = host->view->n;
@@ -219,6 +225,7 @@ static enum cs_step advance(void *object, double t0, double t1, double *x, doubl
     return end;
 }
 
+/* True if a spring has a damper against every relative velocity of its ends. */
 static bool has_relative_dampers(const struct cs_view *view) {
     for (size_t s = 0; s < view->n_springs; s++)
         if (view->damping[s] > 0 && !view->axial[s])
@@ -226,7 +233,8 @@ static bool has_relative_dampers(const struct cs_view *view) {
     return false;
 }
 
-/* what contact by force needs, which only some scenes and hosts have */
+/* Allocates the arrays of contact by force; the host offers contact_blocks only in such
+ * scenes. */
 static enum cs_step take_contact(struct xpbd *self, size_t vectors) {
     const struct cs_host *host = self->loop.host;
     if (!CS_HAS(host, contact_blocks) || !host->contact_blocks)

@@ -18,7 +18,7 @@
 #define CS_CLONES
 #endif
 
-/* Before a loop whose turns touch nothing of one another, where pointers alone do not tell. */
+/* Before a loop with independent iterations, if the pointers alone do not show it. */
 #if defined(__clang__)
 #define CS_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)

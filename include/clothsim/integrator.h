@@ -9,20 +9,20 @@
  *
  * Equation of motion: M dv/dt = f(t,x,v), dx/dt = v.
  *
- * Pinned particles need no special case: their inv_mass is 0, and so are their rows of f and
- * df. Their v is 0, or the velocity of the path along which the scene moves them. v is constant
- * between restarts, so after a step h such a particle is at x + h v. commit enforces this
+ * Pinned particles need no special case: their inv_mass is 0, and their rows of f and df are 0
+ * too. Their v is 0, or the velocity of the path along which the scene moves them. v is
+ * constant between restarts: after a step h such a particle is at x + h v. commit enforces this
  * exactly, and does not set *changed for it.
  *
  * The scene's events happen between two calls of advance. There x, v, view->mass,
  * view->inv_mass and the springs' constants may change in place, and then restart is called.
  * view->omega and view->delta hold for the whole run. Within an advance forces may depend on t
  * (ramps are linear in it): pass the time of the stage. The list of springs always shows the
- * constants at the t that the last call named. A matrix that a method has kept does not follow.
+ * constants at the t of the last call. A matrix that a method has stored does not follow.
  *
  * Marks in brackets say during which calls of the module a call of the host is allowed, and in
  * which order the calls of the module come. Not on offer, on purpose: random numbers, a clock,
- * files, and threads of your own. vector->share lends the host's threads for a loop.
+ * files, and threads of your own. vector->parallel_for lends the host's threads for a loop.
  */
 #ifndef CLOTHSIM_INTEGRATOR_H
 #define CLOTHSIM_INTEGRATOR_H
@@ -50,8 +50,8 @@ enum cs_step {
     CS_STEP_FAIL
 };
 
-/* What the host must build for the method. You pay only for what you ask for. A call whose need
- * was not declared returns CS_STEP_FAIL, or leaves its output untouched. */
+/* Services that the host builds for the method. You pay only for those that you ask for. A call
+ * whose need was not declared returns CS_STEP_FAIL, or leaves its output untouched. */
 enum cs_need {
     /* jvp. */
     CS_NEED_JVP = 1u << 0,
@@ -61,7 +61,7 @@ enum cs_need {
     CS_NEED_ENERGY = 1u << 2,
     /* The list of springs in the view. */
     CS_NEED_SPRINGS = 1u << 3,
-    /* solve_setup, solve and apply. */
+    /* solve_setup, solve and matrix_product. */
     CS_NEED_SOLVE = 1u << 4,
     /* Groups that keep their shape, in the view. The host refuses scenes without them. */
     CS_NEED_CLUSTERS = 1u << 5
@@ -79,7 +79,7 @@ enum cs_part {
     CS_PART_STRETCH = 1u << 0, /* springs along the threads; edges of a mesh */
     CS_PART_SHEAR = 1u << 1,   /* springs across the cells; inside a mesh */
     CS_PART_BEND = 1u << 2,    /* springs over two cells; across the edges of a mesh */
-    CS_PART_DAMPING = 1u << 3, /* the dampers beside the springs */
+    CS_PART_DAMPING = 1u << 3, /* the dampers of the springs */
     CS_PART_GRAVITY = 1u << 4, /* m g: has an energy, and no derivative */
     CS_PART_DRAG = 1u << 5,    /* -c v of still air */
     CS_PART_WIND = 1u << 6,    /* pressure on the cloth; has a jvp, is not in the matrix */
@@ -115,7 +115,7 @@ enum cs_part {
     CS_PART_WITHOUT_ENERGY = CS_PART_ALL & ~CS_PART_WITH_ENERGY
 };
 
-/* What is true of the method. The program shows it, and `clothsim conform` tests it. */
+/* Properties of the method. The program shows them, and `clothsim conform` tests them. */
 enum cs_trait {
     CS_IMPLICIT = 1u << 0,
     CS_ADAPTIVE = 1u << 1,
@@ -125,12 +125,12 @@ enum cs_trait {
     CS_LIBRARY_BITS = 1u << 4,
     /* A uniform velocity changes the internal forces. */
     CS_NOT_GALILEAN = 1u << 5,
-    /* All forces but the springs are taken as they are where a step begins, whatever the step:
-     * scenes with stiff ones, such as contact by force, are refused. */
+    /* All forces but the springs are evaluated at the begin of a step only, whatever its
+     * length: scenes with stiff ones, such as contact by force, are refused. */
     CS_EXPLICIT_OUTER = 1u << 6
 };
 
-/* What the method's result is, however small its own tolerances are. */
+/* The limit of the method's result, however small its own tolerances are. */
 enum cs_fidelity {
     /* Converges to the equation of motion at the method's order. */
     CS_FIDELITY_ODE,
@@ -152,7 +152,7 @@ enum cs_solve_flag {
     CS_SOLVE_BOUND = 1u << 1
 };
 
-/* What the host offers. Pass ctx as the first argument of every call. */
+/* The calls of the host. Pass ctx as the first argument of every call. */
 struct cs_host {
     /* sizeof at the host's build: see CS_HAS. */
     uint32_t size;
@@ -169,7 +169,7 @@ struct cs_host {
      * Returns CS_STEP_FAIL, so that `return host->fail(...)` is all you need. */
     enum cs_step (*fail)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
 
-    /* [create, restart, advance] A remark for the report. A repeated one is kept once. */
+    /* [create, restart, advance] A remark for the report; a repeated one is stored once. */
     void (*note)(void *ctx, const char *format, ...) CS_PRINTF(2, 3);
 
     /* [restart, advance] f (3,n) in N = the sum of the chosen parts. Overwrites f. */
@@ -213,24 +213,24 @@ struct cs_host {
      * at time t. It limits strains, resolves contact, takes the velocity loss, looks for a
      * blow-up, and counts. It may move x and v, and, with contact by projection, pin
      * particles that rest on an obstacle or let them go (view->inv_mass); then *changed is
-     * true, and a method that keeps history starts anew. What is not CS_STEP_OK goes upwards
+     * true, and a method that keeps history restarts. Return anything but CS_STEP_OK upwards
      * at once. */
     enum cs_step (*commit)(void *ctx, double t, double dt, double *x, double *v, bool *changed);
 
     /* Below: only where the scene has forces whose stiffness depends on the state (contact), or
      * steps must not carry surfaces through each other, else NULL; and not in hosts whose size
-     * ends before it: ask CS_HAS(host, rate) first. */
+     * ends before it: ask CS_HAS(host, bounds_at) first. */
 
     /* [restart, advance] Bounds at a state, for automatic steps: omega in 1/s on the angular
      * frequency, delta in 1/s on half the damping rate. Those of the view hold for the springs
      * alone. */
     void (*bounds_at)(void *ctx, double t, const double *x, const double *v, double *omega,
                       double *delta);
-    /* [advance] The share of the move from x0 (3,n) at t0 to x1 at t1 that a step may take: 1,
-     * or less where it passes over contact that a step cannot see from where it begins, or
-     * carries surfaces through each other. Then a method takes the step back and takes a
-     * shorter one. 0: no share is good. Within an iteration t1 is t0: surfaces
-     * alone are looked at. */
+    /* [advance] The admissible fraction, 0..1, of the displacement from x0 (3,n) at t0 to x1 at
+     * t1. Below 1 the displacement passes over contact that a step cannot see from its start,
+     * or carries surfaces through each other: the method rejects the step and takes a shorter
+     * one. 0: no fraction is admissible. Within an iteration t1 is t0: then only crossings of
+     * surfaces count. */
     double (*max_step_fraction)(void *ctx, double t0, const double *x0, double t1,
                                 const double *x1);
 
@@ -241,7 +241,7 @@ struct cs_host {
 
     /* [advance] Only where contact is a force, else NULL; and not in hosts whose size ends
      * before it. What contact adds to the mass of each particle in an implicit Euler step of
-     * length h: blocks (6,n) in kg = -h df/dv - h h df/dx of CS_PART_POTENTIAL and
+     * length h: contact_blocks (6,n) in kg = -h df/dv - h h df/dx of CS_PART_POTENTIAL and
      * CS_PART_DISSIPATIVE at (t, x, v), each as CS_SOLVE_PSD and CS_SOLVE_BOUND have it: xx,
      * xy, xz, yy, yz, zz. For methods that move particles one after the other: with h h f they
      * make a step towards where contact and the rest are in balance. */
@@ -250,23 +250,24 @@ struct cs_host {
 
     /* [restart, advance] force with CS_PART_ALL and diagonal in one call, to the same bits and
      * in less time, which counts as one of each; not in hosts whose size ends before it: ask
-     * CS_HAS(host, force_diagonal) first. blocks (12,n) is kxx and then dvv. Needs
+     * CS_HAS(host, force_diagonal) first. The last array (12,n) is kxx, then dvv. Needs
      * CS_NEED_DIAGONAL. */
     void (*force_diagonal)(void *ctx, double t, const double *x, const double *v, double *f,
                            double *contact_blocks);
 
     /* For the whole run: nothing acts between steps, and no event comes (no contact, strain
-     * limit, velocity loss or crossings). Then a step may end behind t1: the method gives the
+     * limit, velocity loss or crossings). Then a step may end after t1: the method gives the
      * state at t1 by interpolation, commits it as if the step had ended there, and commits the
      * rest of the step in the next advance. commit leaves its own state alone, unless it sets
-     * *changed. Not in hosts whose size ends before it: ask CS_HAS(host, may_pass) first. */
+     * *changed. Not in hosts whose size ends before it: ask CS_HAS(host, may_overstep) first.
+     */
     bool may_overstep;
 };
 
-/* What only the method can count. */
+/* Counts that only the method knows. */
 struct cs_stats {
     uint32_t size;
-    /* Steps thrown away. */
+    /* Rejected steps. */
     uint64_t rejected;
     /* Nonlinear iterations. */
     uint64_t newton;
@@ -283,8 +284,8 @@ struct cs_option_use {
     uint32_t values;
 };
 
-/* A method's memory on its way into a checkpoint, or back. save and load make the same calls
- * with the same counts in the same order, so that one function may be both. */
+/* The passage of a method's history into a checkpoint, or back. save and load make the same
+ * calls with the same counts in the same order, so that one function may be both. */
 struct cs_archive {
     /* sizeof at the host's build: see CS_HAS. */
     uint32_t size;
@@ -358,7 +359,7 @@ struct cs_integrator {
     uint32_t n_uses;
 
     /* [after restart, between two calls of advance] What the method remembers from one advance
-     * to the next, so that one made anew goes on to the same bits: history, next step, counts.
+     * to the next, so that a new object goes on to the same bits: history, next step, counts.
      * save must not change it. load follows a restart at the same time, state and forces, with
      * the same options. Both or neither; without them the method is restarted at each
      * checkpoint, in the unbroken run too. Later than the first release: the host asks

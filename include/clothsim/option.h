@@ -86,7 +86,8 @@ struct cs_table {
     size_t size;
     /* The struct starts with `bool present`. */
     bool optional;
-    /* Exactly one of the optional rows must be given, but for the first `uncounted` rows. */
+    /* Exactly one of the optional rows must be given, but for the first n_always_optional
+     * rows. */
     bool one_of;
     uint32_t n_always_optional;
     /* The row that a plain text, a plain number, or a plain list in place of the object

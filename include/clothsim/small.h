@@ -64,15 +64,15 @@ static inline double cs_sym3_cofactors(const double a[6], double cofactors[6]) {
     return a[0] * cofactors[0] + a[1] * cofactors[1] + a[2] * cofactors[2];
 }
 
-/* Whether a is positive definite: its leading minors are above 0 (Sylvester). Not a number is
- * not. */
+/* True if a is positive definite: its leading minors are above 0 (Sylvester). False for NaN.
+ */
 static inline bool cs_sym3_is_definite(const double a[6], const double cofactors[6],
                                        double determinant) {
     return a[0] > 0 && cofactors[5] > 0 && determinant > 0;
 }
 
-/* The inverse of a positive definite block. false: a is not that, and inverse is not written.
- * inverse may be a. */
+/* The inverse of a positive definite block. Returns false if a is not positive definite, and
+ * leaves inverse unwritten. inverse may be a. */
 static inline bool cs_sym3_invert_definite(const double a[6], double inverse[6]) {
     double cofactors[6];
     const double determinant = cs_sym3_cofactors(a, cofactors);
@@ -87,9 +87,9 @@ static inline bool cs_sym3_invert_definite(const double a[6], double inverse[6])
 /* The inverse by cofactors, of a block that need not be definite. There is no branch in it, so
  * that a loop over many blocks vectorises.
  *
- * Returns the determinant of a after it was scaled to a largest entry of 1. Ask
- * cs_sym3_is_regular with it: where that says no, a is singular to working precision or not
- * finite, and inverse is worthless. inverse may be a. */
+ * Returns the determinant of a scaled to a largest entry of 1. Pass it to cs_sym3_is_regular:
+ * if that is false, a is singular to working precision or not finite, and inverse is
+ * worthless. inverse may be a. */
 static inline double cs_sym3_invert_any(const double a[6], double inverse[6]) {
     double largest = 0;
     for (int c = 0; c < 6; c++)
@@ -104,14 +104,14 @@ static inline double cs_sym3_invert_any(const double a[6], double inverse[6]) {
     return determinant;
 }
 
-/* Whether a block whose scaled determinant this is has an inverse: it is above 1e-30 in
- * magnitude. Not a number is not. */
+/* True if the block with this scaled determinant has an inverse: its magnitude is above 1e-30.
+ * False for NaN. */
 static inline bool cs_sym3_is_regular(double scaled_determinant) {
     return fabs(scaled_determinant) > 1e-30;
 }
 
-/* The same for a single block. false: a is singular or not finite, and inverse is not
- * written. inverse may be a. */
+/* The same for a single block. Returns false if a is singular or not finite, and leaves
+ * inverse unwritten. inverse may be a. */
 static inline bool cs_sym3_invert(const double a[6], double inverse[6]) {
     double found[6];
     if (!cs_sym3_is_regular(cs_sym3_invert_any(a, found)))

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* Whether a table of this contract reaches as far as `field`. Tables grow at their ends, and
+/* True if a table of this contract reaches as far as `field`. Tables grow at their ends, and
  * their `size` says where the one at hand ends: ask before you use a field that came later
  * than the first release. table is a pointer to a struct with the field `size`. */
 #define CS_HAS(table, field)                                                                   \
@@ -42,12 +42,12 @@ struct cs_vector_kernels {
     /* Runs a loop of your own on the host's threads: calls part(arg, begin, end) for ranges
      * that together are the items 0..n-1, each once, and returns when all are done. Several
      * parts run at the same time. A part may write only what belongs to its items, and must not
-     * call the host. Later than the first release: ask CS_HAS(vector, share). */
+     * call the host. Later than the first release: ask CS_HAS(vector, parallel_for). */
     void (*parallel_for)(size_t n, void (*part)(void *arg, size_t begin, size_t end),
                          void *arg);
 };
 
-/* What stays the same during a run, or changes only at a restart. */
+/* Data that stay the same during a run, or change only at a restart. */
 struct cs_view {
     /* sizeof at the host's build: see CS_HAS. */
     uint32_t size;
@@ -86,14 +86,15 @@ struct cs_view {
     /* Groups of particles that keep their shape, which is that of `start` (shape matching).
      * A particle may be in several groups of its body. Only with CS_NEED_CLUSTERS. */
     uint32_t n_clusters;
-    /* (n_clusters + 1) places in cluster_items. */
+    /* (n_clusters + 1) positions in cluster_items: cluster k has those from the k-th to the
+     * next. */
     const uint32_t *cluster_begin;
     /* Particles of each cluster, ascending. */
     const uint32_t *cluster_items;
-    /* (n_clusters) 0..1: the share of its way to the goal that a particle goes in a step of
+    /* (n_clusters) 0..1: the fraction of the way to its goal that a particle moves in a step of
      * cluster_step. */
     const double *cluster_alpha;
-    /* (n_clusters) 0..1: the share of the linear deformation that the shape keeps. */
+    /* (n_clusters) 0..1: the fraction of the linear deformation that the shape keeps. */
     const double *cluster_beta;
     /* (n_clusters) s: the step that alpha is meant for; 0: alpha is for any step. */
     const double *cluster_step;

@@ -1,4 +1,5 @@
-/* Looks for what a method must not leave behind: steps without commit, NaN, moved pins. */
+/* advance_check.c - finds steps without commit, numbers that are not finite, and pinned
+ * particles that moved. */
 #include "sim/advance_check.h"
 
 #include "model/event/event_state.h"
@@ -6,17 +7,18 @@
 #include <math.h>
 #include <string.h>
 
-/* of the time: what sums of steps may differ from the end by */
+/* Relative to 1 + |t|: the rounding that a sum of steps may leave at the end. */
 #define ROUNDING 1e-9
 
-/* FNV-1a by words: any one word that changes changes the sum */
+/* One step of the FNV-1a hash over 64-bit words instead of bytes. Both operations are
+ * invertible, so a change of a single word always changes the hash. */
 static uint64_t add_word(uint64_t sum, double value) {
     uint64_t word;
     memcpy(&word, &value, sizeof word);
     return (sum ^ word) * 0x100000001b3u;
 }
 
-/* of the pinned particles, but for those that commit places on their path */
+/* Hash of x and v of the pinned particles, without those that commit places on their path. */
 static uint64_t sum_pins(const struct cs_system *system) {
     const struct cs_events *events = system->events;
     const size_t n = system->view.n;
@@ -36,7 +38,9 @@ void cs_advance_check_begin(struct cs_advance_check *left, const struct cs_syste
         .system = system, .pins_hash = sum_pins(system), .last_commit = t};
 }
 
-/* The first particle that is not finite, or n. */
+/* The first particle with a number that is not finite, or n. 0 * x is 0 for finite x, else
+ * NaN: the sum tests all numbers without a branch, and the loop below runs after a failure
+ * only. */
 static uint32_t find_not_finite(const struct cs_system *system) {
     const size_t n = system->view.n;
     double sum = 0;

@@ -1,5 +1,4 @@
-/* Detects a blow-up: numbers that are not finite, or more kinetic energy than the scene can
- * give. */
+/* blow_up_check.c - detects a blow-up; the bound is derived in blow_up_check.h. */
 #include "sim/blow_up_check.h"
 
 #include "base/vector.h"
@@ -11,12 +10,14 @@
 #include <math.h>
 #include <string.h>
 
+/* The bound on kinetic energy at t, in J. */
 static double energy_at(const struct cs_blow_up_check *bound, double t) {
     const double pushed = bound->force_gain + sqrt(bound->force_rate) * (t - bound->t_forces);
     return 100 * (bound->start_energy + bound->speed + pushed * pushed);
 }
 
-/* sum m a^2 of the outer forces in J/s2 */
+/* Sum of F^2 / m in J/s2, F the sum of the greatest forces that the terms can exert on a
+ * particle. Forces that give none only convert energy that is there, or take it away. */
 static double force_power_bound(const struct cs_system *system) {
     double sum = 0;
     for (size_t i = 0; i < system->view.n; i++) {
@@ -43,7 +44,8 @@ void cs_blow_up_check_set(struct cs_blow_up_check *bound, const struct cs_system
     };
 }
 
-/* the larger of the forces now and at the end of the ramps, from t on */
+/* Continues the bound from t on with other forces: closes the piece before t, and takes the
+ * larger rate of those now and at the end of the ramps. Leaves the values at t. */
 static void follow_looks(struct cs_blow_up_check *bound, struct cs_system *system, double t) {
     bound->force_gain += sqrt(bound->force_rate) * (t - bound->t_forces);
     bound->t_forces = t;
@@ -53,6 +55,10 @@ static void follow_looks(struct cs_blow_up_check *bound, struct cs_system *syste
     cs_events_move_values(system, t);
 }
 
+/* Two bounds are made, with the values at the begin and at the end of the segment that begins,
+ * and the larger energies and forces count: ramps are linear, and each force grows with its
+ * value. The speed w of paths adds 2 m w^2 for every particle, since a grab may pull all along.
+ */
 void cs_blow_up_check_after_events(struct cs_blow_up_check *bound, struct cs_system *system,
                                    double t) {
     struct cs_blow_up_check now;
@@ -79,12 +85,14 @@ static inline lanes load(const double *from) {
     return out;
 }
 
+/* The state to check, component-major. */
 struct watched {
     size_t n;
     const double *mass, *x, *v;
 };
 
-/* Kinetic energy of a range; not finite where a position or a speed is not. In lanes: it runs
+/* Kinetic energy in J of the particles [begin, end); not finite if a position or velocity
+ * there is not: s - s is 0 for a finite s = x + y + z, else NaN. In lanes, because it runs
  * after every step. */
 static double watch_part(const void *arg, size_t begin, size_t end) {
     enum { LANES = sizeof(lanes) / sizeof(double) };
@@ -118,10 +126,11 @@ bool cs_blow_up_check_step(const struct cs_blow_up_check *bound, struct cs_run *
     const size_t n = run->system->view.n;
     const struct watched watched = {n, run->system->mass, x, v};
     const double energy = cs_vector_sum(n, watch_part, &watched), most = energy_at(bound, t);
+    // NaN is not <= most
     if (energy <= most)
         return false;
 
-    /* whose fault: the first particle that is not finite, or else the fastest */
+    /* report the first particle that is not finite, else the fastest */
     uint32_t worst = 0;
     double fastest = -1;
     run->outcome = CS_UNBOUNDED;

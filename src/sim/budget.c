@@ -1,4 +1,4 @@
-/* Limits the processor time of a run, at little cost a step. */
+/* budget.c - reads the clocks seldom enough to cost nothing per step. */
 #include "sim/budget.h"
 
 #include "base/clock.h"
@@ -9,7 +9,9 @@ void cs_budget_start(struct cs_budget *budget, double cpu_seconds) {
                                  .check_interval = 1};
 }
 
-/* The clock of the process is a system call: it is read about once a millisecond. */
+/* Reads the clock about once per millisecond, as the clock of the process is a system call.
+ * The interval halves if the last one took longer and doubles if it took less, up to 1024
+ * steps. */
 bool cs_budget_is_over(struct cs_budget *budget) {
     enum { MOST_BETWEEN = 1024 };
     if (budget->end == 0 || ++budget->steps < budget->check_interval)

@@ -1,20 +1,21 @@
-/* budget.h - processor time that a run may use, looked at every few steps. */
+/* budget.h - limit on the processor time of a run, checked every few steps. */
 #ifndef CS_BUDGET_H
 #define CS_BUDGET_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Zeroed: no limit. */
+/* Processor time and the rhythm of its checks. Zeroed: no limit. */
 struct cs_budget {
-    double end;              /* cs_clock_cpu; 0: none */
-    double last_check;       /* cs_clock_wall of the last look */
-    uint32_t steps;          /* since then */
-    uint32_t check_interval; /* steps from one look to the next */
+    double end;              /* s of cs_clock_cpu; 0: no limit */
+    double last_check;       /* s of cs_clock_wall, at the last check */
+    uint32_t steps;          /* steps since the last check */
+    uint32_t check_interval; /* steps between two checks, 1 to 1024 */
 };
 
+/* Grants cpu_seconds of processor time of the whole process, from now on. */
 void cs_budget_start(struct cs_budget *budget, double cpu_seconds);
-/* After every step. */
+/* Returns true if the time is used up. Call it after every step: most calls only count. */
 bool cs_budget_is_over(struct cs_budget *budget);
 
 #endif

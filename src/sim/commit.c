@@ -1,4 +1,16 @@
-/* Follows each step of a method: corrections in their order, and whether the run goes on. */
+/* commit.c - the corrections after a step, in their order, and the decision to continue.
+ *
+ * One commit, in order:
+ * 1. Ramped values move to t, and particles that static friction holds become free.
+ * 2. The ledger books the step itself: works of forces, and the remainder as the method's
+ *    error.
+ * 3. Strain limit, contact projection, velocity loss, positions on grabbed paths. The ledger
+ *    books each.
+ * 4. Checks: blow-up, interrupt, budget, then a first crossing of surfaces if the scene stops
+ *    there.
+ * 5. The observer, which may move the state.
+ * 6. The ledger and contact store the state that the next step starts from; static friction
+ *    decides again which particles it holds, and pins them. */
 #include "sim/commit.h"
 
 #include "base/vector.h"
@@ -8,6 +20,7 @@
 #include "sim/energy_ledger.h"
 #include "sim/trace.h"
 
+/* Shortens springs that are longer than the scene allows; counts them. */
 static void limit_strain(struct cs_run_host *host, double dt, double *x, double *v,
                          bool *changed) {
     const double begin = cs_stage_begin(host);
@@ -17,6 +30,7 @@ static void limit_strain(struct cs_run_host *host, double dt, double *x, double 
     cs_stage_end(host, CS_STAGE_LIMIT, begin);
 }
 
+/* Moves particles out of colliders and corrects their velocities (contact by projection). */
 static void resolve_contact(struct cs_run_host *host, double t, double dt, double *x, double *v,
                             bool *changed) {
     const double begin = cs_stage_begin(host);
@@ -32,7 +46,10 @@ void cs_host_pin(struct cs_run_host *host, bool held) {
               : cs_static_friction_unpin)(&host->contact.static_friction);
 }
 
-/* who is held in the next step, and where it starts; true: others are held */
+/* Stores the state as the start of the next step's contact, and pins the particles that
+ * static friction will hold in it. observed: the observer moved the state, which voids what
+ * friction held. moved: the state is not the one that contact left. Returns true if other
+ * particles are held than before. */
 static bool store_contact(struct cs_run_host *host, double t, const double *x, const double *v,
                           bool observed, bool moved) {
     struct cs_contact_projection *contact = &host->contact;
@@ -46,23 +63,28 @@ static bool store_contact(struct cs_run_host *host, double t, const double *x, c
     return others;
 }
 
+/* Work of apply_velocity_loss: v is scaled by `kept`, in 0..1. */
 struct loss {
     double *v, kept;
 };
 
+/* One range of the loop over 3n velocities. */
 static void apply_velocity_loss(void *arg, size_t begin, size_t end) {
     const struct loss *loss = arg;
     for (size_t i = begin; i < end; i++)
         loss->v[i] *= loss->kept;
 }
 
+/* v *= 1 - velocity_loss, once per step whatever its length: not a force (see
+ * docs/theory.md). */
 static void lose_velocity(struct cs_run_host *host, double *v, bool *changed) {
     struct loss loss = {v, 1 - host->run->system->scene->forces.velocity_loss};
     cs_vector_parallel_for(3 * (size_t)host->run->system->view.n, apply_velocity_loss, &loss);
     *changed = true;
 }
 
-/* whether the run goes on from here */
+/* Decides if the run continues. A blow-up comes first: its report must not hide behind an
+ * interrupt. */
 static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
                           const double *v) {
     const volatile sig_atomic_t *stop = host->settings.stop;
@@ -79,7 +101,8 @@ static enum cs_step judge(struct cs_run_host *host, double t, const double *x,
     return CS_STEP_OK;
 }
 
-/* what follows a first crossing has no meaning, where the scene says so */
+/* Ends the run at the first crossing of surfaces, if the scene asks for that: the motion
+ * after it has no meaning. */
 static enum cs_step stop_crossings(struct cs_run_host *host, double t, const double *x) {
     const double begin = cs_stage_begin(host);
     struct cs_text why = {0};
@@ -91,7 +114,8 @@ static enum cs_step stop_crossings(struct cs_run_host *host, double t, const dou
     return step;
 }
 
-/* what a correction left, if there was one, and what energy it took */
+/* Traces the state that a correction left (phase NULL: it does not act), and books its
+ * energy. */
 static void book_correction(const struct cs_run_host *host, enum cs_ledger_work work,
                             const char *phase, double t, const double *x, const double *v) {
     if (phase)
@@ -100,8 +124,9 @@ static void book_correction(const struct cs_run_host *host, enum cs_ledger_work 
         cs_energy_ledger_book_correction(host->settings.ledger, work, t, x, v);
 }
 
-/* The limit may move particles into obstacles, so contact comes after it; last are the grabbed
- * ones, which stay on their path whatever moved them. */
+/* Applies the post-step corrections. Contact follows the strain limit, which may move
+ * particles into colliders. Grabbed particles come last and stay on their path, whatever
+ * moved them. */
 static void correct(struct cs_run_host *host, double t, double dt, double *x, double *v,
                     bool *changed) {
     const struct cs_plan_row *rows = host->run->system->plan.rows;
@@ -123,6 +148,7 @@ static void correct(struct cs_run_host *host, double t, double dt, double *x, do
     }
 }
 
+/* A step that ends the run is observed and booked too: outputs then show where it ended. */
 enum cs_step cs_host_commit(void *ctx, double t, double dt, double *x, double *v,
                             bool *changed) {
     struct cs_run_host *host = ctx;

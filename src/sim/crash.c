@@ -1,4 +1,8 @@
-/* Names the module when a fatal signal, or an end of the program, comes out of it. */
+/* crash.c - reports a fatal signal, or an end of the program, that comes out of a module.
+ *
+ * A signal handler gets no argument and may call async-signal-safe functions only. Its texts
+ * are therefore stored before each call, and it uses nothing but string functions on its own
+ * stack, write and _exit. */
 #include "sim/crash.h"
 
 #include <errno.h>
@@ -9,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/* The fatal signals, and how the message explains them. */
 static const struct {
     int number;
     const char *what;
@@ -19,16 +24,18 @@ static const struct {
                {SIGABRT, ": it aborted"}};
 enum { SIGNALS = sizeof signals / sizeof *signals, STACK = 65536, TEXT = 1024 };
 
-/* a handler has no argument of its own: what it prints lies ready */
+/* The log of this process, unless cs_crash_log_to gave another; and the handlers before ours.
+ */
 static struct cs_crash_log own;
 static struct cs_crash_log *calls = &own;
 static struct sigaction before[SIGNALS];
 
-/* as much as there is room for; safe in a handler */
+/* Appends as much as fits; safe in a handler. */
 static void add(char text[TEXT], const char *part) {
     strncat(text, part, TEXT - 1 - strlen(text));
 }
 
+/* Appends the message about a call: kind, name, how it ended, place, explanation. */
 static void describe(const struct cs_crash_call *call, const char *how, const char *what,
                      char text[TEXT]) {
     const char *const parts[] = {call->out_of_memory ? "out of memory: " : "",
@@ -43,12 +50,13 @@ static void describe(const struct cs_crash_call *call, const char *how, const ch
         add(text, parts[k]);
 }
 
+/* A failed allocation is blamed before the module. */
 static enum cs_status status_of(const struct cs_crash_call *call) {
     return call->out_of_memory ? CS_ERR_MEMORY : CS_ERR_MODULE;
 }
 
-/* Only what is safe in a handler: write and _exit. Whoever watches from outside tells it there.
- */
+/* Prints the report and ends the process, by calls that are safe in a handler. A process that
+ * is watched from outside prints nothing: the watcher reports. */
 static _Noreturn void write_report(const struct cs_crash_call *call, const char *how,
                                    const char *what) {
     char text[TEXT] = "clothsim: ";
@@ -59,8 +67,8 @@ static _Noreturn void write_report(const struct cs_crash_call *call, const char 
     _exit(cs_status_exit_code(status_of(call)));
 }
 
-/* Of this thread; or of any where this one calls no modules, as they have threads of their own.
- * NULL: it is our own fault. */
+/* The call to blame: the one under way on this thread. A thread that has called no module may
+ * belong to one: then any call under way. NULL: the program's own fault. */
 static struct cs_crash_call *find_call(void) {
     struct cs_crash_call *found = NULL;
     bool calls_modules = false;
@@ -76,6 +84,7 @@ static struct cs_crash_call *find_call(void) {
     return calls_modules ? NULL : found;
 }
 
+/* The explanation of a signal; "" for another one. */
 static const char *signal_text(int number) {
     for (size_t k = 0; k < SIGNALS; k++)
         if (signals[k].number == number)
@@ -83,8 +92,9 @@ static const char *signal_text(int number) {
     return "";
 }
 
+/* The handler. A signal of the program's own goes to the handlers of before. */
 static void report(int number) {
-    /* no hook of malloc is needed: a failed one says so here, and libraries rarely look */
+    /* malloc sets ENOMEM when it fails, and libraries rarely test for it: no hook is needed */
     const bool starved = errno == ENOMEM;
     struct cs_crash_call *call = find_call();
     if (!call) {
@@ -98,7 +108,7 @@ static void report(int number) {
     write_report(call, "crashed ", signal_text(number));
 }
 
-/* a module that calls exit would else end a run as if it had finished */
+/* At exit: a module that calls exit would otherwise end a run like a finished one. */
 static void report_exit(void) {
     struct cs_crash_call *call = find_call();
     if (!call)
@@ -107,7 +117,8 @@ static void report_exit(void) {
     write_report(call, "ended the program ", "");
 }
 
-/* a handler on the stack that has overflowed could not run */
+/* Installs the handlers, once. They run on a stack of their own: after a stack overflow the
+ * normal one has no room. */
 static void prepare(void) {
     static char stack[STACK];
     const stack_t other = {.ss_sp = stack, .ss_size = sizeof stack};
@@ -123,7 +134,7 @@ void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
     static pthread_once_t prepared = PTHREAD_ONCE_INIT;
     struct cs_crash_call *call = calls->calls + side;
     pthread_once(&prepared, prepare);
-    /* not snprintf: it would be called at every advance */
+    /* not snprintf, which is slow for a call at every advance */
     const size_t length = strnlen(name, sizeof call->name - 1);
     memcpy(call->name, name, length);
     call->name[length] = 0;
@@ -138,7 +149,7 @@ void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
 void cs_crash_forget(enum cs_crash_side side) {
     const bool starved = errno == ENOMEM;
     struct cs_crash_call *call = calls->calls + side;
-    /* a module that forks would else have every file written twice */
+    /* the copy that a fork makes would otherwise write every file a second time */
     if (call->process != getpid())
         _exit(cs_status_exit_code(CS_ERR_MODULE));
     call->out_of_memory |= starved;
@@ -157,7 +168,7 @@ void cs_crash_log_to(struct cs_crash_log *log) {
     calls = log;
 }
 
-/* The call that crashed, or is under way, or else was the last one. */
+/* The call that crashed; else one that is under way; else any that was made. NULL: none. */
 static const struct cs_crash_call *find_faulting_call(const struct cs_crash_log *log) {
     const struct cs_crash_call *best = NULL;
     for (int k = 0; k < CS_CRASH_SIDES; k++) {
@@ -171,6 +182,7 @@ static const struct cs_crash_call *find_faulting_call(const struct cs_crash_log 
     return best;
 }
 
+/* The cause of an end as text: signal or exit code. */
 static void print_end(int end, char text[TEXT]) {
     if (WIFSIGNALED(end))
         snprintf(text, TEXT, "signal %d (%s)", WTERMSIG(end), strsignal(WTERMSIG(end)));

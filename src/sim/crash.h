@@ -1,8 +1,9 @@
-/* crash.h - says which foreign code it was when that brings the program down, by a fatal signal
- * or by ending it, and notes which calls are under way for a process that watches from outside.
+/* crash.h - names the foreign code that brings the program down, by a fatal signal or by
+ * ending it, and logs which calls are under way for a process that watches from outside.
  *
- * Round every call into a module. What a module breaks beside it, and is found later, cannot be
- * told from our own fault and is left to the debugger. */
+ * Every call into a module stands between cs_crash_watch and cs_crash_forget. Damage that a
+ * module does outside its calls, found later, cannot be told from a fault of the program:
+ * that is left to the debugger. */
 #ifndef CS_CRASH_H
 #define CS_CRASH_H
 
@@ -13,51 +14,53 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* Methods are called on one thread, renderers on another. */
+/* Methods are called on one thread, renderers on another: each has its own record. */
 enum cs_crash_side { CS_CRASH_METHOD, CS_CRASH_DRAWING, CS_CRASH_SIDES };
 
-/* The last call of a side. */
+/* The last call of a side. It may lie in memory shared with another process. */
 struct cs_crash_call {
-    char name[512];
-    const char *kind, *place; /* texts that do not change */
-    pthread_t thread;
-    pid_t process;
-    atomic_uint call_parity; /* begins and ends of calls: odd while one is under way */
-    int signal;              /* that it crashed by; 0: none */
-    bool out_of_memory;      /* memory ran out in it */
+    char name[512];           /* of the module or integrator, cut to fit */
+    const char *kind, *place; /* constant texts: "integrator", "in advance" */
+    pthread_t thread;         /* that called */
+    pid_t process;            /* that called: a fork of the module has another */
+    atomic_uint call_parity;  /* begins and ends of calls: odd while one is under way */
+    int signal;               /* the fatal signal; 0: none */
+    bool out_of_memory;       /* memory ran out in it */
 };
 
-/* Zeroed: no calls yet. */
+/* The calls of both sides. Zeroed: no calls yet. */
 struct cs_crash_log {
     struct cs_crash_call calls[CS_CRASH_SIDES];
 };
 
-/* From here on a fatal signal, and an exit, prints one line (`integrator "rk4" crashed in
- * advance: it aborted`) and ends the program with the exit code of a module that cannot be
- * used, or that of memory where an allocation had failed. Kind and place must be constants. */
+/* A call begins. Until cs_crash_forget a fatal signal or an exit prints one line (`integrator
+ * "rk4" crashed in advance: it aborted`) and ends the program. The exit code is that of a
+ * module that cannot be used, or that of memory if an allocation had failed. kind and place
+ * must be constants; name is copied. */
 void cs_crash_watch(enum cs_crash_side side, const char *kind, const char *name,
                     const char *place);
 
-/* The call is over. A copy of the process that it made ends here. */
+/* The call is over. If it forked, the copy of the process ends here. */
 void cs_crash_forget(enum cs_crash_side side);
 
-/* Another module, or another object of it: what failed before does not matter any more. */
+/* Forgets failed allocations: another module, or another object of it, begins. */
 void cs_crash_begin(enum cs_crash_side side);
-/* true: an allocation failed in a call since then. What goes on without may crash much later.
- */
+/* Returns true if an allocation failed in a call since cs_crash_begin. Code that ignores that
+ * may crash much later. */
 bool cs_crash_was_starved(enum cs_crash_side side);
 
-/* Calls are noted there from now on, in memory that another process sees, and that one is left
- * to tell how this one ended. */
+/* Logs calls in *log from now on, memory that another process sees. That process then reports
+ * how this one ended: this one stays silent. */
 void cs_crash_log_to(struct cs_crash_log *log);
 
+/* True between watch and forget. */
 static inline bool cs_crash_is_under_way(const struct cs_crash_call *call) {
     return atomic_load(&call->call_parity) % 2;
 }
 
-/* Tells how a process ended by the log that it noted its calls in. end: as of wait, and no
- * success. CS_ERR_MODULE; CS_ERR_MEMORY where an allocation had failed; CS_ERR_INTERNAL: it
- * made no calls. */
+/* Reports how a process ended, from the log of its calls. end: its status as wait gives it,
+ * not a success. Returns CS_ERR_MODULE, CS_ERR_MEMORY if an allocation had failed, or
+ * CS_ERR_INTERNAL if it made no calls; the message is in *error. */
 enum cs_status cs_crash_report_print(const struct cs_crash_log *log, int end,
                                      struct cs_error *error);
 

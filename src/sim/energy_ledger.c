@@ -1,4 +1,9 @@
-/* Keeps the account of a run's energy, step by step. */
+/* energy_ledger.c - keeps the energy balance of a run, step by step; the equations are in
+ * energy_ledger.h.
+ *
+ * A step costs two evaluations of all forces and, for each column of work, three of the
+ * forces in it. With events the work of pins takes three more evaluations, and the drift of
+ * values measures all energies six times. */
 #include "sim/energy_ledger.h"
 
 #include "base/table.h"
@@ -11,7 +16,8 @@
 #include <string.h>
 
 enum { POINTS = 3 };
-/* Gauss's rule on 0..1: 1/2 -+ sqrt(3/5)/2, weights 5/18, 8/18, 5/18 */
+/* Gauss's rule of three points on 0..1: nodes 1/2 -+ sqrt(3/5)/2 and 1/2, weights 5/18, 8/18,
+ * 5/18. Exact for degree 5. */
 static const double points[POINTS] = {0.11270166537925831, 0.5, 0.88729833462074169};
 static const double weights[POINTS] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
@@ -21,18 +27,20 @@ static const char *const holdings[] = {
 static const char *const works[] = {CS_LEDGER_WORK_LIST(X)};
 #undef X
 
-/* Columns of energies or of works: those of a list, and behind them one a force. */
+/* Columns of energies or of works: those of a list, then one per force that has none there. */
 struct columns {
     const char *const *names;
-    uint32_t n, parts; /* of forces that have one */
-    bool work;
+    uint32_t n;     /* columns of the list */
+    uint32_t parts; /* a force with one of these bits has a column */
+    bool work;      /* works, not energies */
 };
-/* springs have columns by their kinds */
+/* Springs are left out of the first: their energies have columns by kind, see measure. */
 static const struct columns energies = {holdings, CS_HOLDINGS,
                                         CS_PART_WITH_ENERGY & ~CS_PART_SPRINGS, false};
 static const struct columns work_done = {works, CS_WORKS, CS_PART_WITHOUT_ENERGY, true};
 
-/* of force k of the list of forces */
+/* The column of force k of cs_terms: the one of the list that it names (or that has its
+ * name), else its own after the list. CS_NO_COLUMN if it has no part of this table. */
 static uint32_t column_of(const struct columns *columns, uint32_t k) {
     const struct cs_term *term = cs_terms[k];
     const char *name = columns->work ? term->work_column : term->energy_column;
@@ -44,6 +52,7 @@ static uint32_t column_of(const struct columns *columns, uint32_t k) {
     return columns->n + k;
 }
 
+/* Doubles in an array (3,n). */
 static size_t length_of(const struct cs_energy_ledger *ledger) {
     return 3 * (size_t)ledger->system->view.n;
 }
@@ -55,11 +64,14 @@ static double dot(size_t n, const double *a, const double *b) {
     return sum;
 }
 
+/* Sets the values that ramps change to those at t; without events there are none. */
 static void move_values(const struct cs_energy_ledger *ledger, double t) {
     if (ledger->system->events)
         cs_events_move_values(ledger->system, t);
 }
 
+/* holds = the energies of (x, v) at t, by column. Contact and other forces with an energy add
+ * to the column that ledger->holding_of gives them. */
 static void measure(const struct cs_energy_ledger *ledger, double t, const double *x,
                     const double *v, double holds[CS_HOLDINGS_MOST]) {
     const struct cs_system *system = ledger->system;
@@ -86,8 +98,9 @@ double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger) {
     return sum_of(ledger->energies);
 }
 
-/* f = the parts at (t, x, v), on pinned particles too: what they bear is work where they move
- */
+/* f (3,n) = the chosen parts at (t, x, v), on pinned particles too: the pin carries this
+ * force, and does work if it moves. A copy of the system without pins gives them; normals are
+ * those of x. */
 static void find_force(const struct cs_system *system, double t, const double *x,
                        const double *v, uint32_t parts, double *f) {
     struct cs_system free = *system;
@@ -98,6 +111,7 @@ static void find_force(const struct cs_system *system, double t, const double *x
     cs_terms_force(&free, &at, f);
 }
 
+/* a (3,n) = M^-1 f in m/s2, 0 for pinned particles. */
 static void find_acceleration(const struct cs_energy_ledger *ledger, double t, const double *x,
                               const double *v, double *a) {
     const size_t n = ledger->system->view.n;
@@ -127,6 +141,7 @@ enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_
 }
 
 void cs_energy_ledger_resume(struct cs_energy_ledger *ledger, double t) {
+    // store_state books the difference to the energies of before, which is no work
     const double *x = ledger->system->state;
     double work[CS_WORKS_MOST];
     memcpy(work, ledger->work, sizeof work);
@@ -139,8 +154,9 @@ void cs_energy_ledger_close(struct cs_energy_ledger *ledger) {
     *ledger = (struct cs_energy_ledger){0};
 }
 
-/* the quintic's factors of x0, h v0, h^2 a0, h^2 a1, h v1, x1 at a share s of the step, and
- * their slopes */
+/* The quintic Hermite basis at the fraction s of the step: factors of x0, h v0, h^2 a0, h^2
+ * a1, h v1, x1 in position, and in `slope` their derivatives by s. Each polynomial has value,
+ * first and second derivative 1 in its own condition and 0 in the five others. */
 static void find_factors(double s, double place[6], double slope[6]) {
     const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
     const double places[6] = {1 - 10 * s3 + 15 * s4 - 6 * s5,  s - 6 * s3 + 8 * s4 - 3 * s5,
@@ -156,13 +172,13 @@ static void find_factors(double s, double place[6], double slope[6]) {
     memcpy(slope, slopes, sizeof slopes);
 }
 
-/* a step from the state that is kept to (x, v) with acceleration b */
+/* A step of length h in s from ledger->state to (x, v), where the acceleration is ledger->b. */
 struct step {
     double h;
     const double *x, *v;
 };
 
-/* y = place and velocity at a share s of the step */
+/* trial_state = position and velocity of the quintic at the fraction s of the step. */
 static void quintic_at(const struct cs_energy_ledger *ledger, const struct step *step,
                        double s) {
     const size_t n3 = length_of(ledger);
@@ -173,7 +189,7 @@ static void quintic_at(const struct cs_energy_ledger *ledger, const struct step 
         const double from = ledger->state[k], way = step->x[k] - from;
         const double v0 = ledger->state[n3 + k], v1 = step->v[k];
         const double a0 = h * ledger->acceleration[k], a1 = h * ledger->b[k];
-        // p[0] + p[5] is 1, so that a far place costs no figures
+        // p[0] + p[5] = 1: as a difference to x0, large coordinates do not cancel
         ledger->trial_state[k] =
             from + p[5] * way + h * (p[1] * v0 + p[4] * v1 + p[2] * a0 + p[3] * a1);
         ledger->trial_state[n3 + k] =
@@ -181,7 +197,9 @@ static void quintic_at(const struct cs_energy_ledger *ledger, const struct step 
     }
 }
 
-/* dU/dt at a fixed place: of values that ramps change and obstacles on paths */
+/* dU/dt in W at fixed positions, from values that ramps change and colliders on paths: a
+ * central difference over a hundredth of the step to either side. Kinetic energy is left out.
+ * Restores the values at t. */
 static double find_drift(const struct cs_energy_ledger *ledger, double t, double h) {
     const size_t n3 = length_of(ledger);
     const double away = h / 100, *x = ledger->trial_state, *v = x + n3;
@@ -198,7 +216,7 @@ static double find_drift(const struct cs_energy_ledger *ledger, double t, double
     return (ends[1] - ends[0]) / (2 * away);
 }
 
-/* J/s that the pinned particles bring in */
+/* Power in W that moving pins bring in: -sum over pinned particles of f.v. */
 static double find_pins(const struct cs_energy_ledger *ledger, double t) {
     const struct cs_system *system = ledger->system;
     const size_t n = system->view.n, n3 = 3 * n;
@@ -211,7 +229,7 @@ static double find_pins(const struct cs_energy_ledger *ledger, double t) {
     return power;
 }
 
-/* leaves those of a system's forces that have a column */
+/* Leaves in the copy `some` of the system only the forces whose work goes to a column. */
 static void choose_forces(const struct cs_energy_ledger *ledger, uint32_t column,
                           struct cs_system *some) {
     some->n_terms = 0;
@@ -220,7 +238,8 @@ static void choose_forces(const struct cs_energy_ledger *ledger, uint32_t column
             some->terms[some->n_terms++] = cs_terms[k];
 }
 
-/* adds the works of forces at one point of the step, over `time` */
+/* Adds the work of the forces without an energy at one node of the quadrature. time: its
+ * weight times h, in s. */
 static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
     struct cs_system some = *ledger->system;
     const size_t n3 = length_of(ledger);
@@ -234,7 +253,8 @@ static void add_forces(struct cs_energy_ledger *ledger, double t, double time) {
     }
 }
 
-/* adds the works at one point of the step, over `time` */
+/* Adds all works at one node of the quadrature, at time t and with weight `time` in s. Pins
+ * and values can do work only with events. */
 static void add_works(struct cs_energy_ledger *ledger, double t, double time, double h) {
     move_values(ledger, t);
     add_forces(ledger, t, time);
@@ -244,6 +264,8 @@ static void add_works(struct cs_energy_ledger *ledger, double t, double time, do
     ledger->work[CS_WORK_VALUES] += time * find_drift(ledger, t, h);
 }
 
+/* Sum in J of the works that a step can do: all columns before INTEGRATOR, and the own
+ * columns of forces. */
 static double sum_forces(const struct cs_energy_ledger *ledger) {
     double sum = 0;
     for (int k = 0; k < CS_WORKS_MOST; k++)
@@ -253,6 +275,7 @@ static double sum_forces(const struct cs_energy_ledger *ledger) {
 
 void cs_energy_ledger_book_step(struct cs_energy_ledger *ledger, double t, const double *x,
                                 const double *v) {
+    // remainder = change of E - works of this step
     const struct step step = {.h = t - ledger->t, .x = x, .v = v};
     const double before = cs_energy_ledger_sum(ledger), worked = sum_forces(ledger);
     find_acceleration(ledger, t, x, v, ledger->b);
@@ -290,7 +313,8 @@ void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, con
     find_acceleration(ledger, t, x, v, ledger->acceleration);
 }
 
-/* value NULL: the name, as in the head */
+/* Adds one field of the CSV: the value, or with value NULL the name for the head, _ for
+ * spaces. */
 static void add_column(struct cs_text *out, const char *name, const double *value) {
     if (value) {
         cs_csv_add_number(out, *value);
@@ -301,7 +325,8 @@ static void add_column(struct cs_text *out, const char *name, const double *valu
         cs_text_add(out, "%c", *name == ' ' ? '_' : *name);
 }
 
-/* values NULL: the head */
+/* Adds all columns of a table; values NULL: their names. The order is that of the list, then
+ * of the forces, as column_of numbers them. */
 static void add_columns(const struct columns *columns, const double *values,
                         struct cs_text *out) {
     for (uint32_t c = 0; c < columns->n; c++)

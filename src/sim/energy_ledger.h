@@ -1,25 +1,44 @@
-/* energy_ledger.h - where the energy of a run went: what it holds, the work of each force
- * without an energy, what each correction after a step took, and as the rest what the method
- * made or lost.
+/* energy_ledger.h - energy balance of a run: stored energies, work of non-conservative
+ * forces, energy changed by post-step corrections, and, as the remainder, the integrator's
+ * own error.
  *
- * Over a step the state moves along the quintic through position, velocity and acceleration at
- * both ends, and work is the integral of force times velocity along it by Gauss's rule of three
- * points: of order 6, so that the rest is the method's error wherever that is larger. With
- * pinned particles on paths, E' = sum over all of f_n.v - sum over pinned of f.v + dU/dt, f_n
- * the forces without an energy, U the others' potential. */
+ * Balance. E = T + U with the kinetic energy T and the potential U of the forces in
+ * CS_PART_WITH_ENERGY; f_n are the forces without an energy, f is the sum of all. Free
+ * particles have m a = f. Pinned ones have a prescribed, piecewise constant velocity, and
+ * their T does not change within a segment:
+ *   T' = sum over free of f.v,   U' = -sum over all of (f - f_n).v + dU/dt
+ *   E' = sum over all of f_n.v - sum over pinned of f.v + dU/dt
+ * The three terms are the work of forces, of pins on paths, and of values that events change.
+ *
+ * Quadrature. Over a step the state follows the quintic through position, velocity and
+ * acceleration at both ends. Work is the integral of force times velocity along it by Gauss's
+ * rule of three points, which is exact for polynomials of degree 5. The rule has order 6: the
+ * remainder is the method's error wherever that is larger.
+ *
+ * Order of the calls in one commit: book_step with the state that the method left,
+ * book_correction after each correction, store_state with the state that the next step starts
+ * from. Every joule that E changes by is then in exactly one column of work. */
 #ifndef CS_ENERGY_LEDGER_H
 #define CS_ENERGY_LEDGER_H
 
 #include "model/system/system.h"
 
 /* X(name, column): energies in J of a state. A force of terms.h adds its energy to the column
- * that its struct cs_term names, else to one of its own after these, in the order of forces. */
+ * that its struct cs_term names, else to its own column after these, in the order of forces. */
 #define CS_LEDGER_ENERGY_LIST(X)                                                               \
     X(KINETIC, "kinetic")                                                                      \
     X(STRETCH, "stretch")                                                                      \
     X(SHEAR, "shear") X(BEND, "bend") X(GRAVITY, "gravity") X(OTHER, "other")
-/* X(name, column): work in J since the start, above 0 if it comes in. Columns of forces stand
- * before PINS, or after all as those of their energies. */
+/* X(name, column): work in J since the start, positive if it adds energy to the system.
+ *
+ * DAMPERS to PUSH are forces without an energy. PINS is the work of grabbed and other moving
+ * pinned particles, VALUES the change of U at fixed positions. INTEGRATOR is the remainder of
+ * each step. LIMIT to LOSS are post-step corrections: strain limit, the potential and the
+ * kinetic part of contact projection, and the velocity loss. EVENTS is any other change of
+ * the state: events, grabbed paths, an observer.
+ *
+ * Columns of forces stand before PINS. A force's own column follows the list, in the order of
+ * forces. */
 #define CS_LEDGER_WORK_LIST(X)                                                                 \
     X(DAMPERS, "dampers")                                                                      \
     X(DRAG, "drag")                                                                            \
@@ -28,15 +47,19 @@
     X(PUSH, "push")                                                                            \
     X(PINS, "pins")                                                                            \
     X(VALUES, "values")                                                                        \
-    X(INTEGRATOR, "integrator") X(LIMIT, "strain_limit") X(PROJECTION, "projection")           \
-        X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
+    X(INTEGRATOR, "integrator")                                                                \
+    X(LIMIT, "strain_limit")                                                                   \
+    X(PROJECTION, "projection")                                                                \
+    X(ABSORPTION, "absorption") X(LOSS, "velocity_loss") X(EVENTS, "events")
 
+/* Rows of cs_energy_ledger.energies. */
 enum cs_ledger_energy {
 #define X(name, column) CS_HOLDING_##name,
     CS_LEDGER_ENERGY_LIST(X)
 #undef X
         CS_HOLDINGS
 };
+/* Rows of cs_energy_ledger.work. */
 enum cs_ledger_work {
 #define X(name, column) CS_WORK_##name,
     CS_LEDGER_WORK_LIST(X)
@@ -44,47 +67,61 @@ enum cs_ledger_work {
         CS_WORKS
 };
 
+/* Capacities: the lists above and one own column per force. Row k of the forces has its own
+ * column at CS_HOLDINGS + k or CS_WORKS + k; columns that no force uses stay 0. */
 enum {
     CS_HOLDINGS_MOST = CS_HOLDINGS + CS_TERMS_MAX,
     CS_WORKS_MOST = CS_WORKS + CS_TERMS_MAX,
     CS_NO_COLUMN = CS_WORKS_MOST
 };
 
-/* Zeroed: none. */
+/* The ledger of one run. Zeroed: none. */
 struct cs_energy_ledger {
-    struct cs_system *system;        /* borrowed */
-    double t;                        /* s, of the state that is kept */
-    double *state, *acceleration;    /* (6,n) that state, x then v; (3,n) in m/s2 */
-    double *trial_state, *force, *b; /* (6,n), (3,n), (3,n) work */
-    /* columns of each force in the list of terms.h; CS_NO_COLUMN: none, or it does not act */
+    struct cs_system *system; /* borrowed */
+    /* The start of the running step. */
+    double t;             /* s */
+    double *state;        /* (6,n): x in m, then v in m/s */
+    double *acceleration; /* (3,n) in m/s2, 0 for pinned particles */
+    /* Scratch. */
+    double *trial_state; /* (6,n): the quintic at a point of the step */
+    double *force;       /* (3,n) in N */
+    double *b;           /* (3,n) in m/s2: acceleration at the end of the step */
+    /* Columns of each force in the list of terms.h; CS_NO_COLUMN: none, or it does not act. */
     uint32_t holding_of[CS_TERMS_MAX], work_of[CS_TERMS_MAX];
-    double energies[CS_HOLDINGS_MOST], work[CS_WORKS_MOST];
-    struct cs_arena arena;
+    double energies[CS_HOLDINGS_MOST]; /* J, of the state that was booked last */
+    double work[CS_WORKS_MOST];        /* J since the start */
+    struct cs_arena arena;             /* owns the arrays */
 };
 
-/* Takes its memory, and the state of the system at t. CS_ERR_MEMORY. */
+/* Allocates the arrays and stores the state of the system at t; all works are 0. On failure
+ * (CS_ERR_MEMORY) call close. */
 enum cs_status cs_energy_ledger_open(struct cs_energy_ledger *ledger, struct cs_system *system,
                                      double t, struct cs_error *error);
-/* From the state of the system at t on, with the works as they were put down before. */
+/* Continues from the state of the system at t, and keeps the works booked so far: after a
+ * checkpoint. */
 void cs_energy_ledger_resume(struct cs_energy_ledger *ledger, double t);
+/* Releases the arrays and zeroes the ledger. */
 void cs_energy_ledger_close(struct cs_energy_ledger *ledger);
 
-/* A method's step has ended at t in (x, v): its works, and the rest. */
+/* Books a step of the method that ended at t in (x, v), both (3,n): the works along the
+ * quintic, and the remainder as CS_WORK_INTEGRATOR. */
 void cs_energy_ledger_book_step(struct cs_energy_ledger *ledger, double t, const double *x,
                                 const double *v);
-/* The state was changed at t: its energy is put down to `work`; of CS_WORK_PROJECTION what is
- * kinetic to CS_WORK_ABSORPTION. */
+/* Books a change of the state at t: the energy that it added goes to `work`. For
+ * CS_WORK_PROJECTION the kinetic part goes to CS_WORK_ABSORPTION instead. */
 void cs_energy_ledger_book_correction(struct cs_energy_ledger *ledger, enum cs_ledger_work work,
                                       double t, const double *x, const double *v);
-/* The next step begins from here; what was not put down is of CS_WORK_EVENTS. */
+/* Stores (x, v) at t as the start of the next step. A change that nobody booked goes to
+ * CS_WORK_EVENTS. */
 void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, const double *x,
                                   const double *v);
 
-/* The sum of all that is held, in J. */
+/* The sum of all stored energies, in J. */
 double cs_energy_ledger_sum(const struct cs_energy_ledger *ledger);
 
-/* CSV: a frame's holdings, their sum, and the works; a column of a force's own has its name,
- * with _ for spaces, and that of its work _work behind it where it has an energy too. */
+/* CSV: frame and time, the stored energies in J, their sum, and the works in J. A force's own
+ * column has its name, with _ for spaces. A force with both an energy and a work has the suffix
+ * _work on the second. */
 void cs_energy_ledger_print_head(struct cs_text *out);
 void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
                                 struct cs_text *out);

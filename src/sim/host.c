@@ -1,4 +1,8 @@
-/* host.c - what the model does for a method, call by call: checked, timed and counted. */
+/* host.c - the model's functions as the calls of a method: checked, timed and counted.
+ *
+ * Every call follows one pattern: move ramped values to the time asked for, start the clock
+ * of its stage, call the model, count, stop the clock, trace arguments and results. Neither
+ * clock nor trace reaches a number that the method sees. */
 #include "sim/host.h"
 
 #include "base/vector.h"
@@ -16,6 +20,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Memory of the run, in create alone: no step allocates. */
 static void *host_alloc(void *ctx, size_t bytes) {
     struct cs_run_host *host = ctx;
     if (!host->creating) {
@@ -25,6 +30,8 @@ static void *host_alloc(void *ctx, size_t bytes) {
     return cs_arena_alloc(&host->arena, bytes, &host->error);
 }
 
+/* Stores the message, with the pair that blocked the last rejected step if there is one.
+ * cs_fail keeps the first message. */
 static enum cs_step host_fail(void *ctx, const char *format, ...) {
     struct cs_run_host *host = ctx;
     char message[512];
@@ -39,6 +46,7 @@ static enum cs_step host_fail(void *ctx, const char *format, ...) {
     return CS_STEP_FAIL;
 }
 
+/* Adds a remark, unless it is there already or there is no room. */
 static void host_note(void *ctx, const char *format, ...) {
     struct cs_run *run = ((struct cs_run_host *)ctx)->run;
     char message[sizeof run->notes[0]];
@@ -53,6 +61,7 @@ static void host_note(void *ctx, const char *format, ...) {
         memcpy(run->notes[run->n_notes++], message, sizeof message);
 }
 
+/* Normals of x, if one of the parts needs them (wind). */
 static void update_normals(struct cs_run_host *host, const double *x, uint32_t parts) {
     if (!cs_terms_need_normals(host->run->system, parts))
         return;
@@ -62,6 +71,7 @@ static void update_normals(struct cs_run_host *host, const double *x, uint32_t p
     cs_stage_end(host, CS_STAGE_NORMALS, begin);
 }
 
+/* f = the chosen parts at (t, x, v). */
 static void host_force(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                        double *f) {
     struct cs_run_host *host = ctx;
@@ -76,6 +86,7 @@ static void host_force(void *ctx, double t, const double *x, const double *v, ui
     cs_trace_vector(host, "force", "f", t, f);
 }
 
+/* Kinetic and potential energy in J at (t, x, v). */
 static double host_energy(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
     cs_move_values(host, t);
@@ -86,6 +97,7 @@ static double host_energy(void *ctx, double t, const double *x, const double *v)
     return cs_energy_total(&energy);
 }
 
+/* df = (df/dx) dx + (df/dv) dv at (t, x, v). */
 static void host_jvp(void *ctx, double t, const double *x, const double *v, uint32_t parts,
                      const double *dx, const double *dv, double *df) {
     struct cs_run_host *host = ctx;
@@ -101,6 +113,7 @@ static void host_jvp(void *ctx, double t, const double *x, const double *v, uint
     cs_trace_vector(host, "force derivative", "df", t, df);
 }
 
+/* The 3x3 diagonal blocks of the derivatives at (t, x, v). */
 static void host_diagonal(void *ctx, double t, const double *x, const double *v, double *kxx,
                           double *dvv) {
     struct cs_run_host *host = ctx;
@@ -112,6 +125,8 @@ static void host_diagonal(void *ctx, double t, const double *x, const double *v,
     cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
+/* host_force of all parts and host_diagonal in one pass over the springs; blocks (12,n) is
+ * kxx, then dvv. */
 static void host_force_diagonal(void *ctx, double t, const double *x, const double *v,
                                 double *f, double *blocks) {
     struct cs_run_host *host = ctx;
@@ -127,9 +142,10 @@ static void host_force_diagonal(void *ctx, double t, const double *x, const doub
     cs_trace_vector(host, "force", "f", t, f);
 }
 
-/* A matrix that is not positive definite is made so, by and by, and that is counted; what is
- * taken away from friction over bent surfaces goes last. false: there is nothing left to clamp.
- */
+/* Sets the solver up again with a matrix that is closer to positive definite: first
+ * CS_SOLVE_PSD, which drops the transverse part of compressed springs, then CS_SOLVE_BOUND
+ * for friction on curved surfaces too. Counted in clamped_setups. Returns false if both are
+ * already set. */
 static bool clamp(struct cs_run_host *host) {
     struct cs_matrix matrix = host->linear.matrix;
     if (matrix.psd && matrix.bound)
@@ -141,6 +157,8 @@ static bool clamp(struct cs_run_host *host) {
     return true;
 }
 
+/* Prepares A at (t, x, v). Copies the state, because host_solve may have to set up again
+ * after the method has moved on. A diagonal block that is not definite clamps at once. */
 static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const double *v,
                                      double cm, double cd, double ck, uint32_t flags) {
     struct cs_run_host *host = ctx;
@@ -154,7 +172,6 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     cs_trace_state(host, "solve set-up", t, x, v);
     const double begin = cs_stage_begin(host);
     host->run->counts.solve_setups++;
-    // kept, since a solve may have to set up again, and the method may have moved on by then
     memcpy(host->setup_x, x, bytes);
     if (host->setup_v)
         memcpy(host->setup_v, v, bytes);
@@ -172,6 +189,9 @@ static enum cs_step host_solve_setup(void *ctx, double t, const double *x, const
     return CS_STEP_OK;
 }
 
+/* Solves A u = b by conjugate gradients. If these meet p.Ap <= 0, A is clamped, u starts
+ * again from 0, and all iterations count. Fails at the iteration limit, or if a clamped A is
+ * still indefinite. */
 static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *u) {
     struct cs_run_host *host = ctx;
     uint64_t iterations;
@@ -182,7 +202,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     host->run->counts.solves++;
     enum cs_linear_end end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
     host->run->counts.solve_iterations += iterations;
-    // setup looks at diagonal blocks alone: that a matrix is indefinite may show only here
+    // set-up tests diagonal blocks alone: an indefinite matrix may show only here
     while (end == CS_LINEAR_INDEFINITE && clamp(host)) {
         memset(u, 0, 3 * sizeof *u * host->run->system->view.n);
         end = cs_linear_solve(&host->linear, b, rtol, u, &iterations, &residual);
@@ -200,6 +220,7 @@ static enum cs_step host_solve(void *ctx, const double *b, double rtol, double *
     return CS_STEP_OK;
 }
 
+/* y = A p with the last A, counted as a Jacobian product. */
 static void host_apply(void *ctx, const double *p, double *y) {
     struct cs_run_host *host = ctx;
     const double begin = cs_stage_begin(host);
@@ -208,6 +229,7 @@ static void host_apply(void *ctx, const double *p, double *y) {
     cs_stage_end(host, CS_STAGE_SOLVE, begin);
 }
 
+/* Bounds on frequency and half damping rate at a state, contact included. */
 static void host_rate(void *ctx, double t, const double *x, const double *v, double *omega,
                       double *delta) {
     struct cs_run_host *host = ctx;
@@ -218,6 +240,8 @@ static void host_rate(void *ctx, double t, const double *x, const double *v, dou
     cs_stage_end(host, CS_STAGE_CONTACT, begin);
 }
 
+/* The admissible fraction of a displacement; below 1 counts as a subdivided step. Remembers
+ * the blocking pair for the message of host_fail. */
 static double host_max_share(void *ctx, double t0, const double *x0, double t1,
                              const double *x1) {
     struct cs_run_host *host = ctx;
@@ -232,6 +256,7 @@ static double host_max_share(void *ctx, double t0, const double *x0, double t1,
     return share;
 }
 
+/* -h df/dv - h^2 df/dx of contact at each particle, clamped and with the bound of friction. */
 static void host_blocks(void *ctx, double t, const double *x, const double *v, double h,
                         double *blocks) {
     struct cs_run_host *host = ctx;
@@ -245,14 +270,15 @@ static void host_blocks(void *ctx, double t, const double *x, const double *v, d
     cs_stage_end(host, CS_STAGE_FORCE, begin);
 }
 
-/* whether a run has a feature; what is taken from now on is counted in its row of the plan */
+/* Tells if a feature is built. Memory taken from now on counts in its row of the plan. */
 static bool begin(struct cs_run_host *host, enum cs_feature feature) {
     struct cs_plan_row *row = host->run->plan.rows + feature;
     host->arena.part = &row->bytes;
     return row->built;
 }
 
-/* only where it is asked for: methods leave out what is NULL */
+/* Offers bounds_at, max_step_fraction and contact_blocks, only if the scene needs them: NULL
+ * tells a method to leave them out. A scene with max_step_fraction has bounds_at too. */
 static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error) {
     const struct cs_system *system = host->run->system;
     const bool judged = cs_step_limit_applies(system);
@@ -273,6 +299,8 @@ static enum cs_status add_rate(struct cs_run_host *host, struct cs_error *error)
     return error->status;
 }
 
+/* The longest step in s that moves no free particle deeper than penetration_max behind a
+ * collider, or by that much deeper than it is. */
 static double host_longest_step(void *ctx, double t, const double *x, const double *v) {
     struct cs_run_host *host = ctx;
     struct cs_contact_projection *contact = &host->contact;
@@ -287,6 +315,8 @@ static double host_longest_step(void *ctx, double t, const double *x, const doub
     return step;
 }
 
+/* Prepares contact by projection. Methods with another model than the equation of motion have
+ * no force to decide static friction by. */
 static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *error) {
     struct cs_system *system = host->run->system;
     if (!begin(host, CS_FEATURE_CONTACT))
@@ -302,7 +332,8 @@ static enum cs_status add_contact(struct cs_run_host *host, struct cs_error *err
     return CS_OK;
 }
 
-/* commit looks only, and no event comes */
+/* True if no post-step correction, contact or event can change the state of this scene:
+ * commit only checks. */
 static bool may_pass(const struct cs_system *system) {
     static const enum cs_feature acting[] = {CS_FEATURE_VELOCITY_LOSS, CS_FEATURE_CONTACT,
                                              CS_FEATURE_CROSSINGS, CS_FEATURE_STRAIN_LIMIT,
@@ -339,7 +370,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     cs_blow_up_check_set(&host->blow_up, system, 0);
     if (add_rate(host, error) || add_contact(host, error))
         return error->status;
-    // only methods that solve pay for the solver's memory and the copies of the state
+    // only methods with CS_NEED_SOLVE pay for the solver's memory and the copies of the state
     if (!begin(host, CS_FEATURE_SOLVER))
         return CS_OK;
     const size_t n3 = 3 * (size_t)system->view.n;
@@ -349,6 +380,7 @@ enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
     return cs_linear_init(&host->linear, system, &host->arena, error);
 }
 
+/* The replacement of host_solve by cs_run_host_fail_solves. */
 static enum cs_step failing_solve(void *ctx, const double *b, double rtol, double *u) {
     (void)b, (void)rtol, (void)u;
     return host_fail(ctx, "the linear solver was told to fail");
@@ -358,6 +390,8 @@ void cs_run_host_fail_solves(struct cs_run_host *host) {
     host->table.solve = failing_solve;
 }
 
+/* Everything that depends on the state follows an event: blow-up bound, ledger, trace, and the
+ * particles that static friction holds. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t) {
     struct cs_system *system = host->run->system;
     const bool changed = cs_events_apply(system, t);

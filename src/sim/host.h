@@ -1,18 +1,19 @@
-/* host.h - the calls that a method may make, over the model: counted, timed, checked. */
+/* host.h - the host's calls for a method: the model's functions, counted, timed and checked. */
 #ifndef CS_HOST_H
 #define CS_HOST_H
 
 #include "sim/run_host.h"
 
-/* Fills the calls for a run over system. CS_ERR_MEMORY. */
+/* Fills host->table for a run over run->system, and takes the memory of contact and of the
+ * linear solver. host is zeroed but for its settings. CS_ERR_MEMORY. */
 enum cs_status cs_run_host_init(struct cs_run_host *host, struct cs_run *run,
                                 struct cs_error *error);
 
-/* Replaces the call solve by one that fails. */
+/* Replaces the call solve by one that always fails, to test what a method does then. */
 void cs_run_host_fail_solves(struct cs_run_host *host);
 
-/* What happens at time t: the state, the pins and the values change, and so does the bound of
- * the kinetic energy. true: the method must be restarted; false: nothing changed. */
+/* Applies the events at time t to the state, the pins and the values, and sets the blow-up
+ * bound for them. Returns true if anything changed: the method must be restarted. */
 bool cs_run_host_apply_events(struct cs_run_host *host, double t);
 
 #endif

@@ -1,4 +1,5 @@
-/* Finds the program's own files: in its build tree, or where they are installed beside it. */
+/* install_paths.c - finds the program's own files: in its build tree, or where they are
+ * installed beside it. */
 #include "sim/install_paths.h"
 
 #include <limits.h>
@@ -16,7 +17,7 @@
 
 enum { FOLDER_MAX = PATH_MAX + 256 };
 
-/* cuts the last part off; false where none is left */
+/* Cuts off the last part of a path; false if nothing is left. */
 static bool parent_path(char *path) {
     char *slash = strrchr(path, '/');
     if (slash)
@@ -24,7 +25,7 @@ static bool parent_path(char *path) {
     return slash && *path;
 }
 
-/* Whether path or a folder above it is a Meson build; path is cut to it. */
+/* True if path, or a folder above it, is a Meson build; path is then cut to that folder. */
 static bool find_build(char *path) {
     do {
         char marker[FOLDER_MAX];
@@ -35,8 +36,8 @@ static bool find_build(char *path) {
     return false;
 }
 
-/* The program's own file; every system has a way of its own to ask for it, and Linux's is the
- * one that others have where they have none. */
+/* The path of the running program. Each system has its own call; systems without one may have
+ * Linux's /proc. Returns false if the system does not tell. */
 static bool find_program(char *path, size_t size) {
 #ifdef __APPLE__
     uint32_t length = (uint32_t)size;
@@ -52,7 +53,8 @@ static bool find_program(char *path, size_t size) {
 #endif
 }
 
-/* *out is left empty where neither the program nor, in a build, in_build is known */
+/* Writes the folder `in_build` of the build, or `installed` relative to the program, to out.
+ * out stays as it is if the program's path is unknown, or in a build if in_build is NULL. */
 static const char *find(const char *in_build, const char *installed, char *out) {
     char program[PATH_MAX] = "", build[PATH_MAX];
     if (!find_program(program, sizeof program) || !parent_path(program))

@@ -1,23 +1,24 @@
-/* install_paths.h - where this program's own files lie. */
+/* install_paths.h - the program's own files: modules and data, in the build or installed. */
 #ifndef CS_INSTALL_PATHS_H
 #define CS_INSTALL_PATHS_H
 
 #include <stddef.h>
 
+/* Bytes that suffice for the result of cs_data_find. */
 enum { CS_DATA_PATH_MAX = 8192 };
 
-/* The file of this program; its name where the system does not say. */
+/* The path of the running program; "clothsim" if the system does not tell. Static. */
 const char *cs_program_path(void);
 
-/* The folders of integrator and renderer modules: the build's when the program runs from the
- * build, else the installed ones, found from the program's own place so that an installed tree
- * can be moved. Absolute. */
+/* The folders of integrator and renderer modules. In a build tree the build's, else the
+ * installed ones. These are found relative to the program, so that an installed tree can be
+ * moved. Absolute and static; "" if the program's path is unknown. */
 const char *cs_module_folder(void);
 const char *cs_renderer_folder(void);
 
-/* The path itself where something lies there or where it is absolute, else that of an installed
- * file or folder with this name ("scenes/hang.json"), written to out (size, such as
- * CS_DATA_PATH_MAX); the path itself where there is none either. */
+/* Finds a data file or folder. Returns the path itself if it exists or is absolute. Else the
+ * path of an installed file of this name ("scenes/hang.json"), written to out (size bytes,
+ * such as CS_DATA_PATH_MAX). Else the path itself. */
 const char *cs_data_find(const char *path, char *out, size_t size);
 
 #endif

@@ -1,4 +1,13 @@
-/* The parser of NAME:key=value,... that every command uses. */
+/* method.c - the parser of NAME:key=value,... that every command uses.
+ *
+ * The grammar of a list of methods:
+ *   list   = method { "," method }
+ *   method = [ SERIES "=" ] NAME [ ":" pair { "," pair } ]
+ *   pair   = key "=" value
+ *
+ * A comma separates both methods and pairs. A token between commas is a pair if it has a '=',
+ * unless a ':' follows the token after the '=': then it is SERIES=NAME:... . A SERIES
+ * therefore needs a method with options. */
 #include "sim/method.h"
 
 #include "base/options.h"
@@ -71,6 +80,7 @@ enum cs_status cs_method_set_pairs(struct cs_method *method, const char *pairs,
     return error->status ? error->status : cs_method_check(method, NULL, CS_ERR_USAGE, error);
 }
 
+/* The error for a key that no row has, with the nearest one. */
 static enum cs_status unknown_option(const struct cs_method *method, const char *where,
                                      const char *key, enum cs_status status,
                                      struct cs_error *error) {
@@ -80,6 +90,7 @@ static enum cs_status unknown_option(const struct cs_method *method, const char 
                    nearest ? "\"?" : "", method->integrator->name);
 }
 
+/* The bit of a row in `given`. Rows from the 65th on have none, and never count as given. */
 static uint64_t bit_of(const struct cs_method *method, const struct cs_option *row) {
     const ptrdiff_t k = row - method->table.rows;
     return k < 64 ? UINT64_C(1) << k : 0;
@@ -89,6 +100,7 @@ bool cs_method_is_given(const struct cs_method *method, const struct cs_option *
     return method->given & bit_of(method, row);
 }
 
+/* Adds the place of an option for a message: place and key, or the integrator and key. */
 static void add_place(const struct cs_method *method, const char *place, const char *key,
                       struct cs_text *out) {
     if (place)
@@ -116,6 +128,7 @@ int32_t cs_method_choice(const struct cs_method *method, const struct cs_option 
     return value;
 }
 
+/* The error for an option without effect: names the values of the choice that give it one. */
 static enum cs_status refuse_idle(const struct cs_method *method,
                                   const struct cs_option_use *use,
                                   const struct cs_option *choice, const char *place,
@@ -142,7 +155,7 @@ enum cs_status cs_method_check(const struct cs_method *method, const char *place
         const struct cs_option_use *use = integrator->uses + k;
         const struct cs_option *row = cs_option_find(&method->table, use->option),
                                *choice = cs_option_find(&method->table, use->choice);
-        // what prints every value prints defaults that have no effect too
+        // defaults pass: printed options list every value, also those without effect
         if (cs_method_is_given(method, row) && !cs_option_is_default(row, method->options) &&
             !(use->values >> cs_method_choice(method, choice) & 1))
             return refuse_idle(method, use, choice, place, status, error);
@@ -156,6 +169,7 @@ const char *cs_method_after_series(const char *token) {
     return token[name] == '=' && method[strcspn(method, ",:=")] == ':' ? method : NULL;
 }
 
+/* True for key=value, as against NAME, NAME:... and SERIES=NAME:... . */
 static bool is_option(const char *token) {
     return token[strcspn(token, ",:=")] == '=' && !cs_method_after_series(token);
 }
@@ -182,6 +196,7 @@ enum cs_status cs_method_parse_pair(const char *name, char **pairs, const char *
     return CS_OK;
 }
 
+/* The option dt of a method, if it is a real number; else NULL. */
 static const struct cs_option *find_dt(const struct cs_integrator *integrator) {
     const struct cs_table table = {.rows = integrator->options, .n = integrator->n_options};
     const struct cs_option *row = cs_option_find(&table, "dt");

@@ -1,4 +1,5 @@
-/* Opens an integrator module and checks it against the contract before it is called. */
+/* module.c - opens an integrator module and checks it against the contract before it is
+ * called. */
 #include "sim/module.h"
 
 #include "base/value_kind.h"
@@ -12,10 +13,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
+/* True for 1 to 63 characters out of `letters`. */
 static bool is_name(const char *name, const char *letters) {
     return name && *name && strlen(name) < 64 && !name[strspn(name, letters)];
 }
 
+/* The error about one option of an integrator. */
 static enum cs_status refuse_option(const struct cs_integrator *integrator,
                                     const struct cs_option *option, const char *why,
                                     struct cs_error *error) {
@@ -23,9 +26,10 @@ static enum cs_status refuse_option(const struct cs_integrator *integrator,
                    integrator->name, option->name ? option->name : "(no name)", why);
 }
 
+/* Checks a row of the option table: name, type, bounds of its field, texts, default. */
 static enum cs_status check_option(const struct cs_integrator *integrator,
                                    const struct cs_option *option, struct cs_error *error) {
-    /* the first four types are for modules; a foreign one may hold any number here */
+    /* the first four types are for modules; a foreign table may contain any number */
     const size_t size =
         (unsigned)option->type <= CS_CHOICE ? cs_value_kind_of(option)->size : 0;
     if (!is_name(option->name, "abcdefghijklmnopqrstuvwxyz0123456789_"))
@@ -53,6 +57,7 @@ static enum cs_status check_option(const struct cs_integrator *integrator,
     return CS_OK;
 }
 
+/* The option with this name, or NULL. */
 static const struct cs_option *find_option(const struct cs_integrator *integrator,
                                            const char *name) {
     for (uint32_t k = 0; name && k < integrator->n_options; k++)
@@ -61,6 +66,7 @@ static const struct cs_option *find_option(const struct cs_integrator *integrato
     return NULL;
 }
 
+/* Checks the dependencies of options: each names an option and a choice of its own table. */
 static enum cs_status check_uses(const struct cs_integrator *integrator,
                                  struct cs_error *error) {
     const uint32_t n = CS_HAS(integrator, n_uses) ? integrator->n_uses : 0;
@@ -75,8 +81,8 @@ static enum cs_status check_uses(const struct cs_integrator *integrator,
     return CS_OK;
 }
 
-/* of the structs that the first modules of this interface were built with; what came later is
- * read only where it is there */
+/* Size of the struct in the first release of this interface. Fields after it are read only if
+ * CS_HAS finds them. */
 static const uint32_t least_size = offsetof(struct cs_integrator, goals);
 
 static enum cs_status check_integrator(const struct cs_integrator *integrator,
@@ -103,6 +109,7 @@ static enum cs_status check_integrator(const struct cs_integrator *integrator,
     return check_uses(integrator, error);
 }
 
+/* Checks version, sizes, and each integrator of a module. */
 static enum cs_status check_module(const struct cs_module *module, struct cs_error *error) {
     if (module->abi != CS_ABI)
         return cs_fail(error, CS_ERR_MODULE, "made for interface %u, expected %u", module->abi,
@@ -118,8 +125,9 @@ static enum cs_status check_module(const struct cs_module *module, struct cs_err
     return CS_OK;
 }
 
-/* Others could have put their code into what they may write; the rest would hang or crash the
- * loader. */
+/* Refuses a file that anyone may write, itself or by its folder: others could have put code
+ * there. Anything but a regular file could hang or crash the loader. A folder with the sticky
+ * bit, such as /tmp, lets only owners replace files. */
 static enum cs_status check_file(const char *file, struct cs_error *error) {
     struct stat info, folder;
     char path[PATH_MAX];

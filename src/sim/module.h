@@ -1,4 +1,4 @@
-/* module.h - one module file: opened, and checked before anything in it is called. */
+/* module.h - opens one module file and checks it before anything in it is called. */
 #ifndef CS_MODULE_H
 #define CS_MODULE_H
 
@@ -7,13 +7,15 @@
 
 #include <clothsim/integrator.h>
 
-/* Opens an integrator module by its absolute path and checks the contract: symbol, ABI, sizes,
- * names, required calls, option tables with every default in its range. It is never closed.
- * CS_ERR_MODULE with the reason in *error. */
+/* Opens an integrator module by its absolute path and checks the contract: symbol, ABI,
+ * sizes, names, required calls, option tables with every default in its range. The file and
+ * its folder must not be writable by everyone. The module stays open until the program ends.
+ * On failure *module is NULL: CS_ERR_MODULE with the reason in *error, or CS_ERR_MEMORY. */
 enum cs_status cs_module_open(const char *file, const struct cs_module **module,
                               struct cs_error *error);
 
-/* The hash of its bytes: another build may give other results. "" where it cannot be read. */
+/* The hash of the file's bytes, to recognise another build, which may give other results. ""
+ * if the file cannot be read. */
 void cs_module_hash(const char *file, char digits[CS_HASH_DIGITS]);
 
 #endif

@@ -1,4 +1,4 @@
-/* Saves and restores what foreign code could change for the whole process. */
+/* process_state.c - reads and restores the process-wide state around foreign code. */
 #include "sim/process_state.h"
 
 #include <fenv.h>
@@ -11,6 +11,7 @@
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
+/* MXCSR bits of exceptions that have occurred: ordinary arithmetic sets them. */
 enum { STICKY_FLAGS = 0x3f };
 static unsigned control_get(void) {
     return _mm_getcsr() & ~(unsigned)STICKY_FLAGS;
@@ -39,6 +40,7 @@ static void control_set(unsigned control) {
 const char cs_process_state_mode[] = "the floating-point mode";
 static const int numbers[CS_PROCESS_STATE_SIGNALS] = {SIGINT, SIGTERM};
 
+/* A bit for each of the streams 0, 1, 2 that is open: poll reports a closed one as POLLNVAL. */
 static unsigned open_streams(void) {
     struct pollfd streams[] = {{.fd = 0}, {.fd = 1}, {.fd = 2}};
     enum { STREAMS = sizeof streams / sizeof *streams };
@@ -49,6 +51,8 @@ static unsigned open_streams(void) {
     return open;
 }
 
+/* True if there is a child process: waitid fails with ECHILD only without any. WNOWAIT leaves
+ * it to be waited for by its owner. */
 static bool is_parent(void) {
     siginfo_t info;
     return !waitid(P_ALL, 0, &info, WEXITED | WNOHANG | WNOWAIT);
@@ -69,6 +73,7 @@ struct cs_process_state cs_process_state_save(void) {
     return guard;
 }
 
+/* Restores handlers that differ; true if one did. */
 static bool restore_signals(const struct cs_process_state *guard) {
     bool changed = false;
     for (int k = 0; k < CS_PROCESS_STATE_SIGNALS; k++) {
@@ -82,7 +87,8 @@ static bool restore_signals(const struct cs_process_state *guard) {
     return changed;
 }
 
-/* numbers are read and written with a point */
+/* Restores the C locale, in which numbers are read and written with a point; true if it had
+ * changed. */
 static bool restore_locale(void) {
     if (!strcmp(setlocale(LC_NUMERIC, NULL), "C") && !strcmp(localeconv()->decimal_point, "."))
         return false;
@@ -91,12 +97,14 @@ static bool restore_locale(void) {
     return true;
 }
 
+/* True if the working folder is another one, or gone. */
 static bool has_moved(const struct cs_process_state *guard) {
     struct stat info;
     return stat(".", &info) || info.st_dev != guard->cwd_device ||
            info.st_ino != guard->cwd_inode;
 }
 
+/* Restores rounding, traps and flush-to-zero; true if one had changed. */
 static bool restore_mode(const struct cs_process_state *guard) {
     if (control_get() == guard->fp_control && fegetround() == guard->rounding)
         return false;
@@ -106,7 +114,7 @@ static bool restore_mode(const struct cs_process_state *guard) {
 }
 
 const char *cs_process_state_restore(const struct cs_process_state *guard) {
-    /* all of them are put back, whichever is told */
+    /* all three are restored, whichever is reported */
     const bool mode = restore_mode(guard), signals = restore_signals(guard),
                locale = restore_locale();
     return mode                                  ? cs_process_state_mode

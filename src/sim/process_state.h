@@ -1,8 +1,9 @@
-/* process_state.h - keeps what belongs to the whole process as it was round foreign code: the
- * floating-point mode, the locale, what signals do, the working folder, the standard streams.
+/* process_state.h - saves and restores the state that belongs to the whole process, around
+ * foreign code: floating-point mode, locale, signal handlers, working folder, standard
+ * streams.
  *
  * A module linked with fast-math switches flush-to-zero on for the whole process when it is
- * loaded; from then on no hash could be trusted. */
+ * loaded. From then on no hash could be trusted. */
 #ifndef CS_PROCESS_STATE_H
 #define CS_PROCESS_STATE_H
 
@@ -12,22 +13,26 @@
 
 enum { CS_PROCESS_STATE_SIGNALS = 2 };
 
+/* A snapshot; compare it with the process after the foreign call. */
 struct cs_process_state {
     unsigned
         fp_control; /* bits of the mode: rounding, masks, flush-to-zero; not the sticky flags */
-    int rounding;
-    struct sigaction signals[CS_PROCESS_STATE_SIGNALS];
-    dev_t cwd_device; /* of the working folder */
-    ino_t cwd_inode;
+    int rounding;   /* of fegetround */
+    struct sigaction signals[CS_PROCESS_STATE_SIGNALS]; /* of SIGINT and SIGTERM */
+    dev_t cwd_device;                                   /* of the working folder */
+    ino_t cwd_inode;                                    /* of the working folder */
     unsigned streams;  /* a bit for each standard stream that is open */
-    bool has_children; /* there are processes that this one made */
+    bool has_children; /* this process has child processes, running or not waited for */
 };
 
-/* "the floating-point mode" */
+/* "the floating-point mode": returned by address, to tell it from the other changes. */
 extern const char cs_process_state_mode[];
 
+/* The state now. */
 struct cs_process_state cs_process_state_save(void);
-/* Puts back what can be; what had been changed, as cs_process_state_mode, or NULL. */
+/* Restores the mode, the handlers and the locale. Returns the name of the first change found,
+ * a constant such as cs_process_state_mode, or NULL. Folder, streams and child processes are
+ * detected only: nothing here can undo them. */
 const char *cs_process_state_restore(const struct cs_process_state *guard);
 
 #endif

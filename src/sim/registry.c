@@ -1,4 +1,5 @@
-/* Finds integrators by name among the module files, and opens as few of them as possible. */
+/* registry.c - finds integrators by name among the module files, and opens as few of them as
+ * possible. */
 #include "sim/registry.h"
 
 #include "base/file.h"
@@ -14,8 +15,10 @@
 #include <string.h>
 #include <unistd.h>
 
+/* A larger file is opened without a search through its bytes. */
 enum { MODULE_BYTES_MAX = 256 << 20 };
 
+/* Appends an entry; file and refusal are copied. Doubles the capacity when it is full. */
 static enum cs_status add_entry(struct cs_registry *registry, const char *file,
                                 const struct cs_integrator *integrator, const char *refusal,
                                 struct cs_error *error) {
@@ -40,6 +43,7 @@ static enum cs_status add_entry(struct cs_registry *registry, const char *file,
     return error->status;
 }
 
+/* The entry of an integrator that can be used, or NULL. */
 static const struct cs_registry_entry *find_entry(const struct cs_registry *registry,
                                                   const char *name) {
     for (uint32_t k = 0; k < registry->n; k++)
@@ -49,6 +53,7 @@ static const struct cs_registry_entry *find_entry(const struct cs_registry *regi
     return NULL;
 }
 
+/* True if a module file has an entry, also as refused. */
 static bool was_opened(const struct cs_registry *registry, const char *file) {
     for (uint32_t k = 0; k < registry->n; k++)
         if (!strcmp(registry->entries[k].file, file))
@@ -56,7 +61,8 @@ static bool was_opened(const struct cs_registry *registry, const char *file) {
     return false;
 }
 
-/* Opens a module; its refusal becomes an entry. A name that is taken stays with the first. */
+/* Opens a module and adds an entry per integrator. A refused module becomes one entry with
+ * the reason. A name that is taken stays with the first module. */
 static enum cs_status open_module(struct cs_registry *registry, const char *file,
                                   struct cs_error *error) {
     if (was_opened(registry, file))
@@ -64,7 +70,7 @@ static enum cs_status open_module(struct cs_registry *registry, const char *file
     struct cs_error refusal = {0};
     const struct cs_module *module;
     cs_module_open(file, &module, &refusal);
-    /* that there is no memory is no fault of the module's, and no other one is looked for */
+    /* out of memory is no fault of the module's, and ends the search */
     if (refusal.status == CS_ERR_MEMORY)
         return cs_fail(error, refusal.status, "%s: %s", file, refusal.message);
     if (refusal.status)
@@ -101,8 +107,9 @@ enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *c
     return error->status;
 }
 
-/* Whether the file's bytes hold the name as a whole string: a module that could have the
- * integrator is opened, and no other (opening one loads its libraries). */
+/* True if the file's bytes contain the name as a whole string, with its zero: the module may
+ * then have the integrator. Reading a file is cheaper and safer than opening it, which loads
+ * its libraries. */
 static bool may_contain_name(const char *file, const char *name) {
     struct cs_error ignored = {0};
     char *bytes;
@@ -114,13 +121,14 @@ static bool may_contain_name(const char *file, const char *name) {
     return holds;
 }
 
+/* Filter of scandir: names that end in .so. */
 static int is_module_name(const struct dirent *entry) {
     const size_t length = strlen(entry->d_name);
     return length > 3 && !strcmp(entry->d_name + length - 3, ".so");
 }
 
-/* Opens the modules of a folder, in the order of their names: all, or with a name those that
- * may hold it, up to the one that does. */
+/* Opens the modules of a folder in the order of their names. With a name: only those that may
+ * contain it, until one has the integrator. A folder that is not there is empty. */
 static enum cs_status open_folder(struct cs_registry *registry, const char *folder,
                                   const char *name, struct cs_error *error) {
     struct dirent **entries;
@@ -141,8 +149,9 @@ static enum cs_status open_folder(struct cs_registry *registry, const char *fold
     return error->status;
 }
 
-/* Goes on to the next line "NAME WORDS" of a list that the build has left in its module folder:
- * *words is what stands behind NAME, or behind any where name is NULL. false: none is left. */
+/* Moves to the next line "NAME WORDS" of a list that the build wrote to its module folder,
+ * and sets *words to the rest after NAME. With name NULL any line counts. Returns false at
+ * the end. */
 static bool next_words(char **rest, const char *name, const char **words) {
     for (char *line; (line = strsep(rest, "\n"));) {
         const char *found = strsep(&line, " ");
@@ -153,7 +162,7 @@ static bool next_words(char **rest, const char *name, const char **words) {
     return false;
 }
 
-/* The text of such a list, to be freed; NULL: it is not there. */
+/* The text of such a list, which the caller frees; NULL if there is none. */
 static char *read_list(const char *list) {
     struct cs_error unread = {0};
     char path[PATH_MAX], *text;
@@ -162,8 +171,7 @@ static char *read_list(const char *list) {
     return cs_file_read(path, 1 << 16, &text, &length, &unread) ? NULL : text;
 }
 
-/* Opens the build's own modules, or with a name the one that has it: without a look into the
- * others. */
+/* Opens the build's own modules by modules.txt; with a name only the one listed for it. */
 static enum cs_status open_listed(struct cs_registry *registry, const char *name,
                                   struct cs_error *error) {
     char *text = read_list("modules.txt"), *rest = text;
@@ -178,6 +186,7 @@ static enum cs_status open_listed(struct cs_registry *registry, const char *name
     return error->status;
 }
 
+/* Searches all places in their order: the build's list, its folder, CLOTHSIM_PLUGIN_PATH. */
 static enum cs_status open_folders(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
     if (open_listed(registry, name, error) || (name && find_entry(registry, name)) ||
@@ -187,7 +196,7 @@ static enum cs_status open_folders(struct cs_registry *registry, const char *nam
     while (list && *list && !error->status) {
         const size_t length = strcspn(list, ":");
         char folder[PATH_MAX];
-        /* absolute folders only: never what happens to lie in the working folder */
+        /* absolute folders only: no code from the working folder by accident */
         if (*list == '/' && length < sizeof folder) {
             memcpy(folder, list, length);
             folder[length] = 0;
@@ -198,7 +207,7 @@ static enum cs_status open_folders(struct cs_registry *registry, const char *nam
     return error->status;
 }
 
-/* refused ones last, else by name */
+/* Order of qsort: by integrator name, refused files last and by path. */
 static int by_name(const void *left, const void *right) {
     const struct cs_registry_entry *a = left, *b = right;
     if (!a->integrator != !b->integrator)
@@ -229,8 +238,7 @@ const char *const *cs_registry_names(struct cs_registry *registry, bool others, 
     return names;
 }
 
-/* The library of a method that this build was made without, or NULL. The text is the
- * registry's. */
+/* The library that a method needs and this build lacks, or NULL. The text is the registry's. */
 static const char *find_left_out(struct cs_registry *registry, const char *name,
                                  struct cs_error *error) {
     char *text = read_list("left-out.txt"), *rest = text;
@@ -241,6 +249,7 @@ static const char *find_left_out(struct cs_registry *registry, const char *name,
     return library;
 }
 
+/* The error for a name that no module has: the missing library, else the nearest name. */
 static enum cs_status unknown_name(struct cs_registry *registry, const char *name,
                                    struct cs_error *error) {
     uint32_t n;
@@ -258,6 +267,7 @@ static enum cs_status unknown_name(struct cs_registry *registry, const char *nam
         nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");
 }
 
+/* A module that was refused is blamed if its bytes contain the name: the user meant it. */
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
                                 const struct cs_registry_entry **found,
                                 struct cs_error *error) {

@@ -1,4 +1,4 @@
-/* registry.h - the integrator modules: where they are looked for, and why one is refused. */
+/* registry.h - the integrator modules: where they are searched, and why one is refused. */
 #ifndef CS_REGISTRY_H
 #define CS_REGISTRY_H
 
@@ -15,43 +15,50 @@ struct cs_registry_entry {
     const char *refusal;                    /* why; NULL: it can be used */
 };
 
-/* Zeroed: empty. */
+/* All integrators that were found so far. Zeroed: empty. Texts and entries are the arena's. */
 struct cs_registry {
     struct cs_registry_entry *entries; /* sorted by integrator name, refused ones last */
     uint32_t n, capacity;
     struct cs_arena arena;
 };
 
-/* Adds one module file (--plugin). A refused file is an error here: CS_ERR_MODULE. */
+/* Adds one module file (--plugin). A refused file is an error here (CS_ERR_MODULE), unlike
+ * one that a folder holds. */
 enum cs_status cs_registry_add_file(struct cs_registry *registry, const char *file,
                                     struct cs_error *error);
 
-/* Adds n module files, until one is refused. */
+/* Adds n module files and stops at the first that is refused. */
 enum cs_status cs_registry_add_files(struct cs_registry *registry, const char *const *files,
                                      uint32_t n, struct cs_error *error);
 
-/* Finds an integrator by name: files that were added first, then the modules in the folders
- * (the build's or the installed one, then CLOTHSIM_PLUGIN_PATH; absolute folders only) by their
- * names. First comes the module that the build's own list, modules.txt, names. Else only a
- * module whose bytes hold the name is opened, and none after the one that has the integrator:
- * opening loads libraries. CS_ERR_USAGE with the nearest name where
- * there is none, or with the library that the build was made without; CS_ERR_MODULE with the
- * reason where it was refused. */
+/* Finds an integrator by name. The order of the search:
+ * 1. Files that were added before.
+ * 2. The module that the build's own list, modules.txt, names for it.
+ * 3. Modules in the folder of the build or of the installation, then in the absolute folders
+ *    of CLOTHSIM_PLUGIN_PATH, by their file names.
+ *
+ * In folders only a module whose bytes contain the name is opened, and none after the one
+ * that has the integrator: opening a module loads its libraries. Returns CS_ERR_USAGE with
+ * the nearest name, or with the library that the build was made without; CS_ERR_MODULE with
+ * the reason if it was refused. */
 enum cs_status cs_registry_find(struct cs_registry *registry, const char *name,
                                 const struct cs_registry_entry **found, struct cs_error *error);
 
-/* Adds a module file as cs_registry_add_file does and gives its first integrator. */
+/* Adds a module file as cs_registry_add_file does, and returns its first integrator in
+ * *found. CS_ERR_MODULE if it has none. */
 enum cs_status cs_registry_find_in(struct cs_registry *registry, const char *file,
                                    const struct cs_registry_entry **found,
                                    struct cs_error *error);
 
-/* Opens every module of the folders, for the list. */
+/* Opens every module of the folders and sorts the entries, for the list of integrators. */
 enum cs_status cs_registry_open_all(struct cs_registry *registry, struct cs_error *error);
-/* Does so and lists the names of the integrators, (*n) and a NULL. others: also of those that
- * do not follow the scene's equation of motion. The list is the registry's; NULL: it failed. */
+/* Opens every module and lists the names of the integrators: *n names, then NULL. others:
+ * also those that do not follow the scene's equation of motion. The list is the registry's.
+ * Returns NULL on failure. */
 const char *const *cs_registry_names(struct cs_registry *registry, bool others, uint32_t *n,
                                      struct cs_error *error);
 
+/* Releases the entries. Modules stay open. */
 void cs_registry_finish(struct cs_registry *registry);
 
 #endif

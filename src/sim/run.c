@@ -1,5 +1,4 @@
-/* Runs a method over a system: creates it, advances it frame by frame, restarts it at events.
- */
+/* run.c - creates a method, advances it frame by frame, and restarts it at events. */
 #include "sim/run.h"
 
 #include "base/clock.h"
@@ -26,7 +25,9 @@ const char *cs_outcome_text(enum cs_outcome outcome) {
     return "unknown";
 }
 
-/* What a call into the method came to: its result, or what it changed in the process. */
+/* Turns the end of a call into the method into a status. A change of the process state is an
+ * error whatever the call returned. CS_STEP_HALT is no error if an outcome explains it. After
+ * a failed allocation any failure of the method counts as CS_ERR_MEMORY. */
 static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_error *error) {
     const char *name = run->integrator->name,
                *changed = cs_process_state_restore(&run->host->process_state);
@@ -44,11 +45,13 @@ static enum cs_status judge(struct cs_run *run, enum cs_step step, struct cs_err
                    said->status ? said->message : "it gave no reason");
 }
 
-/* Round each call into the method: what it was, if it brings the program down. */
+/* Marks the call into the method that begins, for the message if it brings the program down.
+ * cs_crash_forget ends it. */
 static void watch(const struct cs_run *run, const char *place) {
     cs_crash_watch(CS_CRASH_METHOD, "integrator", run->integrator->name, place);
 }
 
+/* The method's restart at t, with particles pinned that static friction holds. */
 static enum cs_step restart(struct cs_run *run, double t) {
     watch(run, "in restart");
     cs_host_pin(run->host, true);
@@ -58,7 +61,7 @@ static enum cs_step restart(struct cs_run *run, double t) {
     return step;
 }
 
-/* An advance that was done is right in what it leaves, or it has failed after all. */
+/* Checks the post-conditions of an advance; a violation is a failure of the method. */
 static enum cs_step check_left(struct cs_run *run, double to) {
     struct cs_run_host *host = run->host;
     struct cs_text why = {0};
@@ -70,6 +73,7 @@ static enum cs_step check_left(struct cs_run *run, double to) {
     return step;
 }
 
+/* The method's advance, with its post-conditions checked. */
 static enum cs_step advance(struct cs_run *run, double from, double to) {
     if (!run->host->settings.skip_advance_check)
         cs_advance_check_begin(&run->host->advance_check, run->system, from);
@@ -82,6 +86,7 @@ static enum cs_step advance(struct cs_run *run, double from, double to) {
     return step == CS_STEP_OK ? check_left(run, to) : step;
 }
 
+/* Creates the method, counts its memory in run->method_bytes, and restarts it at 0. */
 static enum cs_status start(struct cs_run *run, const void *options, struct cs_error *error) {
     struct cs_run_host *host = run->host;
     host->process_state = cs_process_state_save();
@@ -114,8 +119,8 @@ enum cs_status cs_run_archive(struct cs_run *run, cs_archive_call *call,
     return judge(run, step, error);
 }
 
-/* From run->t to end, in one go but for the events on the way, at which the method starts anew.
- * Those at the end itself belong to what follows. */
+/* Advances from run->t to end, in one call per segment between events, and restarts the
+ * method at each event that changes something. Events at `end` belong to the next frame. */
 static enum cs_step advance_frame(struct cs_run *run, double end) {
     const struct cs_events *events = run->system->events;
     enum cs_step step = CS_STEP_OK;
@@ -129,6 +134,8 @@ static enum cs_step advance_frame(struct cs_run *run, double end) {
     return step;
 }
 
+/* Order: the host's table and memory, the method's create, its restart at 0, then the budget:
+ * it counts from the first step on. */
 enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
                             const struct cs_integrator *integrator, const void *options,
                             const struct cs_run_settings *settings, struct cs_error *error) {
@@ -146,7 +153,8 @@ enum cs_status cs_run_begin(struct cs_run *run, struct cs_system *system,
     return error->status;
 }
 
-/* what the method has counted, here and before a checkpoint that it knows nothing of */
+/* The method's counts: its own since the start, plus those before a checkpoint that it did
+ * not restore. */
 static void count_method(struct cs_run *run) {
     const struct cs_stats *before = &run->host->stats_before;
     struct cs_stats *found = &run->counts.method;
@@ -161,6 +169,7 @@ static void count_method(struct cs_run *run) {
     found->setups += before->setups;
 }
 
+/* The time of a frame is computed from its number: fps need not divide it without rounding. */
 enum cs_status cs_run_frame(struct cs_run *run, struct cs_error *error) {
     const double next = (run->frame + 1) / run->system->scene->time.fps;
     const double begin = cs_clock_wall();
@@ -211,6 +220,7 @@ void cs_run_note(struct cs_run *run, const char *format, ...) {
     run->host->table.note(run->host, "%s", message);
 }
 
+/* destroy comes before the arena is freed, since the method's object lies in it. */
 void cs_run_finish(struct cs_run *run) {
     if (!run->host)
         return;

@@ -1,4 +1,9 @@
-/* Writes or reads a run between two frames. */
+/* run_record.c - writes or reads a run between two frames.
+ *
+ * One function serves both directions: the serialiser copies out or in. Order of a record:
+ * system, counts, history of the method. On reading, the method is restarted on the restored
+ * system first, and then loads its history. Counts are restored last, because these calls
+ * count too. */
 #include "sim/run_record.h"
 
 #include "model/event/event_serialise.h"
@@ -11,6 +16,7 @@ bool cs_run_method_has_history(const struct cs_integrator *integrator) {
     return CS_HAS(integrator, load) && integrator->save && integrator->load;
 }
 
+/* The calls of struct cs_archive for a method; ctx is the serialiser. */
 static void record_reals(void *ctx, double *values, size_t n) {
     cs_serialiser_bytes(ctx, values, n * sizeof *values);
 }
@@ -19,6 +25,7 @@ static void record_wholes(void *ctx, uint64_t *values, size_t n) {
     cs_serialiser_bytes(ctx, values, n * sizeof *values);
 }
 
+/* The archive that a method's save or load gets. */
 static struct cs_archive archive_of(struct cs_serialiser *record) {
     return (struct cs_archive){.size = sizeof(struct cs_archive),
                                .ctx = record,
@@ -26,7 +33,8 @@ static struct cs_archive archive_of(struct cs_serialiser *record) {
                                .integers = record_wholes};
 }
 
-/* what the model has changed since the run began */
+/* Everything that the model has changed since the run began: state, time, blow-up bound,
+ * events, contact. */
 static void record_system(struct cs_run *run, struct cs_serialiser *record) {
     struct cs_run_host *host = run->host;
     struct cs_system *system = run->system;
@@ -39,7 +47,7 @@ static void record_system(struct cs_run *run, struct cs_serialiser *record) {
         cs_contact_projection_serialise(&host->contact, record);
 }
 
-/* what only reports show: taken back last, since making the method and restarting it counts */
+/* Counts and remarks, which only reports show. A damaged number of remarks fails the record. */
 static void record_counts(struct cs_run *run, struct cs_serialiser *record) {
     CS_SERIALISER(record, run->counts);
     CS_SERIALISER(record, run->notes);
@@ -48,6 +56,7 @@ static void record_counts(struct cs_run *run, struct cs_serialiser *record) {
         record->failed = true;
 }
 
+/* Restarts a method that cannot save its history, and remarks it. */
 static enum cs_status restart_silent(struct cs_run *run, struct cs_error *error) {
     cs_run_note(run, "the method starts anew at each checkpoint");
     return cs_run_restart(run, run->t, error);
@@ -66,7 +75,7 @@ enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *record,
     return remembers ? CS_OK : restart_silent(run, error);
 }
 
-/* Its own counts begin at 0 again in a method that does not save them. */
+/* Keeps the counts of before: a method that does not save its own counts from 0 again. */
 static void store_counts(struct cs_run *run) {
     run->host->stats_before = run->counts.method;
 }

@@ -5,17 +5,18 @@
 #include "base/serialise.h"
 #include "sim/run.h"
 
-/* Whether the method saves what it remembers. One that does not is restarted where a record is
- * made, so that the runs that go on from there have the same bits. */
+/* True if the method has save and load. A method without them is restarted whenever a record
+ * is made, in the unbroken run too: both runs then continue with the same bits. */
 bool cs_run_method_has_history(const struct cs_integrator *integrator);
 
-/* Adds all that the next frame hangs on: state, time, counts, events, contact, and what the
- * method remembers. CS_ERR_MEMORY, or CS_ERR_MODULE with the method's message. */
+/* Writes everything that the next frame depends on: state, time, counts, events, contact, and
+ * the method's history. May restart the method, see above. CS_ERR_MEMORY, or CS_ERR_MODULE
+ * with the method's message. */
 enum cs_status cs_run_save(struct cs_run *run, struct cs_serialiser *record,
                            struct cs_error *error);
 
-/* Takes it back into a run that was begun the same way and has made no frame yet. On failure
- * (CS_ERR_FILE: bytes of another run; CS_ERR_MODULE) the run is not to be used. */
+/* Reads a record into a run that was begun in the same way and has made no frame yet. After a
+ * failure (CS_ERR_FILE: bytes of another run; CS_ERR_MODULE) the run must not be used. */
 enum cs_status cs_run_load(struct cs_run *run, struct cs_serialiser *record,
                            struct cs_error *error);
 

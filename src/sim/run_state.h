@@ -1,4 +1,4 @@
-/* run_state.h - how a run is begun, and how it stands: what the host fills while it steps. */
+/* run_state.h - the settings and the state of a run, which the host fills while it steps. */
 #ifndef CS_RUN_STATE_H
 #define CS_RUN_STATE_H
 
@@ -8,8 +8,8 @@
 #include <clothsim/integrator.h>
 #include <signal.h>
 
-/* How a run stands. All but the first end it; none of them is an error. CS_FAILED stands in
- * results only: a run says by an error that its method gave up. */
+/* How a run stands. All but the first end it, and none is an error. CS_FAILED occurs in
+ * stored results only: a run reports a method that gave up by an error. */
 #define CS_OUTCOME_LIST(X)                                                                     \
     X(CS_RUNNING, "finished")                                                                  \
     X(CS_NOT_FINITE, "blew up: not finite")                                                    \
@@ -23,11 +23,12 @@ enum cs_outcome {
 #undef X
 };
 
+/* True for the two kinds of blow-up. */
 static inline bool cs_outcome_is_blow_up(enum cs_outcome outcome) {
     return outcome == CS_NOT_FINITE || outcome == CS_UNBOUNDED;
 }
 
-/* Stages that the host times, when asked to. */
+/* Stages of a step that the host times with settings.timed; names are in cs_stage_names. */
 enum cs_stage {
     CS_STAGE_FORCE,
     CS_STAGE_SOLVE,
@@ -37,36 +38,43 @@ enum cs_stage {
     CS_STAGES
 };
 
-/* Exact counts, the same on every machine. */
+/* Counts of a run: exact, and the same on every machine.
+ *
+ * steps counts commits. The names up to solve_iterations are calls of the host by the method:
+ * force_diagonal counts as one force and one diagonal, contact_blocks as one diagonal,
+ * matrix_product as one jvp. solve_iterations is the sum over all solves of
+ * conjugate-gradient iterations. */
 struct cs_counts {
     uint64_t steps, forces, energies, jvps, diagonals, solve_setups, solves, solve_iterations;
     uint64_t
         clamped_setups; /* solver set-ups that fell back to CS_SOLVE_PSD or CS_SOLVE_BOUND */
-    uint64_t projected_particles; /* particles pushed out */
-    uint64_t subdivided_steps;    /* moves that were too long for contact or crossings */
+    uint64_t projected_particles; /* pairs of particle and collider that were projected */
+    uint64_t subdivided_steps;    /* displacements with an admissible fraction below 1 */
     uint64_t contact_tests;       /* particle-collider pairs tested */
     uint64_t strain_limit_moves;  /* springs shortened by the strain limit */
     uint64_t normals;             /* times that normals were computed in a step */
     struct cs_stats method;       /* what the method counted itself */
 };
 
+/* Where and how a run blew up. */
 struct cs_blow_up {
     double time;          /* s */
     uint32_t particle;    /* the first not finite, or the fastest */
     double energy, bound; /* kinetic energy and its bound in J */
 };
 
+/* Remarks of a method that are stored; later ones are dropped. */
 enum { CS_NOTES_MAX = 8 };
 
 struct cs_energy_ledger;
 struct cs_run_host;
 
-/* Must stay where it is between begin and finish. */
+/* A run. It must stay at its address between begin and finish. */
 struct cs_run {
     struct cs_system *system; /* borrowed */
     const struct cs_integrator *integrator;
     double *x, *v;  /* the state: x (3,n), v = x + 3n */
-    double t;       /* s */
+    double t;       /* s, of the last frame */
     uint32_t frame; /* frames done */
     enum cs_outcome outcome;
     struct cs_blow_up blow_up; /* where outcome says so */
@@ -80,18 +88,18 @@ struct cs_run {
     struct cs_run_host *host; /* owned */
 };
 
-/* Is told each array that a method and the host hand each other, and each state that a
- * correction after a step leaves: see sim/trace.h. */
+/* Receives each array that passes between a method and the host, and each state that a
+ * correction leaves: see sim/trace.h. */
 struct cs_trace {
     void (*emit)(void *ctx, const struct cs_trace_record *point);
     void *ctx;
     bool enabled; /* may be set and cleared between frames */
 };
 
-/* How a run is begun. Zeroed: as the system stands, without clock, limit or observer. */
+/* Settings of a run. Zeroed: no clock, limit, observer, ledger or trace. */
 struct cs_run_settings {
     bool timed; /* stage times too */
-    /* what the method leaves behind is not looked at: for checks that measure it themselves */
+    /* skips the post-conditions of advance: for checks that measure them themselves */
     bool skip_advance_check;
     const volatile sig_atomic_t *stop; /* set by a signal handler; may be NULL */
     /* s of processor time from the first step on, after which the run ends as CS_OVER_BUDGET;
@@ -100,8 +108,8 @@ struct cs_run_settings {
     /* Called at the end of every commit, and may move the state: returns whether it did. May be
      * NULL. */
     bool (*after_commit)(void *ctx, double t, double dt, double *x, double *v);
-    void *ctx;                       /* of observe */
-    struct cs_energy_ledger *ledger; /* kept step by step, see energy_ledger.h; NULL: none */
+    void *ctx;                       /* of after_commit */
+    struct cs_energy_ledger *ledger; /* booked step by step, see energy_ledger.h; NULL: none */
     struct cs_trace *trace;          /* NULL: none */
 };
 

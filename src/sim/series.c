@@ -1,4 +1,4 @@
-/* Names methods with their options, so that no two of them share a name. */
+/* series.c - makes and checks the names of series, so that no two share one. */
 #include "sim/series.h"
 
 #include "base/options.h"

@@ -1,4 +1,4 @@
-/* Tells who traces a run what it computes. */
+/* trace.c - sends traced numbers with their frame and step. */
 #include "sim/trace.h"
 
 void cs_trace_emit(const struct cs_run_host *host, const struct cs_trace_record *named,

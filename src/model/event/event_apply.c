@@ -1,4 +1,9 @@
-/* What single events do: to the state, the pins, a value, a collider. */
+/* event_apply.c - the effect of single events on the state, the pins, a value, a collider.
+ *
+ * An impact gives the selected free particles the momentum J along its direction. All get the
+ * same change of velocity, J / m with m their total free mass: a cloth that is hit as a whole
+ * moves as a whole. At once the velocities jump; over an interval T a constant acceleration J
+ * / (m T) acts. */
 #include "model/event/event_apply.h"
 
 #include "model/event/event_move.h"
@@ -10,7 +15,8 @@
 #include <math.h>
 #include <string.h>
 
-/* marks the particles that an event acts on */
+/* Marks in events->work the particles that an event selects: a body or all, and of it the
+ * particles that a pin of the same description would hold. */
 static void mark(const struct cs_system *system, const struct cs_event_target *aim) {
     bool *marks = system->events->work;
     memset(marks, 0, system->view.n * sizeof *marks);
@@ -28,7 +34,7 @@ static void mark(const struct cs_system *system, const struct cs_event_target *a
     }
 }
 
-/* mass in kg of the marked particles that are free */
+/* Mass in kg of the marked particles that are free. */
 static double free_mass(const struct cs_system *system) {
     double mass = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
@@ -37,7 +43,8 @@ static double free_mass(const struct cs_system *system) {
     return mass;
 }
 
-/* out (3,n) += change of the velocity in m/s that a momentum in N s makes, where it is free */
+/* out (3,n) += the change of velocity in m/s of the free particles by a momentum in N s. With
+ * a force in N for it, an acceleration in m/s2. */
 static void add_impulse(const struct cs_system *system, const struct cs_impact *impact,
                         double momentum, double *out) {
     const size_t n = system->view.n;
@@ -49,6 +56,8 @@ static void add_impulse(const struct cs_system *system, const struct cs_impact *
                 out[c * n + i] += impact->direction[c] * (momentum / mass);
 }
 
+/* Computed again from all active events, instead of added and subtracted: no rounding remains
+ * when an event ends. */
 void cs_event_sum_pushes(struct cs_system *system) {
     struct cs_events *events = system->events;
     if (!system->event_force)
@@ -65,7 +74,8 @@ void cs_event_sum_pushes(struct cs_system *system) {
         cs_viewpoint_forces_add_push(system, system->event_force);
 }
 
-/* the marked particles are held by an event, which says how they move */
+/* Pins the marked particles, at rest, and makes the event their holder. A grab sets their
+ * velocity afterwards. */
 static void pin_marked(struct cs_system *system, uint32_t event) {
     const size_t n = system->view.n;
     for (size_t i = 0; i < n; i++) {
@@ -78,11 +88,14 @@ static void pin_marked(struct cs_system *system, uint32_t event) {
     }
 }
 
+/* Frees a particle; its velocity stays. */
 static void unpin(struct cs_system *system, uint32_t i) {
     system->events->held_by[i] = 0;
     system->inv_mass[i] = 1 / system->mass[i];
 }
 
+/* Pins the particles of a grab and stores their offsets from its path. The path starts at the
+ * first of them, or for a relative one at the origin: its points are then shifts. */
 static void begin_grab(struct cs_system *system, uint32_t event) {
     struct cs_events *events = system->events;
     struct cs_event_state *state = events->states + event;
@@ -101,7 +114,8 @@ static void begin_grab(struct cs_system *system, uint32_t event) {
     cs_event_begin_path(state, events->begin);
 }
 
-/* strengths and directions before and after */
+/* Stores strength and direction of the wind before and after a gust. A number that the gust
+ * does not give (NaN) stays. */
 static void begin_gust(const struct cs_events *events, const struct cs_wind_change *gust,
                        struct cs_event_state *state) {
     const struct cs_wind *wind = &events->scene.forces.wind;
@@ -113,6 +127,9 @@ static void begin_gust(const struct cs_events *events, const struct cs_wind_chan
            sizeof state->wind_ends[1]);
 }
 
+/* Sets the wind at a fraction of a gust: the vector strength x direction is linear in time,
+ * so that a gust can turn the wind through any angle. If it passes through 0, the last
+ * direction stays. */
 static void set_wind(struct cs_wind *wind, const struct cs_event_state *state, double share) {
     double w[3], squared = 0;
     for (int c = 0; c < 3; c++) {
@@ -120,12 +137,12 @@ static void set_wind(struct cs_wind *wind, const struct cs_event_state *state, d
         w[c] = before + (state->last * state->wind_ends[1][c] - before) * share;
         squared += w[c] * w[c];
     }
-    /* where it dies down on its way it keeps its direction */
     wind->strength = sqrt(squared);
     for (int c = 0; c < 3 && wind->strength > 0; c++)
         wind->direction[c] = w[c] / wind->strength;
 }
 
+/* Sets the number of a ramp or gust to its last value, without rounding. */
 static void end_value(struct cs_system *system, uint32_t event) {
     struct cs_event_state *state = system->events->states + event;
     struct cs_wind *wind = &system->events->scene.forces.wind;
@@ -137,6 +154,7 @@ static void end_value(struct cs_system *system, uint32_t event) {
     memcpy(wind->direction, state->wind_ends[1], sizeof wind->direction);
 }
 
+/* A ramp is linear in time; t may lie past its end, see cs_events_move_values. */
 void cs_event_set_value(struct cs_system *system, uint32_t event, double t) {
     struct cs_events *events = system->events;
     const struct cs_event_state *state = events->states + event;
@@ -159,7 +177,7 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
         state->first = *state->value;
         state->last = of->ramp.value;
     }
-    /* at once: the last value now; else cs_event_set_value moves it there */
+    /* at once: the last value now; else cs_event_set_value changes it gradually */
     if ((of->wind.present || of->ramp.present) && !state->active)
         end_value(system, event);
     /* at once: a change of velocity; else a force, see cs_event_sum_pushes */
@@ -184,6 +202,7 @@ void cs_event_start(struct cs_system *system, uint32_t event) {
     }
 }
 
+/* A particle is freed only by the event that holds it: a later one may have taken it over. */
 void cs_event_finish(struct cs_system *system, uint32_t event) {
     struct cs_events *events = system->events;
     const struct cs_event *of = cs_scene_events(&events->scene) + event;
@@ -201,7 +220,7 @@ void cs_event_finish(struct cs_system *system, uint32_t event) {
 
 void cs_event_refresh_springs(struct cs_system *system) {
     const struct cs_body *bodies = cs_scene_bodies(system->scene);
-    /* both belong to the system; views of them are read-only */
+    /* the system owns both arrays; its views of them are read-only */
     struct cs_spring_run *runs = (struct cs_spring_run *)system->springs.runs;
     double *stiffness = (double *)system->view.stiffness;
     double *damping = (double *)system->view.damping;

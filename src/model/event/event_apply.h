@@ -1,22 +1,26 @@
-/* event_apply.h - what single events do; for events.c. */
+/* event_apply.h - starts and ends single events; for events.c. */
 #ifndef CS_EVENT_APPLY_H
 #define CS_EVENT_APPLY_H
 
 #include "model/event/event_state.h"
 
-/* An event begins, at events->begin: to the state and the pins, or to a value. */
+/* Starts an event at events->begin. One that happens at once acts fully here: a change of
+ * velocity, a new value, a pin, a release. One over an interval becomes active. */
 void cs_event_start(struct cs_system *system, uint32_t event);
-/* One over an interval ends. */
+/* Ends an event over an interval: values get their last number exactly, particles that it
+ * holds become free, a moved collider stops. */
 void cs_event_finish(struct cs_system *system, uint32_t event);
 
-/* The value of an active ramp or gust at t. Springs are not refreshed. */
+/* Sets the value of an active ramp or gust to the one at t. The caller refreshes the springs.
+ */
 void cs_event_set_value(struct cs_system *system, uint32_t event, double t);
 
-/* Accelerations of all active impacts and viewpoint forces over an interval, on the particles
- * that are free. */
+/* Sums system->event_force (3,n): the accelerations in m/s2 of all active impacts and
+ * viewpoint forces on free particles. NULL without such events: then it does nothing. */
 void cs_event_sum_pushes(struct cs_system *system);
 
-/* The springs' stiffness and damping, and the spring list, from the values of the scene. */
+/* Recomputes stiffness and damping of the springs from the scene's values: those of the runs
+ * that forces use, and those of the list in the view. */
 void cs_event_refresh_springs(struct cs_system *system);
 
 #endif

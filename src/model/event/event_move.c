@@ -1,4 +1,9 @@
-/* event_move.c - colliders on paths: an event's chords made into the motion of its obstacle. */
+/* event_move.c - colliders on paths: turns the chords of an event into the motion of its
+ * collider.
+ *
+ * A motion is a shift, linear in time from shift_begin to shift_end, and a rotation: a fixed
+ * one up to t_begin, then a constant spin. Each new chord stores the rotation that was
+ * reached. */
 #include "model/event/event_move.h"
 
 #include "model/contact/posed_collider.h"
@@ -7,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+/* No shift, no spin, the unit rotation, for ever. */
 static const struct cs_collider_motion at_rest = {.t_end = HUGE_VAL,
                                                   .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
@@ -49,16 +55,18 @@ void cs_event_show_moves(struct cs_system *system) {
     }
 }
 
+/* The keys of a move in the scene. */
 static const struct cs_move *move_of(const struct cs_system *system, uint32_t event) {
     return &cs_scene_events(system->scene)[event].move;
 }
 
-/* NULL where the collider was taken out of the scene, as compare does */
+/* The motion of the collider that an event moves; NULL if the collider was removed from the
+ * scene, as compare does. */
 static struct cs_collider_motion *motion_of(const struct cs_system *system, uint32_t event) {
     return system->motions ? system->motions + move_of(system, event)->collider : NULL;
 }
 
-/* stands still from t on, as it is then */
+/* Stops a collider at t, with the shift and rotation that it has then. */
 static void stop(struct cs_collider_motion *motion, double t) {
     struct cs_collider_motion stopped = at_rest;
     stopped.t_begin = t;
@@ -108,7 +116,8 @@ void cs_event_follow_move(struct cs_system *system, uint32_t event, double t) {
     }
 }
 
-/* m, from the centre to the farthest matter; of a plane: to the farthest particle */
+/* m, from the centre to the farthest point of a collider: the half diagonal of its core plus
+ * its radius. Of a plane, which has none, to the farthest particle. */
 static double reach_of(const struct cs_system *system,
                        const struct cs_posed_collider *obstacle) {
     const double *core = obstacle->half_sizes, *x = system->state;

@@ -1,5 +1,9 @@
-/* Paths of grabs and moves, followed chord by chord: smooth legs are cut into chords of
- * constant velocity, so that a method sees no bend within a segment. */
+/* event_path.c - follows the paths of grabs and moves, chord by chord.
+ *
+ * A smooth leg from p0 to p1 is p0 + (p1 - p0) w(s), w(s) = 3 s^2 - 2 s^3, s from 0 to 1: it
+ * starts and ends at rest. It is cut into CS_EVENT_CHORDS chords of equal duration and
+ * constant velocity. A method then sees no acceleration of the pinned particles within a
+ * segment. */
 #include "model/event/event_path.h"
 
 #include "model/event/event_times.h"
@@ -7,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* the point at the end of the chord that the state is in */
+/* The point at the end of the running chord; at the end of a leg its point exactly. */
 static void chord_point(const struct cs_event_path *path, const struct cs_event_state *state,
                         double out[3]) {
     const double *point = path->points[state->leg].point;
@@ -42,7 +46,7 @@ void cs_event_next_leg(struct cs_events *events, uint32_t event, double t) {
         state->chord = 0;
         state->leg++;
     }
-    /* behind the last point it stays there */
+    /* after the last point it stays there */
     if (state->leg >= path.n)
         return;
     chord_point(&path, state, state->chord_to);

@@ -1,4 +1,5 @@
-/* Writes or reads where the events of a run stand. */
+/* event_serialise.c - writes or reads the state of the events of a run, by one function for
+ * both directions. */
 #include "model/event/event_serialise.h"
 
 #include "model/contact/posed_collider.h"
@@ -6,7 +7,8 @@
 #include "model/event/event_move.h"
 #include "model/event/viewpoint_forces.h"
 
-/* the state of one event, but for where its value lies, which is a matter of this process */
+/* The state of one event, and the ramped number itself. The pointer to that number is of this
+ * process and stays. */
 static void record_event(struct cs_event_state *state, struct cs_serialiser *record) {
     double *value = state->value;
     state->value = NULL;
@@ -16,6 +18,7 @@ static void record_event(struct cs_event_state *state, struct cs_serialiser *rec
         CS_SERIALISER(record, *value);
 }
 
+/* Selected particles and test times of all viewpoint forces. */
 static void record_viewpoint_forces(struct cs_viewpoint_forces *viewpoint_forces, uint32_t n,
                                     struct cs_serialiser *record) {
     for (uint32_t k = 0; k < viewpoint_forces->n; k++) {
@@ -27,6 +30,7 @@ static void record_viewpoint_forces(struct cs_viewpoint_forces *viewpoint_forces
     }
 }
 
+/* The segment, the wind, and each event. */
 static void record_marks(struct cs_events *events, struct cs_serialiser *record) {
     CS_SERIALISER(record, events->next);
     CS_SERIALISER(record, events->begin);
@@ -64,7 +68,7 @@ void cs_events_serialise(struct cs_system *system, struct cs_serialiser *record)
         record->failed = true;
     else
         cs_serialiser_bytes(record, system->pinned, system->n_pinned * sizeof *system->pinned);
-    // springs hang on the values that were read
+    // springs and the view follow from the values that were read
     if (record->is_reading) {
         cs_event_refresh_springs(system);
         cs_event_show_moves(system);

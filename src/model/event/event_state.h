@@ -1,37 +1,60 @@
-/* event_state.h - where the events of a run stand: times, holders, values under way. */
+/* event_state.h - the state of the events of a run: times, holders, values in transition.
+ *
+ * All of it goes into a checkpoint (event_serialise.h), but for the pointers. */
 #ifndef CS_EVENT_STATE_H
 #define CS_EVENT_STATE_H
 
 #include "model/system/system.h"
 
-/* one event of the scene, in the scene's order */
+/* One event. A grab or a move follows a path of legs, from point to point; a leg has one chord,
+ * or CS_EVENT_CHORDS of constant velocity if it is smooth. */
 struct cs_event_state {
-    double begin, end;             /* s; the same for what happens at once */
-    bool active;                   /* between begin and end */
-    double *value, first, last;    /* of a ramp: the number, at begin and at end */
-    double wind_ends[2][3];        /* of a gust: vectors at begin and at end */
-    uint32_t leg, chord;           /* of a grab or a move: where it is on its path */
-    double chord_begin, chord_end; /* s, of that chord */
-    double chord_from[3], chord_to[3], rate[3]; /* m, m, m/s: its ends and its velocity */
-    double leg_start[3];                        /* m, where the leg began */
-    double origin[3]; /* m, of a move: the shift that its path starts from */
+    /* s, out of events->times; equal for an event that happens at once */
+    double begin, end;
+    /* between begin and end */
+    bool active;
+    /* Ramp: the number that it changes, in events->scene, and its values at begin and at end.
+     * Gust: value is NULL, first and last are the strengths. */
+    double *value, first, last;
+    /* Gust: unit directions at begin and at end. */
+    double wind_ends[2][3];
+    /* Path: numbers of the running leg, and of the chord in it. */
+    uint32_t leg, chord;
+    /* s, of that chord; the end is HUGE_VAL after the last point */
+    double chord_begin, chord_end;
+    /* m, m and m/s: both ends of the chord, and its velocity */
+    double chord_from[3], chord_to[3], rate[3];
+    /* m, the point where the leg began */
+    double leg_start[3];
+    /* Move: m, the shift of the collider at its begin; the path is relative to it. */
+    double origin[3];
 };
 
 struct cs_viewpoint_forces;
 
+/* The events of a run. All arrays are the system's arena's. */
 struct cs_events {
-    struct cs_scene scene; /* the scene's values now; system->scene points to it */
-    double *times;         /* (n_times) ascending */
+    /* The scene with the values of now; system->scene points to it. Its lists of bodies and
+     * colliders are copies, the other lists are shared with the scene that was read. */
+    struct cs_scene scene;
+    /* (n_times) s, ascending and distinct; `next` is the number of the segment's end. */
+    double *times;
     uint32_t n_times, next;
-    double begin, end;             /* s, of the segment; end HUGE_VAL behind the last time */
-    struct cs_event_state *states; /* (scene.events.n) */
-    uint32_t *held_by;             /* (n) number of the event that holds a particle + 1, or 0 */
-    bool *work;                    /* (n) work */
-    double *offsets; /* (3,n) in m, from the point of the path; NULL without grabs */
-    struct cs_viewpoint_forces *viewpoint_forces; /* NULL without */
+    /* s, of the segment; end is HUGE_VAL after the last time */
+    double begin, end;
+    /* (scene.events.n) in the scene's order */
+    struct cs_event_state *states;
+    /* (n) number of the event that holds the particle, plus 1; 0: none */
+    uint32_t *held_by;
+    /* (n) scratch: the particles that an event selects */
+    bool *work;
+    /* (3,n) m, from the point of the path to each grabbed particle; NULL without grabs */
+    double *offsets;
+    /* NULL without viewpoint forces */
+    struct cs_viewpoint_forces *viewpoint_forces;
     double next_test;          /* s, of the next visibility test; HUGE_VAL: none */
     double values_time;        /* s, of the ramps' values */
-    bool has_ramps, has_grabs; /* some are under way in the segment */
+    bool has_ramps, has_grabs; /* some are active in the segment; gusts count as ramps */
 };
 
 #endif

@@ -1,9 +1,11 @@
-/* The times at which events begin, end or turn: snapped to frames, sorted, near ones merged. */
+/* event_times.c - the times at which events begin, end or turn: snapped to frames, sorted,
+ * near ones merged. */
 #include "model/event/event_times.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+/* Begin and end in s as the scene gives them: the same for an event with `at`. */
 static double begin_of(const struct cs_event *event) {
     return isnan(event->at) ? event->from : event->at;
 }
@@ -30,6 +32,7 @@ size_t cs_event_times_count(const struct cs_scene *scene) {
     return n;
 }
 
+/* The end of a chord in s: the leg's duration in equal parts, the last exactly at its point. */
 static double chord_end(const struct cs_event *event, uint32_t leg, uint32_t chord) {
     const struct cs_event_path path = cs_event_path_of(event);
     const double begin = leg ? path.points[leg - 1].at : begin_of(event);
@@ -44,12 +47,13 @@ double cs_event_time_snap(const struct cs_scene *scene, double t) {
     return fabs(frame - t) <= CS_EVENT_SAME ? frame : t;
 }
 
+/* Ascending order, for qsort. */
 static int compare(const void *left, const void *right) {
     const double a = *(const double *)left, b = *(const double *)right;
     return (a > b) - (a < b);
 }
 
-/* what t became in the list */
+/* The time of the list that t became when near times were merged: the nearest, by bisection. */
 static double entry_of(const struct cs_events *events, double t) {
     uint32_t low = 0, high = events->n_times;
     while (high - low > 1) {
@@ -62,6 +66,7 @@ static double entry_of(const struct cs_events *events, double t) {
                                                                             : times[low];
 }
 
+/* All times of the scene's events, snapped to frames, unsorted; returns how many. */
 static uint32_t collect(const struct cs_scene *scene, double *times) {
     const struct cs_event *list = cs_scene_events(scene);
     uint32_t n = 0;

@@ -1,4 +1,5 @@
-/* The events of a run: cuts it into segments and, between two, applies what begins and ends. */
+/* events.c - cuts a run into segments, and applies the events that begin and end between two.
+ */
 #include "model/event/events.h"
 
 #include "model/contact/posed_collider.h"
@@ -13,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+/* Kinds of events, for any(): those over an interval that accelerate particles; those that move
+ * particles along paths; those after which a pinned particle may be free. */
 static bool pushes(const struct cs_event *event) {
     return (event->impact.present || event->viewpoint_force.present) && isnan(event->at);
 }
@@ -24,6 +27,7 @@ static bool releases(const struct cs_event *event) {
            ((event->pin.present || event->grab.present) && isnan(event->at));
 }
 
+/* True if an event of the scene is of a kind. */
 static bool any(const struct cs_scene *scene, bool (*is)(const struct cs_event *event)) {
     for (uint32_t e = 0; e < scene->events.n; e++)
         if (is(cs_scene_events(scene) + e))
@@ -31,7 +35,7 @@ static bool any(const struct cs_scene *scene, bool (*is)(const struct cs_event *
     return false;
 }
 
-/* the list's items again, as the caller's own */
+/* Replaces the items of a list by a copy in the system's arena. */
 static void copy_list(struct cs_system *system, struct cs_list *list, size_t size,
                       struct cs_error *error) {
     void *items = cs_arena_alloc_array(&system->arena, list->n, size, error);
@@ -40,6 +44,7 @@ static void copy_list(struct cs_system *system, struct cs_list *list, size_t siz
     list->items = items;
 }
 
+/* Takes all arrays, and copies the lists that ramps can change. */
 static void alloc_arrays(struct cs_system *system, struct cs_events *events,
                          struct cs_error *error) {
     const size_t n = system->view.n;
@@ -62,7 +67,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_events *events,
         cs_event_moves_build(system, error);
 }
 
-/* any particle may become a pinned one */
+/* Gives the list of pinned particles room for all n: an event may pin any of them. */
 static void widen_pinned(struct cs_system *system, struct cs_error *error) {
     uint32_t *pinned =
         cs_arena_alloc_array(&system->arena, system->view.n, sizeof *pinned, error);
@@ -97,13 +102,17 @@ enum cs_status cs_events_build(struct cs_system *system, struct cs_error *error)
                                                   : CS_OK;
 }
 
-/* what hangs on values that ramps change */
+/* Updates the data derived from values that ramps change: springs, and masses if a ramp
+ * changes one. */
 static void refresh(struct cs_system *system) {
     cs_event_refresh_springs(system);
     if (any(&system->events->scene, cs_event_changes_mass))
         cs_system_set_masses(system);
 }
 
+/* Sets every ramped number to its extreme, frees every particle that an event may release,
+ * computes the bounds, and restores all. Numbers are restored in reverse order: if two ramps
+ * change one number, the first of them has stored the original. */
 void cs_events_set_bounds(struct cs_system *system, double *work) {
     struct cs_events *events = system->events;
     const uint32_t n_events = events->scene.events.n;
@@ -113,7 +122,7 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
         if (!state->value)
             continue;
         state->first = *state->value;
-        /* the stiffest springs and the lightest particles */
+        /* the stiffest springs and the lightest particles: omega^2 = k/m is largest */
         *state->value = cs_event_changes_mass(event) ? fmin(*state->value, event->ramp.value)
                                                      : fmax(*state->value, event->ramp.value);
     }
@@ -132,7 +141,7 @@ void cs_events_set_bounds(struct cs_system *system, double *work) {
 }
 
 double cs_events_next(const struct cs_events *events) {
-    /* a look so near to the end is made there */
+    /* a visibility test this near to the end happens there */
     return events->next_test + CS_EVENT_SAME < events->end ? events->next_test : events->end;
 }
 
@@ -140,6 +149,7 @@ uint32_t cs_events_count_stops(const struct cs_events *events, double t) {
     return events->n_times + cs_viewpoint_forces_cuts(&events->scene, t);
 }
 
+/* Lists the particles without inverse mass, ascending. */
 static void list_pinned(struct cs_system *system) {
     system->n_pinned = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
@@ -147,7 +157,8 @@ static void list_pinned(struct cs_system *system) {
             system->pinned[system->n_pinned++] = i;
 }
 
-/* the segment ends */
+/* Closes the segment at t and opens the next: ends, then beginnings, then the chords of
+ * paths. Pins, springs, masses and the positions of grabbed particles follow from these. */
 static void end_segment(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
     const uint32_t n = events->scene.events.n;
@@ -163,7 +174,7 @@ static void end_segment(struct cs_system *system, double t) {
         if (events->states[e].begin == t)
             cs_event_start(system, e);
 
-    /* what is under way in the segment that begins */
+    /* the ramps, grabs and moves that are active in the segment that begins */
     events->has_ramps = events->has_grabs = false;
     for (uint32_t e = 0; e < n; e++) {
         const struct cs_event *event = cs_scene_events(&events->scene) + e;
@@ -198,9 +209,10 @@ bool cs_events_apply(struct cs_system *system, double t) {
     return turns || others;
 }
 
+/* Values are set once per time: a method asks for several results at one stage. */
 void cs_events_move_values(struct cs_system *system, double t) {
     struct cs_events *events = system->events;
-    // stages may lie behind the end of their step, and forces are smooth there too
+    // a stage may lie past the end of its step; forces are continued smoothly there
     const double now = fmax(t, events->begin);
     if (!events->has_ramps || now == events->values_time)
         return;
@@ -211,6 +223,9 @@ void cs_events_move_values(struct cs_system *system, double t) {
     cs_event_refresh_springs(system);
 }
 
+/* Position = offset + point of the path: chord_from + rate (t - chord_begin), and exactly
+ * chord_to at its end. Offsets are constant, so that grabbed particles move as a rigid whole.
+ */
 void cs_events_apply_paths(const struct cs_system *system, double t, double *x, double *v) {
     const struct cs_events *events = system->events;
     const size_t n = system->view.n;

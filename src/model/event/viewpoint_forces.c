@@ -1,5 +1,5 @@
-/* Viewpoint forces (the event `viewpoint_force`): the particles that they act on, and the times
- * at which visibility is tested again. */
+/* viewpoint_forces.c - selects the particles of viewpoint forces, and schedules the
+ * visibility tests. */
 #include "model/event/viewpoint_forces.h"
 
 #include "model/event/event_times.h"
@@ -7,11 +7,13 @@
 #include <math.h>
 #include <string.h>
 
+/* The keys of a viewpoint force in the scene. */
 static const struct cs_viewpoint_force *viewpoint_force_of(const struct cs_scene *scene,
                                                            uint32_t event) {
     return &cs_scene_events(scene)[event].viewpoint_force;
 }
 
+/* The number of viewpoint forces in a scene. */
 static uint32_t count(const struct cs_scene *scene) {
     uint32_t n = 0;
     for (uint32_t e = 0; e < scene->events.n; e++)
@@ -44,12 +46,13 @@ enum cs_status cs_viewpoint_forces_build(struct cs_system *system, struct cs_err
             (struct cs_viewpoint_force_state){.event = e, .is_visible = seen, .next = HUGE_VAL};
         cs_visibility_query_make(&state->query, viewpoint_force_of(scene, e));
     }
-    /* shared work: nobody keeps anything in it between two calls */
+    /* scratch shared with the events: nothing in it outlives a call */
     viewpoint_forces->work_marks = system->events->work;
     system->events->viewpoint_forces = viewpoint_forces;
     return cs_visibility_scratch_init(&viewpoint_forces->work, n, arena, error);
 }
 
+/* The state of the viewpoint force of an event, which must be one. */
 static struct cs_viewpoint_force_state *
 state_of(const struct cs_viewpoint_forces *viewpoint_forces, uint32_t event) {
     uint32_t k = 0;
@@ -58,7 +61,7 @@ state_of(const struct cs_viewpoint_forces *viewpoint_forces, uint32_t event) {
     return viewpoint_forces->states + k;
 }
 
-/* tests visibility again; true if other particles are seen than before */
+/* Repeats a visibility test at t; true if the selection changed. */
 static bool retest_visibility(const struct cs_system *system,
                               struct cs_viewpoint_force_state *state, double t) {
     const struct cs_viewpoint_forces *viewpoint_forces = system->events->viewpoint_forces;
@@ -72,7 +75,8 @@ static bool retest_visibility(const struct cs_system *system,
     return changed;
 }
 
-/* out (3,n) += factor N (or N s) along the view, over the mass, where seen and free */
+/* out (3,n) += factor / mass along the direction of view, for selected free particles: a
+ * force in N gives an acceleration in m/s2, an impulse in N s a velocity in m/s. */
 static void add(const struct cs_system *system, const struct cs_viewpoint_force_state *state,
                 double factor, double *out) {
     const size_t n = system->view.n;
@@ -82,7 +86,8 @@ static void add(const struct cs_system *system, const struct cs_viewpoint_force_
                 out[c * n + i] += state->query.axes[2][c] * (factor / system->mass[i]);
 }
 
-/* time of the visibility test number `looks`, in s */
+/* Time in s of test number `looks` after begin, snapped to a frame; HUGE_VAL without refresh.
+ * Counted from begin: no rounding adds up. */
 static double time_of(const struct cs_scene *scene,
                       const struct cs_viewpoint_force *viewpoint_force, double begin,
                       double looks) {
@@ -91,6 +96,7 @@ static double time_of(const struct cs_scene *scene,
                : HUGE_VAL;
 }
 
+/* Sets the time of the first test after t. */
 static void plan_next(const struct cs_system *system, struct cs_viewpoint_force_state *state,
                       double t) {
     const struct cs_event_state *of = system->events->states + state->event;

@@ -1,5 +1,22 @@
-/* Visibility from a viewpoint: of the particles in the rectangle, those that no triangle and no
- * collider hides. */
+/* visibility.c - visibility from a viewpoint: selects the particles inside the rectangle that
+ * no triangle and no collider occludes.
+ *
+ * The steps of one query:
+ * 1. Positions are expressed in the axes of the eye: p = (right, up, forward).
+ * 2. Particles with an image p_x/p_z, p_y/p_z outside the rectangle drop out, then those
+ *    behind a visible collider. The others are the candidates.
+ * 3. Candidates are sorted into a uniform grid over the bounds of their images, about one per
+ *    cell.
+ * 4. Each triangle of every body is tested against the candidates in the cells that its image
+ *    covers.
+ *
+ * With n candidates and images of triangles of about a cell the cost is O(n) for tests
+ * instead of O(n^2).
+ *
+ * The occlusion test needs no division. For corners a, b, c as seen from the eye the line to
+ * p passes through the triangle if p.(a x b), p.(b x c) and p.(c x a) have the same sign. It
+ * meets the plane of the triangle at the fraction a.(b x c) / (sum of the three) of its
+ * length. */
 #include "model/event/visibility.h"
 
 #include "base/portable_sine.h"
@@ -10,12 +27,14 @@
 #include <math.h>
 #include <string.h>
 
-/* share of the line to a particle that is tested */
+/* The fraction of the line to a particle that is tested; see cs_visibility_query_run. */
 #define REACH (1 - 1e-9)
-/* cells by which a triangle's bounds are widened, far above rounding */
+/* Fraction of a cell, or of the grid, by which a triangle's bounds are widened: far above
+ * rounding (2e-16), far below a cell. */
 #define MARGIN 1e-6
 
-/* of numbers; fmin and fmax are calls, because of what is not a number */
+/* Minimum and maximum of two numbers that are not NaN. fmin and fmax are function calls,
+ * because they must treat NaN. */
 static inline double least(double a, double b) {
     return a < b ? a : b;
 }
@@ -23,6 +42,9 @@ static inline double most(double a, double b) {
     return a > b ? a : b;
 }
 
+/* The image plane is at distance 1: a point (right, up, forward) has the image (right /
+ * forward, up / forward). Its half height is tan(fov / 2), as a quotient of sines that have the
+ * same bits everywhere; the rectangle is given from the top left in 0..1. */
 void cs_visibility_query_make(struct cs_visibility_query *visibility,
                               const struct cs_viewpoint_force *viewpoint_force) {
     const struct cs_viewpoint *from = &viewpoint_force->viewpoint;
@@ -55,8 +77,9 @@ enum cs_status cs_visibility_scratch_init(struct cs_visibility_scratch *work, ui
     return error->status;
 }
 
-/* The particles that may be seen, sorted into cells x cells over their own bounds in the image:
- * about one a cell, so that a triangle is tested against a few. */
+/* The candidates, sorted into cells x cells over the bounds [low, high] of their images:
+ * about one per cell, so that a triangle is tested against a few. scale: cells per unit of
+ * image. */
 struct grid {
     const struct cs_visibility_scratch *work;
     size_t n;
@@ -65,12 +88,14 @@ struct grid {
     bool *seen;
 };
 
+/* Position i relative to the eye, along its axes. */
 static void position_of(const struct cs_visibility_scratch *work, size_t n, size_t i,
                         double p[3]) {
     for (size_t c = 0; c < 3; c++)
         p[c] = work->projected[c * n + i];
 }
 
+/* Fills work->projected from x. */
 static void turn_positions(const struct cs_visibility_query *visibility,
                            const struct cs_visibility_scratch *work, size_t n,
                            const double *x) {
@@ -82,13 +107,15 @@ static void turn_positions(const struct cs_visibility_query *visibility,
     }
 }
 
+/* True in front of the eye and inside the rectangle; multiplied by p_z > 0 instead of divided.
+ */
 static bool is_in_rectangle(const struct cs_visibility_query *visibility, const double p[3]) {
     return p[2] > 0 && isfinite(p[0] + p[1] + p[2]) && p[0] >= visibility->low[0] * p[2] &&
            p[0] <= visibility->high[0] * p[2] && p[1] >= visibility->low[1] * p[2] &&
            p[1] <= visibility->high[1] * p[2];
 }
 
-/* hides the particles of a body that lie in or behind a collider */
+/* Removes the candidates of a body that lie in or behind a collider. */
 static void hide_behind_collider(const struct cs_visibility_query *visibility,
                                  const struct cs_posed_collider *obstacle, const double *x,
                                  const struct cs_body_range *body, struct grid *grid) {
@@ -101,8 +128,8 @@ static void hide_behind_collider(const struct cs_visibility_query *visibility,
     }
 }
 
-/* marks the particles of a body that may be seen as far as colliders go, and widens the bounds
- */
+/* Marks the candidates of a body, widens the grid's bounds by their images, and returns their
+ * number. */
 static uint32_t mark(const struct cs_visibility_query *visibility,
                      const struct cs_system *system, double t, const double *x,
                      const struct cs_body_range *body, struct grid *grid) {
@@ -114,7 +141,7 @@ static uint32_t mark(const struct cs_visibility_query *visibility,
         position_of(grid->work, grid->n, i, p);
         grid->seen[i] = is_in_rectangle(visibility, p);
     }
-    /* before the bounds, which hidden particles would widen */
+    /* colliders first: particles behind them would widen the bounds */
     for (uint32_t k = 0; k < colliders->n; k++) {
         struct cs_posed_collider obstacle;
         cs_posed_collider_at(system, k, t, &obstacle);
@@ -132,12 +159,14 @@ static uint32_t mark(const struct cs_visibility_query *visibility,
     return count;
 }
 
-/* column or row of a position in the image, moved by some cells; outside, that at the border */
+/* Column (axis 0) or row (axis 1) of an image position, shifted by `move` cells; outside the
+ * grid the one at its border. */
 static uint32_t line_of(const struct grid *grid, int axis, double image, double move) {
     const double at = (image - grid->low[axis]) * grid->scale[axis] + move;
     return (uint32_t)least(most(at, 0), grid->cells - 1);
 }
 
+/* Sorts the candidates by cell: a counting sort, ascending within each cell. */
 static void sort(struct grid *grid, uint32_t count) {
     const struct cs_visibility_scratch *work = grid->work;
     grid->cells = (uint32_t)sqrt(count);
@@ -156,7 +185,7 @@ static void sort(struct grid *grid, uint32_t count) {
             line_of(grid, 1, p[1] / p[2], 0) * grid->cells + line_of(grid, 0, p[0] / p[2], 0);
         work->cell_starts[work->cells[i]]++;
     }
-    /* from the end of each cell back to its beginning */
+    /* counts become ends of cells; filling from the last particle moves them to the starts */
     for (uint32_t c = 1; c <= n_cells; c++)
         work->cell_starts[c] += work->cell_starts[c - 1];
     for (size_t i = grid->n; i-- > 0;)
@@ -164,8 +193,8 @@ static void sort(struct grid *grid, uint32_t count) {
             work->order[--work->cell_starts[work->cells[i]]] = (uint32_t)i;
 }
 
-/* A triangle as seen from the eye: the cells that its image lies in, and what tells whether a
- * line from the eye goes through it. */
+/* A triangle as seen from the eye: the cells that its image covers, and the data of the
+ * occlusion test. */
 struct face {
     uint32_t corners[3];
     uint32_t from[2], to[2]; /* column, row */
@@ -174,7 +203,8 @@ struct face {
     double volume;           /* determinant of the corners */
 };
 
-/* false where it hides nothing: behind the eye, off the grid, or not finite */
+/* Sets face->nearest and the cells of a triangle. Returns false if it hides nothing: behind
+ * the eye, off the grid, or not finite. */
 static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
     double nearest = HUGE_VAL, farthest = -HUGE_VAL, low[2] = {HUGE_VAL, HUGE_VAL},
            high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -192,7 +222,7 @@ static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
         return false;
     face->nearest = nearest;
     for (int c = 0; c < 2; c++) {
-        /* the image of one that reaches behind the eye has no bounds */
+        /* a triangle that reaches behind the eye has an unbounded image: all cells */
         const double from = nearest > 0 ? low[c] : -HUGE_VAL;
         const double to = nearest > 0 ? high[c] : HUGE_VAL;
         if (from > grid->high[c] + MARGIN * (grid->high[c] - grid->low[c]) ||
@@ -204,9 +234,10 @@ static bool bound(const struct grid *grid, double p[3][3], struct face *face) {
     return true;
 }
 
-/* The line to p goes through the triangle: p is on one side of the planes through the eye and
- * each edge, and behind the triangle's own. Neighbours compute the same numbers for the edge
- * between them but for the sign, so nothing is seen through a seam. */
+/* True if the line to p passes through the triangle: p lies on the same side of the three
+ * planes through the eye and an edge, and behind the plane of the triangle. Neighbours
+ * compute the same number with opposite sign for their common edge, and 0 counts as inside:
+ * nothing is visible through a seam. */
 static bool hides(const struct face *face, const double p[3]) {
     if (p[2] <= face->nearest)
         return false;
@@ -220,6 +251,7 @@ static bool hides(const struct face *face, const double p[3]) {
     return false;
 }
 
+/* Removes the candidates of a cell that a triangle hides, except its own corners. */
 static void hide_cell(struct grid *grid, const struct face *face, uint32_t cell) {
     const struct cs_visibility_scratch *work = grid->work;
     for (uint32_t k = work->cell_starts[cell]; k < work->cell_starts[cell + 1]; k++) {
@@ -233,6 +265,7 @@ static void hide_cell(struct grid *grid, const struct face *face, uint32_t cell)
     }
 }
 
+/* Removes the candidates that triangle t of a body hides. */
 static void mark_occluded(struct grid *grid, const struct cs_body_range *body, uint32_t t) {
     struct face face;
     double p[3][3];
