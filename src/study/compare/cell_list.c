@@ -1,10 +1,11 @@
-/* Keeps the cells of a comparison, those of a series together. */
+/* Keeps the cells of a comparison sorted by series. */
 #include "study/compare/cell_list.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Inserts a copy at an index; the capacity doubles when it is used up. */
 static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,
                              const struct cs_cell *cell, struct cs_error *error) {
     if (sweep->n == sweep->capacity) {
@@ -21,6 +22,7 @@ static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,
     return CS_OK;
 }
 
+/* Reports two different methods under one series name. */
 static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_cell *other,
                                     struct cs_error *error) {
     return cs_fail(error, CS_ERR_USAGE,

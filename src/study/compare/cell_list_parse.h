@@ -13,15 +13,15 @@
 #include "base/arena.h"
 #include "study/compare/cell_list_expand.h"
 
-/* A file is found by the name of its first method, so that cs_cell_list_add_modules comes
- * before. CS_ERR_USAGE for a list that cannot be read or a method that is not there;
- * CS_ERR_MODULE. */
+/* Reads the list of methods into cells. A module file is found by the name of its first method,
+ * hence cs_cell_list_add_modules comes first. CS_ERR_USAGE for a list that cannot be read or an
+ * unknown method; CS_ERR_MODULE. The list is empty on failure. */
 enum cs_status cs_cell_list_parse(struct cs_cell_list *sweep,
                                   const struct cs_cell_list_settings *settings,
                                   struct cs_error *error);
 
-/* The module files that a list of methods names instead of methods, behind those of *plugins:
- * the array is the arena's. CS_ERR_MEMORY. */
+/* Appends to *plugins the module files that a list names in place of methods: items with a "/".
+ * The new array is the arena's. CS_ERR_MEMORY. */
 enum cs_status cs_cell_list_add_modules(const char *list, struct cs_arena *arena,
                                         const char *const **plugins, uint32_t *n_plugins,
                                         struct cs_error *error);

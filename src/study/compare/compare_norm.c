@@ -1,4 +1,4 @@
-/* Describes the errors that a comparison can go by in one table. */
+/* Describes the error norms of a comparison in one table. */
 #include "study/compare/compare_norm.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* compare_state.h - what a comparison is asked for, and what it has found so far. */
+/* compare_state.h - settings of a comparison, and its results so far. */
 #ifndef CS_COMPARE_STATE_H
 #define CS_COMPARE_STATE_H
 
@@ -17,6 +17,7 @@
 /* Leading characters of a row's key: the same for all rows of a scene, time and reference. */
 #define CS_COMPARE_DIGITS 16
 
+/* Request for a comparison. All pointers are borrowed. */
 struct cs_compare_settings {
     struct cs_recorded_run_settings run;
     const char *methods;       /* list as in cell_list.h; NULL: all */
@@ -40,7 +41,7 @@ struct cs_compare_settings {
     void *ctx;
 };
 
-/* Zeroed: empty. */
+/* A comparison and everything it owns; zeroed: empty. */
 struct cs_compare {
     const struct cs_compare_settings *settings; /* borrowed */
     struct cs_compare_reference reference;

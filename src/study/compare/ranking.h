@@ -1,4 +1,9 @@
-/* ranking.h - of the rows of a comparison: for each error the cheapest, and by how much. */
+/* ranking.h - ranks the rows of a comparison: the cheapest for each error, and its margin.
+ *
+ * For each power of ten of the error the cheapest cell at or below it is the best, and the
+ * cheapest cell of another series the runner-up. Cost is the median processor time. The Pareto
+ * front holds the cells with no other one both cheaper and at least as accurate. Only cells
+ * that were timed on this machine are ranked. */
 #ifndef CS_RANKING_H
 #define CS_RANKING_H
 
@@ -37,14 +42,19 @@ struct cs_ranking {
     uint32_t frame_tried, frame_finished; /* cells with a dt of a frame; of these to the end */
 };
 
+/* Ranks the cells of a comparison by settings->ranking_norm. Ranks point into compare->cells,
+ * which must not change meanwhile. Returns CS_ERR_MEMORY; the ranking is then empty. */
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error);
+/* Frees the marks of cells; a zeroed ranking is allowed. */
 void cs_ranking_finish(struct cs_ranking *ranking);
 
-/* The cheapest row with an error of at most bound, and the next; best NULL: no row has. */
+/* Finds the cheapest row with an error of at most bound (unit of the norm) and its runner-up.
+ * best is NULL if there is none. */
 void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank);
 
-/* Whether the pairs of each ratio of contenders leave open no more than that share. */
+/* True if the pairs of each ratio of contenders leave at most that fraction open to either
+ * side. Ratios above 3 count as narrow: they decide nothing. */
 bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share);
 
 #endif

@@ -1,9 +1,10 @@
-/* Keeps reference states by name, in a list: there are a few dozen. */
+/* Stores reference states by name in a linked list: there are a few dozen. */
 #include "study/conform/conform_cache.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* One reference; the newest is first in the list. */
 struct cs_conform_kept {
     struct cs_conform_kept *next;
     char name[64];

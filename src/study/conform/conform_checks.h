@@ -1,11 +1,11 @@
-/* conform_checks.h - the checks of a card, a group a file. */
+/* conform_checks.h - lists the checks of a card; each file of checks is a group. */
 #ifndef CS_CONFORM_CHECKS_H
 #define CS_CONFORM_CHECKS_H
 
 #include "study/conform/conform_card.h"
 
-/* Whether a check holds a method against the motion of springs, which one of another model
- * (CS_FIDELITY_OTHER) does not follow. */
+/* CS_CONFORM_SPRINGS: the check compares with the motion of springs, which a method of another
+ * model (CS_FIDELITY_OTHER) does not follow. It is skipped for such a method. */
 enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
 
 /* X(name, function, of, what it shows), in the order of the card */
