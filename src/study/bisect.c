@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One program under way. */
+/* One running program and its trace. */
 struct side {
     const struct cs_bisect_side *asked;
     struct cs_subprocess program;
@@ -16,6 +16,8 @@ struct side {
     bool there; /* the trail has a point */
 };
 
+/* Starts a program with --trace appended to its command. trace: the frame, or the level of
+ * detail. */
 static enum cs_status start(struct side *side, const struct cs_bisect_side *asked,
                             const char *trace, struct cs_error *error) {
     const char **arguments = calloc(asked->n_arguments + 3u, sizeof *arguments);
@@ -31,12 +33,15 @@ static enum cs_status start(struct side *side, const struct cs_bisect_side *aske
     return error->status;
 }
 
-/* Whether two numbers are the same: by their bits, or within the tolerance. */
+/* True if two numbers have equal bits or differ by at most the tolerance. With a tolerance two
+ * NAN are equal too. */
 static bool is_same(double a, double b, double tolerance) {
     return !memcmp(&a, &b, sizeof a) || fabs(a - b) <= tolerance ||
            (tolerance > 0 && isnan(a) && isnan(b));
 }
 
+/* Compares two records of n numbers. The loop runs backwards: `first` ends at the lowest index.
+ */
 static void compare_values(struct cs_bisect_difference *found, const double *a, const double *b,
                            double tolerance) {
     /* most are equal: asked once */
@@ -55,6 +60,7 @@ static void compare_values(struct cs_bisect_difference *found, const double *a, 
     }
 }
 
+/* Describes a trace record. */
 static void print_point(const struct side *side, char out[120]) {
     const struct cs_trace_record *point = &side->trail.point;
     if (!side->there)
@@ -164,7 +170,8 @@ enum cs_status cs_bisect_run(struct cs_bisect *bisect,
     return run_both(settings, frame, bisect, &bisect->first_difference, error);
 }
 
-/* "0.1 and 0.2: 3 units in the last place apart" */
+/* "0.1 and 0.2: 3 units in the last place apart". Doubles of one sign are ordered as their bits
+ * are as integers, so the difference of the integers counts the doubles in between. */
 static void print_values(const double values[2], struct cs_text *out) {
     int64_t bits[2];
     memcpy(bits, values, sizeof bits);
@@ -176,6 +183,7 @@ static void print_values(const double values[2], struct cs_text *out) {
                     apart == 1 ? "" : "s");
 }
 
+/* Particle and direction of a number, from its index in (3,n). */
 static void print_position(const struct cs_bisect_difference *d, struct cs_text *out) {
     const size_t particles = d->n / 3;
     /* a single number, or weights, belong to no particle */

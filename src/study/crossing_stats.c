@@ -1,4 +1,4 @@
-/* Counts crossings frame by frame, and says what there was. */
+/* Counts crossings frame by frame, and prints their statistics. */
 #include "study/crossing_stats.h"
 
 void cs_crossing_stats_add(struct cs_crossing_stats *stats, const struct cs_run *run) {

@@ -20,6 +20,7 @@ struct sweep_rows {
     uint32_t n;
 };
 
+/* Frees all lines. */
 static void finish_rows(struct sweep_rows *rows) {
     for (uint32_t k = 0; k < rows->n; k++)
         free(rows->lines[k]);
@@ -27,6 +28,7 @@ static void finish_rows(struct sweep_rows *rows) {
     cs_text_finish(&rows->names);
 }
 
+/* Grows the array of lines to n; new ones are NULL. */
 static enum cs_status reserve_rows(struct sweep_rows *rows, uint32_t n,
                                    struct cs_error *error) {
     if (n <= rows->n)
@@ -40,12 +42,14 @@ static enum cs_status reserve_rows(struct sweep_rows *rows, uint32_t n,
     return CS_OK;
 }
 
+/* The key of a row, its last column. */
 static const char *key_of(const char *line) {
     const char *comma = strrchr(line, ',');
     return comma ? comma + 1 : "";
 }
 
-/* Stores a line by its cell; one that is no row is passed over. */
+/* Stores a line under its cell; a text that is no row is skipped. Two different keys for one
+ * cell mean two different sweeps. */
 static enum cs_status store_line(struct sweep_rows *rows, const char *line, const char *path,
                                  struct cs_error *error) {
     char *end;

@@ -109,7 +109,7 @@ static void add_result(const struct cs_session *session, const char *outcome, do
     cs_csv_add_number(out, cpu);
 }
 
-/* A scene or a method that refuses is a row; what the command line has wrong is none. */
+/* Adds a refusal by scene or method as a row. Errors of the command line are passed on. */
 static enum cs_status add_failure(struct cs_parameter_sweep *product,
                                   const struct cs_error *failure, struct cs_text *out,
                                   struct cs_error *error) {
@@ -122,7 +122,7 @@ static enum cs_status add_failure(struct cs_parameter_sweep *product,
     return CS_OK;
 }
 
-/* From the plan to the last frame. Returns the s that the frames took. */
+/* Runs from the plan to the last frame. Returns the processor time in s of the frames. */
 static double run_frames(struct cs_parameter_sweep_cell *cell, uint32_t frames) {
     struct cs_session *session = &cell->session;
     struct cs_error *failure = &cell->refusal;

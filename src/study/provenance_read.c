@@ -1,4 +1,4 @@
-/* Reads what a result carries, and says what has changed since. */
+/* Reads stored provenance, and reports what has changed since. */
 #include "study/provenance_read.h"
 
 #include "base/file.h"
@@ -21,7 +21,8 @@ double cs_provenance_number(const struct cs_json *object, const char *key) {
     return found ? cs_json_number(found) : (double)NAN;
 }
 
-/* behind the object that begins at a place of a text that was checked */
+/* Returns the position after the object that begins at `at`, in a text that was parsed before.
+ * Counts brackets outside of strings. */
 static size_t end_of_object(const char *text, size_t at) {
     size_t depth = 0;
     do {
@@ -32,6 +33,7 @@ static size_t end_of_object(const char *text, size_t at) {
     return at;
 }
 
+/* Copies the scene's text, as it was read, out of the whole. */
 static enum cs_status take_scene(struct cs_provenance *provenance, struct cs_error *error) {
     const struct cs_json *scene = cs_json_find_kind(provenance->json, "scene", CS_JSON_OBJECT);
     size_t begin;
@@ -46,6 +48,7 @@ static enum cs_status take_scene(struct cs_provenance *provenance, struct cs_err
                              : cs_fail(error, CS_ERR_MEMORY, "out of memory for a scene");
 }
 
+/* Takes the members that older versions may lack: absent ones are "" or 0. */
 static void take_members(struct cs_provenance *provenance) {
     const struct cs_json *root = provenance->json;
     const struct cs_json *fast = cs_json_find_kind(root, "fast_render", CS_JSON_BOOL);
@@ -141,7 +144,8 @@ static void print_module(const struct cs_provenance *provenance, struct cs_sessi
         cs_text_add(out, "the module %s is another build\n", provenance->module);
 }
 
-/* A file of the scene's folder is looked for where that is now. */
+/* Returns how a file has changed, or NULL. Files of the scene's folder are looked for in its
+ * present folder. */
 static const char *change_of(const struct cs_provenance *provenance, const char *path,
                              const char *then) {
     const char *slash = strrchr(provenance->scene_file, '/');

@@ -1,7 +1,4 @@
-/* provenance_read.h - what a result carries of its own making, read back.
- *
- * run.json, the text clothsim:run of a picture and origin.json of a comparison hold the members
- * that study/provenance_write.h adds, and the scene itself.
+/* provenance_read.h - reads the provenance stored in run.json, in a picture or in origin.json.
  */
 #ifndef CS_PROVENANCE_READ_H
 #define CS_PROVENANCE_READ_H
@@ -10,7 +7,7 @@
 #include "scene/file/json.h"
 #include "study/session.h"
 
-/* Zeroed: nothing. */
+/* Stored provenance; zeroed: nothing. Texts point into the JSON, which it owns. */
 struct cs_provenance {
     char *text, *scene;   /* owned: the whole, and the scene in it */
     struct cs_json *json; /* owned: the whole */
@@ -30,6 +27,7 @@ enum cs_status cs_provenance_read(struct cs_provenance *provenance, const char *
 /* The same from a text, which is copied; name is for messages. */
 enum cs_status cs_provenance_read_text(struct cs_provenance *provenance, const char *name,
                                        const char *text, struct cs_error *error);
+/* Frees everything; all texts become invalid. */
 void cs_provenance_finish(struct cs_provenance *provenance);
 
 /* Member of an object as a text or a number; "" and NAN where it is none. */

@@ -1,4 +1,4 @@
-/* Tells what a result hangs on. */
+/* Writes provenance as JSON. */
 #include "study/provenance_write.h"
 
 #include "base/hash.h"

@@ -1,11 +1,4 @@
-/* provenance_write.h - what a result hangs on: told beside it, so that it can be made again.
- *
- * As members of a JSON object, of the scene and of the method:
- *   "scene_file"  as it was given     "files"   [{"path", "hash"}]: it and those that it names
- *   "scene_hash"  see scene_hash.h    "method"  with every option
- *   "module"      {"file", "hash", "library"}
- * The scene itself, with every value, stands beside them as "scene".
- */
+/* provenance_write.h - writes the provenance of a result: everything needed to reproduce it. */
 #ifndef CS_PROVENANCE_WRITE_H
 #define CS_PROVENANCE_WRITE_H
 
