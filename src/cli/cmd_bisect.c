@@ -1,4 +1,4 @@
-/* clothsim bisect: where two runs of a scene first differ. */
+/* clothsim bisect: finds the first difference of two runs of a scene. */
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
@@ -10,7 +10,7 @@
 
 enum { VALUE_COLUMN = 16 };
 
-/* what one side has of its own */
+/* Settings of one side only. */
 struct own {
     const char *const *items; /* (n), "KEY=VALUE" */
     uint32_t n;
@@ -50,7 +50,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* a command line that grows; its words live as long as the arguments */
+/* A growing command line; its words live as long as the arguments. */
 struct line {
     struct cs_args *args;
     const char **words; /* (n) and NULL behind them */
@@ -102,7 +102,7 @@ static void add_each(struct line *line, const char *name, const char *const *val
         add_named(line, name, strlen(name), values[k], error);
 }
 
-/* A method or a number of threads of its own stands instead of that of both. */
+/* Adds the common options; a method or thread count of one side replaces the common one. */
 static void add_common(struct line *line, const struct own *own, struct cs_error *error) {
     const struct options *both = line->args->options;
     const bool method = both->integrator && !has_own(own, "integrator");
@@ -141,7 +141,7 @@ static void add_lines(const char *left, const struct cs_bisect_difference *found
     cs_text_finish(&text);
 }
 
-/* The numbers of one frame tell more than the states at its end, where they differ too. */
+/* Prints the traced difference; without one, the difference of the states. */
 static void print(const struct cs_bisect *bisect, struct cs_text *out) {
     const struct cs_bisect_difference *states = &bisect->state_difference,
                                       *within = &bisect->first_difference;

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* for one call of a method: the frames of a reference may take long */
+/* s for one call of a method: an advance of a reference at tight tolerances may take long. */
 enum { PATIENCE_SECONDS = 600 };
 
 struct options {
@@ -87,7 +87,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* What the calls from within a comparison need. */
+/* Context of the callbacks of a comparison. */
 struct screen {
     struct cs_compare compare;
     struct cs_progress progress;
@@ -183,7 +183,7 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     return cs_print_out(stdout, &text, error);
 }
 
-/* The command that was typed, in quotes where a shell needs them. */
+/* Adds a word of the command, quoted if a shell needs it. */
 static void add_word(struct cs_text *out, const char *word) {
     const bool plain = !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
                                           "0123456789_-+./:=,")];

@@ -33,7 +33,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* What is written while the checks run: each is printed as soon as it is done. */
+/* Destination of the card; each row is printed when its check is done. */
 struct output {
     const struct options *options;
     const struct cs_conform *card; /* that is being made */

@@ -24,7 +24,7 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
-/* Any part says which scene a comparison is of. */
+/* Copies the provenance of a comparison; every part has the same. */
 static enum cs_status copy_origin(const char *folder, const char *out, struct cs_error *error) {
     char from[4096], to[4096];
     char *bytes;

@@ -61,7 +61,7 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     return error->status;
 }
 
-/* What was decided, and what it came to once the method had taken its own. */
+/* Prints the plan, and its final form after the method took its memory. */
 static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
     cs_plan_print(&session->run.plan, out);

@@ -7,9 +7,6 @@
 
 #include "model/system/system.h"
 
-/* Adds to the state of the free particles: displacements up to that many m and velocities up to
- * that many m/s in each direction. No spring is then at its rest length. */
-
 /* Adds noise without correlation between particles: it has a component along every mode. After
  * it no spring is at its rest length. */
 void cs_perturb_random(struct cs_system *system, double displacement, double velocity);

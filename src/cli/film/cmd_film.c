@@ -41,7 +41,7 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
-/* What a film is made of, and where it goes: to `part`, which becomes `out`. */
+/* Input and destination of a film. ffmpeg writes to `part`, which is renamed to `out`. */
 struct film {
     const char *folder;
     double rate; /* pictures a second */

@@ -1,4 +1,4 @@
-/* Finds the range of colours in one run before the one that is drawn. */
+/* Finds the range of colours in a run before the one that is drawn. */
 #include "cli/run/run_range.h"
 
 #include "model/force/diagnostics.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the run before goes by, and what it finds. */
+/* The preliminary run and its figures. */
 struct search {
     struct cs_session session;
     double *scalar, *work; /* (n), (3,n) */
@@ -27,6 +27,7 @@ static enum cs_status take(struct search *search, uint32_t frames, struct cs_err
     return CS_OK;
 }
 
+/* Records the magnitude of each frame that will be drawn. */
 static enum cs_status sample_frame(struct search *search, uint32_t frames, uint32_t every,
                                    struct cs_error *error) {
     struct cs_run *run = &search->session.run;
@@ -48,7 +49,7 @@ static enum cs_status check(const struct cs_session *session, struct cs_error *e
     return CS_OK;
 }
 
-/* a value for render.range; empty where nothing moves */
+/* Finds a value for render.range; empty if nothing moves. */
 static enum cs_status search_range(const struct cs_job_settings *settings, char value[80],
                                    struct cs_error *error) {
     struct search search = {0};

@@ -1,4 +1,4 @@
-/* Writes what a run is watched by: a row of a frame, its state, or its hash. */
+/* Writes the rows, states and hashes of frames. */
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 
@@ -7,7 +7,7 @@ static enum cs_status check(const struct cs_text *rows, struct cs_error *error) 
                         : CS_OK;
 }
 
-/* Whole or failed run: the first failure wins. */
+/* Writes the rows of a whole or failed run; the first failure wins. */
 static enum cs_status write_rows(const char *path, struct cs_text *rows,
                                  struct cs_error *error) {
     struct cs_error failure = {0};
@@ -51,7 +51,7 @@ static enum cs_status ledger_frame(struct cs_job *job, struct cs_error *error) {
     return check(&job->ledger_rows, error);
 }
 
-/* the account goes on from the state that was loaded */
+/* A resumed ledger continues from the loaded state. */
 static enum cs_status ledger_begin(struct cs_job *job, struct cs_error *error) {
     if (!job->settings->ledger)
         return CS_OK;
@@ -88,7 +88,7 @@ static enum cs_status states_frame(struct cs_job *job, struct cs_error *error) {
                   : CS_OK;
 }
 
-/* those of the start are there where a run goes on */
+/* A resumed run has the states of its start already. */
 static enum cs_status states_begin(struct cs_job *job, struct cs_error *error) {
     return job->settings->resume ? CS_OK : states_frame(job, error);
 }

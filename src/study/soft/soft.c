@@ -1,4 +1,4 @@
-/* Measures what spring networks and shape matching cost, over the size of a soft body. */
+/* Measures the cost of spring networks and shape matching over the size of a soft body. */
 #include "study/soft/soft.h"
 
 #include "base/clock.h"
@@ -14,7 +14,8 @@
 const char *const cs_soft_names[] = {"springs-small", "springs-large", "surface", "network",
                                      "implicit",      "matched",       NULL};
 
-/* Of the shape "limbs": 1586 and 6432 vertices, near the thesis's 1598 and 6308. */
+/* Details of the shape "limbs": 1586 and 6432 vertices, near the 1598 and 6308 of the thesis.
+ */
 enum { SMALL = 31, LARGE = 62, FRAMES_MAX = 60, PICTURES = 5 };
 static const uint32_t densities[] = {0, 1, 2, 4, 8, 16, 32};
 static const uint32_t details[] = {12, 16, 22, 31, 44, 62, 88, 124};
