@@ -74,6 +74,7 @@ static void print_point(const struct side *side, char out[120]) {
                  point->frame, point->step, point->phase, point->name, point->t, point->n);
 }
 
+/* True if two records describe the same number of the same phase. */
 static bool is_same_point(const struct side sides[2], double tolerance) {
     const struct cs_trace_record *a = &sides[0].trail.point, *b = &sides[1].trail.point;
     return sides[0].there == sides[1].there && a->frame == b->frame && a->step == b->step &&
@@ -81,6 +82,7 @@ static bool is_same_point(const struct side sides[2], double tolerance) {
            !strcmp(a->name, b->name);
 }
 
+/* Compares the two current records and describes a difference. */
 static void compare(const struct side sides[2], double tolerance,
                     struct cs_bisect_difference *found) {
     const struct side *side = sides + !sides[0].there;
@@ -98,7 +100,8 @@ static void compare(const struct side sides[2], double tolerance,
         print_point(sides + k, found->value_b[k]);
 }
 
-/* The number of steps is a thing of the method: states of frames are compared without it. */
+/* Reads the next record of a side. The number of steps belongs to the method: states of frames
+ * are compared without it. */
 static void take_point(struct side *side, bool states, struct cs_error *error) {
     struct cs_error said = {0};
     side->there = !error->status && cs_trace_stream_next(&side->trail, &said);
@@ -108,7 +111,8 @@ static void take_point(struct side *side, bool states, struct cs_error *error) {
         side->trail.point.step = 0;
 }
 
-/* A program that ended by itself has said why; one that never wrote a trail is no clothsim. */
+/* Closes a program. One that ended by itself has reported why; one that never wrote a trace is
+ * no clothsim. */
 static void end(struct side *side, struct cs_bisect_difference *found, int k,
                 struct cs_error *error) {
     const bool wrote = side->trail.values;
@@ -130,7 +134,7 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
     cs_trace_stream_finish(&side->trail);
 }
 
-/* Both, once: up to the first difference. */
+/* Runs both programs once, up to the first difference. */
 static enum cs_status run_both(const struct cs_bisect_settings *settings, const char *trace,
                                struct cs_bisect *bisect, struct cs_bisect_difference *found,
                                struct cs_error *error) {

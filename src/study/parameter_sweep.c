@@ -1,4 +1,4 @@
-/* Runs the Cartesian product of values and methods, and keeps a row a cell. */
+/* Runs the Cartesian product of values and methods, and stores one row per cell. */
 #include "study/parameter_sweep.h"
 
 #include "base/file.h"
@@ -67,7 +67,7 @@ static enum cs_status store_line(struct sweep_rows *rows, const char *line, cons
     return error->status;
 }
 
-/* Adds the rows of a folder, where there are any. Their columns must be those of the sweep. */
+/* Adds the rows of a folder, if there are any. Their columns must be those of the sweep. */
 static enum cs_status read_rows(struct sweep_rows *rows, const char *folder,
                                 struct cs_error *error) {
     struct cs_rows found;
@@ -98,6 +98,7 @@ static enum cs_status write_rows(const struct sweep_rows *rows, struct cs_error 
     return cs_file_write_text(rows->table.path, &out, error);
 }
 
+/* Number of finished cells. */
 static uint32_t count_rows(const struct sweep_rows *rows) {
     uint32_t n = 0;
     for (uint32_t k = 0; k < rows->n; k++)
@@ -105,7 +106,7 @@ static uint32_t count_rows(const struct sweep_rows *rows) {
     return n;
 }
 
-/* Others' cells are not looked at: their rows are there, or are none of this process's. */
+/* Runs one cell, unless its row exists or it belongs to another shard. */
 static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct sweep_rows *rows,
                               uint32_t number, struct cs_error *error) {
     struct cs_parameter_sweep_cell cell;

@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "study/session.h"
 
-/* Calls for each file that a scene is read from or names. what: "the scene", "a mesh", "a
- * texture". Standard input is none; a texture may not be there. */
+/* Calls take for each file that a scene was read from or names. what: "the scene", "a mesh", "a
+ * texture". Standard input is skipped; a texture may be missing. */
 void cs_scene_each_file(const struct cs_scene *scene,
                         void (*take)(void *ctx, const char *path, const char *what), void *ctx);
 
@@ -19,7 +19,7 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
                                        const char *method, struct cs_text *out,
                                        struct cs_error *error);
 
-/* What a single picture carries of the run that it is of. */
+/* Provenance stored in a single picture. */
 struct cs_picture_provenance {
     const char *provenance;                      /* the members above */
     const char *scene;                           /* as cs_scene_print prints it */
@@ -31,12 +31,12 @@ struct cs_picture_provenance {
 void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
                                     struct cs_text *out);
 
-/* Adds the member "restarted_every": frames between two checkpoints at which a method without
- * save was started anew; 0: none, and nothing is added. */
+/* Adds the member "restarted_every": frames between the checkpoints at which a method without
+ * saved history restarts; nothing for 0. */
 void cs_provenance_out_add_restarts(uint32_t frames, struct cs_text *out);
 
-/* The module that a session's method came from, as it is told: the name of a module of the
- * program's own folder, the path of any other; its hash; its library, or "". */
+/* The module of a session's method: its name in the program's own folder, or else its path; its
+ * hash; its library, or "". */
 struct cs_provenance_out_module {
     char file[4096];
     char hash[CS_HASH_DIGITS];

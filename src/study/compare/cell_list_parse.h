@@ -1,12 +1,12 @@
-/* cell_list_parse.h - a list of methods, read into the cells of a comparison.
+/* cell_list_parse.h - reads a list of methods into the cells of a comparison.
  *
  * A list is "NAME,NAME:key=value,key=low..high,SERIES=NAME:key=value,...". The cells of one
- * entry are a series, called SERIES or, where none is given, by the method and the options that
- * are not at their defaults; entries of the same method and options are one series. A range of
- * dt goes from high down by factors of 2, one of rtol by half decades. Without a range, a
- * method of fixed step takes steps of 1/fps divided by powers of 2 (explicit ones from just
- * beyond their stability limit on), an adaptive one rtol = atol from 1e-2 to 1e-9.
- */
+ * entry form a series. It is called SERIES or, without one, by the method and the options that
+ * are not at their defaults. Entries of the same method and options form one series.
+ *
+ * A range of dt goes from high down by factors of 2, one of rtol by half decades. Without a
+ * range, a method of fixed step takes 1/fps divided by powers of 2 (explicit ones from just
+ * beyond their stability limit on), an adaptive one rtol = atol from 1e-2 to 1e-9. */
 #ifndef CS_CELL_LIST_PARSE_H
 #define CS_CELL_LIST_PARSE_H
 

@@ -11,11 +11,11 @@
 
 enum { CS_RANKS_MAX = 24 };
 
-/* Of two cells that were not timed in pairs, that many times the time is a difference. */
+/* Ratio from which two cells differ that were not timed in pairs. */
 #define CS_APART_UNPAIRED 1.5
 
-/* What one step a frame may do to the energy, as a share of the largest kinetic one, and still
- * be called stable. */
+/* Energy error, as a fraction of the largest kinetic energy, up to which one step per frame
+ * counts as stable. */
 #define CS_FRAME_ENERGY 0.1
 
 /* The cheapest cell with an error of at most 10^exponent, and that of the next series. */

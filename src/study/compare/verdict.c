@@ -16,6 +16,8 @@ static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
         cs_text_add(out, "%s", cell->series);
 }
 
+/* Margin of the best over the runner-up: none, with its interval, or roughly from single times.
+ */
 static void add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
     const struct cs_ratio *ratio = &rank->ratio;
     if (!rank->runner_up) {
@@ -33,7 +35,7 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
     cs_text_add(out, "\n");
 }
 
-/* what wins where another error is looked at; cells that win by several are said once */
+/* Names the winners by other norms; a cell that wins by several is named once. */
 static void add_others(const struct cs_rank *rank, const char *bullet, struct cs_text *out) {
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
         const struct cs_cell *other = rank->better_by_norm[norm];
@@ -52,6 +54,7 @@ static void add_others(const struct cs_rank *rank, const char *bullet, struct cs
     }
 }
 
+/* One line for a range of decades with the same winner and runner-up. */
 static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *rank, int last,
                      const char *bullet, struct cs_text *out) {
     const char *unit = cs_norm_unit(ranking->norm);
@@ -65,7 +68,8 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
     add_others(rank, bullet, out);
 }
 
-/* A method that gets through is not praised where its motion is another one. */
+/* Result at one step per frame. Finishing alone is not praised: the energy error must be small.
+ */
 static void add_frame(const struct cs_ranking *ranking, const char *bullet,
                       const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_cell *best = ranking->frame.best, *nearest = ranking->frame_nearest;
