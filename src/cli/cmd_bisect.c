@@ -53,7 +53,7 @@ static const struct cs_arg rows[] = {
 /* A growing command line; its words live as long as the arguments. */
 struct line {
     struct cs_args *args;
-    const char **words; /* (n) and NULL behind them */
+    const char **words; /* (n), then NULL */
     uint32_t n;
 };
 

@@ -37,7 +37,7 @@ static const struct cs_arg rows[] = {
 struct output {
     const struct options *options;
     const struct cs_conform *card; /* that is being made */
-    const char *settings;          /* what was typed behind its method's name */
+    const char *settings;          /* options as given after the method's name */
     bool text, first;              /* first: no row is in the JSON yet */
     struct cs_text json;
     struct cs_conform_cache cache; /* shared by all cards */
@@ -148,7 +148,7 @@ static enum cs_status print_file(struct output *output, struct cs_registry *regi
     const uint32_t before = registry->n;
     if (cs_registry_add_file(registry, file, error))
         return error->status;
-    // taken down first: the search for another one may sort the entries
+    // copied first: finding another method may sort the entries
     uint32_t n = 0;
     for (uint32_t k = before; k < registry->n && n < METHODS_MAX; k++)
         methods[n++] = registry->entries[k].integrator;

@@ -94,7 +94,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     struct cs_golden *check = &options->check;
     char installed[CS_DATA_PATH_MAX];
     struct sink sink = {.options = options};
-    /* the installed tables are there to be compared with, and never written to */
+    /* installed tables are for comparison only and never written */
     if (!check->folder)
         check->folder =
             check->accept_all ? "golden" : cs_data_find("golden", installed, sizeof installed);

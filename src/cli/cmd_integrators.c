@@ -33,7 +33,7 @@ static const struct {
     {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
 };
 
-/* what the method's result is, in the words of clothsim-integrator(7) */
+/* The fidelity of a method in the words of clothsim-integrator(7). */
 static const char *fidelity_text(uint32_t fidelity) {
     switch ((enum cs_fidelity)fidelity) {
     case CS_FIDELITY_ODE:

@@ -38,7 +38,7 @@ static bool ends_in(const char *text, const char *ending) {
     return length > end && !strcmp(text + length - end, ending);
 }
 
-/* The number behind FILE.csv:, which is cut off; 0: none. */
+/* Splits FILE.csv:ROW; returns the row, 0 if there is none. */
 static uint32_t split_row(char *path) {
     char *colon = strrchr(path, ':');
     const size_t digits = colon ? strspn(colon + 1, "0123456789") : 0;

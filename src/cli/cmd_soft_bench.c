@@ -53,7 +53,7 @@ static enum cs_status write_files(const char *folder, const struct cs_soft *soft
     return cs_gnuplot_run(folder, "soft.gp", &drawn, error);
 }
 
-/* all that can be refused is looked at before minutes go by, the folder last */
+/* Checks everything that can be refused before a measurement of minutes; the folder last. */
 static enum cs_status prepare(const struct options *options, struct cs_error *error) {
     char path[4096];
     snprintf(path, sizeof path, "%s/soft.csv", options->folder);

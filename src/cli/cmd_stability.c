@@ -162,7 +162,7 @@ static enum cs_status run_extreme(const struct cs_stability_options *options,
                       : cs_data_find("scenes/extreme", installed, sizeof installed),
         .only_scene = settings->session.scene,
         .methods = options->methods,
-        /* 0 stands for every method that can be used */
+        /* 0: every available method */
         .n_methods = all ? 0 : options->n_methods,
         .plugins = settings->session.plugins,
         .n_plugins = settings->session.n_plugins,

@@ -32,7 +32,7 @@ static bool draw(const char *folder, const char *name) {
     return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
 }
 
-/* A scene that is called as a map is no place for one. */
+/* Refuses a map whose files would overwrite the scene. */
 static enum cs_status store_inputs(const struct cs_stability *map, const char *folder,
                                    struct cs_error *error) {
     static const char *const endings[] = {".csv", "_border.csv", ".json", ".gp"};
@@ -72,7 +72,7 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     return error->status;
 }
 
-/* A share of the columns is no map yet. */
+/* Reports a shard: some of the columns are no map yet. */
 static void print_shard(const struct cs_stability *map, bool quiet) {
     if (!quiet)
         printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,

@@ -167,7 +167,7 @@ enum cs_status cs_bisect_run(struct cs_bisect *bisect,
     if (run_both(settings, "frames", bisect, &bisect->state_difference, error) ||
         !bisect->state_difference.exists)
         return error->status;
-    /* the start is not computed, and an end that came early lies in the frame behind */
+    /* the start is not computed; an early end is in the next frame */
     if (!bisect->state_difference.frame)
         return CS_OK;
     snprintf(frame, sizeof frame, "%" PRIu32, bisect->state_difference.frame);

@@ -16,14 +16,14 @@
 /* One of the two programs: its command "PROGRAM run SCENE ...", closed by NULL. */
 struct cs_bisect_side {
     const char *name;             /* "A" */
-    const char *const *arguments; /* (n_arguments) and NULL behind them */
+    const char *const *arguments; /* (n_arguments), then NULL */
     uint32_t n_arguments;
 };
 
 /* Request for a bisection; pointers are borrowed. */
 struct cs_bisect_settings {
     struct cs_bisect_side sides[2];
-    double tolerance; /* what numbers may differ by; 0: no bit */
+    double tolerance; /* allowed difference of numbers; 0: equal bits */
     const volatile sig_atomic_t *stop;
 };
 

@@ -132,7 +132,7 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
-    /* no bound knows what an event has added: the account starts anew */
+    /* no bound holds after an event has added energy: restart */
     if (has_event_since(monitor, run))
         start(monitor, run);
     monitor->last_sample = run->t;

@@ -37,9 +37,10 @@ struct cs_energy_monitor {
     double gravity_released;      /* J, most that gravity gave until now */
     double start_speed; /* m/s: largest, and what the springs at one particle could give it */
     double gravity_acceleration,
-        force_acceleration;     /* m/s2, of gravity, and of wind and viewpoint forces at most */
-    double mass, wind_mass;     /* kg that can move; of it times (wind/gravity) for its work */
-    bool has_local_instability; /* a local instability was seen */
+        force_acceleration; /* m/s2, of gravity, and of wind and viewpoint forces at most */
+    double mass,
+        wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, for the wind's work */
+    bool has_local_instability;         /* a local instability was seen */
     struct cs_energy_monitor_row first; /* when it began */
     enum cs_stability_verdict worst_verdict;
 };

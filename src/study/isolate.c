@@ -24,7 +24,7 @@ enum { PAUSE_NANOSECONDS = 20000000 };
 struct shared {
     struct cs_crash_log log;
     struct cs_error error; /* of the task */
-    atomic_bool done;      /* it came to its end: the error is whole */
+    atomic_bool done;      /* the task has returned: the error is complete */
 };
 
 /* Waiting times of the calls, by which hung ones are found. */

@@ -15,7 +15,7 @@ struct cs_isolate {
     double seconds; /* that one call into a module may take */
     enum cs_status (*task)(void *ctx, struct cs_error *error);
     void *ctx;
-    const volatile sig_atomic_t *stop; /* set: the process is told; may be NULL */
+    const volatile sig_atomic_t *stop; /* set: the process is asked to stop; may be NULL */
 };
 
 /* Runs the task in a child of this process and waits for it. The child ends with this process.

@@ -24,7 +24,7 @@ struct shared {
     uint32_t ticks;
     struct cs_error errors[CS_PROCESS_POOL_MAX]; /* one a worker */
     struct cs_crash_log logs[CS_PROCESS_POOL_MAX];
-    atomic_bool done[CS_PROCESS_POOL_MAX]; /* it came to its end itself */
+    atomic_bool done[CS_PROCESS_POOL_MAX]; /* it has returned by itself */
 };
 
 void *cs_process_pool_shared_alloc(size_t bytes, struct cs_error *error) {

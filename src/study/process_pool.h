@@ -23,8 +23,7 @@ void cs_process_pool_shared_free(void *memory, size_t bytes);
 /* Request for a run of tasks; pointers are borrowed. */
 struct cs_process_pool {
     uint32_t n_workers, n_tasks;
-    /* one task, in a process of its own; ticks is to be raised (cs_process_pool_tick) as it
-     * goes */
+    /* one task, in its own process; it must call cs_process_pool_tick as it progresses */
     enum cs_status (*task)(void *ctx, uint32_t task, struct cs_error *error);
     void *ctx;
     /* in the calling process, about ten times a second; may be NULL */
@@ -33,7 +32,7 @@ struct cs_process_pool {
     uint32_t *ticks;         /* of the pool: in memory that all workers see while it runs */
     double task_seconds_max; /* of processor time for a task, which is then left as it is; 0:
                                 any */
-    const volatile sig_atomic_t *stop; /* set: the workers are told; may be NULL */
+    const volatile sig_atomic_t *stop; /* set: the workers are asked to stop; may be NULL */
 };
 
 /* Advances the progress; callable from every worker. */

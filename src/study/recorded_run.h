@@ -15,7 +15,7 @@
 
 /* The scene and the number of frames, common to all runs of a comparison. */
 struct cs_recorded_run_settings {
-    struct cs_session_settings session; /* integrator is not looked at */
+    struct cs_session_settings session; /* integrator is not used */
     uint32_t frames;
 };
 

@@ -18,7 +18,7 @@ struct work {
     const struct cs_reproduction_settings *settings;
     struct cs_provenance carried;
     struct cs_session session;
-    struct cs_serialiser record; /* of methods that start anew at each checkpoint */
+    struct cs_serialiser record; /* for methods that restart at each checkpoint */
 };
 
 /* Records the first difference; everything after it is skipped. */
@@ -165,7 +165,7 @@ enum { FRAME, STATE, PIXELS, RUN, TEXTS };
 static const char *const keys[TEXTS] = {"clothsim:frame", "clothsim:state-hash",
                                         "clothsim:pixel-hash", "clothsim:run"};
 
-/* the renderer by the name that was told, so that its pixels can be the same */
+/* The renderer of the original picture, because only its pixels can be equal. */
 static enum cs_renderer_kind renderer_of(const struct cs_provenance *provenance) {
     for (int k = 0; cs_renderer_names[k]; k++)
         if (!strcmp(cs_renderer_names[k], provenance->renderer_name))

@@ -16,7 +16,7 @@ struct cs_reproduction_settings {
 
 /* Result of a reproduction; zeroed: nothing. The caller finishes it in any case. */
 struct cs_reproduction {
-    struct cs_text description;      /* was made again: "3 frames of a.json by rk4:dt=0.001" */
+    struct cs_text description;      /* "3 frames of a.json by rk4:dt=0.001" */
     struct cs_text notes;            /* what has changed since, a line each */
     struct cs_text equal_items;      /* "3 states and the outcome" */
     struct cs_text first_difference; /* the first; empty: there is none */

@@ -58,14 +58,14 @@ enum {
 
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_session {
-    struct cs_session_settings settings; /* their texts are looked at while opening only */
+    struct cs_session_settings settings; /* their texts are used while opening only */
     struct cs_scene scene;
     struct cs_registry registry;
     struct cs_method method;
     struct cs_plan plan;
     struct cs_system system;
     struct cs_initial_penetration
-        initial_penetration; /* what was moved out of obstacles when the system was built */
+        initial_penetration; /* particles moved out of colliders when the system was built */
     struct cs_run run;
     bool started_pool; /* started threads */
 };
@@ -87,7 +87,7 @@ enum cs_status cs_session_open_system(struct cs_session *session,
                                       const struct cs_session_settings *settings,
                                       struct cs_error *error);
 
-/* The steps between these; what failed is still to be closed. */
+/* Single steps of the path. */
 
 /* Builds the system of an open plan at its start; an earlier one is replaced. Moves particles
  * out of colliders and applies the perturbation. On failure the session must still be closed.

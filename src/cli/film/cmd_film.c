@@ -51,8 +51,8 @@ struct film {
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
 
-/* Where the film goes, by its ending what it is; the part keeps the ending, which ffmpeg reads.
- */
+/* Sets the path of the film, whose ending names the format. The temporary file keeps the
+ * ending, which ffmpeg reads. */
 static enum cs_status set_output_path(const struct options *options, struct film *film,
                                       struct cs_error *error) {
     char made[PATH_BYTES], here[PATH_BYTES] = "";

@@ -46,7 +46,7 @@ struct cs_args {
     struct cs_arg_value *given;
     const char **operands;
     uint32_t n_given, n_operands;
-    bool help;             /* --help was there: nothing else was looked at */
+    bool help;             /* --help was given: nothing else was read */
     struct cs_arena arena; /* owns the arrays and lists above; commands may take from it too */
 };
 

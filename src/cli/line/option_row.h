@@ -28,7 +28,7 @@ enum cs_arg_kind {
 struct cs_arg {
     const char *name;  /* long name without its dashes */
     char short_name;   /* short name; 0: none */
-    const char *value; /* what stands for its value in --help; NULL: a switch */
+    const char *value; /* placeholder of its value in --help; NULL: a switch */
     const char *help;  /* lower case, no full stop; NULL: not shown */
     enum cs_arg_kind kind;
     size_t offset;            /* of the field in the command's struct of options */

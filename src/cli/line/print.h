@@ -22,7 +22,7 @@ enum cs_status cs_print_file(const char *path, struct cs_text *text, struct cs_e
 /* Writes "clothsim: message" to stderr in one line; control characters become "?". */
 void cs_print_message(const char *message);
 
-/* true for the name that stands for standard output; path may be NULL. */
+/* True for "-", which means standard output; path may be NULL. */
 bool cs_print_is_stdout(const char *path);
 
 #endif

@@ -7,11 +7,11 @@
 
 /* State of the line. */
 struct cs_progress {
-    bool shown;         /* nobody asked for quiet */
+    bool shown;         /* not quiet */
     bool terminal;      /* stderr is one */
-    const char *label;  /* is counted: "frame" */
+    const char *label;  /* the counted noun: "frame" */
     double start, last; /* s */
-    int width;          /* of the line that is there */
+    int width;          /* of the present line */
 };
 
 /* Starts the clock. what: the noun that is counted, "frame". */

@@ -184,7 +184,7 @@ static enum cs_status print_table(const struct cs_job *job, struct cs_error *err
     return cs_print_out(taken ? stderr : stdout, &table, error);
 }
 
-/* A run that ends in a state which it cannot have come to says so whatever else is printed. */
+/* Warns of a physically impossible final state, whatever else is printed. */
 static void print_watch(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     struct cs_text found = {0};
@@ -199,7 +199,7 @@ static void print_watch(const struct cs_job *job) {
     cs_text_finish(&found);
 }
 
-/* So does one that stopped early. */
+/* Reports a run that stopped early; with strict, a blow-up is an error. */
 static enum cs_status print_outcome(const struct cs_job *job, bool strict,
                                     struct cs_error *error) {
     const struct cs_run *run = &job->session.run;

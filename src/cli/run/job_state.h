@@ -96,7 +96,7 @@ struct cs_run_output {
 
     /* By stage. */
     enum cs_status (*at[CS_RUN_STAGES])(struct cs_job *job, struct cs_error *error);
-    /* Stores what it keeps from frame to frame in a checkpoint, or loads it. */
+    /* Stores its state between frames in a checkpoint, or loads it. */
     void (*record)(struct cs_job *job, struct cs_serialiser *record);
 };
 

@@ -12,7 +12,7 @@
 /* The option --trace; zeroed: none. Must not move in memory while the run lasts. */
 struct cs_run_trace {
     bool is_requested;
-    uint32_t frame; /* the frame of which everything is told; 0: the state of each frame */
+    uint32_t frame;        /* frame with a full trace; 0: the state of each frame */
     struct cs_trace trace; /* of the run's settings */
 };
 

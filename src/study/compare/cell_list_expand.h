@@ -21,7 +21,7 @@ struct cs_cell_list_entry {
     char fixed[sizeof((struct cs_cell *)0)->fixed]; /* options without the swept one */
     const char *control;                            /* "dt", "rtol" or "" */
     double low, high;                               /* of the control; NAN: the default sweep */
-    char module[CS_HASH_DIGITS]; /* hash of the file: a module built anew is another one */
+    char module[CS_HASH_DIGITS]; /* hash of the file: a rebuilt module is a different one */
 };
 
 /* Adds the cells of the entry over its range, or over the default range. A method of another

@@ -150,7 +150,7 @@ enum cs_status cs_cell_list_add_modules(const char *list, struct cs_arena *arena
     while (rest) {
         char *item = cs_method_split(&rest), name[CS_SERIES_BYTES];
         const char *method = item;
-        struct cs_error unread = {0}; // told where the list is read
+        struct cs_error unread = {0}; // reported when the list is read
         if (cs_series_parse_name(&method, name, &unread))
             continue;
         item += method - item;

@@ -241,7 +241,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
     *compare = (struct cs_compare){.settings = settings};
     cs_machine_name(compare->machine);
     const struct cs_compare_reference_settings reference = ask_reference(compare);
-    // the folder is looked at before the reference, which may take long
+    // the folder is checked before the reference, which may take long
     if (!read_scene_facts(compare, error) && !print_origin(compare, error) &&
         !make_cells(compare, error) && !make_keys(compare, error) &&
         !cs_compare_results_open(&ledger, compare, error) && !write_origin(compare, error) &&

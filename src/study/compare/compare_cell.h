@@ -16,7 +16,7 @@ struct cs_cell {
     char series[CS_SERIES_BYTES]; /* its curve: a method with its options, under one name */
     char method[64];
     char fixed[192];   /* options that all cells of the series share */
-    char options[256]; /* all: "dt=0.001", as behind the method's name; "": nothing is set */
+    char options[256]; /* all of them: "dt=0.001"; "": all at their defaults */
     char control[16];  /* "dt", "rtol", or "" */
     char
         outcome[48]; /* "finished", "blew up: not finite", "over budget", "failed", "refused" */

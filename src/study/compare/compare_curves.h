@@ -30,7 +30,7 @@ struct cs_plot_settings {
 /* The cells of one series, which are adjacent. */
 struct cs_curve {
     uint32_t first, n, is_drawn, on_front;
-    uint32_t bars, failed_marks; /* cells with quartiles; that did not get through */
+    uint32_t bars, failed_marks; /* cells with quartiles; cells that did not finish */
     double log_cost_excess; /* least cost over that of the front at its error, as a logarithm */
     uint32_t
         crossing_marks; /* cells that are drawn and in which edges went through triangles */
@@ -51,7 +51,7 @@ struct cs_curves {
  * is the eighth. */
 extern const char *const cs_curve_colours[CS_CURVE_COLOURS];
 #define CS_FRONT_COLOUR "#f0e442"
-/* of the ring about a cell in which edges went through triangles */
+/* Colour of the ring around a cell in which edges went through triangles. */
 #define CS_RING_COLOUR "#b00020"
 
 /* Crosses stand at the upper edge, for which there is room where there are any. Of more than

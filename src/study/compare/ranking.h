@@ -24,9 +24,9 @@ struct cs_rank {
     const struct cs_cell *best,
         *runner_up;        /* borrowed; next NULL: no other series was run to it */
     struct cs_ratio ratio; /* next over best */
-    bool is_significant;   /* the two are told apart */
-    /* by another error: the cheapest cell that is no worse than best, where it is another
-     * series and told apart from it; NULL: best wins by that one too */
+    bool is_significant;   /* their costs differ significantly */
+    /* by another norm: the cheapest cell that is no worse than best, if it is another series
+     * and significantly cheaper; NULL: best wins by that norm too */
     const struct cs_cell *better_by_norm[CS_NORMS];
 };
 

@@ -36,10 +36,9 @@ struct cs_rounds {
 
 /* Cost ratio of two cells, with its 95 % interval. */
 struct cs_ratio {
-    double median;    /* median */
-    double low, high; /* 95 %, of comparisons that are repeated */
-    double
-        pair_uncertainty; /* share that the pairs of this one alone leave open to either side */
+    double median;           /* median */
+    double low, high;        /* 95 %, of comparisons that are repeated */
+    double pair_uncertainty; /* relative half width by the pairs of this comparison alone */
     uint32_t
         pairs; /* 0: the cells were timed once, each by itself; then low and high are NAN */
 };

@@ -24,7 +24,7 @@ const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const 
 void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
                             const double *values, size_t n) {
     struct cs_conform_kept *kept = NULL;
-    // a name that is cut short could be another one's
+    // a truncated name could match another one
     if (cache && strlen(name) < sizeof kept->name)
         kept = malloc(sizeof *kept + n * sizeof *values);
     if (!kept)

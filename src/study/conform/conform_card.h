@@ -38,7 +38,7 @@ struct cs_conform_cache;
 struct cs_conform {
     const struct cs_integrator *method;
     const void *options; /* filled, before the checks' own; NULL: the defaults */
-    /* the method that CS_FIDELITY_IMPLICIT_EULER is held against; NULL: there is none */
+    /* the method that CS_FIDELITY_IMPLICIT_EULER is compared with; NULL: none */
     const struct cs_integrator *implicit_euler;
     const char *only_check; /* one check by its name; NULL: all */
     /* references that earlier cards have run, and where this one's go; NULL: none are kept */

@@ -19,7 +19,7 @@ struct cs_drum {
     bool fixed_steps;       /* steps of dt, also of a method that can choose its own */
     bool has_velocity_jump; /* all velocities are turned and halved at the end of the first
                                frame */
-    bool has_contact;       /* a plane behind it is in range all the time, with friction */
+    bool has_contact;       /* a plane behind it is always in range, with friction */
 };
 
 /* Returns the longest step in s that orders are measured from: the largest whole part of a

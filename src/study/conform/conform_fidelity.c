@@ -76,7 +76,7 @@ void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row
         cs_row_skip(row, "there is no integrator backward-euler to hold it against");
         return;
     }
-    /* the start gives the scale: distances are told as shares of the motion */
+    /* the start gives the scale: distances are fractions of the motion */
     struct cs_probe probe;
     if (cs_drum_open(&probe, card, method, &drum))
         for (size_t i = 0; i < CS_DRUM_VALUES; i++)

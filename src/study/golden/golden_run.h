@@ -23,7 +23,7 @@ struct cs_golden_row {
     char *image; /* name of the picture; NULL in hash.tsv */
     char found[CS_HASH_DIGITS], renderer[256];
     char library[64];       /* as in note, of this build; "": the bits are the program's own */
-    struct cs_text message; /* what differs, or why the row was skipped; empty: nothing */
+    struct cs_text message; /* the difference, or why the row was skipped; empty: equal */
     bool skipped;           /* the library is not in this build, or of another version */
     bool added;             /* accepted for that version, in a row of its own */
 };

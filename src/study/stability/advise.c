@@ -8,9 +8,9 @@
 
 /* Samples of a probe run, and halvings of a step that proved unstable. */
 enum { SAMPLES = 32, HALVINGS = 6 };
-#define PERTURBATION 1e-4 /* of the shortest spring */
-#define MARGIN       0.9  /* of the limit that is advised */
-#define GROWTH_SEEN  1e-7 /* in a step; less is rounding */
+#define PERTURBATION 1e-4 /* lengths of the shortest spring */
+#define MARGIN       0.9  /* fraction of the limit that is advised */
+#define GROWTH_SEEN  1e-7 /* growth per step that counts; less is rounding */
 
 /* Context of the worker tasks. */
 struct work {

@@ -19,11 +19,11 @@
  * by strain is then the exact one. */
 #define SMALL 0x1p-20
 
-/* A method that remembers more than (s, w) is looked at between two later steps, when its start
- * is forgotten; the number of steps between is a power of 2. */
+/* A method that remembers more than (s, w) is measured between two later steps, when its start
+ * is forgotten. The number of steps in between is a power of 2, for roots by sqrt. */
 enum { STEPS_BEFORE = 8, STEPS_BETWEEN = 16 };
-/* two steps are the square of one to this part of what a step does where nothing is
- * remembered */
+/* Tolerance of the test that two steps are the square of one, relative to the effect of a
+ * step. */
 #define SAME 1e-6
 
 /* Runs from (s, h w) = start; looks[k] = (s, h w) after steps[k] steps. Returns false if the

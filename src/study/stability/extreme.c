@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PERTURBATION 1e-4 /* of the shortest spring */
+#define PERTURBATION 1e-4 /* lengths of the shortest spring */
 
 /* Facts about the end of a run that its verdict does not hold. */
 struct ending {

@@ -83,7 +83,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     trial.session.perturbation =
         PERTURBATION * cs_springs_shortest(&map->session.system.springs);
     trial.session.run.budget = map->settings->budget;
-    /* springs get shorter as columns are added, and so must the perturbation */
+    /* springs get shorter as columns are added: the perturbation keeps its ratio to them */
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
         trial.session.perturbation *= map->scene_value / column->value;
     const uint32_t number = (uint32_t)(column - map->columns);

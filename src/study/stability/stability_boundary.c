@@ -36,7 +36,7 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
     /* drift compares the energies at the end, which both runs must have reached */
     if (trial.result.outcome == CS_RUNNING && asked.seconds >= reference->seconds)
         cell->drift = cs_stability_drift(&trial, &reference->run);
-    /* the time that is told is that of the first sign, not that of the end */
+    /* the reported time is that of the first sign, not that of the end */
     if (cell->verdict == CS_STABILITY_GLOBAL && trial.exceeded_limit)
         cell->time = trial.exceeded_time;
     else if (cell->verdict == CS_STABILITY_LOCAL)

@@ -17,7 +17,7 @@ struct cs_stability_cell {
     /* s; 0: not tried yet */
     double dt;
     enum cs_stability_verdict verdict;
-    double drift;       /* see cs_stability_drift; NAN where the run did not come to its end */
+    double drift;       /* see cs_stability_drift; NAN if the run did not finish */
     double time;        /* s, where the verdict showed; the end of a stable one */
     uint32_t particles; /* of a local instability: most at one time */
     double crossings;   /* most of all samples; NAN where they are not counted */

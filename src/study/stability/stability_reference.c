@@ -35,11 +35,11 @@ static void sample_theory(void *ctx, const struct cs_run *run, const struct cs_e
     (void)energy;
     if (!way->theory || way->error->status)
         return;
-    // of the run: its obstacles move, and its ramps go on
+    // of the run: its colliders move, and its ramps continue
     way->theory->modes.system = run->system;
     way->theory->modes.t = run->t;
     cs_theory_tighten(way->theory, run->x, &way->reference->smallest_limit, way->error);
-    // other bounds than those of contact hold for the whole run
+    // bounds other than those of contact hold for the whole run
     if (!way->error->status && cs_spectral_bounds_depend_on_state(run->system))
         cs_theory_gershgorin(way->theory, run->x, &way->reference->gershgorin_limit,
                              way->error);
@@ -57,7 +57,7 @@ static bool run_once(struct cs_reference *reference,
     asked.limits = (struct cs_sampled_run_limits){HUGE_VAL, HUGE_VAL, HUGE_VAL};
     asked.on_sample = sample_theory;
     asked.ctx = way;
-    // what a run that failed went through does not count
+    // limits along a failed run do not count
     reference->smallest_limit = reference->start_limit;
     reference->gershgorin_limit = way->gershgorin;
     return !cs_sampled_run_execute(&reference->run, &asked, error) && !way->error->status &&

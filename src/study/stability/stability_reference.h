@@ -13,7 +13,7 @@
 /* Reference run and the limits of one method. Contains no pointers: it is stored in the journal
  * of a map as it is. */
 struct cs_reference {
-    bool exists; /* else only theory at rest is there, and message says why */
+    bool exists; /* else only the limits at the start exist, and message says why */
     char message[320];
     double seconds;            /* simulated: enough for 200 steps at the limit */
     struct cs_sampled_run run; /* velocity-verlet with a small step */

@@ -240,7 +240,7 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
         const double dts[] = {column->boundary, reference->smallest_limit.dt,
                               reference->start_limit.dt, reference->gershgorin_limit};
         cs_text_add_real(out, column->value);
-        /* 0 stands for no stable step, which no logarithmic scale shows */
+        /* 0 means no stable step, which a logarithmic scale cannot show */
         for (int k = 0; k < 4; k++)
             cs_csv_add_number(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
         cs_csv_add_number(out, mode->omega_squared > 0 ? sqrt(mode->omega_squared) : 0);
