@@ -1,4 +1,7 @@
-/* clothsim advise: finds the largest safe time step of each method, its limit and its cost. */
+/* clothsim advise: finds the largest safe time step of each method, its limit and its cost.
+ *
+ *   options -> cs_advise_run: theory, probe runs, bisection -> table
+ *   options with --error -> cs_compare_run -> the cheapest method and step for that error */
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
@@ -90,6 +93,7 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
     return error->status;
 }
 
+/* The same flag stops the present run and prevents further ones. */
 static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     struct cs_progress progress;
     struct cs_text out = {0};

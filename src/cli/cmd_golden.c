@@ -1,4 +1,6 @@
-/* clothsim golden: recomputes golden hashes and images, and reports what differs. */
+/* clothsim golden: recomputes golden hashes and images, and reports differences.
+ *
+ *   options -> cs_golden_check: per row a run, its hash or picture, a verdict -> counts */
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -37,7 +39,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* Where rows go. */
+/* Destination of the rows. */
 struct sink {
     const struct options *options;
     struct cs_text json;

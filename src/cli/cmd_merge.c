@@ -1,4 +1,8 @@
-/* clothsim merge: joins the folders of studies that several processes filled. */
+/* clothsim merge: merges the folders of studies that several processes filled.
+ *
+ *   folders -> compare.csv, sweep.csv by rows; origin.json by copy; *.partial by appending
+ *
+ * A merged map is completed by repeating its command on the merged folder. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "study/compare/compare_results.h"

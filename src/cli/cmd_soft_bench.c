@@ -1,4 +1,7 @@
-/* clothsim soft-bench: measures spring networks against shape matching on a soft body. */
+/* clothsim soft-bench: measures spring networks against shape matching on a soft body.
+ *
+ *   options -> checks -> cs_soft_run: a row per body -> soft.csv and diagram -> tables
+ * Rows measured before an interruption are written. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"

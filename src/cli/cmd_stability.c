@@ -1,5 +1,10 @@
 /* clothsim stability: maps the stable time steps of a method, as text, CSV, JSON and a picture.
- */
+ *
+ *   options -> axis and ranges -> per method: cs_stability_run -> table, NAME.csv,
+ *   NAME_border.csv, NAME.json, NAME.gp and, with gnuplot, NAME.png
+ *
+ * With --extreme the catalogue of extreme scenes is run instead (study/stability/extreme.h). An
+ * interrupted map resumes from its journal when the command is repeated. */
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -150,6 +155,7 @@ static void write_json(const struct cs_extreme *extreme, struct sink *sink,
     }
 }
 
+/* Runs the catalogue. A missed expectation is CS_ERR_CHECK, with valid counts and rows. */
 static enum cs_status run_extreme(const struct cs_stability_options *options,
                                   struct cs_error *error) {
     const struct cs_stability_settings *settings = &options->map;

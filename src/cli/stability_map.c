@@ -79,6 +79,7 @@ static void print_shard(const struct cs_stability *map, bool quiet) {
                map->settings->shard.index, map->settings->shard.count, map->journal.table.path);
 }
 
+/* For --strict: fails if a cell was not stable. */
 static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
     uint32_t bad = 0;
     for (uint32_t c = 0; c < map->n_columns; c++)
@@ -89,6 +90,7 @@ static enum cs_status check_cells(const struct cs_stability *map, struct cs_erro
                : CS_OK;
 }
 
+/* An incomplete map (of a shard) writes no files: its results are in the journal. */
 enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
                                     struct cs_error *error) {
     struct cs_progress progress;

@@ -1,4 +1,7 @@
-/* clothsim film: makes one film of the pictures of a run, by ffmpeg, or a contact sheet. */
+/* clothsim film: makes one film of the pictures of a run by ffmpeg, or a contact sheet.
+ *
+ *   run.json -> pictures, rate and range -> check that all are there -> ffmpeg -> rename
+ *   run.json -> evenly spaced pictures -> shrunk tiles with times -> one PNG */
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -158,7 +161,7 @@ static enum cs_status make(const struct film *film, struct cs_error *error) {
                  : cs_fail(error, CS_ERR_FILE, "%s: ffmpeg could not make it", film->out);
 }
 
-/* ffmpeg would end a film where one is missing, and say nothing. */
+/* Checks that no picture is missing: ffmpeg would end the film there without a message. */
 static enum cs_status check_pictures(struct film *film, const struct cs_film_report *report,
                                      struct cs_error *error) {
     char path[PATH_BYTES];
