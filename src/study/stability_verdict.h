@@ -51,12 +51,15 @@ struct cs_sampled_run_limits cs_stability_limits(const struct cs_sampled_run *re
 
 /* Judges a run that had those limits.
  *
- * Energy beyond them is a global instability only if it grew by half from the first half of the
- * run to the second, or if the mean kinetic energy is ten times that of the reference. A
- * symplectic method near its limit amplifies a fast mode to a bounded amplitude (it conserves a
- * modified energy, in which the mode has another weight) and stays there. whole: the run was
- * meant to last as long as the reference; otherwise CS_STABILITY_SHORT replaces the stable
- * verdicts. */
+ * Energy beyond them is a global instability only with a second sign. Either it grew by half
+ * from the first half of the run to the second, or the mean kinetic energy is ten times that of
+ * the reference. The reason is a symplectic method near its limit: velocity-verlet conserves
+ *   w^2 + square (1 - h^2 square / 4) s^2
+ * of an undamped mode, with w = s'. Its amplitude s for a given start velocity grows without
+ * bound as h^2 square approaches 4, but stays there for good: the run is stable, if inaccurate.
+ *
+ * whole: the run was meant to last as long as the reference; otherwise CS_STABILITY_SHORT
+ * replaces the stable verdicts. */
 enum cs_stability_verdict cs_stability_judge(const struct cs_sampled_run *trial,
                                              const struct cs_sampled_run *reference,
                                              bool whole);

@@ -61,11 +61,11 @@ static double rest_energy(const struct cs_conform *card) {
 }
 
 /* Without damping, energy may fall (many implicit methods dissipate) but not grow by more than
- * the error of a step explains. With a symplectic method it stays near its start for good,
- * because the method conserves a modified energy up to terms that are exponentially small in
- * 1/h (Hairer, Lubich, Wanner 2006). The bound is (h w)^2, or h w for order 1. The run is 17
- * times as long as that of `tolerance`, so an adaptive method is allowed ten times its error
- * there. */
+ * the error of a step explains. With a symplectic method it stays near its start for good. Such
+ * a method conserves a modified energy, up to terms that are exponentially small in 1/h
+ * (Hairer, Lubich, Wanner 2006). The bound is (h w)^2, or h w for order 1. The run is 17 times
+ * as long as that of `tolerance`, so an adaptive method is allowed ten times its error there.
+ */
 void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     const bool both = method->traits & CS_SYMPLECTIC;

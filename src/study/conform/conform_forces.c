@@ -1,10 +1,11 @@
 /* Checks the motion under one force at a time, with unequal masses, and under forces that
  * change with time, against the reference.
  *
- * Bound: a method of order p with step h has the local error (h w)^(p+1) of a motion of rate w,
- * hence (h w)^p w T over the run of length T. Twice that is allowed, and never less than 1e-10.
- * A force that is missed or applied twice causes an error of the size of the motion at any
- * step. Two levels of accuracy differ by 8 in h: a wrong order fails at the fine level. */
+ * Bound: with step h and rate w of the scene, a method of order p has the local error (h
+ * w)^(p+1) of the motion. The T / h steps of a run of length T add up to (h w)^p w T. Twice
+ * that is allowed, and never less than 1e-10. A force that is missed or applied twice causes an
+ * error of the size of the motion at any step. Two levels of accuracy differ by 8 in h: a wrong
+ * order fails at the fine level. */
 #include "study/conform/conform_cache.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"

@@ -15,9 +15,9 @@
 #define EXPLAINED 100
 #define FLOOR     1e-9
 
-/* If the second family is farther from the reference than ROUGH times the own error of the
- * first and than ROUNDING of the motion, the second family is the one in error: the next
- * candidate is tried in its place. */
+/* The second family is in error if it is farther from the reference than ROUGH times the own
+ * error of the first family and than ROUNDING of the motion. The next candidate is then tried
+ * in its place. */
 #define ROUGH    10
 #define ROUNDING 1e-13
 

@@ -2,9 +2,15 @@
  * oscillator.
  *
  * A one-step method maps (s, h w), with w = s', linearly on s'' + rate s' + square s = 0:
- *   (s, h w)' = A(h^2 square, h rate) (s, h w),
+ *   (s, h w)' = A(z1, z2) (s, h w),  z1 = h^2 square,  z2 = h rate,
  * with a 2x2 matrix A that depends on the two products only. The step is stable if the spectral
- * radius of A is at most 1.
+ * radius of A is at most 1. Two examples:
+ *
+ *   velocity-verlet, z2 = 0:  A = (1 - z1/2, 1; -z1 (1 - z1/4), 1 - z1/2)
+ *   explicit-euler:           A = (1, 1; -z1, 1 - z2)
+ * The first has determinant 1 and is stable while |trace| <= 2, that is for h <= 2 /
+ * sqrt(square). The second has determinant 1 - z2 + z1: without damping no step is stable, with
+ * it h <= rate / square is necessary.
  *
  * A is measured, not derived: a spring between a pinned and a free particle is stepped by the
  * method itself, once from each unit vector. The results are the columns of A. Nothing has to

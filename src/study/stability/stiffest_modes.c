@@ -5,9 +5,9 @@
  *   2. Projection H = Q^T A Q, (count,count) and symmetric.
  *   3. Eigenvectors of H by Jacobi rotations; y belongs to the largest eigenvalue.
  *   4. The Ritz vector Q y starts the next restart; its Ritz value is the eigenvalue of H.
- * All basis vectors are kept and orthogonalised against (not only the last two as in the
- * three-term recurrence of Lanczos), because rounding otherwise destroys the orthogonality once
- * a Ritz value has converged (Golub and Van Loan 2013, sec. 10.3). */
+ * New vectors are orthogonalised against the whole basis, not only the last two as in the
+ * three-term recurrence of Lanczos. Rounding otherwise destroys the orthogonality once a Ritz
+ * value has converged (Golub and Van Loan 2013, sec. 10.3). */
 #include "study/stability/stiffest_modes.h"
 
 #include "model/force/terms.h"

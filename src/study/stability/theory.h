@@ -6,14 +6,14 @@
  * example without damping. Elsewhere it is the Rayleigh-Ritz projection on one degree of
  * freedom.
  *
- * A step h of the method is stable for the oscillator exactly if the point (h^2 square, h rate)
- * is in a set S of the plane, which depends on the method only. Its border is measured by
- * amplification.h. The limit of the system is the smallest limit over all p.
+ * A step h is stable for the oscillator if the point (h^2 square, h rate) is in a set S of the
+ * plane. S depends on the method only; its border is measured by amplification.h. The limit of
+ * the system is the smallest limit over all p.
  *
- * The mode with the smallest limit is not always the fastest one: a method with explicit
- * damping can be limited by a strongly damped slow mode. Therefore the search follows the
- * outward normal (n1, n2) of S at the current border point. For fixed h and convex S the worst
- * p maximises
+ * The mode with the smallest limit is not always the fastest one. explicit-euler for example
+ * has the border h square = rate: the mode with the least damping for its stiffness limits it.
+ * Therefore the search follows the outward normal (n1, n2) of S at the current border point.
+ * For fixed h and convex S the worst p maximises
  *   n1 h^2 p^T K p + n2 h p^T C p,
  * the largest eigenvalue of a K + b C with a = n1 h^2 and b = n2 h. The search alternates
  * between this eigenvalue problem and the normal at the new limit. */
