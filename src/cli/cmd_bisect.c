@@ -70,7 +70,7 @@ static enum cs_status add_named(struct line *line, const char *key, size_t lengt
     return error->status;
 }
 
-/* "program=FILE" or "threads=4" */
+/* Adds "program=FILE", which replaces the program, or "threads=4" as an option of run. */
 static enum cs_status add_own(struct line *line, const char *own, struct cs_error *error) {
     static const char *const keys[] = {"program", "integrator", "set",
                                        "plugin",  "threads",    NULL};
@@ -88,6 +88,7 @@ static enum cs_status add_own(struct line *line, const char *own, struct cs_erro
                    own);
 }
 
+/* True if one side has its own value for the option. */
 static bool has_own(const struct own *own, const char *key) {
     const size_t length = strlen(key);
     for (uint32_t k = 0; k < own->n; k++)
@@ -114,6 +115,7 @@ static void add_common(struct line *line, const struct own *own, struct cs_error
     add_each(line, "threads", &both->threads, threads, error);
 }
 
+/* The command of one side: this program's run without pictures, then common and own options. */
 static enum cs_status make_line(struct line *line, const struct own *own,
                                 struct cs_error *error) {
     line->words = cs_arena_alloc_array(&line->args->arena, 8 + 2 * (size_t)line->args->n_given,
@@ -166,6 +168,7 @@ static void print(const struct cs_bisect *bisect, struct cs_text *out) {
     add_lines("", within, out);
 }
 
+/* Prints the result; a difference is CS_ERR_CHECK. */
 static enum cs_status report(const struct cs_bisect *bisect, bool quiet,
                              struct cs_error *error) {
     const struct cs_bisect_difference *states = &bisect->state_difference;

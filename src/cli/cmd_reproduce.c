@@ -83,6 +83,7 @@ static void print_notes(char *notes, struct cs_text *out) {
         cs_print_hanging(left, line, VALUE_COLUMN, out);
 }
 
+/* Prints what was run, what has changed, and what is equal. */
 static enum cs_status print(struct cs_reproduction *again, struct cs_error *error) {
     struct cs_text out = {0};
     cs_print_hanging("again", cs_text_get(&again->description), VALUE_COLUMN, &out);

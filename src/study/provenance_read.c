@@ -67,6 +67,7 @@ static void take_members(struct cs_provenance *provenance) {
     provenance->fast_render = fast && cs_json_is_true(fast);
 }
 
+/* Parses the text and takes its members. A fault names line and column. */
 static enum cs_status parse(struct cs_provenance *provenance, size_t length,
                             struct cs_error *error) {
     struct cs_json_fault fault;
@@ -108,6 +109,9 @@ void cs_provenance_finish(struct cs_provenance *provenance) {
     *provenance = (struct cs_provenance){0};
 }
 
+/* The scene is taken from the stored text, not from its file: that may have changed. With
+ * `folder` only the folder of the path is replaced, because meshes and textures are named
+ * relative to it. */
 enum cs_status cs_provenance_to_session(struct cs_provenance *provenance, const char *folder,
                                         struct cs_session_settings *settings,
                                         struct cs_error *error) {
@@ -128,6 +132,7 @@ enum cs_status cs_provenance_to_session(struct cs_provenance *provenance, const 
     return CS_OK;
 }
 
+/* Adds "what was THEN, is NOW" if the two differ. */
 void cs_provenance_add_change(const char *what, const char *then, const char *now,
                               struct cs_text *out) {
     if (strcmp(then, now) != 0)
@@ -135,6 +140,7 @@ void cs_provenance_add_change(const char *what, const char *then, const char *no
                     *now ? now : "none");
 }
 
+/* Changes of the method's library and of its module's build. */
 static void print_module(const struct cs_provenance *provenance, struct cs_session *session,
                          struct cs_text *out) {
     struct cs_provenance_out_module module;
@@ -178,6 +184,8 @@ void cs_provenance_add_changed_files(const struct cs_provenance *provenance,
     }
 }
 
+/* A different hash of the resolved scene means that a default or the meaning of a key has
+ * changed, since the text is the stored one. */
 enum cs_status cs_provenance_add_changes(const struct cs_provenance *provenance,
                                          struct cs_session *session, struct cs_text *out,
                                          struct cs_error *error) {

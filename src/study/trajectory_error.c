@@ -93,6 +93,8 @@ static void take_statistics(struct cs_trajectory_error *deviation,
     deviation->strain = fmax(deviation->strain, cs_diagnostics_strain(system, a));
 }
 
+/* path is the root mean square over frames of the RMS distance; end and velocity are those of
+ * the last compared frame. */
 void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
                                  const struct cs_system *system,
                                  const struct cs_trajectory *track,

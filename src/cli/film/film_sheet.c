@@ -55,6 +55,8 @@ static const struct cs_film_picture *picture_of(const struct layout *layout, uin
     return layout->report->pictures + (steps ? (2 * last * tile + steps) / (2 * steps) : last);
 }
 
+/* True if all pictures have one range of colours: only then a colour bar is valid for the
+ * sheet. */
 static bool has_one_range(const struct cs_film_report *report) {
     const double *range = report->pictures->range;
     if (!(range[0] < range[1]))

@@ -97,6 +97,8 @@ static void record_pace(struct cs_checkpointer *resume) {
     CS_SERIALISER(&resume->serialiser, resume->interval.seconds);
 }
 
+/* Reads in the order of cs_checkpointer_capture: interval, the caller's state, the run. A
+ * record with bytes left over, or too few, is refused. */
 enum cs_status cs_checkpointer_load(struct cs_checkpointer *resume, uint32_t frames,
                                     struct cs_error *error) {
     struct cs_checkpoint_key facts[FACTS];
@@ -141,6 +143,7 @@ enum cs_status cs_checkpointer_capture(struct cs_checkpointer *resume, bool *due
     return cs_run_save(run, &resume->serialiser, error);
 }
 
+/* Writes at most one file per captured frame; cs_checkpoint_write replaces the last one. */
 enum cs_status cs_checkpointer_write(struct cs_checkpointer *resume, struct cs_error *error) {
     struct cs_checkpoint_key facts[FACTS];
     if (!resume->session || resume->captured_frame == resume->written_frame)

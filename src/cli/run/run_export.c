@@ -81,6 +81,8 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     return cs_export_write_sample(&job->export, run->frame, run->t, run->x, run->v, error);
 }
 
+/* Before a checkpoint: the samples so far must be on disk, because a resumed run appends to
+ * them. */
 static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
     return cs_job_makes_checkpoints(job->settings) ? cs_export_sync(&job->export, error)
                                                    : CS_OK;

@@ -40,6 +40,7 @@ static enum cs_status sample_frame(struct search *search, uint32_t frames, uint3
     return cs_follow_check(run, " while the range of colours was found", error);
 }
 
+/* Refuses --range for a look whose colours show no value. */
 static enum cs_status check(const struct cs_session *session, struct cs_error *error) {
     const struct cs_scene *scene = &session->scene;
     if (!cs_picture_is_coloured(scene))
@@ -75,6 +76,7 @@ static enum cs_status search_range(const struct cs_job_settings *settings, char 
     return error->status;
 }
 
+/* Reads "MIN,MAX" with MIN < MAX, and prints it with all digits. */
 static enum cs_status read_range(const char *text, char value[80], struct cs_error *error) {
     const char *comma = strchr(text, ',');
     double least, most;
@@ -92,6 +94,7 @@ static enum cs_status read_range(const char *text, char value[80], struct cs_err
                    text);
 }
 
+/* The override is appended after the user's own: the last one for a key wins. */
 enum cs_status cs_run_range_set(struct cs_run_range *range, const char *text,
                                 struct cs_job_settings *settings, struct cs_error *error) {
     struct cs_session_settings *session = &settings->session;

@@ -39,6 +39,7 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
                     run->blow_up.bound);
 }
 
+/* Progress and outcome. */
 static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     struct cs_text outcome = {0};
@@ -89,6 +90,7 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
                 (unsigned long long)c->strain_limit_moves);
 }
 
+/* Energies, strain and memory at the end. */
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
@@ -116,6 +118,7 @@ static size_t peak_memory(void) {
     return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024 * (size_t)usage.ru_maxrss;
 }
 
+/* Times of the stages in total and per frame; stages of the model are a part of "simulate". */
 static void add_stages(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "a frame [ms]");
     add_stage(job, "simulate", job->session.run.advance_seconds, out);
@@ -128,6 +131,7 @@ static void add_stages(const struct cs_job *job, struct cs_text *out) {
             (double)peak_memory() / (1 << 20));
 }
 
+/* Where the outputs are. */
 static void add_files(const struct cs_job *job, struct cs_text *out) {
     const struct cs_job_settings *settings = job->settings;
     if (job->n_drawn)

@@ -9,6 +9,7 @@ static void take(void *ctx, const struct cs_trace_record *point) {
     cs_trace_stream_write(ctx, point);
 }
 
+/* Frames have at most 8 digits here, which strtoul reads without overflow. */
 enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
                                  struct cs_error *error) {
     const size_t length = strlen(value);
@@ -44,6 +45,7 @@ static void expect_frame(struct cs_run_trace *trail, const struct cs_run *run) {
     trail->trace.enabled = trail->frame == run->frame + 1;
 }
 
+/* Begins the stream with the start state, before the first frame. */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     if (!job->trace.is_requested)
@@ -54,6 +56,7 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
+/* Writes the state after a frame: after every frame, or after the traced one only. */
 static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const struct cs_run_trace *trail = &job->trace;

@@ -5,6 +5,7 @@
 
 const char *const cs_norm_names[] = {"error", "path", "largest", "velocity", "energy", NULL};
 
+/* One row per norm: text, unit, column, and whether it is a pointwise error. */
 static const struct norm {
     const char *words, *unit, *column;
     bool of_particles;

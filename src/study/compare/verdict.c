@@ -113,6 +113,7 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
     add_frame(ranking, bullet, compare, out);
 }
 
+/* The cell with the smallest error of the norm, of all that are ranked; NULL: none. */
 static const struct cs_cell *most_accurate(const struct cs_compare *compare) {
     const enum cs_norm norm = compare->settings->ranking_norm;
     const struct cs_cell *found = NULL;
@@ -153,10 +154,13 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
         cs_text_add(out, "no row got through\n");
 }
 
+/* Number of cells per kind of warning. */
 struct tally {
     uint32_t brief, unquiet, spread, over, failed, blown, below;
 };
 
+/* Counts the cells of each kind. Thresholds: 5 ms of processor time, a fifth of outliers,
+ * quartiles 10 % apart; chosen by trial. */
 static struct tally count(const struct cs_compare *compare) {
     struct tally stats = {0};
     for (uint32_t k = 0; k < compare->cells.n; k++) {

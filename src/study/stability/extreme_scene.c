@@ -21,6 +21,7 @@ enum cs_class cs_class_of(const struct cs_integrator *integrator) {
     return integrator->traits & CS_IMPLICIT ? CS_CLASS_IMPLICIT : CS_CLASS_EXPLICIT;
 }
 
+/* Compares whole words between "|": "bounded" must not match a part of another word. */
 bool cs_extreme_expects(const char *expected, const char *word) {
     const size_t length = strlen(word);
     while (*expected) {
@@ -112,6 +113,7 @@ static enum cs_status take_values(struct cs_extreme_scene *scene, const struct c
     return take_own(scene, values, error);
 }
 
+/* Parses the file for "x-extreme" only; the session reads the scene itself later. */
 enum cs_status cs_extreme_scene_read(struct cs_extreme_scene *scene, const char *folder,
                                      const char *file, struct cs_error *error) {
     char *text;

@@ -99,7 +99,9 @@ static double growth_of(const struct cs_system *system,
  *
  * With square = w^2 and rate = r, a symplectic step with explicit damping has trace 2 - h r -
  * (h w)^2 and determinant 1 - h r. It is stable while |trace| <= 1 + determinant: (h w)^2 + 2 h
- * r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4 w^2)), 2/w without damping. */
+ * r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4 w^2)), 2/w without damping. Half of it
+ * also satisfies the condition of velocity-verlet, whose damping uses a predicted velocity: (h
+ * w)^2 + 4 h r <= 4. */
 static double choose_dt(const struct cs_system *system, double space) {
     const double w = system->view.omega, r = 2 * system->view.delta;
     const double limit = 4 / (r + sqrt(r * r + 4 * w * w));
