@@ -1,13 +1,13 @@
 /* energy_monitor.h - instability monitor based on energy alone, without a reference run.
  *
  * Kinetic and elastic energy cannot exceed the available energy: that of the start E0, the
- * potential energy G that gravity has released, and the work of the wind. A particle of mass m
- * under a force of at most m a gains at most the velocity a t. With B = sum m (a t)^2 / 2 and
- * the Cauchy-Schwarz inequality
+ * potential energy G that gravity has released, and the work of the wind. That work is largest
+ * if every particle flies freely along the force. A particle of mass m under a force of at most
+ * m a then gains the velocity a t. With B = sum m (a t)^2 / 2 and the Cauchy-Schwarz inequality
  *   E(t) <= sum m (v + a t)^2 / 2 <= E0 + G + B + 2 sqrt((E0 + G) B).
  * The speed of a particle is limited by its speed at the start, the energy of the springs at
- * it, and a fall over the time passed. Both limits have a safety factor, because an instability
- * exceeds any factor soon.
+ * it, and a fall over the time passed, which is a heuristic. Both limits have a safety factor,
+ * because an instability exceeds any factor soon.
  *
  * Events (releases, ramps, paths) add energy without such a bound. After a frame with one, the
  * monitor restarts from the present state. */
