@@ -1,4 +1,7 @@
-/* clothsim advise: finds a safe step for each method, what limits it and what a frame costs. */
+/* clothsim advise: finds the largest safe time step of each method, its limit and its cost.
+ *
+ *   options -> cs_advise_run: theory, probe runs, bisection -> table
+ *   options with --error -> cs_compare_run -> the cheapest method and step for that error */
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
@@ -44,7 +47,7 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "no progress", CS_ARG_INTO(struct options, quiet)},
 };
 
-/* "NAME:options,NAME:options" of the methods that are asked for; "" for all. */
+/* "NAME:options,NAME:options" of the requested methods; "" for all. */
 static void join(const struct cs_advise *study, struct cs_text *list) {
     for (uint32_t k = 0; k < study->n_methods; k++)
         cs_text_add(list, "%s%s", k ? "," : "", study->methods[k]);
@@ -60,7 +63,7 @@ static enum cs_status add_modules(struct cs_args *args, struct cs_compare_settin
                : CS_OK;
 }
 
-/* The answer by a comparison: the steps that are tried are those of its sweep. */
+/* Answers "cheapest way to an error" by a comparison over its default range of steps. */
 static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *error) {
     const struct options *options = args->options;
     const struct cs_advise *study = &options->study;
@@ -90,6 +93,7 @@ static enum cs_status advise_for_error(struct cs_args *args, struct cs_error *er
     return error->status;
 }
 
+/* The same flag stops the present run and prevents further ones. */
 static enum cs_status advise(struct cs_args *args, struct cs_error *error) {
     struct cs_progress progress;
     struct cs_text out = {0};

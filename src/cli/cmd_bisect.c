@@ -1,4 +1,4 @@
-/* clothsim bisect: where two runs of a scene first differ. */
+/* clothsim bisect: finds the first difference of two runs of a scene. */
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/print.h"
@@ -10,7 +10,7 @@
 
 enum { VALUE_COLUMN = 16 };
 
-/* what one side has of its own */
+/* Settings of one side only. */
 struct own {
     const char *const *items; /* (n), "KEY=VALUE" */
     uint32_t n;
@@ -50,10 +50,10 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* a command line that grows; its words live as long as the arguments */
+/* A growing command line; its words live as long as the arguments. */
 struct line {
     struct cs_args *args;
-    const char **words; /* (n) and NULL behind them */
+    const char **words; /* (n), then NULL */
     uint32_t n;
 };
 
@@ -70,7 +70,7 @@ static enum cs_status add_named(struct line *line, const char *key, size_t lengt
     return error->status;
 }
 
-/* "program=FILE" or "threads=4" */
+/* Adds "program=FILE", which replaces the program, or "threads=4" as an option of run. */
 static enum cs_status add_own(struct line *line, const char *own, struct cs_error *error) {
     static const char *const keys[] = {"program", "integrator", "set",
                                        "plugin",  "threads",    NULL};
@@ -88,6 +88,7 @@ static enum cs_status add_own(struct line *line, const char *own, struct cs_erro
                    own);
 }
 
+/* True if one side has its own value for the option. */
 static bool has_own(const struct own *own, const char *key) {
     const size_t length = strlen(key);
     for (uint32_t k = 0; k < own->n; k++)
@@ -102,7 +103,7 @@ static void add_each(struct line *line, const char *name, const char *const *val
         add_named(line, name, strlen(name), values[k], error);
 }
 
-/* A method or a number of threads of its own stands instead of that of both. */
+/* Adds the common options; a method or thread count of one side replaces the common one. */
 static void add_common(struct line *line, const struct own *own, struct cs_error *error) {
     const struct options *both = line->args->options;
     const bool method = both->integrator && !has_own(own, "integrator");
@@ -114,6 +115,7 @@ static void add_common(struct line *line, const struct own *own, struct cs_error
     add_each(line, "threads", &both->threads, threads, error);
 }
 
+/* The command of one side: this program's run without pictures, then common and own options. */
 static enum cs_status make_line(struct line *line, const struct own *own,
                                 struct cs_error *error) {
     line->words = cs_arena_alloc_array(&line->args->arena, 8 + 2 * (size_t)line->args->n_given,
@@ -141,7 +143,7 @@ static void add_lines(const char *left, const struct cs_bisect_difference *found
     cs_text_finish(&text);
 }
 
-/* The numbers of one frame tell more than the states at its end, where they differ too. */
+/* Prints the traced difference; without one, the difference of the states. */
 static void print(const struct cs_bisect *bisect, struct cs_text *out) {
     const struct cs_bisect_difference *states = &bisect->state_difference,
                                       *within = &bisect->first_difference;
@@ -166,6 +168,7 @@ static void print(const struct cs_bisect *bisect, struct cs_text *out) {
     add_lines("", within, out);
 }
 
+/* Prints the result; a difference is CS_ERR_CHECK. */
 static enum cs_status report(const struct cs_bisect *bisect, bool quiet,
                              struct cs_error *error) {
     const struct cs_bisect_difference *states = &bisect->state_difference;

@@ -1,4 +1,9 @@
-/* clothsim compare: measures error against run time for integrators on a scene. */
+/* clothsim compare: measures error against run time for integrators on a scene.
+ *
+ *   options -> cs_compare_settings -> cs_compare_run (rows are printed as they finish)
+ *   -> report files -> summary of series, ledger, verdict, warnings -> contact sheets
+ * Modules from outside run in a child process with a time limit per call. Files are written
+ * before the verdict is printed, so a closed output loses no result. */
 #include "cli/commands.h"
 #include "cli/external_modules.h"
 #include "cli/line/interrupt.h"
@@ -18,7 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* for one call of a method: the frames of a reference may take long */
+/* s for one call of a method: an advance of a reference at tight tolerances may take long. */
 enum { PATIENCE_SECONDS = 600 };
 
 struct options {
@@ -87,7 +92,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* What the calls from within a comparison need. */
+/* Context of the callbacks of a comparison. */
 struct screen {
     struct cs_compare compare;
     struct cs_progress progress;
@@ -95,6 +100,8 @@ struct screen {
     struct cs_error error; /* of printing */
 };
 
+/* Prints a text in place of the progress line. Errors are kept for the end: callbacks return
+ * nothing. */
 static void show(struct screen *screen, struct cs_text *text) {
     cs_progress_end(&screen->progress);
     cs_print_out(stdout, text, &screen->error);
@@ -108,6 +115,7 @@ static void show_reference(void *ctx, uint32_t done, uint32_t total, const char 
         cs_progress_end(&screen->progress);
 }
 
+/* Called after the reference: prints its summary and the head of the table. */
 static void show_begin(void *ctx) {
     struct screen *screen = ctx;
     struct cs_text text = {0};
@@ -137,6 +145,7 @@ static void show_round(void *ctx, uint32_t done, uint32_t most) {
     cs_progress_show(&screen->progress, done, most);
 }
 
+/* Takes none or two methods; their families are not compared here. */
 static enum cs_status set_reference(struct options *options, struct cs_error *error) {
     if (options->n_references != 0 && options->n_references != 2)
         return cs_fail(error, CS_ERR_USAGE,
@@ -147,6 +156,8 @@ static enum cs_status set_reference(struct options *options, struct cs_error *er
     return CS_OK;
 }
 
+/* Completes the settings. The number of frames comes last, because its length may come from
+ * --set. */
 static enum cs_status make_settings(struct cs_args *args, struct cs_error *error) {
     static const char *const files[] = {"compare.csv",  "compare.json", "compare.md",
                                         "compare.html", "origin.json",  NULL};
@@ -183,7 +194,7 @@ static enum cs_status print_verdict(struct screen *screen, struct cs_error *erro
     return cs_print_out(stdout, &text, error);
 }
 
-/* The command that was typed, in quotes where a shell needs them. */
+/* Adds a word of the command, quoted if a shell needs it. */
 static void add_word(struct cs_text *out, const char *word) {
     const bool plain = !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
                                           "0123456789_-+./:=,")];
@@ -195,6 +206,7 @@ static void add_word(struct cs_text *out, const char *word) {
     cs_text_add(out, "%s", plain ? "" : "'");
 }
 
+/* Rebuilds the command line, for the report. */
 static void add_command(const struct cs_args *args, struct cs_text *out) {
     cs_text_add(out, "clothsim compare");
     for (uint32_t k = 0; k < args->n_operands; k++)
@@ -206,6 +218,7 @@ static void add_command(const struct cs_args *args, struct cs_text *out) {
     }
 }
 
+/* For --strict: fails if a cell blew up or failed. */
 static enum cs_status check_cells(const struct cs_compare *compare, struct cs_error *error) {
     uint32_t bad = 0;
     for (uint32_t k = 0; k < compare->cells.n; k++)

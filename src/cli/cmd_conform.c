@@ -1,4 +1,8 @@
-/* clothsim conform: prints a method's conformance card as text or JSON. */
+/* clothsim conform: prints a method's conformance card as text or JSON.
+ *
+ *   operands (NAME:options or module files) -> registry -> per method: cs_conform_check
+ *   -> a line per check as it ends -> counts -> exit status
+ * Expected failures pass; failed claims and stale declarations make the command fail. */
 #include "base/json_writer.h"
 #include "cli/commands.h"
 #include "cli/external_modules.h"
@@ -33,11 +37,11 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* What is written while the checks run: each is printed as soon as it is done. */
+/* Destination of the card; each row is printed when its check is done. */
 struct output {
     const struct options *options;
     const struct cs_conform *card; /* that is being made */
-    const char *settings;          /* what was typed behind its method's name */
+    const char *settings;          /* options as given after the method's name */
     bool text, first;              /* first: no row is in the JSON yet */
     struct cs_text json;
     struct cs_conform_cache cache; /* shared by all cards */
@@ -45,10 +49,12 @@ struct output {
     struct cs_error error;         /* of printing rows */
 };
 
+/* True for a verdict that makes the command fail. */
 static bool is_bad(const struct cs_conform_row *row) {
     return row->verdict == CS_VERDICT_FAIL || row->verdict == CS_VERDICT_STALE;
 }
 
+/* One line per check, for readers and programs. */
 static void print_row(const struct cs_conform_row *row, struct cs_error *error) {
     struct cs_text out = {0};
     char figure[32] = "", bound[32] = "", left[128];
@@ -65,7 +71,7 @@ static void print_row(const struct cs_conform_row *row, struct cs_error *error) 
     cs_print_out(stdout, &out, error);
 }
 
-/* with all 17 digits */
+/* Adds a number with all 17 digits, null for NAN or infinity. */
 static void add_number(struct cs_text *json, const char *key, double value) {
     cs_json_write(json, ", %s: ", key);
     if (isfinite(value))
@@ -90,6 +96,7 @@ static const char *fidelity_text(uint32_t fidelity) {
     return fidelity < sizeof texts / sizeof *texts ? texts[fidelity] : "unknown";
 }
 
+/* Name, options, order and fidelity of a method, before its first row. */
 static void print_head(const struct output *output) {
     const struct cs_integrator *method = output->card->method;
     printf("%s%s%s: order %u (%u with damping), fidelity: %s\n", method->name,
@@ -97,6 +104,7 @@ static void print_head(const struct output *output) {
            fidelity_text(method->fidelity));
 }
 
+/* Called after each check. */
 static void report(void *ctx, const struct cs_conform_row *row) {
     struct output *output = ctx;
     if (output->text && output->first)
@@ -106,7 +114,8 @@ static void report(void *ctx, const struct cs_conform_row *row) {
     add_json(output, row);
 }
 
-/* The card of one method, by options or its defaults. */
+/* Makes the card of one method, with its options or its defaults. implicit Euler is looked up
+ * by name; without it the check that needs it is skipped. */
 static enum cs_status print_card(struct output *output, struct cs_registry *registry,
                                  const struct cs_integrator *method, const void *options,
                                  struct cs_error *error) {
@@ -136,19 +145,20 @@ static enum cs_status print_card(struct output *output, struct cs_registry *regi
     return error->status;
 }
 
+/* True for a path or a name with the ending .so. */
 static bool is_file(const char *operand) {
     const size_t length = strlen(operand);
     return strchr(operand, '/') || (length > 3 && !strcmp(operand + length - 3, ".so"));
 }
 
-/* Every method of a module file. */
+/* Cards of every method of a module file. */
 static enum cs_status print_file(struct output *output, struct cs_registry *registry,
                                  const char *file, struct cs_error *error) {
     const struct cs_integrator *methods[METHODS_MAX];
     const uint32_t before = registry->n;
     if (cs_registry_add_file(registry, file, error))
         return error->status;
-    // taken down first: the search for another one may sort the entries
+    // copied first: finding another method may sort the entries
     uint32_t n = 0;
     for (uint32_t k = before; k < registry->n && n < METHODS_MAX; k++)
         methods[n++] = registry->entries[k].integrator;
@@ -158,7 +168,7 @@ static enum cs_status print_file(struct output *output, struct cs_registry *regi
     return error->status;
 }
 
-/* NAME or NAME:key=value,... */
+/* Card of a method given as NAME or NAME:key=value,... */
 static enum cs_status print_named(struct output *output, struct cs_registry *registry,
                                   const char *operand, struct cs_error *error) {
     struct cs_method method;
@@ -172,7 +182,7 @@ static enum cs_status print_named(struct output *output, struct cs_registry *reg
     return error->status;
 }
 
-/* The JSON where it was asked for, and the count. */
+/* Writes the JSON if requested, prints the counts, and fails on failed claims. */
 static enum cs_status finish(struct output *output, struct cs_error *error) {
     const char *file = output->options->json;
     cs_text_add(&output->json, "\n]\n");

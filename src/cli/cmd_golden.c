@@ -1,4 +1,6 @@
-/* clothsim golden: recomputes golden hashes and images, and reports what differs. */
+/* clothsim golden: recomputes golden hashes and images, and reports differences.
+ *
+ *   options -> cs_golden_check: per row a run, its hash or picture, a verdict -> counts */
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -37,7 +39,7 @@ static const struct cs_arg rows[] = {
      CS_ARG_INTO(struct options, quiet)},
 };
 
-/* Where rows go. */
+/* Destination of the rows. */
 struct sink {
     const struct options *options;
     struct cs_text json;
@@ -94,7 +96,7 @@ static enum cs_status golden(struct cs_args *args, struct cs_error *error) {
     struct cs_golden *check = &options->check;
     char installed[CS_DATA_PATH_MAX];
     struct sink sink = {.options = options};
-    /* the installed tables are there to be compared with, and never written to */
+    /* installed tables are for comparison only and never written */
     if (!check->folder)
         check->folder =
             check->accept_all ? "golden" : cs_data_find("golden", installed, sizeof installed);

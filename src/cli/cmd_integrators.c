@@ -33,7 +33,7 @@ static const struct {
     {CS_EXPLICIT_OUTER, "forces other than springs explicit"},
 };
 
-/* what the method's result is, in the words of clothsim-integrator(7) */
+/* The fidelity of a method in the words of clothsim-integrator(7). */
 static const char *fidelity_text(uint32_t fidelity) {
     switch ((enum cs_fidelity)fidelity) {
     case CS_FIDELITY_ODE:
@@ -93,7 +93,7 @@ static enum cs_status print_list(struct cs_registry *registry, struct cs_error *
     return cs_print_out(stdout, &out, error);
 }
 
-/* A row's default and range, each in its column, then what it means. */
+/* One option: default and range in columns, then its meaning. */
 static void add_option(const struct cs_option *row, const void *defaults, struct cs_text *out) {
     struct cs_text left = {0}, value = {0}, range = {0};
     const bool given = !cs_option_is_optional(row) || cs_option_is_set(row, defaults);

@@ -1,4 +1,8 @@
-/* clothsim merge: joins the folders of studies that several processes filled. */
+/* clothsim merge: merges the folders of studies that several processes filled.
+ *
+ *   folders -> compare.csv, sweep.csv by rows; origin.json by copy; *.partial by appending
+ *
+ * A merged map is completed by repeating its command on the merged folder. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "study/compare/compare_results.h"
@@ -24,7 +28,7 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
-/* Any part says which scene a comparison is of. */
+/* Copies the provenance of a comparison; every part has the same. */
 static enum cs_status copy_origin(const char *folder, const char *out, struct cs_error *error) {
     char from[4096], to[4096];
     char *bytes;

@@ -1,4 +1,6 @@
-/* clothsim plot: draws two columns of a comparison against each other. */
+/* clothsim plot: draws two columns of a comparison against each other.
+ *
+ *   compare.csv -> cells -> columns of the axes -> cs_plot_write: NAME.gp and pictures */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "study/compare/compare_cell.h"
@@ -46,7 +48,7 @@ static enum cs_status check_family(const char *family, struct cs_error *error) {
     return family ? cs_arg_refuse_name("family", cs_family_names, family, error) : CS_OK;
 }
 
-/* a name inside a quoted text of the script */
+/* Refuses characters that would end a quoted text of the script. */
 static enum cs_status check_name(const char *option, const char *text, struct cs_error *error) {
     for (const char *c = text; *c; c++)
         if (*c == '"' || *c == '\\' || (unsigned char)*c < 0x20)
@@ -100,7 +102,7 @@ static enum cs_status draw(struct cs_args *args, struct cs_plot_settings *settin
     return options->quiet ? CS_OK : print_files(path, drawn, error);
 }
 
-/* a diagram of nothing is a mistake in the name of the family */
+/* Fails if the family has no series: an empty diagram would hide a mistake in its name. */
 static enum cs_status check_cells(const struct cs_plot_settings *settings, const char *file,
                                   struct cs_error *error) {
     for (uint32_t k = 0; k < settings->n; k++)

@@ -1,4 +1,4 @@
-/* clothsim reproduce: makes a result again from what it carries, and says what differs. */
+/* clothsim reproduce: reproduces a result from its provenance, and reports the differences. */
 #include "base/pool.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
@@ -38,7 +38,7 @@ static bool ends_in(const char *text, const char *ending) {
     return length > end && !strcmp(text + length - end, ending);
 }
 
-/* The number behind FILE.csv:, which is cut off; 0: none. */
+/* Splits FILE.csv:ROW; returns the row, 0 if there is none. */
 static uint32_t split_row(char *path) {
     char *colon = strrchr(path, ':');
     const size_t digits = colon ? strspn(colon + 1, "0123456789") : 0;
@@ -51,7 +51,7 @@ static uint32_t split_row(char *path) {
     return 0;
 }
 
-/* Which files of the folder are not as the run left them. */
+/* Notes the files of the folder that have changed since the run. */
 static void print_manifest(const char *folder, struct cs_text *notes) {
     struct cs_error unread = {0};
     uint32_t n, differing;
@@ -59,7 +59,7 @@ static void print_manifest(const char *folder, struct cs_text *notes) {
         cs_text_add(notes, "%s\n", unread.message);
 }
 
-/* What a file is, by its name; a folder stands for the report in it. */
+/* Chooses the reproduction by the file's name; a folder stands for the report in it. */
 static enum cs_status reproduce_file(struct cs_reproduction *again,
                                      struct cs_reproduction_settings *settings,
                                      char path[PATH_BYTES], struct cs_error *error) {
@@ -83,6 +83,7 @@ static void print_notes(char *notes, struct cs_text *out) {
         cs_print_hanging(left, line, VALUE_COLUMN, out);
 }
 
+/* Prints what was run, what has changed, and what is equal. */
 static enum cs_status print(struct cs_reproduction *again, struct cs_error *error) {
     struct cs_text out = {0};
     cs_print_hanging("again", cs_text_get(&again->description), VALUE_COLUMN, &out);

@@ -1,4 +1,7 @@
-/* clothsim scene: checks a scene file and prints its plan, its values or the schema. */
+/* clothsim scene: checks a scene file and prints its plan, its values or the schema.
+ *
+ * A scene with contact is built, not only planned, because bodies that start inside colliders
+ * or through each other only show in a system. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "model/plan.h"
@@ -38,7 +41,7 @@ static void add_count(struct cs_text *out, const char *before, uint32_t n, const
     cs_text_add(out, "%s%u %s%s", before, n, what, n == 1 ? "" : "s");
 }
 
-/* FILE: ok, 4096 particles, ... */
+/* "FILE: ok, 4096 particles, ..." */
 static enum cs_status add_verdict(const struct cs_session *session, struct cs_text *out,
                                   struct cs_error *error) {
     const struct cs_scene *scene = &session->scene;
@@ -61,7 +64,7 @@ static enum cs_status add_verdict(const struct cs_session *session, struct cs_te
     return error->status;
 }
 
-/* What was decided, and what it came to once the method had taken its own. */
+/* Prints the plan, and its final form after the method took its memory. */
 static void add_plan(const struct cs_session *session, struct cs_text *out) {
     const size_t bytes = cs_run_bytes(&session->run);
     cs_plan_print(&session->run.plan, out);
@@ -103,6 +106,7 @@ static enum cs_status open_scene(struct options *options, struct cs_error *error
     return error->status;
 }
 
+/* Prints the schema or the manual of scene files; neither needs a scene. */
 static enum cs_status print_format(const struct cs_args *args, bool schema,
                                    struct cs_error *error) {
     struct cs_text out = {0};

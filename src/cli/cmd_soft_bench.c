@@ -1,4 +1,7 @@
-/* clothsim soft-bench: measures spring networks against shape matching on a soft body. */
+/* clothsim soft-bench: measures spring networks against shape matching on a soft body.
+ *
+ *   options -> checks -> cs_soft_run: a row per body -> soft.csv and diagram -> tables
+ * Rows measured before an interruption are written. */
 #include "base/file.h"
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
@@ -53,7 +56,7 @@ static enum cs_status write_files(const char *folder, const struct cs_soft *soft
     return cs_gnuplot_run(folder, "soft.gp", &drawn, error);
 }
 
-/* all that can be refused is looked at before minutes go by, the folder last */
+/* Checks everything that can be refused before a measurement of minutes; the folder last. */
 static enum cs_status prepare(const struct options *options, struct cs_error *error) {
     char path[4096];
     snprintf(path, sizeof path, "%s/soft.csv", options->folder);

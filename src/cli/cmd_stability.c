@@ -1,4 +1,10 @@
-/* clothsim stability: maps which steps a method survives, as text, CSV, JSON and a picture. */
+/* clothsim stability: maps the stable time steps of a method, as text, CSV, JSON and a picture.
+ *
+ *   options -> axis and ranges -> per method: cs_stability_run -> table, NAME.csv,
+ *   NAME_border.csv, NAME.json, NAME.gp and, with gnuplot, NAME.png
+ *
+ * With --extreme the catalogue of extreme scenes is run instead (study/stability/extreme.h). An
+ * interrupted map resumes from its journal when the command is repeated. */
 #include "base/json_writer.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -84,7 +90,7 @@ static enum cs_status read_range(const char *option, const char *text, struct cs
     return CS_OK;
 }
 
-/* The axis by its name, or by the option that holds its values and has that name. */
+/* Reads the axis from --axis, or from the option that has its values and its name. */
 static enum cs_status read_axis(struct cs_stability_options *options, struct cs_error *error) {
     enum cs_axis axis = CS_AXES;
     for (uint32_t k = 0; k < CS_AXES; k++) {
@@ -133,7 +139,7 @@ static void print_extreme(void *ctx, const struct cs_extreme_row *row) {
     fflush(stdout);
 }
 
-/* What was missed is an error of its own, which stays. */
+/* Writes the rows of the catalogue. Missed expectations are an error already, which stays. */
 static void write_json(const struct cs_extreme *extreme, struct sink *sink,
                        struct cs_error *error) {
     const char *path = sink->options->json;
@@ -149,6 +155,7 @@ static void write_json(const struct cs_extreme *extreme, struct sink *sink,
     }
 }
 
+/* Runs the catalogue. A missed expectation is CS_ERR_CHECK, with valid counts and rows. */
 static enum cs_status run_extreme(const struct cs_stability_options *options,
                                   struct cs_error *error) {
     const struct cs_stability_settings *settings = &options->map;
@@ -161,7 +168,7 @@ static enum cs_status run_extreme(const struct cs_stability_options *options,
                       : cs_data_find("scenes/extreme", installed, sizeof installed),
         .only_scene = settings->session.scene,
         .methods = options->methods,
-        /* 0 stands for every method that can be used */
+        /* 0: every available method */
         .n_methods = all ? 0 : options->n_methods,
         .plugins = settings->session.plugins,
         .n_plugins = settings->session.n_plugins,
@@ -181,7 +188,7 @@ static enum cs_status run_extreme(const struct cs_stability_options *options,
     return error->status;
 }
 
-/* Two maps of one name would be one file. */
+/* Refuses two maps with one name: they would be one file. */
 static enum cs_status check_apart(const char *const *methods, uint32_t n,
                                   struct cs_error *error) {
     for (uint32_t k = 0; k < n; k++)

@@ -1,4 +1,6 @@
-/* clothsim sweep: runs a scene with every combination of values and methods. */
+/* clothsim sweep: runs a scene with every combination of values and methods.
+ *
+ *   -s PATH=V1,V2,... and -i METHOD -> axes -> cs_parameter_sweep_run: a row per cell */
 #include "cli/commands.h"
 #include "cli/line/interrupt.h"
 #include "cli/line/progress.h"
@@ -32,7 +34,8 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
-/* Cuts the next value off at a comma that stands in no brackets and no quotes. */
+/* Cuts the next value off at a comma outside of brackets and quotes: values may be JSON lists.
+ */
 static char *cut_value(char **rest) {
     char *value = *rest, *c = value;
     int depth = 0;
@@ -46,7 +49,7 @@ static char *cut_value(char **rest) {
     return value;
 }
 
-/* "PATH=VALUE,VALUE": the text is the arena's, and is cut. */
+/* Reads "PATH=VALUE,VALUE". The text is a copy in the arena, and is cut into values. */
 static enum cs_status read_key(struct cs_args *args, char *text, struct cs_parameter_axis *key,
                                struct cs_error *error) {
     char *equals = strchr(text, '=');

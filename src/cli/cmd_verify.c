@@ -1,4 +1,4 @@
-/* clothsim verify: are the files of a run as it left them. */
+/* clothsim verify: checks that the files of a run are unchanged. */
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/manifest.h"

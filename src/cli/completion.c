@@ -3,8 +3,7 @@
 
 #include <string.h>
 
-/* What an option's value or a command's operand is completed by, told from what stands for it
- * in the help. */
+/* Source of completions for a value or an operand, derived from its placeholder in the help. */
 enum source { NOTHING, METHODS, FOLDERS, FILES };
 
 static enum source source_of(const char *value) {
@@ -16,7 +15,7 @@ static enum source source_of(const char *value) {
                                                                                    : NOTHING;
 }
 
-/* text between single quotes; those of it, and what `special` holds, are escaped */
+/* Adds text between single quotes; quotes and the characters of `special` are escaped. */
 static void add_quoted(const char *text, const char *quote, const char *special,
                        struct cs_text *out) {
     for (; *text; text++)
@@ -32,7 +31,7 @@ static void add_methods(struct cs_text *out) {
                      "sed -n 's/^\\([a-z0-9][a-z0-9-]*\\)  .*/\\1/p'");
 }
 
-/* " --name -n" of the options whose value has a source, or of all */
+/* " --name -n" of the options whose value has that source, or of all. */
 static void add_names(const struct cs_command *command, bool all, enum source source,
                       struct cs_text *out) {
     for (const struct cs_arg *row = command->rows; row < command->rows + command->n_rows; row++)

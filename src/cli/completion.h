@@ -1,4 +1,4 @@
-/* completion.h - scripts that let a shell complete commands and options, from their tables. */
+/* completion.h - shell scripts that complete commands and options, made from their tables. */
 #ifndef CS_COMPLETION_H
 #define CS_COMPLETION_H
 

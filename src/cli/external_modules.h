@@ -5,8 +5,9 @@
 
 #include "cli/line/args.h"
 
-/* true where a command may load one: its option --plugin is given, one of the
- * texts (n) names a file in the place of a method, or there are folders of them. */
+/* True if a command may load a module from outside: --plugin is given, one of the texts (n)
+ * names a file in place of a method, or folders of modules are set up. Such code runs in a
+ * child process (study/isolate.h). */
 bool cs_external_modules_requested(const struct cs_args *args, const char *const *texts,
                                    uint32_t n);
 

@@ -1,4 +1,7 @@
-/* Picks the command, prints its error and sets the exit code. */
+/* clothsim: finds the command, and turns its status into a message and an exit code.
+ *
+ *   argv -> dispatch -> cs_args_parse -> command->main -> message on stderr -> exit code
+ * All errors of commands come back here as one struct cs_error; nothing exits on its own. */
 #include "base/ieee_check.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
@@ -86,6 +89,7 @@ static enum cs_status print_completion(const char *shell, struct cs_error *error
     return error->status;
 }
 
+/* Parses the arguments and runs the command, or prints its help. */
 static enum cs_status run_command(const struct cs_command *command, int argc, char **argv,
                                   struct cs_error *error) {
     struct cs_args args = {0};
@@ -99,6 +103,7 @@ static enum cs_status run_command(const struct cs_command *command, int argc, ch
     return error->status;
 }
 
+/* Options of the program itself come first: version, completion, help. */
 static enum cs_status dispatch(int argc, char **argv, struct cs_error *error) {
     if (argc < 2)
         return print_overview(stderr, error)

@@ -15,14 +15,14 @@
 enum { PATH_BYTES = 4096, NAME_BYTES = 256, FILE_BYTES_MAX = 1 << 30 };
 static const char head[] = "# clothsim manifest 1\n", tail[] = "# all of it ";
 
-/* One file. */
+/* A line of the manifest. */
 struct entry {
     char hash[CS_HASH_DIGITS];
     uint64_t size;
     char name[NAME_BYTES];
 };
 
-/* Zeroed: empty. */
+/* Entries sorted by name; zeroed: empty. */
 struct list {
     struct entry *entries; /* (n) owned */
     size_t n, capacity;
@@ -51,7 +51,7 @@ static int by_name(const void *a, const void *b) {
     return strcmp(((const struct entry *)a)->name, ((const struct entry *)b)->name);
 }
 
-/* the names that are there */
+/* Lists the files of the folder that a run writes. */
 static enum cs_status list_names(const char *folder, struct list *list,
                                  struct cs_error *error) {
     DIR *entries = opendir(folder);
@@ -105,7 +105,7 @@ enum cs_status cs_manifest_write(const char *folder, struct cs_error *error) {
     return error->status;
 }
 
-/* whether the last line is the hash of all above; that line is then cut off */
+/* True if the last line is the hash of all above; cuts that line off. */
 static bool is_whole(char *text) {
     char digits[CS_HASH_DIGITS];
     char *last = strstr(text, tail);
@@ -119,7 +119,8 @@ static bool is_whole(char *text) {
     return same;
 }
 
-/* Names are the program's own: without blanks, and nothing that leads out of the folder. */
+/* Reads a line. Names come from the program: they have no blanks and no slash, so a manifest
+ * cannot lead out of its folder. */
 static bool read_line(const char *line, struct entry *entry) {
     *entry = (struct entry){.size = 0};
     return sscanf(line, "%32[0-9a-f] %" SCNu64 " %255[^\n]", entry->hash, &entry->size,
@@ -165,7 +166,7 @@ static void check_file(const char *folder, const struct entry *entry, struct cs_
         print_difference(out, entry->name, "has changed", differing);
 }
 
-/* both lists are by name */
+/* Merges two sorted lists: names in one of them only, and changed files. */
 static void check_lists(const char *folder, const struct list *written,
                         const struct list *there, struct cs_text *out, uint32_t *differing) {
     size_t w = 0, t = 0;

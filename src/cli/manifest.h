@@ -1,8 +1,8 @@
-/* manifest.h - manifest.txt: which files a run left in a folder, with their sizes and hashes.
+/* manifest.h - manifest.txt: the files that a run left in a folder, with sizes and hashes.
  *
- * "# clothsim manifest 1", a line "HASH SIZE NAME" for each file by name, and a last line with
- * the hash of all above. Hashes are what `xxh128sum` prints.
- */
+ * The first line is "# clothsim manifest 1". A line "HASH SIZE NAME" follows for each file,
+ * sorted by name. The last line has the hash of everything above, which detects a damaged or
+ * cut manifest. Hashes are those that `xxh128sum` prints. */
 #ifndef CS_MANIFEST_H
 #define CS_MANIFEST_H
 
@@ -13,13 +13,13 @@
 
 #define CS_MANIFEST_NAME "manifest.txt"
 
-/* Writes that of a folder, of the files that a run writes (run_output.h) and are there, at
- * once: the disk has it when the call returns. CS_ERR_FILE, CS_ERR_MEMORY. */
+/* Writes the manifest of a folder, over the files that a run writes (run_output.h). It is
+ * synced: the disk has it when the call returns. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_manifest_write(const char *folder, struct cs_error *error);
 
-/* Holds a folder against its manifest: adds a line for each file that has changed, is not
- * there, or is not in the manifest. *n: files that are in it; *differing: lines. CS_ERR_FILE
- * where there is no manifest, or it is damaged. */
+/* Compares a folder with its manifest: adds a line for each file that has changed, is missing,
+ * or is not in the manifest. *n: files listed; *differing: lines added. CS_ERR_FILE if there is
+ * no manifest or if it is damaged. */
 enum cs_status cs_manifest_check(const char *folder, struct cs_text *out, uint32_t *n,
                                  uint32_t *differing, struct cs_error *error);
 

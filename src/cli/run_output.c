@@ -134,7 +134,7 @@ static bool is_same_folder(int lock, const struct cs_output *other) {
            mine.st_ino == theirs.st_ino;
 }
 
-/* The lock is on the folder itself: it leaves no file behind, and ends with the process. */
+/* Locks the folder itself: the lock leaves no file and ends with the process. */
 static enum cs_status lock_folder(struct cs_output *output, const struct cs_output *other,
                                   const char *folder, struct cs_error *error) {
     const int lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -161,7 +161,7 @@ enum cs_status cs_output_lock_folders(struct cs_output *output, const struct cs_
     if ((earlier != CS_OUTPUT_KEEP && cs_folder_create(folder, error)) ||
         lock_folder(output, other, folder, error))
         return error->status;
-    /* looked at again by the owner: a run may have ended here since */
+    /* checked again under the lock: a run may have ended here since */
     if (earlier == CS_OUTPUT_REFUSE && cs_output_check(folder, is_ours, error))
         return error->status;
     return sweep(folder, is_ours, earlier == CS_OUTPUT_REMOVE, error);

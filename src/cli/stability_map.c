@@ -32,7 +32,7 @@ static bool draw(const char *folder, const char *name) {
     return !cs_gnuplot_run(folder, script, &drawn, &ignored) && drawn;
 }
 
-/* A scene that is called as a map is no place for one. */
+/* Refuses a map whose files would overwrite the scene. */
 static enum cs_status store_inputs(const struct cs_stability *map, const char *folder,
                                    struct cs_error *error) {
     static const char *const endings[] = {".csv", "_border.csv", ".json", ".gp"};
@@ -72,13 +72,14 @@ static enum cs_status write_files(const struct cs_stability_options *options,
     return error->status;
 }
 
-/* A share of the columns is no map yet. */
+/* Reports a shard: some of the columns are no map yet. */
 static void print_shard(const struct cs_stability *map, bool quiet) {
     if (!quiet)
         printf("%s: share %u of %u is in %s (see: clothsim merge)\n", map->series,
                map->settings->shard.index, map->settings->shard.count, map->journal.table.path);
 }
 
+/* For --strict: fails if a cell was not stable. */
 static enum cs_status check_cells(const struct cs_stability *map, struct cs_error *error) {
     uint32_t bad = 0;
     for (uint32_t c = 0; c < map->n_columns; c++)
@@ -89,6 +90,7 @@ static enum cs_status check_cells(const struct cs_stability *map, struct cs_erro
                : CS_OK;
 }
 
+/* An incomplete map (of a shard) writes no files: its results are in the journal. */
 enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
                                     struct cs_error *error) {
     struct cs_progress progress;

@@ -1,10 +1,10 @@
-/* stability_map.h - maps of clothsim stability: made, printed and written to a folder. */
+/* stability_map.h - makes, prints and writes the maps of clothsim stability. */
 #ifndef CS_STABILITY_MAP_H
 #define CS_STABILITY_MAP_H
 
 #include "study/stability/stability.h"
 
-/* The options of the command. */
+/* Options of the command. */
 struct cs_stability_options {
     struct cs_stability_settings map;
     const char *const *methods; /* (n_methods) */
@@ -17,11 +17,11 @@ struct cs_stability_options {
     bool overwrite, extreme, strict, quiet;
 };
 
-/* One method, options->map.session.integrator. */
+/* Makes the map of one method, options->map.session.integrator, and writes its files. */
 enum cs_status cs_stability_map_one(const struct cs_stability_options *options,
                                     struct cs_error *error);
 
-/* Every method with a fixed step; the others are named. */
+/* Makes the maps of all methods with a fixed step; the others are named. */
 enum cs_status cs_stability_map_all(struct cs_stability_options *options,
                                     struct cs_error *error);
 

@@ -1,4 +1,4 @@
-/* Holds the files that a study writes against those that it reads. */
+/* Compares the files that a study writes with those that it reads. */
 #include "cli/study_file_conflicts.h"
 
 #include "io/file_conflicts.h"

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One program under way. */
+/* One running program and its trace. */
 struct side {
     const struct cs_bisect_side *asked;
     struct cs_subprocess program;
@@ -16,6 +16,8 @@ struct side {
     bool there; /* the trail has a point */
 };
 
+/* Starts a program with --trace appended to its command. trace: the frame, or the level of
+ * detail. */
 static enum cs_status start(struct side *side, const struct cs_bisect_side *asked,
                             const char *trace, struct cs_error *error) {
     const char **arguments = calloc(asked->n_arguments + 3u, sizeof *arguments);
@@ -31,12 +33,15 @@ static enum cs_status start(struct side *side, const struct cs_bisect_side *aske
     return error->status;
 }
 
-/* Whether two numbers are the same: by their bits, or within the tolerance. */
+/* True if two numbers have equal bits or differ by at most the tolerance. With a tolerance two
+ * NAN are equal too. */
 static bool is_same(double a, double b, double tolerance) {
     return !memcmp(&a, &b, sizeof a) || fabs(a - b) <= tolerance ||
            (tolerance > 0 && isnan(a) && isnan(b));
 }
 
+/* Compares two records of n numbers. The loop runs backwards: `first` ends at the lowest index.
+ */
 static void compare_values(struct cs_bisect_difference *found, const double *a, const double *b,
                            double tolerance) {
     /* most are equal: asked once */
@@ -55,6 +60,7 @@ static void compare_values(struct cs_bisect_difference *found, const double *a, 
     }
 }
 
+/* Describes a trace record. */
 static void print_point(const struct side *side, char out[120]) {
     const struct cs_trace_record *point = &side->trail.point;
     if (!side->there)
@@ -68,6 +74,7 @@ static void print_point(const struct side *side, char out[120]) {
                  point->frame, point->step, point->phase, point->name, point->t, point->n);
 }
 
+/* True if two records describe the same number of the same phase. */
 static bool is_same_point(const struct side sides[2], double tolerance) {
     const struct cs_trace_record *a = &sides[0].trail.point, *b = &sides[1].trail.point;
     return sides[0].there == sides[1].there && a->frame == b->frame && a->step == b->step &&
@@ -75,6 +82,7 @@ static bool is_same_point(const struct side sides[2], double tolerance) {
            !strcmp(a->name, b->name);
 }
 
+/* Compares the two current records and describes a difference. */
 static void compare(const struct side sides[2], double tolerance,
                     struct cs_bisect_difference *found) {
     const struct side *side = sides + !sides[0].there;
@@ -92,7 +100,8 @@ static void compare(const struct side sides[2], double tolerance,
         print_point(sides + k, found->value_b[k]);
 }
 
-/* The number of steps is a thing of the method: states of frames are compared without it. */
+/* Reads the next record of a side. The number of steps belongs to the method: states of frames
+ * are compared without it. */
 static void take_point(struct side *side, bool states, struct cs_error *error) {
     struct cs_error said = {0};
     side->there = !error->status && cs_trace_stream_next(&side->trail, &said);
@@ -102,7 +111,8 @@ static void take_point(struct side *side, bool states, struct cs_error *error) {
         side->trail.point.step = 0;
 }
 
-/* A program that ended by itself has said why; one that never wrote a trail is no clothsim. */
+/* Closes a program. One that ended by itself has reported why; one that never wrote a trace is
+ * no clothsim. */
 static void end(struct side *side, struct cs_bisect_difference *found, int k,
                 struct cs_error *error) {
     const bool wrote = side->trail.values;
@@ -124,7 +134,7 @@ static void end(struct side *side, struct cs_bisect_difference *found, int k,
     cs_trace_stream_finish(&side->trail);
 }
 
-/* Both, once: up to the first difference. */
+/* Runs both programs once, up to the first difference. */
 static enum cs_status run_both(const struct cs_bisect_settings *settings, const char *trace,
                                struct cs_bisect *bisect, struct cs_bisect_difference *found,
                                struct cs_error *error) {
@@ -157,14 +167,15 @@ enum cs_status cs_bisect_run(struct cs_bisect *bisect,
     if (run_both(settings, "frames", bisect, &bisect->state_difference, error) ||
         !bisect->state_difference.exists)
         return error->status;
-    /* the start is not computed, and an end that came early lies in the frame behind */
+    /* the start is not computed; an early end is in the next frame */
     if (!bisect->state_difference.frame)
         return CS_OK;
     snprintf(frame, sizeof frame, "%" PRIu32, bisect->state_difference.frame);
     return run_both(settings, frame, bisect, &bisect->first_difference, error);
 }
 
-/* "0.1 and 0.2: 3 units in the last place apart" */
+/* "0.1 and 0.2: 3 units in the last place apart". Doubles of one sign are ordered as their bits
+ * are as integers, so the difference of the integers counts the doubles in between. */
 static void print_values(const double values[2], struct cs_text *out) {
     int64_t bits[2];
     memcpy(bits, values, sizeof bits);
@@ -176,6 +187,7 @@ static void print_values(const double values[2], struct cs_text *out) {
                     apart == 1 ? "" : "s");
 }
 
+/* Particle and direction of a number, from its index in (3,n). */
 static void print_position(const struct cs_bisect_difference *d, struct cs_text *out) {
     const size_t particles = d->n / 3;
     /* a single number, or weights, belong to no particle */

@@ -1,9 +1,9 @@
-/* bisect.h - the first number that two runs of a scene compute otherwise: its frame, step,
- * phase and particle.
+/* bisect.h - finds the first number that two runs of a scene compute differently: its frame,
+ * step, phase and particle.
  *
- * Both run as programs of their own, side by side, and tell their states; then once more up to
- * the first frame that differs, of which they tell everything (sim/trace.h).
- */
+ * Both run as separate programs in parallel and stream their states. The first frame that
+ * differs is then run once more with a full trace (sim/trace.h), of which the first difference
+ * is reported: the bisection is in two levels of detail, not in time. */
 #ifndef CS_BISECT_H
 #define CS_BISECT_H
 
@@ -13,20 +13,21 @@
 #include <signal.h>
 #include <stdbool.h>
 
-/* One of the two: its command, "PROGRAM run SCENE ...", closed by NULL. */
+/* One of the two programs: its command "PROGRAM run SCENE ...", closed by NULL. */
 struct cs_bisect_side {
     const char *name;             /* "A" */
-    const char *const *arguments; /* (n_arguments) and NULL behind them */
+    const char *const *arguments; /* (n_arguments), then NULL */
     uint32_t n_arguments;
 };
 
+/* Request for a bisection; pointers are borrowed. */
 struct cs_bisect_settings {
     struct cs_bisect_side sides[2];
-    double tolerance; /* what numbers may differ by; 0: no bit */
+    double tolerance; /* allowed difference of numbers; 0: equal bits */
     const volatile sig_atomic_t *stop;
 };
 
-/* What differs between two records that should be the same. */
+/* Difference of two trace records that should be equal. */
 struct cs_bisect_difference {
     bool exists,
         values_differ; /* numbers: the values differ, and not only what is computed when */
@@ -41,6 +42,7 @@ struct cs_bisect_difference {
                 [120]; /* unless numbers: what each computed there instead, or how it ended */
 };
 
+/* Result of a bisection. */
 struct cs_bisect {
     uint32_t n_equal_frames; /* frames */
     struct cs_bisect_difference
@@ -48,11 +50,12 @@ struct cs_bisect {
     struct cs_bisect_difference first_difference; /* the first of all, in that frame */
 };
 
-/* CS_ERR_FILE where a program cannot be run, or writes no trail; CS_ERR_INTERRUPT. */
+/* Runs both sides and finds the first difference; equal runs are a result. CS_ERR_FILE if a
+ * program cannot be run or writes no trace; CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_bisect_run(struct cs_bisect *bisect,
                              const struct cs_bisect_settings *settings, struct cs_error *error);
 
-/* Adds it as sentences, a line each. */
+/* Adds the difference as sentences, one per line. */
 void cs_bisect_print(const struct cs_bisect_difference *difference, struct cs_text *out);
 
 #endif

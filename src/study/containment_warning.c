@@ -1,4 +1,4 @@
-/* Counts how often the way out of a surface goes through it: odd where it starts inside. */
+/* Point-in-mesh test by ray parity: an odd number of hits means inside. */
 #include "study/containment_warning.h"
 
 #include "model/contact/ccd/edge_triangle.h"
@@ -6,7 +6,7 @@
 #include "model/system/surfaces.h"
 #include "scene/body_pairs.h"
 
-/* every edge has two triangles */
+/* True if every edge of a surface has two triangles. */
 static bool is_closed(const struct cs_surfaces *s, uint32_t body) {
     bool closed = s->first_triangle[body] < s->first_triangle[body + 1];
     for (size_t e = s->first_edge[body]; e < s->first_edge[body + 1]; e++)
@@ -14,7 +14,7 @@ static bool is_closed(const struct cs_surfaces *s, uint32_t body) {
     return closed;
 }
 
-/* m, beyond the body to the right */
+/* x coordinate in m beyond the body in the direction of the ray. */
 static double ray_far_end(const struct cs_surfaces *s, uint32_t body, const double *x) {
     double most = x[s->first_point[body]];
     for (size_t i = s->first_point[body]; i < s->first_point[body + 1]; i++)
@@ -22,8 +22,10 @@ static double ray_far_end(const struct cs_surfaces *s, uint32_t body, const doub
     return most + 1;
 }
 
-/* whether the first point of a body is inside a closed one; what touches is in general position
- * for cs_edge_crosses_triangle */
+/* Casts a ray along +x from the first point of a body and counts the crossed triangles of a
+ * closed one. One point suffices: bodies that do not cross are inside as a whole.
+ * cs_edge_crosses_triangle resolves touching as a general position, so a ray through an edge
+ * counts once. */
 static bool is_inside(const struct cs_surfaces *s, uint32_t body, uint32_t closed,
                       const double *x) {
     const size_t n = s->n_points, first = s->first_point[body];

@@ -1,6 +1,8 @@
-/* Counts crossings frame by frame, and says what there was. */
+/* Counts crossings frame by frame, and prints their statistics. */
 #include "study/crossing_stats.h"
 
+/* Counts only if the plan has built the feature. `first` keeps the crossings of the first frame
+ * with any, for the message. */
 void cs_crossing_stats_add(struct cs_crossing_stats *stats, const struct cs_run *run) {
     if (!run->system->plan.rows[CS_FEATURE_CROSSINGS].built)
         return;

@@ -1,4 +1,4 @@
-/* crossing_stats.h - crossings over the frames of a run. */
+/* crossing_stats.h - statistics of crossings over the frames of a run. */
 #ifndef CS_CROSSING_STATS_H
 #define CS_CROSSING_STATS_H
 
@@ -15,7 +15,8 @@ struct cs_crossing_stats {
     struct cs_crossing_count first; /* there; n 0: there were none */
 };
 
-/* Counts where the run stands, if its scene asks for it; at the start, and after each frame. */
+/* Counts the crossings of the present state, if the scene asks for it. Called at the start and
+ * after each frame. */
 void cs_crossing_stats_add(struct cs_crossing_stats *stats, const struct cs_run *run);
 
 /* "3 at the end, 12 at most, at t = 0.5 s; from t = 0.2 s on: ..." */

@@ -1,4 +1,4 @@
-/* Judges by its energy alone whether a run is still sound. */
+/* Judges by energy alone whether a run is sound; the header derives the limits. */
 #include "study/energy_monitor.h"
 
 #include "base/table.h"
@@ -9,19 +9,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* how far above what is physically possible a number must be to be called an instability */
+/* Safety factors of the limits of energy and speed. */
 #define ENERGY_FACTOR 2
 #define SPEED_FACTOR  3
-/* fastest particle over the mean speed of all, in motions that are sound */
+/* Ratio of the fastest particle to the root mean square speed of all in sound motions. */
 #define SPEED_SPREAD 4
 #define LEAST_ENERGY 1e-12
 #define LEAST_SPEED  1e-6
 
+/* Length of a vector. */
 static double length_of(const double a[3]) {
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-/* speed that the energy of the springs at one particle would give it, the largest of all */
+/* Largest speed in m/s that the springs at one particle could give it: sqrt(2 E / m) with the
+ * elastic energy E of all its springs. CS_ERR_MEMORY. */
 static enum cs_status spring_speed(const struct cs_run *run, double *speed,
                                    struct cs_error *error) {
     const struct cs_system *system = run->system;
@@ -50,7 +52,8 @@ static enum cs_status spring_speed(const struct cs_run *run, double *speed,
     return CS_OK;
 }
 
-/* largest acceleration in m/s2 of a particle by forces with an energy, or by the others */
+/* Largest acceleration in m/s2 of particle i by forces that have an energy (gravity), or by the
+ * others (wind). */
 static double force_acceleration(const struct cs_system *system, size_t i, bool with_energy) {
     double push = 0;
     for (uint32_t k = 0; k < system->n_terms; k++) {
@@ -61,7 +64,7 @@ static double force_acceleration(const struct cs_system *system, size_t i, bool 
     return push;
 }
 
-/* and by the viewpoint forces, were it seen by all */
+/* Largest acceleration in m/s2 by viewpoint forces, as if the particle were visible to all. */
 static double visible_force(const struct cs_system *system, size_t i) {
     const struct cs_events *events = system->events;
     return events && events->viewpoint_forces
@@ -70,7 +73,8 @@ static double visible_force(const struct cs_system *system, size_t i) {
                : 0;
 }
 
-/* from what there is now */
+/* Restarts the account from the present state. wind_mass is sum m a^2 in kg m2/s4: half of it
+ * times t^2 is the energy B of the header. */
 static void start(struct cs_energy_monitor *monitor, const struct cs_run *run) {
     const struct cs_system *system = run->system;
     const struct cs_energy energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
@@ -107,14 +111,14 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
     return CS_OK;
 }
 
-/* an event did something since the last look that no bound knows of */
+/* True if an event since the last sample may have added energy. */
 static bool has_event_since(const struct cs_energy_monitor *monitor, const struct cs_run *run) {
     const struct cs_events *events = run->system->events;
     return events && (events->begin >= monitor->last_sample || events->has_ramps ||
                       cs_events_speed(run->system) > 0);
 }
 
-/* kinetic and elastic energy that there can be */
+/* Available kinetic and elastic energy in J at t seconds after the restart. */
 static double available(const struct cs_energy_monitor *monitor, double t) {
     /* the wind's work, were it to push all the way in free flight */
     const double blown = monitor->wind_mass * t * t / 2;
@@ -128,7 +132,7 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     *row = (struct cs_energy_monitor_row){.t = run->t};
     row->energy = cs_diagnostics_energy(system, run->t, run->x, run->v);
     row->strain = cs_diagnostics_strain(system, run->x);
-    /* no bound knows what an event has added: the account starts anew */
+    /* no bound holds after an event has added energy: restart */
     if (has_event_since(monitor, run))
         start(monitor, run);
     monitor->last_sample = run->t;

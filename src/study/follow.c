@@ -1,4 +1,4 @@
-/* Steps a run from frame to frame, and says how it ended. */
+/* Steps a run from frame to frame, and reports how it ended. */
 #include "study/follow.h"
 
 #include "base/clock.h"
@@ -19,6 +19,7 @@ bool cs_follow_next(struct cs_follow *follow, struct cs_error *error) {
     return run->frame == stop && run->outcome == CS_RUNNING && !error->status;
 }
 
+/* Only an interruption adds an error here; every other error stays as it is. */
 enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted,
                                struct cs_error *error) {
     if (run->outcome == CS_INTERRUPTED)

@@ -1,10 +1,10 @@
-/* follow.h - the loop over the frames of a run, and how the run ended.
+/* follow.h - the loop over the frames of a run, and the result of the run.
  *
  *   struct cs_follow follow = {.run = &session.run, .last = frames, .every = 1};
  *   while (cs_follow_next(&follow, error))
- *       ...                          here follow.run stands at the end of a frame
- *   cs_follow_result(&follow, "", &result, error);
- */
+ *     ...                          here follow.run is at the end of a frame
+ *   cs_follow_result(follow.run, "", &result, error);
+ * Only the steps are timed, not the work between two calls. */
 #ifndef CS_FOLLOW_H
 #define CS_FOLLOW_H
 
@@ -22,7 +22,7 @@ struct cs_follow {
  * multiple was reached: at the last frame, after the end of the run, and after a failure. */
 bool cs_follow_next(struct cs_follow *follow, struct cs_error *error);
 
-/* How a run ended. */
+/* Result of a run. */
 struct cs_run_result {
     enum cs_outcome outcome; /* CS_RUNNING: at its last frame; CS_FAILED: the method gave up */
     double reached;          /* s, of the last frame */
@@ -38,7 +38,8 @@ enum cs_status cs_follow_result(const struct cs_run *run, const char *interrupte
 enum cs_status cs_follow_check(const struct cs_run *run, const char *interrupted,
                                struct cs_error *error);
 
-/* Whole frames that cover a time in s. */
+/* Returns the smallest whole number of frames that cover a time in s. A product that is whole
+ * up to rounding (a relative 1e-9) gets no extra frame. */
 double cs_follow_frames(const struct cs_scene *scene, double seconds);
 
 #endif

@@ -1,4 +1,5 @@
-/* Draws the pictures of a run: copies its state, colours it and paints it beside the run. */
+/* Draws the pictures of a run: copies its state, colours it, and paints it while the run goes
+ * on. */
 #include "study/frame_picture.h"
 
 #include "base/clock.h"
@@ -40,7 +41,7 @@ static enum cs_status read_textures(struct cs_picture *picture, struct cs_error 
     return CS_OK;
 }
 
-/* false: out of memory */
+/* Allocates marks of triangles if the look shows crossings. Returns false if out of memory. */
 static bool take_marks(struct cs_picture *picture) {
     if (cs_look_kind(picture->scene->render.look)->colours != CS_COLOURS_CROSSINGS)
         return true;
@@ -48,6 +49,7 @@ static bool take_marks(struct cs_picture *picture) {
     return picture->triangle_marks;
 }
 
+/* Allocates the copies of the state that the scene's look needs. */
 static enum cs_status alloc_arrays(struct cs_picture *picture, struct cs_error *error) {
     const size_t n = picture->system->view.n;
     const bool coloured = cs_picture_is_coloured(picture->scene);
@@ -76,11 +78,13 @@ static void free_textures(struct cs_picture *picture) {
     picture->textures = NULL;
 }
 
-/* OpenGL is another's code, too; its libraries end the program where memory runs out */
+/* Notes the call for crash reports: OpenGL is foreign code, and its libraries may end the
+ * program when memory runs out. */
 static void watch(const char *renderer, const char *place) {
     cs_crash_watch(CS_CRASH_DRAWING, "renderer", renderer, place);
 }
 
+/* Ends the note. A renderer that failed for lack of memory gets CS_ERR_MEMORY. */
 static void forget(struct cs_error *error) {
     cs_crash_forget(CS_CRASH_DRAWING);
     if (error->status != CS_ERR_MODULE || !cs_crash_was_starved(CS_CRASH_DRAWING))
@@ -90,7 +94,8 @@ static void forget(struct cs_error *error) {
     cs_fail(error, CS_ERR_MEMORY, "out of memory: %.900s", said.message);
 }
 
-/* done by the worker thread, as all that touches the canvas */
+/* Creates the canvas on the worker thread, because all calls on a canvas must come from one
+ * thread. */
 static void make_canvas(void *object) {
     struct cs_picture *picture = object;
     const struct cs_canvas_settings settings = {.scene = picture->scene,
@@ -149,7 +154,8 @@ void cs_picture_range(const struct cs_scene *scene, double most, double range[2]
     range[1] = most;
 }
 
-/* One pinched corner does not leave the others without colours. */
+/* Values and range of the colours. The magnitude is robust: one pinched corner must not leave
+ * the rest without colours. */
 static void measure(struct cs_picture *picture, const struct cs_run *run) {
     const double *given = picture->scene->render.range;
     const uint32_t n = picture->system->view.n;
@@ -160,6 +166,7 @@ static void measure(struct cs_picture *picture, const struct cs_run *run) {
                          picture->range);
 }
 
+/* Draws the picture; runs on the worker thread if there is one. */
 static void paint(void *object) {
     struct cs_picture *picture = object;
     const struct cs_look_kind *look = cs_look_kind(picture->scene->render.look);

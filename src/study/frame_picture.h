@@ -1,8 +1,8 @@
-/* frame_picture.h - the pictures of one run: renderer, textures, and the values that colours
- * show.
+/* frame_picture.h - draws the pictures of one run: renderer, textures, and the values that
+ * colours show.
  *
- * A picture is begun from the state of a run and ended when it is wanted. In between it is
- * drawn beside the caller, who may step the run on. */
+ * begin copies the state of a run; end waits for the picture. In between a worker thread draws,
+ * and the caller may step the run. */
 #ifndef CS_FRAME_PICTURE_H
 #define CS_FRAME_PICTURE_H
 
@@ -12,7 +12,7 @@
 #include "sim/install_paths.h"
 #include "sim/run.h"
 
-/* Zeroed: closed. Must stay where it is while open. */
+/* Pictures of one run; zeroed: closed. Must not move in memory while open. */
 struct cs_picture {
     const struct cs_scene *scene;   /* borrowed */
     const struct cs_system *system; /* borrowed */
@@ -35,38 +35,39 @@ struct cs_picture {
 };
 
 /* Loads the renderer and the textures. Scene and system must outlive the picture. beside: draw
- * on a thread of its own, unless the scene draws what viewpoint forces see; else begin draws at
- * once, and the same. On failure the picture is closed; CS_ERR_MODULE, CS_ERR_FILE (a texture)
- * or CS_ERR_MEMORY. */
+ * on a separate thread, unless the scene draws the visibility of viewpoint forces; otherwise
+ * begin draws at once, with the same result. On failure the picture is closed; CS_ERR_MODULE,
+ * CS_ERR_FILE (a texture) or CS_ERR_MEMORY. */
 enum cs_status cs_picture_open(struct cs_picture *picture, const struct cs_system *system,
                                enum cs_renderer_kind kind, bool fast, bool beside,
                                struct cs_error *error);
 
 /* Begins to draw the state of a run into an image of the scene's size, which must not be
- * touched before the end. The picture before must have ended. */
+ * touched before the end. The last picture must have ended. */
 void cs_picture_begin(struct cs_picture *picture, const struct cs_run *run,
                       struct cs_image *image);
-/* Waits for it; CS_ERR_MODULE or CS_ERR_MEMORY where it failed, and from then on: the first
- * failure is told again. CS_OK where none is under way and none failed. */
+/* Waits for the picture. CS_ERR_MODULE or CS_ERR_MEMORY if it failed; the first failure is
+ * repeated at each further call. CS_OK if none is in progress and none failed. */
 enum cs_status cs_picture_end(struct cs_picture *picture, struct cs_error *error);
 
-/* The value by which the scene's look colours each particle of a run: scalar (n), work (3,n).
- */
+/* Fills the value by which the scene's look colours each particle: scalar (n); work (3,n) is
+ * scratch. */
 void cs_picture_values(const struct cs_system *system, const struct cs_run *run, double *scalar,
                        double *work);
-/* Its range, up to a magnitude: about 0 where the value has a sign, else from 0. */
+/* Range of a value up to a magnitude: symmetric about 0 if it has a sign, else from 0. */
 void cs_picture_range(const struct cs_scene *scene, double most, double range[2]);
 
 /* true if the colours show a value, so that picture->range has a meaning. */
 bool cs_picture_is_coloured(const struct cs_scene *scene);
 
-/* What drew the pictures. */
+/* Description of the renderer; it belongs to the open picture. */
 const char *cs_picture_renderer(const struct cs_picture *picture);
 
+/* Waits for the picture in progress and frees everything. */
 void cs_picture_close(struct cs_picture *picture);
 
-/* Draws the state of a run once, at the size that its scene says. The caller frees image->rgb,
- * also on failure; image->alpha is the caller's. Adds the renderer's description. */
+/* Draws the state of a run once, at the size of its scene. The caller frees image->rgb, also on
+ * failure; image->alpha is the caller's. Adds the renderer's description. */
 enum cs_status cs_snapshot_draw(const struct cs_run *run, enum cs_renderer_kind kind,
                                 struct cs_image *image, struct cs_text *renderer,
                                 struct cs_error *error);

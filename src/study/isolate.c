@@ -1,4 +1,4 @@
-/* Runs a task in a forked process and tells how that ended. */
+/* Runs a task in a forked process and reports how it ended. */
 #include "study/isolate.h"
 
 #include "base/clock.h"
@@ -16,18 +16,18 @@
 #include <sys/prctl.h>
 #endif
 
-/* between two looks at the calls */
+/* Interval between two checks of the calls. */
 enum { PAUSE_NANOSECONDS = 20000000 };
 #define LONGEST_LOOK 0.2 /* s */
 
-/* In memory that both see. */
+/* Memory that both processes share. */
 struct shared {
     struct cs_crash_log log;
     struct cs_error error; /* of the task */
-    atomic_bool done;      /* it came to its end: the error is whole */
+    atomic_bool done;      /* the task has returned: the error is complete */
 };
 
-/* Since the calls of both sides were last seen to change. */
+/* Waiting times of the calls, by which hung ones are found. */
 struct patience {
     unsigned edges[CS_CRASH_SIDES];
     double waited[CS_CRASH_SIDES]; /* s */
@@ -35,6 +35,7 @@ struct patience {
     bool told;                     /* the child was asked to stop */
 };
 
+/* The child: runs the task and exits without atexit handlers. */
 static _Noreturn void serve(const struct cs_isolate *isolate, struct shared *shared,
                             pid_t parent) {
     struct cs_error error = {0};
@@ -54,7 +55,11 @@ static _Noreturn void serve(const struct cs_isolate *isolate, struct shared *sha
     _exit(0);
 }
 
-/* The side whose call has lasted too long, or NULL. */
+/* Returns the call that has lasted too long, or NULL.
+ *
+ * Each entry and exit of a call increments its counter: an odd value means "inside". The
+ * waiting time grows while the counter does not change. Each check adds at most LONGEST_LOOK,
+ * so a suspended machine does not count as waiting. */
 static const struct cs_crash_call *find_timed_out_call(const struct cs_isolate *isolate,
                                                        const struct shared *shared,
                                                        struct patience *patience) {
@@ -73,6 +78,7 @@ static const struct cs_crash_call *find_timed_out_call(const struct cs_isolate *
     return NULL;
 }
 
+/* Passes a request to stop on to the child, once. */
 static void pass_on_stop(const struct cs_isolate *isolate, pid_t child,
                          struct patience *patience) {
     if (!isolate->stop || !*isolate->stop || patience->told)
@@ -81,7 +87,8 @@ static void pass_on_stop(const struct cs_isolate *isolate, pid_t child,
     kill(child, SIGTERM);
 }
 
-/* Until the child is dead, which ends a pause early. */
+/* Waits until the child is dead, and returns its wait status. SIGCHLD ends a pause early. A
+ * hung child is killed. */
 static int wait_for(const struct cs_isolate *isolate, const struct shared *shared, pid_t child,
                     const sigset_t *death, struct cs_error *error) {
     const struct timespec pause = {.tv_nsec = PAUSE_NANOSECONDS};
@@ -102,6 +109,7 @@ static int wait_for(const struct cs_isolate *isolate, const struct shared *share
     return end;
 }
 
+/* Forks, waits and collects the error of the task. */
 static enum cs_status run(const struct cs_isolate *isolate, struct shared *shared,
                           struct cs_error *error) {
     sigset_t death, before;

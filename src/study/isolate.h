@@ -1,7 +1,8 @@
-/* isolate.h - work with foreign code in a process of its own, whose death is a message.
+/* isolate.h - runs a task that calls foreign code in a child process and turns its death into
+ * an error message.
  *
- * The whole task is done there, by the same steps in the same order: nothing has to come back
- * but how it ended. */
+ * The child does the whole task in the same order of steps. Only its status comes back; results
+ * are in files. */
 #ifndef CS_ISOLATE_H
 #define CS_ISOLATE_H
 
@@ -9,17 +10,18 @@
 
 #include <signal.h>
 
+/* Request for a task. */
 struct cs_isolate {
     double seconds; /* that one call into a module may take */
     enum cs_status (*task)(void *ctx, struct cs_error *error);
     void *ctx;
-    const volatile sig_atomic_t *stop; /* set: the process is told; may be NULL */
+    const volatile sig_atomic_t *stop; /* set: the process is asked to stop; may be NULL */
 };
 
-/* Does the task in a child of this process, which ends with it, and waits for it. Returns what
- * the task came to; where the process died, or a call took longer, CS_ERR_MODULE (or that of
- * memory) names the module and the call. What the task wrote is in its files; nothing else of
- * it is to be seen here. CS_ERR_MEMORY: there is no other process to be had. */
+/* Runs the task in a child of this process and waits for it. The child ends with this process.
+ * Returns the status of the task. If the child died or a call took longer than `seconds`,
+ * returns CS_ERR_MODULE (or the status of a memory failure) and names the module and the call.
+ * Changes of memory by the task are lost. CS_ERR_MEMORY if no process can be started. */
 enum cs_status cs_isolate_run(const struct cs_isolate *isolate, struct cs_error *error);
 
 #endif

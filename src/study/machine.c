@@ -7,6 +7,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+/* Reads the model name from /proc/cpuinfo; unchanged if there is none. */
 static void read_processor(char *name, size_t size) {
     char line[256];
     FILE *file = fopen("/proc/cpuinfo", "re");
@@ -20,6 +21,8 @@ static void read_processor(char *name, size_t size) {
         fclose(file);
 }
 
+/* Compiler and flags are those of this file's build, which are the same for the whole program.
+ */
 void cs_machine_detect(struct cs_machine *machine) {
     *machine = (struct cs_machine){.version = CS_VERSION,
 #ifdef __clang__

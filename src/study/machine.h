@@ -1,7 +1,8 @@
-/* machine.h - what a measurement was taken on. */
+/* machine.h - describes the machine that a measurement was made on. */
 #ifndef CS_MACHINE_H
 #define CS_MACHINE_H
 
+/* Facts of the machine and the build; texts without a size are constants. */
 struct cs_machine {
     char host[64], processor[128]; /* "" unknown */
     long processors;
@@ -9,10 +10,11 @@ struct cs_machine {
     const char *version, *compiler, *flags;
 };
 
+/* Fills in what can be found out; unknown facts are "" or 0. Does not fail. */
 void cs_machine_detect(struct cs_machine *machine);
 
 enum { CS_MACHINE_NAME = 200 };
-/* "host: processor": times that bear the same name can be held against each other. */
+/* Writes "host: processor". Times under equal names are comparable. */
 void cs_machine_name(char name[CS_MACHINE_NAME]);
 
 #endif

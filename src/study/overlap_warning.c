@@ -1,4 +1,4 @@
-/* overlap_warning.c - boxes about bodies, and about where they can come to. */
+/* Bounding boxes of bodies, and of the positions they can reach. */
 #include "study/overlap_warning.h"
 
 #include "scene/body_pairs.h"
@@ -7,9 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* share of a free body's diagonal by which its box is widened: it turns and spreads */
+/* Fraction of a free body's diagonal by which its box is enlarged: it turns and spreads. */
 #define SPREAD 0.1
 
+/* An axis-aligned box in m. */
 struct box {
     double low[3], high[3];
 };
@@ -21,6 +22,7 @@ struct body {
 static const struct box nowhere = {{HUGE_VAL, HUGE_VAL, HUGE_VAL},
                                    {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 
+/* Extends a box by a point with a margin. */
 static void extend_box(struct box *box, const double p[3], double by) {
     for (int c = 0; c < 3; c++) {
         box->low[c] = fmin(box->low[c], p[c] - by);
@@ -40,7 +42,8 @@ static void take(const double *x, size_t n, size_t i, double p[3]) {
         p[c] = x[c * n + i];
 }
 
-/* no particle is further from a pin than it was in the flat, springs willing */
+/* Box of a pinned body. Inextensible springs keep each particle within its initial distance of
+ * the pin. */
 static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *reach) {
     double from[3], squared = 0;
     take(x, n, pin, from);
@@ -54,7 +57,8 @@ static void reach_from_pin(const double *x, size_t n, size_t pin, struct box *re
     extend_box(reach, from, sqrt(squared));
 }
 
-/* the boxes of all times in free fall */
+/* Box of all times in free fall: end of the fall, and the turning point v + g t = 0 if it is on
+ * the way. */
 static void free_fall_box(const struct cs_scene *scene, const struct cs_body *body,
                           double seconds, const struct box *start, struct box *reach) {
     const double *v = cs_shape_velocity(body), *g = scene->forces.gravity;
@@ -72,6 +76,7 @@ static void free_fall_box(const struct cs_scene *scene, const struct cs_body *bo
     }
 }
 
+/* Boxes of a body, from a copy of its start positions. */
 static enum cs_status measure(const struct cs_scene *scene, const struct cs_body *body,
                               double seconds, struct body *out, struct cs_error *error) {
     const size_t n = (size_t)cs_shape_count(body);
@@ -101,8 +106,8 @@ done:
     return error->status;
 }
 
-/* the pairs that overlap, of the starts or of the reaches, and that no contact keeps apart;
- * *first, *second: of the first */
+/* Counts the pairs without contact whose boxes overlap, at the start or at any time; *first and
+ * *second belong to the first pair. */
 static uint32_t count_pairs(const struct cs_scene *scene, const struct body *bodies, bool start,
                             uint32_t *first, uint32_t *second) {
     uint32_t pairs = 0;

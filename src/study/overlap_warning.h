@@ -1,15 +1,17 @@
-/* overlap_warning.h - bodies that overlap or could meet, and that no contact keeps apart. */
+/* overlap_warning.h - warns of bodies that overlap, or could collide during the run, while no
+ * contact is defined between them. */
 #ifndef CS_OVERLAP_WARNING_H
 #define CS_OVERLAP_WARNING_H
 
 #include "base/text.h"
 #include "scene/scene.h"
 
-/* Adds one line about the first pair, and how many more there are; nothing where no two bodies
- * come near each other. Boxes about the bodies at the start are compared, and about where each
- * can come to in that many seconds: a body that is free, along its fall; one that is pinned, no
- * further from its last pin than its particles are. A hint, which may be raised in vain: boxes
- * are larger than bodies. CS_ERR_MEMORY. */
+/* Adds one line about the first pair, and how many more there are; nothing if there is none.
+ *
+ * Compared are the bounding boxes at the start, then boxes of all positions reachable within
+ * that many seconds: along its fall for a free body, and for a pinned body within the distance
+ * from its last pin to its farthest particle. Boxes are larger than bodies, so a warning can be
+ * false. CS_ERR_MEMORY. */
 enum cs_status cs_overlap_warning_print(const struct cs_scene *scene, double seconds,
                                         struct cs_text *out, struct cs_error *error);
 

@@ -1,4 +1,4 @@
-/* Runs the Cartesian product of values and methods, and keeps a row a cell. */
+/* Runs the Cartesian product of values and methods, and stores one row per cell. */
 #include "study/parameter_sweep.h"
 
 #include "base/file.h"
@@ -20,6 +20,7 @@ struct sweep_rows {
     uint32_t n;
 };
 
+/* Frees all lines. */
 static void finish_rows(struct sweep_rows *rows) {
     for (uint32_t k = 0; k < rows->n; k++)
         free(rows->lines[k]);
@@ -27,6 +28,7 @@ static void finish_rows(struct sweep_rows *rows) {
     cs_text_finish(&rows->names);
 }
 
+/* Grows the array of lines to n; new ones are NULL. */
 static enum cs_status reserve_rows(struct sweep_rows *rows, uint32_t n,
                                    struct cs_error *error) {
     if (n <= rows->n)
@@ -40,12 +42,14 @@ static enum cs_status reserve_rows(struct sweep_rows *rows, uint32_t n,
     return CS_OK;
 }
 
+/* The key of a row, its last column. */
 static const char *key_of(const char *line) {
     const char *comma = strrchr(line, ',');
     return comma ? comma + 1 : "";
 }
 
-/* Stores a line by its cell; one that is no row is passed over. */
+/* Stores a line under its cell; a text that is no row is skipped. Two different keys for one
+ * cell mean two different sweeps. */
 static enum cs_status store_line(struct sweep_rows *rows, const char *line, const char *path,
                                  struct cs_error *error) {
     char *end;
@@ -63,7 +67,7 @@ static enum cs_status store_line(struct sweep_rows *rows, const char *line, cons
     return error->status;
 }
 
-/* Adds the rows of a folder, where there are any. Their columns must be those of the sweep. */
+/* Adds the rows of a folder, if there are any. Their columns must be those of the sweep. */
 static enum cs_status read_rows(struct sweep_rows *rows, const char *folder,
                                 struct cs_error *error) {
     struct cs_rows found;
@@ -94,6 +98,7 @@ static enum cs_status write_rows(const struct sweep_rows *rows, struct cs_error 
     return cs_file_write_text(rows->table.path, &out, error);
 }
 
+/* Number of finished cells. */
 static uint32_t count_rows(const struct sweep_rows *rows) {
     uint32_t n = 0;
     for (uint32_t k = 0; k < rows->n; k++)
@@ -101,7 +106,7 @@ static uint32_t count_rows(const struct sweep_rows *rows) {
     return n;
 }
 
-/* Others' cells are not looked at: their rows are there, or are none of this process's. */
+/* Runs one cell, unless its row exists or it belongs to another shard. */
 static enum cs_status do_cell(struct cs_parameter_sweep *product, const struct sweep_rows *rows,
                               uint32_t number, struct cs_error *error) {
     struct cs_parameter_sweep_cell cell;

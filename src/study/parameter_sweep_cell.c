@@ -1,4 +1,4 @@
-/* One cell of a sweep: reads the scene with its values, names it by what it means, runs it. */
+/* One cell of a sweep: reads the scene with its values, derives its key, runs it. */
 #include "study/parameter_sweep_cell.h"
 
 #include "base/table.h"
@@ -8,10 +8,12 @@
 #include "study/follow.h"
 #include "study/machine.h"
 
+/* True for errors that concern this cell only, which become a row. */
 static bool is_own_fault(const struct cs_error *failure) {
     return failure->status == CS_ERR_SCENE || failure->status == CS_ERR_MODULE;
 }
 
+/* Splits the number of the cell into the indices of its values. */
 static void choose_values(struct cs_parameter_sweep_cell *cell,
                           const struct cs_parameter_sweep *product) {
     uint32_t rest = cell->number;
@@ -23,6 +25,7 @@ static void choose_values(struct cs_parameter_sweep_cell *cell,
     cell->method = product->n_methods ? product->methods[rest] : NULL;
 }
 
+/* Adds hashes of scene and module, which identify equal cells whatever their text. */
 static void add_meaning(struct cs_parameter_sweep_cell *cell, struct cs_text *all,
                         struct cs_error *error) {
     struct cs_session *session = &cell->session;
@@ -88,7 +91,7 @@ void cs_parameter_sweep_add_head(const struct cs_parameter_sweep *product,
                      "energy,strain,hash,cpu,machine,version,note,key");
 }
 
-/* What came of it, for the columns behind the method's. */
+/* Adds outcome, counts and figures of the run. */
 static void add_result(const struct cs_session *session, const char *outcome, double cpu,
                        struct cs_text *out) {
     const struct cs_run *run = &session->run;
@@ -109,7 +112,7 @@ static void add_result(const struct cs_session *session, const char *outcome, do
     cs_csv_add_number(out, cpu);
 }
 
-/* A scene or a method that refuses is a row; what the command line has wrong is none. */
+/* Adds a refusal by scene or method as a row. Errors of the command line are passed on. */
 static enum cs_status add_failure(struct cs_parameter_sweep *product,
                                   const struct cs_error *failure, struct cs_text *out,
                                   struct cs_error *error) {
@@ -122,7 +125,7 @@ static enum cs_status add_failure(struct cs_parameter_sweep *product,
     return CS_OK;
 }
 
-/* From the plan to the last frame. Returns the s that the frames took. */
+/* Runs from the plan to the last frame. Returns the processor time in s of the frames. */
 static double run_frames(struct cs_parameter_sweep_cell *cell, uint32_t frames) {
     struct cs_session *session = &cell->session;
     struct cs_error *failure = &cell->refusal;

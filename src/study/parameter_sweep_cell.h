@@ -1,4 +1,7 @@
-/* parameter_sweep_cell.h - one cell of a sweep: its values, its key, its run, its row. */
+/* parameter_sweep_cell.h - one cell of a sweep: its values, its key, its run, its row.
+ *
+ * The number of a cell is a mixed-radix number: the last key is its fastest digit, the first
+ * key a slow one, and the method the slowest. */
 #ifndef CS_PARAMETER_SWEEP_CELL_H
 #define CS_PARAMETER_SWEEP_CELL_H
 
@@ -15,17 +18,18 @@ struct cs_parameter_sweep_cell {
     char key[CS_HASH_DIGITS];
 };
 
-/* Reads the scene with the cell's values. The key is of what the scene means, mesh files too,
- * of the method with its options and the build of its module, of the number of frames and the
- * program's version; of a cell that is refused, of what was asked and why not. CS_ERR_USAGE and
- * what else is no fault of the cell's own; CS_ERR_MEMORY. */
+/* Reads the scene with the cell's values and computes its key: a hash of the resolved scene
+ * with its mesh files, of method, options and module, of frames and version. The key of a
+ * refused cell hashes the request and the reason. A refusal is no error here. CS_ERR_USAGE and
+ * other errors that are not the cell's own; CS_ERR_MEMORY. */
 enum cs_status cs_parameter_sweep_cell_open(struct cs_parameter_sweep_cell *cell,
                                             const struct cs_parameter_sweep *product,
                                             uint32_t number, struct cs_error *error);
+/* Closes the cell's session. */
 void cs_parameter_sweep_cell_close(struct cs_parameter_sweep_cell *cell);
 
-/* Runs it and adds its row. CS_ERR_INTERRUPT, CS_ERR_MEMORY; what the scene or the method
- * refuses is a row, and counted. */
+/* Runs the cell and adds its row. A refusal by scene or method is a row, and counted.
+ * CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_parameter_sweep_cell_run(struct cs_parameter_sweep_cell *cell,
                                            struct cs_parameter_sweep *product,
                                            struct cs_text *out, struct cs_error *error);

@@ -1,4 +1,4 @@
-/* parameter_sweep_state.h - what a sweep is asked for, and what it has come to. */
+/* parameter_sweep_state.h - settings of a parameter sweep, and its counts so far. */
 #ifndef CS_PARAMETER_SWEEP_STATE_H
 #define CS_PARAMETER_SWEEP_STATE_H
 
@@ -14,6 +14,7 @@ struct cs_parameter_axis {
     uint32_t n;
 };
 
+/* Request and counts; pointers are borrowed. */
 struct cs_parameter_sweep {
     struct cs_session_settings session; /* scene, plugins; integrator is not used */
     struct cs_parameter_axis keys[CS_PARAMETER_AXES_MAX];

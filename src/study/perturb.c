@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-/* -1..1 out of an index, by multiplication and shifts */
+/* Maps an index to -1..1 by multiplications and xor-shifts: no generator state, hence no order.
+ */
 static double noise_of(uint64_t index) {
     uint64_t bits = (index + 1) * 0x9e3779b97f4a7c15u;
     bits = (bits ^ bits >> 31) * 0xbf58476d1ce4e5b9u;

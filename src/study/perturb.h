@@ -1,15 +1,17 @@
-/* perturb.h - starts out of rest, the same on every machine. */
+/* perturb.h - perturbs the start of a scene reproducibly.
+ *
+ * The functions add to the state of free particles: displacements of up to `displacement` m and
+ * velocities of up to `velocity` m/s in each direction. */
 #ifndef CS_PERTURB_H
 #define CS_PERTURB_H
 
 #include "model/system/system.h"
 
-/* Adds to the state of the free particles: displacements up to that many m and velocities up to
- * that many m/s in each direction. No spring is then at its rest length. */
-
-/* At random, so that every mode of the cloth is in it. */
+/* Adds noise without correlation between particles: it has a component along every mode. After
+ * it no spring is at its rest length. */
 void cs_perturb_random(struct cs_system *system, double displacement, double velocity);
-/* By waves a few particles long. */
+/* Adds waves of a few particles' length. Their sines come from libm, so the last bits may
+ * depend on the library. */
 void cs_perturb_smooth(struct cs_system *system, double displacement, double velocity);
 
 #endif

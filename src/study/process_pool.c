@@ -1,4 +1,4 @@
-/* Shares independent tasks among forked processes. */
+/* Distributes independent tasks over forked processes. */
 #include "study/process_pool.h"
 
 #include "sim/crash.h"
@@ -18,13 +18,13 @@
 #include <malloc.h>
 #endif
 
-/* In memory that all workers see. */
+/* Memory that all workers share. */
 struct shared {
     atomic_uint next;
     uint32_t ticks;
     struct cs_error errors[CS_PROCESS_POOL_MAX]; /* one a worker */
     struct cs_crash_log logs[CS_PROCESS_POOL_MAX];
-    atomic_bool done[CS_PROCESS_POOL_MAX]; /* it came to its end itself */
+    atomic_bool done[CS_PROCESS_POOL_MAX]; /* it has returned by itself */
 };
 
 void *cs_process_pool_shared_alloc(size_t bytes, struct cs_error *error) {
@@ -45,15 +45,17 @@ void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks) {
     __atomic_fetch_add(workers->ticks, ticks, __ATOMIC_RELAXED);
 }
 
-/* A task that never comes back to look at its budget ends with its worker, by SIGPROF. */
+/* Limits the processor time of one task: SIGPROF then ends the worker, which covers a task that
+ * never returns to check its budget. */
 static void limit_task(const struct cs_process_pool *workers) {
     const struct itimerval limit = {.it_value.tv_sec = (time_t)workers->task_seconds_max};
     if (workers->task_seconds_max > 0)
         setitimer(ITIMER_PROF, &limit, NULL);
 }
 
-/* A task opens many sessions, one after the other: what one gives back is kept for the next,
- * not given to the system and taken anew, page by page. The worker's end gives back all. */
+/* Tunes malloc for tasks that open many sessions in succession: freed memory is kept for the
+ * next session, not returned to the system and faulted in again page by page. The end of the
+ * worker frees all. */
 static void store_memory(void) {
 #ifdef __GLIBC__
     mallopt(M_MMAP_THRESHOLD, 1 << 25);
@@ -62,6 +64,7 @@ static void store_memory(void) {
 #endif
 }
 
+/* Takes tasks from the shared counter until none is left or one fails. */
 static void serve(struct cs_process_pool *workers, struct shared *shared, uint32_t worker) {
     struct cs_error *error = shared->errors + worker;
     while (!error->status) {
@@ -81,7 +84,8 @@ static void report(const struct cs_process_pool *workers) {
                           __atomic_load_n(workers->ticks, __ATOMIC_RELAXED));
 }
 
-/* the first reason that a worker gave, or that it gave none */
+/* Takes over the error of a worker that ended. Death by SIGPROF is the time limit, and no
+ * error; any other death is reported as a crash. */
 static void collect(struct shared *shared, uint32_t worker, int end, struct cs_error *error) {
     if (error->status)
         return;
@@ -95,7 +99,7 @@ static void collect(struct shared *shared, uint32_t worker, int end, struct cs_e
         atomic_store(&shared->next, UINT32_MAX / 2);
 }
 
-/* the process of a worker; < 0: there is none */
+/* Forks a worker. Returns its process in the parent, < 0 if there is none. */
 static pid_t start(struct cs_process_pool *workers, struct shared *shared, uint32_t worker) {
     /* that of the worker before, which was ended in a task */
     shared->logs[worker] = (struct cs_crash_log){0};
@@ -109,13 +113,14 @@ static pid_t start(struct cs_process_pool *workers, struct shared *shared, uint3
     _exit(0);
 }
 
-/* true if a worker was ended in a task and there are tasks left */
+/* True if a worker died by its time limit while tasks are left: it is replaced. */
 static bool wants_another(const struct cs_process_pool *workers, struct shared *shared,
                           int end) {
     return WIFSIGNALED(end) && WTERMSIG(end) == SIGPROF &&
            atomic_load(&shared->next) < workers->n_tasks;
 }
 
+/* Passes a request to stop on to all workers. */
 static void terminate_workers(const struct cs_process_pool *workers, const pid_t *children,
                               uint32_t n) {
     for (uint32_t k = 0; workers->stop && *workers->stop && k < n; k++)
@@ -123,7 +128,7 @@ static void terminate_workers(const struct cs_process_pool *workers, const pid_t
             kill(children[k], SIGTERM);
 }
 
-/* Waits for all, looking often, so that progress shows and a signal is heard. */
+/* Waits for all workers. Polls every 20 ms, so progress shows and signals are noticed. */
 static void wait_for(struct cs_process_pool *workers, struct shared *shared, pid_t *children,
                      uint32_t n, struct cs_error *error) {
     const struct timespec pause = {.tv_nsec = 20000000};

@@ -1,8 +1,8 @@
-/* process_pool.h - independent tasks shared out among processes.
+/* process_pool.h - distributes independent tasks over processes.
  *
- * Processes, not threads: a budget of processor time then belongs to one task alone, modules
- * need not share anything, and one that crashes takes only its worker along.
- */
+ * Processes, not threads: a budget of processor time then belongs to one task, modules need not
+ * be thread-safe, and a crash ends only its worker. Tasks are taken from a shared counter, so
+ * long and short ones balance. */
 #ifndef CS_PROCESS_POOL_H
 #define CS_PROCESS_POOL_H
 
@@ -15,14 +15,15 @@
 /* Workers at a time, at most; one a processor is a sensible number. */
 enum { CS_PROCESS_POOL_MAX = 16 };
 
-/* Results live in memory that all workers see; zeroed. CS_ERR_MEMORY. */
+/* Allocates zeroed memory that all workers share; results belong there. Returns NULL with
+ * CS_ERR_MEMORY. Freed with the same size; NULL is allowed. */
 void *cs_process_pool_shared_alloc(size_t bytes, struct cs_error *error);
 void cs_process_pool_shared_free(void *memory, size_t bytes);
 
+/* Request for a run of tasks; pointers are borrowed. */
 struct cs_process_pool {
     uint32_t n_workers, n_tasks;
-    /* one task, in a process of its own; ticks is to be raised (cs_process_pool_tick) as it
-     * goes */
+    /* one task, in its own process; it must call cs_process_pool_tick as it progresses */
     enum cs_status (*task)(void *ctx, uint32_t task, struct cs_error *error);
     void *ctx;
     /* in the calling process, about ten times a second; may be NULL */
@@ -31,13 +32,15 @@ struct cs_process_pool {
     uint32_t *ticks;         /* of the pool: in memory that all workers see while it runs */
     double task_seconds_max; /* of processor time for a task, which is then left as it is; 0:
                                 any */
-    const volatile sig_atomic_t *stop; /* set: the workers are told; may be NULL */
+    const volatile sig_atomic_t *stop; /* set: the workers are asked to stop; may be NULL */
 };
 
+/* Advances the progress; callable from every worker. */
 void cs_process_pool_tick(struct cs_process_pool *workers, uint32_t ticks);
 
-/* Returns when all are done; the first error ends the rest. CS_ERR_MODULE where a worker
- * crashed. */
+/* Runs all tasks and returns when they are done. The first error stops further tasks.
+ * CS_ERR_MODULE if a worker crashed; CS_ERR_INTERRUPT; CS_ERR_MEMORY if no worker can be
+ * started. */
 enum cs_status cs_process_pool_run(struct cs_process_pool *workers, struct cs_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* Reads what a result carries, and says what has changed since. */
+/* Reads stored provenance, and reports what has changed since. */
 #include "study/provenance_read.h"
 
 #include "base/file.h"
@@ -21,7 +21,8 @@ double cs_provenance_number(const struct cs_json *object, const char *key) {
     return found ? cs_json_number(found) : (double)NAN;
 }
 
-/* behind the object that begins at a place of a text that was checked */
+/* Returns the position after the object that begins at `at`, in a text that was parsed before.
+ * Counts brackets outside of strings. */
 static size_t end_of_object(const char *text, size_t at) {
     size_t depth = 0;
     do {
@@ -32,6 +33,7 @@ static size_t end_of_object(const char *text, size_t at) {
     return at;
 }
 
+/* Copies the scene's text, as it was read, out of the whole. */
 static enum cs_status take_scene(struct cs_provenance *provenance, struct cs_error *error) {
     const struct cs_json *scene = cs_json_find_kind(provenance->json, "scene", CS_JSON_OBJECT);
     size_t begin;
@@ -46,6 +48,7 @@ static enum cs_status take_scene(struct cs_provenance *provenance, struct cs_err
                              : cs_fail(error, CS_ERR_MEMORY, "out of memory for a scene");
 }
 
+/* Takes the members that older versions may lack: absent ones are "" or 0. */
 static void take_members(struct cs_provenance *provenance) {
     const struct cs_json *root = provenance->json;
     const struct cs_json *fast = cs_json_find_kind(root, "fast_render", CS_JSON_BOOL);
@@ -64,6 +67,7 @@ static void take_members(struct cs_provenance *provenance) {
     provenance->fast_render = fast && cs_json_is_true(fast);
 }
 
+/* Parses the text and takes its members. A fault names line and column. */
 static enum cs_status parse(struct cs_provenance *provenance, size_t length,
                             struct cs_error *error) {
     struct cs_json_fault fault;
@@ -105,6 +109,9 @@ void cs_provenance_finish(struct cs_provenance *provenance) {
     *provenance = (struct cs_provenance){0};
 }
 
+/* The scene is taken from the stored text, not from its file: that may have changed. With
+ * `folder` only the folder of the path is replaced, because meshes and textures are named
+ * relative to it. */
 enum cs_status cs_provenance_to_session(struct cs_provenance *provenance, const char *folder,
                                         struct cs_session_settings *settings,
                                         struct cs_error *error) {
@@ -125,6 +132,7 @@ enum cs_status cs_provenance_to_session(struct cs_provenance *provenance, const 
     return CS_OK;
 }
 
+/* Adds "what was THEN, is NOW" if the two differ. */
 void cs_provenance_add_change(const char *what, const char *then, const char *now,
                               struct cs_text *out) {
     if (strcmp(then, now) != 0)
@@ -132,6 +140,7 @@ void cs_provenance_add_change(const char *what, const char *then, const char *no
                     *now ? now : "none");
 }
 
+/* Changes of the method's library and of its module's build. */
 static void print_module(const struct cs_provenance *provenance, struct cs_session *session,
                          struct cs_text *out) {
     struct cs_provenance_out_module module;
@@ -141,7 +150,8 @@ static void print_module(const struct cs_provenance *provenance, struct cs_sessi
         cs_text_add(out, "the module %s is another build\n", provenance->module);
 }
 
-/* A file of the scene's folder is looked for where that is now. */
+/* Returns how a file has changed, or NULL. Files of the scene's folder are looked for in its
+ * present folder. */
 static const char *change_of(const struct cs_provenance *provenance, const char *path,
                              const char *then) {
     const char *slash = strrchr(provenance->scene_file, '/');
@@ -174,6 +184,8 @@ void cs_provenance_add_changed_files(const struct cs_provenance *provenance,
     }
 }
 
+/* A different hash of the resolved scene means that a default or the meaning of a key has
+ * changed, since the text is the stored one. */
 enum cs_status cs_provenance_add_changes(const struct cs_provenance *provenance,
                                          struct cs_session *session, struct cs_text *out,
                                          struct cs_error *error) {

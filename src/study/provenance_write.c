@@ -1,4 +1,4 @@
-/* Tells what a result hangs on. */
+/* Writes provenance as JSON. */
 #include "study/provenance_write.h"
 
 #include "base/hash.h"
@@ -17,6 +17,7 @@ struct walk {
     void *ctx;
 };
 
+/* Passes on a file that the scene names, relative to its folder. */
 static void add_referenced_file(const struct walk *walk, const char *file, const char *what) {
     char path[PATH_BYTES];
     if (*file &&
@@ -45,6 +46,7 @@ struct list {
     struct cs_error *error;
 };
 
+/* Adds path and hash of one file, if it exists. */
 static void add_file(void *ctx, const char *path, const char *what) {
     struct list *list = ctx;
     char hash[CS_HASH_DIGITS];
@@ -57,6 +59,8 @@ static void add_file(void *ctx, const char *path, const char *what) {
     list->any = true;
 }
 
+/* True for a module of the program's own folder, which is stored by name only: the folder
+ * differs between machines. */
 static bool is_own(const char *file) {
     const char *folder = cs_module_folder();
     const size_t length = strlen(folder);
@@ -110,7 +114,8 @@ void cs_provenance_out_add_restarts(uint32_t frames, struct cs_text *out) {
         cs_json_write(out, "  'restarted_every': %u,\n", frames);
 }
 
-/* JSON's texts hold no line break of their own: those that there are stand between values. */
+/* Removes line breaks and indentation. Strings of JSON contain no raw line break, so all breaks
+ * are between values. */
 static void add_compact(const char *json, struct cs_text *out) {
     while (*json) {
         const size_t length = strcspn(json, "\n");

@@ -1,19 +1,12 @@
-/* provenance_write.h - what a result hangs on: told beside it, so that it can be made again.
- *
- * As members of a JSON object, of the scene and of the method:
- *   "scene_file"  as it was given     "files"   [{"path", "hash"}]: it and those that it names
- *   "scene_hash"  see scene_hash.h    "method"  with every option
- *   "module"      {"file", "hash", "library"}
- * The scene itself, with every value, stands beside them as "scene".
- */
+/* provenance_write.h - writes the provenance of a result: everything needed to reproduce it. */
 #ifndef CS_PROVENANCE_WRITE_H
 #define CS_PROVENANCE_WRITE_H
 
 #include "base/text.h"
 #include "study/session.h"
 
-/* Calls for each file that a scene is read from or names. what: "the scene", "a mesh", "a
- * texture". Standard input is none; a texture may not be there. */
+/* Calls take for each file that a scene was read from or names. what: "the scene", "a mesh", "a
+ * texture". Standard input is skipped; a texture may be missing. */
 void cs_scene_each_file(const struct cs_scene *scene,
                         void (*take)(void *ctx, const char *path, const char *what), void *ctx);
 
@@ -26,7 +19,7 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
                                        const char *method, struct cs_text *out,
                                        struct cs_error *error);
 
-/* What a single picture carries of the run that it is of. */
+/* Provenance stored in a single picture. */
 struct cs_picture_provenance {
     const char *provenance;                      /* the members above */
     const char *scene;                           /* as cs_scene_print prints it */
@@ -38,12 +31,12 @@ struct cs_picture_provenance {
 void cs_provenance_out_print_recipe(const struct cs_picture_provenance *recipe,
                                     struct cs_text *out);
 
-/* Adds the member "restarted_every": frames between two checkpoints at which a method without
- * save was started anew; 0: none, and nothing is added. */
+/* Adds the member "restarted_every": frames between the checkpoints at which a method without
+ * saved history restarts; nothing for 0. */
 void cs_provenance_out_add_restarts(uint32_t frames, struct cs_text *out);
 
-/* The module that a session's method came from, as it is told: the name of a module of the
- * program's own folder, the path of any other; its hash; its library, or "". */
+/* The module of a session's method: its name in the program's own folder, or else its path; its
+ * hash; its library, or "". */
 struct cs_provenance_out_module {
     char file[4096];
     char hash[CS_HASH_DIGITS];

@@ -1,4 +1,4 @@
-/* Runs a method on the smooth form of a scene, and records its trajectory. */
+/* Runs a method on a scene without post-step corrections, and records its trajectory. */
 #include "study/recorded_run.h"
 
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* True if a body has a strain limit. */
 static bool has_strain_limit(const struct cs_scene *scene) {
     for (uint32_t b = 0; b < scene->bodies.n; b++)
         if (!isnan(cs_scene_bodies(scene)[b].strain_limit))
@@ -40,6 +41,7 @@ enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *set
     return error->status;
 }
 
+/* Copies the state at time 0, which every run begins with. */
 static enum cs_status store_start(struct cs_recorded_run *recording, struct cs_error *error) {
     const size_t values = 6 * (size_t)recording->session.system.view.n;
     recording->initial_state = malloc(values * sizeof *recording->initial_state);
@@ -65,6 +67,7 @@ enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
     return error->status;
 }
 
+/* Stores the state of the current frame and counts its crossings. */
 static void store_state(struct cs_trajectory *track, const struct cs_run *run,
                         struct cs_crossing_stats *crossings) {
     if (!track)
@@ -74,7 +77,8 @@ static void store_state(struct cs_trajectory *track, const struct cs_run *run,
     track->n_recorded = run->frame;
 }
 
-/* Copies and counts are not timed; where there are none, the clocks are read twice in all. */
+/* Steps to the end and stores each frame. Copies and counts are not timed. Without a track the
+ * clocks are read only twice, because short runs are timed through this function. */
 static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory *track,
                         struct cs_recorded_run_result *end, struct cs_error *error) {
     struct cs_run *run = &recording->session.run;
@@ -89,13 +93,14 @@ static void step_frames(struct cs_recorded_run *recording, struct cs_trajectory 
     end->wall = follow.wall;
 }
 
-/* A run with events leaves pins, values and times as they were at its end: the next one, and
- * who measures, get the system as at the start. */
+/* Rebuilds a system with events: a run leaves pins, masses and constants as they were at its
+ * end, and the next run needs those of the start. */
 static enum cs_status renew(struct cs_recorded_run *recording, struct cs_error *error) {
     return recording->session.system.events ? cs_session_build(&recording->session, error)
                                             : CS_OK;
 }
 
+/* Joins the notes of the run. */
 static void store_notes(struct cs_recorded_run_result *end, const struct cs_run *run) {
     for (uint32_t k = 0; k < run->n_notes; k++) {
         const size_t used = strlen(end->note);

@@ -1,9 +1,10 @@
-/* recorded_run.h - one method on the smooth form of a scene: opened, run, and recorded.
+/* recorded_run.h - runs one method on a scene without post-step corrections and records the
+ * trajectory.
  *
  * Contact by projection, strain limit and velocity loss act after steps and are no part of the
- * equation of motion; with them the result would depend on the step whatever the method. They
- * are off. Contact by force is a part of it, and stays.
- */
+ * equation of motion. With them the result would depend on the step for any method, and no
+ * order of convergence would exist. They are switched off. Contact by force is a part of the
+ * equation and stays. */
 #ifndef CS_RECORDED_RUN_H
 #define CS_RECORDED_RUN_H
 
@@ -12,20 +13,20 @@
 #include "study/follow.h"
 #include "study/session.h"
 
-/* The scene and how long; what every run of a comparison shares. */
+/* The scene and the number of frames, common to all runs of a comparison. */
 struct cs_recorded_run_settings {
-    struct cs_session_settings session; /* integrator is not looked at */
+    struct cs_session_settings session; /* integrator is not used */
     uint32_t frames;
 };
 
-/* Zeroed: closed. Must stay where it is while open. */
+/* An open scene with one method; zeroed: closed. Must not move in memory while open. */
 struct cs_recorded_run {
     struct cs_session session; /* system built; the run is not begun */
     double *initial_state;     /* (6n) the state at time 0, owned */
     uint32_t frames;
 };
 
-/* States of the frames 0..frames of one run. */
+/* States of the frames 0..frames of one run; frames beyond n_recorded are 0. */
 struct cs_trajectory {
     double *states; /* (frames + 1, 6n), owned */
     uint32_t n;     /* particles */
@@ -33,7 +34,7 @@ struct cs_trajectory {
     double fps;
 };
 
-/* What one run came to, beside its states. */
+/* Result of a run besides its states. */
 struct cs_recorded_run_result {
     struct cs_run_result result;
     double cpu, wall; /* s, of stepping only */
@@ -44,32 +45,38 @@ struct cs_recorded_run_result {
     char hash[CS_HASH_DIGITS]; /* of the last state */
 };
 
-/* Opens a scene for a method, "NAME:key=value,...", without what is no equation of motion. */
+/* Opens a scene for a method, "NAME:key=value,...", without post-step corrections. On failure
+ * it is closed. Errors: those of cs_session_open_system. */
 enum cs_status cs_recorded_run_open(struct cs_recorded_run *recording,
                                     const struct cs_recorded_run_settings *settings,
                                     const char *integrator, struct cs_error *error);
 
-/* Sets the frames, whole ones, that cover a time in s. CS_ERR_USAGE for more than a million. */
+/* Sets settings->frames to the whole frames that cover a time in s. CS_ERR_USAGE for more than
+ * a million; errors of the scene. */
 enum cs_status cs_recorded_run_count_frames(struct cs_recorded_run_settings *settings,
                                             double seconds, struct cs_error *error);
 
-/* Adds what of a scene is switched off, as words ("contact, strain limit"); nothing where
- * nothing is. The scene is one that was not opened by cs_recorded_run_open. */
+/* Adds the corrections of a scene that are switched off, as words ("contact, strain limit");
+ * nothing if there are none. The scene must not come from cs_recorded_run_open, which has
+ * removed them. */
 void cs_recorded_run_describe_changes(const struct cs_scene *scene, struct cs_text *out);
 
-/* Runs from the start to the last frame within a budget in s (0: none). Only stepping is
- * timed; track may be NULL: then nothing is kept. A method that gives up is a result.
- * CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
+/* Runs from the start to the last frame within a budget in s (0: none). Only stepping is timed.
+ * track may be NULL: then no states are stored. A method that gives up is a result. Can be
+ * called again: each run starts from initial_state. CS_ERR_INTERRUPT, CS_ERR_MEMORY. */
 enum cs_status cs_recorded_run_execute(struct cs_recorded_run *recording, double budget,
                                        struct cs_trajectory *track,
                                        struct cs_recorded_run_result *end,
                                        struct cs_error *error);
+/* Closes the scene; a zeroed object is allowed. */
 void cs_recorded_run_close(struct cs_recorded_run *recording);
 
+/* Allocates the states of a recorded run. Returns CS_ERR_MEMORY; the trajectory is then empty.
+ */
 enum cs_status cs_trajectory_init(struct cs_trajectory *track,
                                   const struct cs_recorded_run *recording,
                                   struct cs_error *error);
-/* x of a frame; v stands 3n behind it. */
+/* Returns x (3,n) of a frame; v (3,n) follows it. */
 double *cs_trajectory_state(const struct cs_trajectory *track, uint32_t frame);
 void cs_trajectory_finish(struct cs_trajectory *track);
 

@@ -1,4 +1,4 @@
-/* Makes a run or a picture again, and names the first thing that differs. */
+/* Reproduces a run or a picture, and names the first difference. */
 #include "study/reproduce.h"
 
 #include "base/hash.h"
@@ -12,15 +12,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One result under way. Zeroed: nothing. */
+/* A reproduction in progress; zeroed: nothing. */
 struct work {
     struct cs_reproduction *again;
     const struct cs_reproduction_settings *settings;
     struct cs_provenance carried;
     struct cs_session session;
-    struct cs_serialiser record; /* of methods that start anew at each checkpoint */
+    struct cs_serialiser record; /* for methods that restart at each checkpoint */
 };
 
+/* Records the first difference; everything after it is skipped. */
 static void differ(struct work *work, const char *what, const char *then, const char *now) {
     cs_text_add(&work->again->first_difference, "%s was %s, is %s", what, then, now);
 }
@@ -29,6 +30,7 @@ static bool has_differed(const struct work *work) {
     return work->again->first_difference.length;
 }
 
+/* Opens a session from the provenance, and notes changes since the result was made. */
 static enum cs_status begin(struct work *work, bool render, struct cs_error *error) {
     struct cs_session_settings asked = work->settings->session;
     asked.render = render;
@@ -45,7 +47,8 @@ static void finish(struct work *work) {
     cs_provenance_finish(&work->carried);
 }
 
-/* A method that saves nothing was started anew at each checkpoint. */
+/* Saves a checkpoint where the original run did: a method without saved history restarts there,
+ * which changes its next steps. */
 static enum cs_status restart(struct work *work, struct cs_error *error) {
     struct cs_run *run = &work->session.run;
     const uint32_t every = work->carried.restarts;
@@ -55,7 +58,7 @@ static enum cs_status restart(struct work *work, struct cs_error *error) {
     return cs_run_save(run, &work->record, error);
 }
 
-/* One frame; false: the run has ended, or failed. */
+/* Runs one frame. Returns false if the run has ended or failed. */
 static bool step(struct work *work, uint32_t total, struct cs_error *error) {
     const struct cs_reproduction_settings *settings = work->settings;
     struct cs_run *run = &work->session.run;
@@ -74,6 +77,7 @@ static enum cs_status take_end(const struct work *work, struct cs_run_result *re
     return cs_follow_result(&work->session.run, where, result, error);
 }
 
+/* Compares the hash of the present state with the stored one. */
 static void compare_state(struct work *work, const char *then) {
     const struct cs_run *run = &work->session.run;
     char now[CS_HASH_DIGITS], what[48];
@@ -83,8 +87,8 @@ static void compare_state(struct work *work, const char *then) {
         differ(work, what, then, now);
 }
 
-/* A run that ended of itself ends in the frame behind its last, and in the same way; what was
- * interrupted says nothing. */
+/* Compares the outcomes. A run that ended by itself did so in the frame after its last one,
+ * hence one more step. An interrupted run has no outcome to compare. */
 static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_error *error) {
     const struct cs_json *root = work->carried.json;
     const char *then = cs_provenance_text(root, "outcome");
@@ -105,6 +109,7 @@ static enum cs_status compare_end(struct work *work, uint32_t total, struct cs_e
     return CS_OK;
 }
 
+/* The original run has a state where this one has ended: that is the difference. */
 static enum cs_status describe_early_end(struct work *work, struct cs_error *error) {
     char what[48];
     struct cs_run_result now;
@@ -114,6 +119,7 @@ static enum cs_status describe_early_end(struct work *work, struct cs_error *err
     return error->status;
 }
 
+/* Compares frame by frame up to the first difference. */
 static enum cs_status compare_frames(struct work *work, struct cs_error *error) {
     const struct cs_json *frames = cs_json_find(work->carried.json, "frames");
     const uint32_t total = cs_json_count(frames);
@@ -159,7 +165,7 @@ enum { FRAME, STATE, PIXELS, RUN, TEXTS };
 static const char *const keys[TEXTS] = {"clothsim:frame", "clothsim:state-hash",
                                         "clothsim:pixel-hash", "clothsim:run"};
 
-/* the renderer by the name that was told, so that its pixels can be the same */
+/* The renderer of the original picture, because only its pixels can be equal. */
 static enum cs_renderer_kind renderer_of(const struct cs_provenance *provenance) {
     for (int k = 0; cs_renderer_names[k]; k++)
         if (!strcmp(cs_renderer_names[k], provenance->renderer_name))
@@ -167,7 +173,8 @@ static enum cs_renderer_kind renderer_of(const struct cs_provenance *provenance)
     return CS_RENDERER_AUTO;
 }
 
-/* Pixels of another renderer, or of another version of it, are close at best. */
+/* Compares pixels. They must be equal if the renderer is the same; another renderer or version
+ * must be within a tolerance (cs_image_difference_passes). */
 static void compare_pixels(struct work *work, const struct cs_image *then,
                            const struct cs_image *now, const char *drawn_by) {
     struct cs_reproduction *again = work->again;
@@ -191,6 +198,7 @@ static void compare_pixels(struct work *work, const struct cs_image *then,
                     d.pixels ? ", pixels within what renderers differ by" : " and all pixels");
 }
 
+/* Draws the state and compares it with the pixels of the file. */
 static enum cs_status draw(struct work *work, const struct cs_image *then, const char *pixels,
                            struct cs_error *error) {
     struct cs_image now = {0};
@@ -214,6 +222,7 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     return error->status;
 }
 
+/* Runs to the frame of the picture, restarting where the original did, and compares. */
 static enum cs_status compare_picture(struct work *work, uint32_t frame, char **texts,
                                       const struct cs_image *image, struct cs_error *error) {
     while (work->session.run.frame < frame && !error->status) {

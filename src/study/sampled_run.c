@@ -1,8 +1,10 @@
-/* Runs a scene once for a study, and samples how it behaved. */
+/* Runs a scene once for a study and samples scalar figures. */
 #include "study/sampled_run.h"
 
 #include <math.h>
 
+/* Records the largest speed, and the first time and largest number of particles above the
+ * limit. */
 static void note_excess(struct cs_sampled_run *trial, const struct cs_run *run, double limit) {
     struct cs_speed_excess *excess = &trial->speed_excess;
     uint32_t fastest, count;
@@ -15,6 +17,7 @@ static void note_excess(struct cs_sampled_run *trial, const struct cs_run *run, 
     excess->particles = count > excess->particles ? count : excess->particles;
 }
 
+/* Updates all figures with the state of one sample. */
 static void take_sample(struct cs_sampled_run *trial,
                         const struct cs_sampled_run_settings *settings,
                         const struct cs_run *run) {
@@ -43,7 +46,9 @@ static void take_sample(struct cs_sampled_run *trial,
         settings->on_sample(settings->ctx, run, &energy);
 }
 
-/* Whole steps between two samples, so that dt is not shortened to meet them. */
+/* Frame rate of the samples: a whole number of steps between two samples, so dt is not
+ * shortened to end at a sample. The interval is rounded down: there may be more samples than
+ * requested. */
 static double choose_fps(const struct cs_sampled_run_settings *settings) {
     const double space = settings->seconds / settings->samples;
     if (settings->session.dt <= 0)
@@ -52,6 +57,7 @@ static double choose_fps(const struct cs_sampled_run_settings *settings) {
     return 1 / (steps * settings->session.dt);
 }
 
+/* Steps to the end; the sample at the start is included in the mean. */
 static void run_samples(struct cs_sampled_run *trial,
                         const struct cs_sampled_run_settings *settings, struct cs_run *run,
                         struct cs_error *error) {

@@ -1,8 +1,7 @@
-/* sampled_run.h - a probe run of a scene for a study: no pictures, only how it behaved.
+/* sampled_run.h - runs a scene once for a study and records scalar figures, no states.
  *
- * The state is sampled at equal spaces of time, so
- * that runs with different steps can be held against each other.
- */
+ * The state is sampled at equal intervals of time, independent of the step, so runs with
+ * different steps are comparable. */
 #ifndef CS_SAMPLED_RUN_H
 #define CS_SAMPLED_RUN_H
 
@@ -10,14 +9,14 @@
 #include "study/follow.h"
 #include "study/session.h"
 
-/* What a particle or the whole may reach before a run counts as unstable; HUGE_VAL: no limit.
- */
+/* Values above which a run counts as unstable; HUGE_VAL: no limit. */
 struct cs_sampled_run_limits {
     double speed;       /* m/s, of one particle */
     double energy;      /* J, kinetic and elastic */
     double energy_gain; /* J, of the whole energy above that of the start */
 };
 
+/* Request for a run; pointers are borrowed. */
 struct cs_sampled_run_settings {
     struct cs_session_settings session; /* fps is not used */
     double seconds;                     /* to simulate */
@@ -35,6 +34,7 @@ struct cs_speed_excess {
     uint32_t particles; /* most at one time */
 };
 
+/* Figures of a run. They are valid up to the time that the run reached. */
 struct cs_sampled_run {
     struct cs_run_result result;
     uint64_t steps;
@@ -54,8 +54,8 @@ struct cs_sampled_run {
     struct cs_crossing_stats crossings; /* of the samples, where the scene counts them */
 };
 
-/* CS_OK with a verdict's numbers even where the run blew up or the method failed. An error is
- * one of the scene, the command or memory, or CS_ERR_INTERRUPT. */
+/* Runs the scene and fills *trial. A blow-up or a failed method is a result, not an error.
+ * Errors are those of the scene, the command, memory, or CS_ERR_INTERRUPT. */
 enum cs_status cs_sampled_run_execute(struct cs_sampled_run *trial,
                                       const struct cs_sampled_run_settings *settings,
                                       struct cs_error *error);

@@ -1,11 +1,11 @@
-/* Compares the edges of meshes with what their points cover. */
+/* Compares the longest edge of the meshes with the length that its contact samples cover. */
 #include "study/sampling_warning.h"
 
 #include "model/contact/contact_samples.h"
 
 #include <math.h>
 
-/* the range in m with which an edge in as many parts as there may be is covered */
+/* Range in m with which an edge of that length is covered by the largest number of samples. */
 static double needed(double length, double radius) {
     const double part = length / CS_CONTACT_SAMPLE_PARTS_MAX;
     return (sqrt(radius * radius + 0.75 * part * part) - radius) / 0.75;

@@ -1,4 +1,4 @@
-/* Takes a scene to a running method: the one way that every command and study goes. */
+/* Takes a scene to a running method: the only path, for every command and study. */
 #include "study/session.h"
 
 #include "base/pool.h"
@@ -14,6 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Reads the scene with its overrides, from the text or from a path that may name an installed
+ * one. */
 static enum cs_status read_scene(struct cs_session *session, struct cs_error *error) {
     const struct cs_session_settings *settings = &session->settings;
     char installed[CS_DATA_PATH_MAX];
@@ -26,6 +28,8 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
                               settings->n_overrides, error);
 }
 
+/* Sets the method's options from the scene. Conflicts are only checked if all options are the
+ * scene's: an option that the command line makes idle is no mistake. */
 static enum cs_status set_options_of_scene(struct cs_session *session, const char *pairs,
                                            struct cs_error *error) {
     const struct cs_setting *options = session->scene.integrator_settings.items;
@@ -41,8 +45,8 @@ static enum cs_status set_options_of_scene(struct cs_session *session, const cha
     return cs_method_check(&session->method, place, CS_ERR_SCENE, error);
 }
 
-/* the scene's own method, or the one that is asked for; the scene's options are those of the
- * method that it names */
+/* Finds the requested method, or the scene's own. The scene's options apply if the scene names
+ * the same method. */
 static enum cs_status read_method(struct cs_session *session, struct cs_error *error) {
     const struct cs_scene *scene = &session->scene;
     const char *asked = session->settings.integrator, *pairs = NULL;
@@ -68,6 +72,8 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
     return cs_method_set_pairs(method, pairs, error);
 }
 
+/* Method, options and dt of the session, in this order of precedence: given integrator, command
+ * line, scene. The scene then carries the method that runs it, for hashes and prints. */
 static enum cs_status choose_method(struct cs_session *session, struct cs_error *error) {
     const struct cs_session_settings *settings = &session->settings;
     if (cs_registry_add_files(&session->registry, settings->plugins, settings->n_plugins,
@@ -89,7 +95,7 @@ static enum cs_status choose_method(struct cs_session *session, struct cs_error 
     return error->status;
 }
 
-/* what the scene asks of a method, and only some can do */
+/* Checks the requirements of the scene that only some methods meet. */
 static enum cs_status check_method(const struct cs_session *session, struct cs_error *error) {
     const struct cs_integrator *method = session->method.integrator;
     const bool render = session->settings.render;
@@ -103,7 +109,8 @@ static enum cs_status check_method(const struct cs_session *session, struct cs_e
     return CS_OK;
 }
 
-/* pairs of surfaces are most of the work where there are any */
+/* Number of threads for CS_THREADS_AUTO. With body contact the threshold is lower, because
+ * pairs of surfaces then are most of the work. */
 static uint32_t threads_of(const struct cs_scene *scene) {
     const size_t least = cs_scene_has_body_contact(scene)
                              ? CS_THREADS_AUTO_CONTACT_PARTICLES_MIN
@@ -114,7 +121,7 @@ static uint32_t threads_of(const struct cs_scene *scene) {
     return n < least ? 1 : cs_pool_processors(CS_THREADS_AUTO_MAX);
 }
 
-/* before the plan, which says what they take */
+/* Starts the threads before the plan, which reports them. */
 static enum cs_status start_threads(struct cs_session *session, struct cs_error *error) {
     uint32_t threads = session->settings.threads;
     if (!threads)
@@ -130,8 +137,8 @@ static enum cs_status start_threads(struct cs_session *session, struct cs_error 
                : cs_fail(error, refused.status, "%s", refused.message);
 }
 
-/* Contact by projection, strain limit and velocity loss are no part of the equation of motion;
- * contact by force is. */
+/* Removes the corrections that act after steps: contact by projection, strain limit and
+ * velocity loss. They are no part of the equation of motion; contact by force is. */
 static void make_smooth(struct cs_scene *scene) {
     if (scene->contact.law == CS_CONTACT_PROJECT)
         scene->colliders.n = 0;
@@ -140,6 +147,8 @@ static void make_smooth(struct cs_scene *scene) {
         cs_scene_bodies(scene)[b].strain_limit = (double)NAN;
 }
 
+/* Applies the changes that the session asks for to the checked scene; the caller's edit comes
+ * last. */
 static void change_scene(struct cs_session *session) {
     const struct cs_session_settings *settings = &session->settings;
     if (settings->switch_off_corrections)
@@ -152,6 +161,7 @@ static void change_scene(struct cs_session *session) {
         settings->edit_scene(&session->scene, settings->ctx);
 }
 
+/* Opens up to the plan; on failure the caller closes. */
 static enum cs_status open_plan(struct cs_session *session,
                                 const struct cs_session_settings *settings,
                                 struct cs_error *error) {

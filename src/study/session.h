@@ -1,7 +1,9 @@
-/* session.h - the one way from a scene to a running method; every command and study takes it.
+/* session.h - the only path from a scene to a running method; every command and study takes it.
  *
- *   scene file -> cs_scene_read -> registry -> method -> plan -> system -> run
- */
+ *   scene file -> cs_scene_read -> registry -> method -> threads -> plan -> system -> run
+ * Each arrow is one function that leaves its result in struct cs_session. Studies stop at the
+ * plan (to change options) or at the system (to change the state), and call the remaining steps
+ * themselves. */
 #ifndef CS_SESSION_H
 #define CS_SESSION_H
 
@@ -10,7 +12,7 @@
 #include "sim/method.h"
 #include "sim/run.h"
 
-/* What is run. Zeroed but for the scene: the scene as it stands, by its own method. */
+/* Request for a session. Zeroed except for the scene: the scene as it is, by its own method. */
 struct cs_session_settings {
     const char *scene; /* path; with a text: its name in messages */
     const char *text;  /* the scene itself, in memory; NULL: read from the path */
@@ -56,40 +58,49 @@ enum {
 
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_session {
-    struct cs_session_settings settings; /* their texts are looked at while opening only */
+    struct cs_session_settings settings; /* their texts are used while opening only */
     struct cs_scene scene;
     struct cs_registry registry;
     struct cs_method method;
     struct cs_plan plan;
     struct cs_system system;
     struct cs_initial_penetration
-        initial_penetration; /* what was moved out of obstacles when the system was built */
+        initial_penetration; /* particles moved out of colliders when the system was built */
     struct cs_run run;
     bool started_pool; /* started threads */
 };
 
-/* The whole way. On failure everything is closed and *error says where and why. */
+/* Opens the session up to a begun run. On failure everything is closed, and *error names the
+ * place and the reason: CS_ERR_FILE, CS_ERR_SCENE, CS_ERR_USAGE, CS_ERR_MODULE, CS_ERR_MEMORY.
+ */
 enum cs_status cs_session_open(struct cs_session *session,
                                const struct cs_session_settings *settings,
                                struct cs_error *error);
-/* The way up to the plan only: no system, no run. The method's options may then be changed. */
+/* Opens up to the plan: no system, no run. The method's options may then be changed. On failure
+ * everything is closed. */
 enum cs_status cs_session_open_plan(struct cs_session *session,
                                     const struct cs_session_settings *settings,
                                     struct cs_error *error);
-/* The way up to the system: no run. The state may then be changed. */
+/* Opens up to the system: no run. The state may then be changed. On failure everything is
+ * closed. */
 enum cs_status cs_session_open_system(struct cs_session *session,
                                       const struct cs_session_settings *settings,
                                       struct cs_error *error);
 
-/* The steps between these; what failed is still to be closed. */
+/* Single steps of the path. */
 
-/* From the plan to a system at its start; one that was there before is built anew. */
+/* Builds the system of an open plan at its start; an earlier one is replaced. Moves particles
+ * out of colliders and applies the perturbation. On failure the session must still be closed.
+ */
 enum cs_status cs_session_build(struct cs_session *session, struct cs_error *error);
-/* From the system to a run, as settings.run says, which may be changed until then; one that was
- * there before is ended. start: (6n) x and v to run from, NULL: the state as it stands. */
+/* Begins a run of a built system by settings.run, which may be changed until then; an earlier
+ * run is ended. start: (6n) x and v to run from, copied; NULL: the present state. On failure
+ * the session must still be closed. */
 enum cs_status cs_session_begin(struct cs_session *session, const double *start,
                                 struct cs_error *error);
 
+/* Frees everything and ends the threads that the session started; a zeroed session is allowed.
+ */
 void cs_session_close(struct cs_session *session);
 
 #endif

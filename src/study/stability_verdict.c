@@ -1,9 +1,10 @@
-/* Derives the verdict on a run by comparing it with a trusted run of the same scene. */
+/* Derives the verdict on a run by comparison with a trusted run of the same scene. */
 #include "study/stability_verdict.h"
 
 #include <math.h>
 
-/* below this the reference does not move: rounding alone must not look like a motion */
+/* J and m/s; below these the reference counts as motionless. Otherwise rounding errors alone
+ * would exceed every multiple of its energy. */
 #define LEAST_ENERGY 1e-15
 #define LEAST_SPEED  1e-9
 
@@ -37,6 +38,7 @@ struct cs_sampled_run_limits cs_stability_limits(const struct cs_sampled_run *re
     };
 }
 
+/* True if the energy grows between the halves of the run, or is far above the reference. */
 static bool is_growing(const struct cs_sampled_run *trial,
                        const struct cs_sampled_run *reference) {
     return trial->energy_max_second_half > 1.5 * trial->energy_max_first_half ||

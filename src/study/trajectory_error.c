@@ -1,10 +1,11 @@
-/* Measures how far one recorded run is from another. */
+/* Measures the distance of one recorded run from another. */
 #include "study/trajectory_error.h"
 
 #include "model/force/diagnostics.h"
 
 #include <math.h>
 
+/* Squared distance of particle i in a and b. */
 static double squared(size_t n, const double *a, const double *b, size_t i) {
     double sum = 0;
     for (size_t c = 0; c < 3; c++) {
@@ -45,12 +46,14 @@ void cs_distance_each(uint32_t n, const double *a, const double *b, double *out)
         out[i] = sqrt(squared(n, a, b, i));
 }
 
+/* Total energy in J of a state (6n). */
 static double energy_of(const struct cs_system *system, double t, const double *x) {
     const struct cs_energy energy =
         cs_diagnostics_energy(system, t, x, x + 3 * (size_t)system->view.n);
     return cs_energy_total(&energy);
 }
 
+/* Distance in m of the centres of mass. */
 static double centre_distance(const struct cs_system *system, const double *a,
                               const double *b) {
     const size_t n = system->view.n;
@@ -78,6 +81,7 @@ static double box_distance(size_t n, const double *a, const double *b) {
     return largest;
 }
 
+/* Updates the largest differences of energy, centre, box and strain with one frame. */
 static void take_statistics(struct cs_trajectory_error *deviation,
                             const struct cs_system *system, double t, const double *a,
                             const double *b) {
@@ -89,6 +93,8 @@ static void take_statistics(struct cs_trajectory_error *deviation,
     deviation->strain = fmax(deviation->strain, cs_diagnostics_strain(system, a));
 }
 
+/* path is the root mean square over frames of the RMS distance; end and velocity are those of
+ * the last compared frame. */
 void cs_trajectory_error_compute(struct cs_trajectory_error *deviation,
                                  const struct cs_system *system,
                                  const struct cs_trajectory *track,

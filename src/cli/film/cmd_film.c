@@ -1,4 +1,7 @@
-/* clothsim film: makes one film of the pictures of a run, by ffmpeg, or a contact sheet. */
+/* clothsim film: makes one film of the pictures of a run by ffmpeg, or a contact sheet.
+ *
+ *   run.json -> pictures, rate and range -> check that all are there -> ffmpeg -> rename
+ *   run.json -> evenly spaced pictures -> shrunk tiles with times -> one PNG */
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -41,7 +44,7 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "print nothing", CS_ARG_INTO(struct options, quiet)},
 };
 
-/* What a film is made of, and where it goes: to `part`, which becomes `out`. */
+/* Input and destination of a film. ffmpeg writes to `part`, which is renamed to `out`. */
 struct film {
     const char *folder;
     double rate; /* pictures a second */
@@ -51,8 +54,8 @@ struct film {
     char out[PATH_BYTES], part[PATH_BYTES + 16]; /* absolute: ffmpeg works in the folder */
 };
 
-/* Where the film goes, by its ending what it is; the part keeps the ending, which ffmpeg reads.
- */
+/* Sets the path of the film, whose ending names the format. The temporary file keeps the
+ * ending, which ffmpeg reads. */
 static enum cs_status set_output_path(const struct options *options, struct film *film,
                                       struct cs_error *error) {
     char made[PATH_BYTES], here[PATH_BYTES] = "";
@@ -158,7 +161,7 @@ static enum cs_status make(const struct film *film, struct cs_error *error) {
                  : cs_fail(error, CS_ERR_FILE, "%s: ffmpeg could not make it", film->out);
 }
 
-/* ffmpeg would end a film where one is missing, and say nothing. */
+/* Checks that no picture is missing: ffmpeg would end the film there without a message. */
 static enum cs_status check_pictures(struct film *film, const struct cs_film_report *report,
                                      struct cs_error *error) {
     char path[PATH_BYTES];

@@ -1,4 +1,4 @@
-/* film_lines.h - flat lines, figures and the colour bar on an image in memory. */
+/* film_lines.h - draws flat lines, figures and the colour bar on an image in memory. */
 #ifndef CS_FILM_LINES_H
 #define CS_FILM_LINES_H
 
@@ -14,7 +14,7 @@ struct cs_image_lines {
     int32_t look;               /* whose colours a ramp has */
 };
 
-/* For so many lines at once. CS_ERR_MEMORY. */
+/* Prepares for so many lines at a time. CS_ERR_MEMORY. */
 enum cs_status cs_image_lines_init(struct cs_image_lines *pen, uint32_t capacity,
                                    struct cs_image *image, const struct cs_srgb *tone,
                                    struct cs_arena *arena, struct cs_error *error);

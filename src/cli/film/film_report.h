@@ -1,4 +1,4 @@
-/* film_report.h - what run.json says of the pictures beside it. */
+/* film_report.h - reads what run.json says of the pictures of its folder. */
 #ifndef CS_FILM_REPORT_H
 #define CS_FILM_REPORT_H
 
@@ -25,6 +25,7 @@ struct cs_film_report {
  * failure *report is empty. */
 enum cs_status cs_film_report_read(const char *folder, struct cs_film_report *report,
                                    struct cs_error *error);
+/* Frees the list; the report is then empty. */
 void cs_film_report_finish(struct cs_film_report *report);
 
 /* Pictures a second: the scene's frames over those between the first two pictures. */

@@ -32,8 +32,8 @@ struct layout {
     struct cs_image_lines pen;
 };
 
-/* As many tiles as there are pictures for, in a whole rectangle; of equal ones the one whose
- * sides are most like those that were asked for. */
+/* Chooses a full rectangle of at most as many tiles as there are pictures; of equal ones that
+ * with the proportions nearest to the request. */
 static void choose_grid(struct cs_contact_sheet *sheet, uint32_t n) {
     const long columns = sheet->columns, rows = sheet->rows, most = (long)n;
     long best = 0, unlike = 0;
@@ -55,6 +55,8 @@ static const struct cs_film_picture *picture_of(const struct layout *layout, uin
     return layout->report->pictures + (steps ? (2 * last * tile + steps) / (2 * steps) : last);
 }
 
+/* True if all pictures have one range of colours: only then a colour bar is valid for the
+ * sheet. */
 static bool has_one_range(const struct cs_film_report *report) {
     const double *range = report->pictures->range;
     if (!(range[0] < range[1]))
@@ -96,7 +98,7 @@ static enum cs_status init_sheet_image(struct layout *layout, const struct cs_im
     return CS_OK;
 }
 
-/* The mean light of the box that a pixel of the sheet covers; parts of pixels count as such. */
+/* Mean of the linear light in the box that a pixel of the sheet covers, by area. */
 static void shrink_pixel(const struct layout *layout, const struct cs_image *picture,
                          const double box[4], uint8_t out[3]) {
     double light[3] = {0}, area = 0;

@@ -3,9 +3,11 @@
 
 #include <string.h>
 
+/* Rows that a command may have; asserted. */
 enum { LONGEST_TABLE = 31 };
 
-/* CS_ERR_USAGE for a word that no option has, with the nearest that one has */
+/* CS_ERR_USAGE for an unknown option, with the nearest known one. Hidden rows are not
+ * suggested. */
 static enum cs_status unknown_option(const struct cs_command *command, const char *word,
                                      struct cs_error *error) {
     const char *names[LONGEST_TABLE + 1];
@@ -25,14 +27,15 @@ static enum cs_status unknown_option(const struct cs_command *command, const cha
                    word, command->name);
 }
 
-/* The long name; an option that may be repeated answers to its singular too (--integrator). */
+/* Compares with the long name. An option that may be repeated can also be given in the singular
+ * (--integrator for --integrators). */
 static bool is_called(const struct cs_arg *row, const char *word, size_t length) {
     const size_t whole = strlen(row->name);
     const bool singular = row->repeatable && whole == length + 1 && row->name[length] == 's';
     return (whole == length || singular) && !strncmp(row->name, word, length);
 }
 
-/* The row of "--name", "--name=value", "-n" or "-nvalue", and the value attached to it. */
+/* Finds the row of "--name", "--name=value", "-n" or "-nvalue", and the attached value. */
 static const struct cs_arg *find_row(const struct cs_command *command, const char *word,
                                      const char **attached) {
     *attached = NULL;
@@ -61,7 +64,7 @@ bool cs_args_is_given(const struct cs_args *args, const char *name) {
     return false;
 }
 
-/* Takes the option at argv[*i], and its value where that is the next word. */
+/* Takes the option at argv[*i], and its value if that is the next word. */
 static enum cs_status take_option(struct cs_args *args, int argc, char **argv, int *i,
                                   struct cs_error *error) {
     const char *attached;
@@ -90,6 +93,7 @@ static enum cs_status take_option(struct cs_args *args, int argc, char **argv, i
     return CS_OK;
 }
 
+/* True if --help or -h occurs before "--": it takes precedence over all errors. */
 static bool asks_for_help(int argc, char **argv) {
     for (int i = 0; i < argc && strcmp(argv[i], "--"); i++)
         if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h"))
@@ -109,7 +113,7 @@ static enum cs_status check_operands(const struct cs_args *args, struct cs_error
     return CS_OK;
 }
 
-/* Options and operands into their arrays; the values are not looked at. */
+/* Sorts options and operands into their arrays; values are read later. */
 static enum cs_status sort(struct cs_args *args, int argc, char **argv,
                            struct cs_error *error) {
     bool options = true;

@@ -1,4 +1,9 @@
-/* args.h - commands and their options as tables: one parser, one --help. */
+/* args.h - commands and their options as tables, with one parser and one --help for all.
+ *
+ *   argv -> cs_args_parse: options and operands -> defaults, then cs_arg_read per option
+ *   -> args->options, the command's struct
+ *
+ * A command therefore contains no parsing: it reads fields of its struct. */
 #ifndef CS_ARGS_H
 #define CS_ARGS_H
 
@@ -9,6 +14,7 @@
 
 struct cs_args;
 
+/* One command of the program: a constant table. */
 struct cs_command {
     const char *name;
     const char *operands; /* as in the usage line, "" for none */
@@ -27,30 +33,32 @@ struct cs_command {
     .rows = rows_, .n_rows = sizeof rows_ / sizeof *rows_, .defaults = &defaults_,             \
     .size = sizeof defaults_
 
+/* One option as given. */
 struct cs_arg_value {
     const struct cs_arg *row; /* of the command's table */
     const char *value;        /* "" of a switch */
 };
 
-/* What was typed behind a command, in its order. Zeroed: nothing. */
+/* The words after a command, sorted; zeroed: nothing. */
 struct cs_args {
     const struct cs_command *command;
     void *options; /* the command's struct: defaults, and what was given */
     struct cs_arg_value *given;
     const char **operands;
     uint32_t n_given, n_operands;
-    bool help;             /* --help was there: nothing else was looked at */
+    bool help;             /* --help was given: nothing else was read */
     struct cs_arena arena; /* owns the arrays and lists above; commands may take from it too */
 };
 
-/* Sorts the arguments behind the command's name into options and operands, and reads the
- * options into args->options; the texts stay argv's. On failure CS_ERR_USAGE or CS_ERR_MEMORY;
- * finish is still to be called. */
+/* Sorts the words after the command's name into options and operands, and reads the options
+ * into args->options. Texts remain argv's. With --help nothing else is read. On failure
+ * CS_ERR_USAGE or CS_ERR_MEMORY; cs_args_finish must be called in any case. */
 enum cs_status cs_args_parse(struct cs_args *args, const struct cs_command *command, int argc,
                              char **argv, struct cs_error *error);
+/* Frees everything that the arena owns, args->options included. */
 void cs_args_finish(struct cs_args *args);
 
-/* true where the option of that long name was given. */
+/* True if the option of that long name was given. */
 bool cs_args_is_given(const struct cs_args *args, const char *name);
 
 /* Adds the text of `clothsim COMMAND --help`. */

@@ -5,11 +5,12 @@
 
 enum { PATIENCE_SECONDS = 2 };
 
+/* Written by the handler only; `first` is the time of the first signal. */
 static volatile sig_atomic_t stop;
 static struct timespec first;
 
-/* A second signal ends the program only after a pause: some programs that pass signals on send
- * each of them twice. */
+/* Handler of both signals. A second signal ends the program only after a pause, because some
+ * programs send each signal twice when they pass it on. */
 static void request_stop(int signal_number) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

@@ -31,7 +31,7 @@ enum cs_status cs_arg_refuse_name(const char *option, const char *const *names,
     return error->status;
 }
 
-/* the number of a name, or its bit in the set of those given */
+/* Reads a name as its number, or as its bit in the set of those given. */
 static enum cs_status read_name(const struct cs_arg *row, const char *text, uint32_t *value,
                                 struct cs_error *error) {
     for (uint32_t i = 0; row->names[i]; i++)
@@ -66,14 +66,16 @@ static enum cs_status read_shard(const struct cs_arg *row, const char *text,
     return CS_OK;
 }
 
-/* The list that an option adds to. */
+/* A list field of the command's struct. */
 struct list {
     const struct cs_arg *row;
     char *options;
     struct cs_arena *arena;
 };
 
-/* Room for one more item at the end of a list, which is moved where it is full. */
+/* Returns a place for one more item at the end of a list; NULL if out of memory. The capacity
+ * is the next power of two of the count, so it is not stored: a full list has a count of 0 or a
+ * power of two. Old arrays stay in the arena. */
 static void *append(const struct list *list, size_t size, struct cs_error *error) {
     char *field = list->options + list->row->offset;
     uint32_t *n = (uint32_t *)(list->options + list->row->count);
@@ -92,6 +94,7 @@ static void *append(const struct list *list, size_t size, struct cs_error *error
     return items + size * (*n)++;
 }
 
+/* Appends a text of argv. */
 static enum cs_status add_word(const struct list *list, const char *text,
                                struct cs_error *error) {
     const char **word = append(list, sizeof *word, error);
@@ -100,6 +103,7 @@ static enum cs_status add_word(const struct list *list, const char *text,
     return error->status;
 }
 
+/* Appends the methods of a list; commas within options do not separate. */
 static enum cs_status add_methods(const struct list *list, const char *text,
                                   struct cs_error *error) {
     char *rest = cs_arena_copy_text(list->arena, text, error);
@@ -108,7 +112,7 @@ static enum cs_status add_methods(const struct list *list, const char *text,
     return error->status;
 }
 
-/* Splits PATH=VALUE; the copy lives in the arena. */
+/* Splits PATH=VALUE; the copy is the arena's. */
 static enum cs_status add_override(const struct list *list, const char *text,
                                    struct cs_error *error) {
     const char *equals = strchr(text, '=');

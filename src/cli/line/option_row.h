@@ -10,7 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How the value of an option is read. It follows from the C type of the field that it fills. */
+/* Kinds of values. The kind follows from the C type of the field, by _Generic: a row cannot
+ * disagree with its struct. */
 enum cs_arg_kind {
     CS_ARG_SWITCH, /* bool: without a value; turns the default round */
     CS_ARG_TEXT,   /* const char *: as it was typed, of argv */
@@ -23,11 +24,11 @@ enum cs_arg_kind {
     CS_ARG_OVERRIDES, /* const struct cs_override *: a list of PATH=VALUE */
 };
 
-/* One option of a command. */
+/* One option of a command: a constant row. */
 struct cs_arg {
     const char *name;  /* long name without its dashes */
     char short_name;   /* short name; 0: none */
-    const char *value; /* what stands for its value in --help; NULL: a switch */
+    const char *value; /* placeholder of its value in --help; NULL: a switch */
     const char *help;  /* lower case, no full stop; NULL: not shown */
     enum cs_arg_kind kind;
     size_t offset;            /* of the field in the command's struct of options */
@@ -69,12 +70,12 @@ struct cs_arg {
             CS_ARG_LIST(struct_, session.plugins, session.n_plugins)                           \
     }
 
-/* Reads one value of an option into its field of the command's struct; items of lists live as
+/* Reads one value of an option into its field of the command's struct. Items of lists live as
  * long as the arena. CS_ERR_USAGE, CS_ERR_MEMORY. */
 enum cs_status cs_arg_read(const struct cs_arg *row, const char *text, void *options,
                            struct cs_arena *arena, struct cs_error *error);
 
-/* CS_ERR_USAGE for a text that is none of the names (closed by NULL) of an option. */
+/* Fails with CS_ERR_USAGE and the list of names (closed by NULL) for an unknown one. */
 enum cs_status cs_arg_refuse_name(const char *option, const char *const *names,
                                   const char *text, struct cs_error *error);
 

@@ -8,6 +8,7 @@
 
 enum { SCREEN_COLUMNS = 80 };
 
+/* Adds n blanks. */
 static void add_blanks(struct cs_text *out, size_t n) {
     cs_text_add(out, "%*s", (int)n, "");
 }

@@ -1,4 +1,10 @@
-/* clothsim run: simulates a scene and writes pictures, states, hashes and a report. */
+/* clothsim run: simulates a scene and writes pictures, states, hashes and a report.
+ *
+ *   options -> cs_job_settings -> --range auto: one run without pictures -> cs_job_run
+ *   -> run.json and --json -> manifest -> table -> messages on the outcome
+ * With --isolate everything happens in a child process, and a crash of a module or a hung call
+ * becomes an error message. A blow-up is a result: it is reported and exits with 0, unless
+ * --strict asks for an error. */
 #include "base/file.h"
 #include "base/pool.h"
 #include "cli/commands.h"
@@ -15,6 +21,7 @@
 
 enum { MOST_FRAMES = 10000000 };
 
+/* The options as given; read_settings derives the rest of the job's settings. */
 struct options {
     struct cs_job_settings job;
     const char *checkpoint, *resume, *trace, *export, *values, *range;
@@ -102,7 +109,8 @@ static const struct cs_arg rows[] = {
     {"quiet", 'q', NULL, "no progress and no table", CS_ARG_INTO(struct options, job.quiet)},
 };
 
-/* A resumed run goes on in its folder, at its own pace of checkpoints. */
+/* Reads --checkpoint and --resume. A resumed run continues in its folder with its interval,
+ * hence options that would change them are refused. */
 static enum cs_status read_checkpoints(const struct cs_args *args, struct options *options,
                                        struct cs_error *error) {
     static const char *const others[] = {"checkpoint", "out", "overwrite"};
@@ -117,7 +125,7 @@ static enum cs_status read_checkpoints(const struct cs_args *args, struct option
                                : CS_OK;
 }
 
-/* A program could not tell two apart in one stream. */
+/* Refuses two outputs on standard output: a program could not separate them in one stream. */
 static enum cs_status check_stream(const struct cs_job_settings *settings,
                                    struct cs_error *error) {
     const struct {
@@ -138,6 +146,7 @@ static enum cs_status check_stream(const struct cs_job_settings *settings,
     return CS_OK;
 }
 
+/* Derives the job's settings from the options, and checks their combinations. */
 static enum cs_status read_settings(struct cs_args *args, struct cs_error *error) {
     struct options *options = args->options;
     struct cs_job_settings *settings = &options->job;
@@ -154,6 +163,7 @@ static enum cs_status read_settings(struct cs_args *args, struct cs_error *error
     return CS_OK;
 }
 
+/* Writes run.json beside the pictures, and the copy that --json asks for. */
 static enum cs_status write_json(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     struct cs_text json = {0}, path = {0};
@@ -172,6 +182,7 @@ static enum cs_status write_json(const struct cs_job *job, struct cs_error *erro
     return error->status;
 }
 
+/* Prints the table to standard output, or to standard error if an output uses the former. */
 static enum cs_status print_table(const struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const bool taken = settings->hash || cs_print_is_stdout(settings->json) ||
@@ -184,7 +195,7 @@ static enum cs_status print_table(const struct cs_job *job, struct cs_error *err
     return cs_print_out(taken ? stderr : stdout, &table, error);
 }
 
-/* A run that ends in a state which it cannot have come to says so whatever else is printed. */
+/* Warns of a physically impossible final state, whatever else is printed. */
 static void print_watch(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     struct cs_text found = {0};
@@ -199,7 +210,7 @@ static void print_watch(const struct cs_job *job) {
     cs_text_finish(&found);
 }
 
-/* So does one that stopped early. */
+/* Reports a run that stopped early; with strict, a blow-up is an error. */
 static enum cs_status print_outcome(const struct cs_job *job, bool strict,
                                     struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
@@ -220,6 +231,8 @@ static enum cs_status print_outcome(const struct cs_job *job, bool strict,
     return error->status;
 }
 
+/* The run in this process. A failed step leaves the report and the manifest of the frames
+ * before it; the message of the step stands. */
 static enum cs_status run_here(void *ctx, struct cs_error *error) {
     struct cs_args *args = ctx;
     struct options *options = args->options;

@@ -1,4 +1,4 @@
-/* job_state.h - a run of clothsim run while it lasts, and what an output of it is. */
+/* job_state.h - state of clothsim run, and the interface of its outputs. */
 #ifndef CS_JOB_STATE_H
 #define CS_JOB_STATE_H
 
@@ -16,7 +16,7 @@
 #include "study/frame_picture.h"
 #include "study/session.h"
 
-/* What a run keeps of a frame for its report. */
+/* Facts of one frame for the report. */
 struct cs_job_frame {
     char hash[CS_HASH_DIGITS];
     bool drawn;
@@ -24,13 +24,13 @@ struct cs_job_frame {
     uint64_t crossings; /* where they are counted */
 };
 
-/* Zeroed: none. */
+/* Facts of all frames so far; zeroed: none. */
 struct cs_frame_log {
     struct cs_job_frame *frames; /* owned */
     size_t capacity;
 };
 
-/* The frame whose picture is being drawn while the run goes on. */
+/* The picture that is drawn while the run goes on. */
 struct cs_job_picture {
     uint32_t number; /* of the picture, from 1; 0: none */
     uint32_t frame;
@@ -42,7 +42,7 @@ struct cs_job_picture {
 
 enum { CS_RUN_OUTPUTS_MAX = 16 };
 
-/* Zeroed: nothing done. */
+/* A run in progress and everything it owns; zeroed: nothing done. */
 struct cs_job {
     const struct cs_job_settings *settings;
     struct cs_session session;
@@ -96,7 +96,7 @@ struct cs_run_output {
 
     /* By stage. */
     enum cs_status (*at[CS_RUN_STAGES])(struct cs_job *job, struct cs_error *error);
-    /* Stores what it keeps from frame to frame in a checkpoint, or loads it. */
+    /* Stores its state between frames in a checkpoint, or loads it. */
     void (*record)(struct cs_job *job, struct cs_serialiser *record);
 };
 
@@ -104,7 +104,8 @@ extern const struct cs_run_output cs_run_output_export, cs_run_output_hash, cs_r
     cs_run_output_ledger, cs_run_output_pictures, cs_run_output_states, cs_run_output_trail,
     cs_run_output_watch;
 
-/* Frames between two checkpoints at which the method is started anew; 0: it goes on. */
+/* Frames between two checkpoints at which the method restarts; 0: it saves its history and does
+ * not restart. */
 static inline uint32_t cs_job_restarts(const struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     return run->integrator && cs_run_method_has_history(run->integrator)

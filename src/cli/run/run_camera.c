@@ -1,5 +1,9 @@
-/* Frames the motion of a run: a still camera where bodies stay large enough before it, else
- * one that follows them as slowly as they can be followed. */
+/* Frames the motion of a run: a fixed camera if the bodies stay large enough in its picture,
+ * else one that follows them as slowly as possible.
+ *
+ * A fixed camera is fitted to the extremes of all frames at once. A path begins with a camera
+ * per frame; eye and target are then averaged over 2 reach + 1 frames. The largest reach that
+ * keeps the bodies in every picture wins: it is halved until it does. */
 #include "cli/run/run_camera.h"
 
 #include "draw/camera_fit.h"
@@ -9,11 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* shares of the picture's height: the least and the most that bodies may fill, and what a
- * camera that follows them aims at */
+/* Fractions of the picture's height: minimum and maximum that bodies may fill, and the target
+ * of a following camera. */
 static const double least = 0.46, most = 0.79, wanted = 0.62;
 
-/* What is known of the frames that will be drawn. */
+/* Extremes of the bodies in the frames that will be drawn. */
 struct motion {
     struct cs_camera_fit fit;
     double *places;             /* (n, 3, CS_CAMERA_FIT_EXTREMES) */
@@ -52,7 +56,7 @@ static void set_key(struct motion *motion, uint32_t k, const struct cs_camera *c
     memcpy(motion->keys[k].target, camera->target, sizeof camera->target);
 }
 
-/* true where one place does for all frames; it is the only key then */
+/* Returns true if one camera suits all frames; it is then the only key. */
 static bool find_fixed_camera(struct motion *motion, double *all) {
     const size_t of_all = (size_t)motion->n * CS_CAMERA_FIT_EXTREMES;
     struct cs_camera camera;
@@ -70,7 +74,7 @@ static bool find_fixed_camera(struct motion *motion, double *all) {
     return true;
 }
 
-/* the mean of the places where cameras of the frames from k - reach to k + reach want to be */
+/* Mean of the cameras of the frames k - reach .. k + reach, cut at the ends. */
 static void average(const struct motion *motion, const struct cs_camera *each, uint32_t k,
                     uint32_t reach, struct cs_camera *camera) {
     const uint32_t first = k > reach ? k - reach : 0;
@@ -85,7 +89,7 @@ static void average(const struct motion *motion, const struct cs_camera *each, u
     }
 }
 
-/* as slowly as every frame allows: means over so many frames, halved until all suit */
+/* Finds the slowest path that suits every frame. */
 static void smooth_path(struct motion *motion, struct cs_camera *each) {
     struct cs_camera camera;
     for (uint32_t k = 0; k < motion->n; k++)

@@ -1,4 +1,4 @@
-/* run_camera.h - the way of a camera that frames a whole run. */
+/* run_camera.h - finds a camera, or a camera path, that frames a whole run. */
 #ifndef CS_RUN_CAMERA_H
 #define CS_RUN_CAMERA_H
 
@@ -9,9 +9,9 @@ struct cs_run_camera {
     struct cs_error error; /* of the run before */
 };
 
-/* For change and ctx of a session's settings: runs a scene whose camera.frame is auto once
- * without pictures and gives the scene the camera that shows its bodies in all frames that will
- * be drawn: one place, if they are large enough from there in each of them, else a path. */
+/* Callback for edit_scene of a session. If camera.frame is auto, runs the scene once without
+ * pictures and gives it the camera that shows its bodies in all frames to be drawn: a fixed one
+ * if they are large enough in each frame, else a path. Errors are in camera->error. */
 void cs_run_camera_find(struct cs_scene *scene, void *camera);
 
 #endif

@@ -1,4 +1,4 @@
-/* Makes checkpoints of a run, and goes on from one. */
+/* Writes checkpoints of a run, and resumes from one. */
 #include "cli/run/run_checkpoint.h"
 
 #include "base/clock.h"
@@ -40,7 +40,7 @@ enum cs_status cs_checkpointer_read_interval(const char *value,
                    value);
 }
 
-/* of the file that the method came from; empty where it is none */
+/* Hash of the method's module file; empty for a method of the program. */
 static void hash_module(struct cs_checkpointer *resume) {
     const struct cs_registry_entry *found;
     struct cs_error unread = {0};
@@ -50,6 +50,7 @@ static void hash_module(struct cs_checkpointer *resume) {
         cs_module_hash(found->file, resume->module);
 }
 
+/* Facts that must agree before a run resumes, each with its name for the message. */
 static void list_facts(const struct cs_checkpointer *resume,
                        struct cs_checkpoint_key facts[FACTS]) {
     const struct cs_checkpoint_key list[FACTS] = {
@@ -90,11 +91,14 @@ enum cs_status cs_checkpointer_begin(struct cs_checkpointer *resume, struct cs_s
     return CS_OK;
 }
 
+/* The interval is a part of the record: a resumed run keeps it. */
 static void record_pace(struct cs_checkpointer *resume) {
     CS_SERIALISER(&resume->serialiser, resume->interval.frames);
     CS_SERIALISER(&resume->serialiser, resume->interval.seconds);
 }
 
+/* Reads in the order of cs_checkpointer_capture: interval, the caller's state, the run. A
+ * record with bytes left over, or too few, is refused. */
 enum cs_status cs_checkpointer_load(struct cs_checkpointer *resume, uint32_t frames,
                                     struct cs_error *error) {
     struct cs_checkpoint_key facts[FACTS];
@@ -118,6 +122,7 @@ enum cs_status cs_checkpointer_load(struct cs_checkpointer *resume, uint32_t fra
     return CS_OK;
 }
 
+/* True at multiples of frames, or when the seconds are over. */
 static bool is_due(const struct cs_checkpointer *resume) {
     const struct cs_checkpoint_interval *pace = &resume->interval;
     return pace->frames ? resume->session->run.frame % pace->frames == 0
@@ -138,6 +143,7 @@ enum cs_status cs_checkpointer_capture(struct cs_checkpointer *resume, bool *due
     return cs_run_save(run, &resume->serialiser, error);
 }
 
+/* Writes at most one file per captured frame; cs_checkpoint_write replaces the last one. */
 enum cs_status cs_checkpointer_write(struct cs_checkpointer *resume, struct cs_error *error) {
     struct cs_checkpoint_key facts[FACTS];
     if (!resume->session || resume->captured_frame == resume->written_frame)

@@ -1,4 +1,9 @@
-/* run_checkpoint.h - checkpoints of a run: when one is made, and going on from the last. */
+/* run_checkpoint.h - checkpoints of a run: when one is written, and how a run resumes.
+ *
+ * The state is captured in memory after a frame and written once the files of that frame are
+ * complete. A method with saved history is captured after every frame, so an interrupted run
+ * loses nothing. A method without it restarts at each capture; its checkpoints must therefore
+ * be at fixed frames, or the result would depend on the clock. */
 #ifndef CS_RUN_CHECKPOINT_H
 #define CS_RUN_CHECKPOINT_H
 
@@ -7,13 +12,13 @@
 #include "io/checkpoint.h"
 #include "study/session.h"
 
-/* How often. Zeroed: never. */
+/* Interval of checkpoints; zeroed: none. */
 struct cs_checkpoint_interval {
     uint32_t frames;
     double seconds; /* of wall clock */
 };
 
-/* What a checkpoint belongs to, beside its session. */
+/* Facts that a resumed run must share, and the caller's state. */
 struct cs_checkpoint_source {
     const char *scene, *hash, *method, *output_settings; /* texts, borrowed */
     /* what the caller keeps from frame to frame, by the same calls both ways */
@@ -21,7 +26,7 @@ struct cs_checkpoint_source {
     void *ctx;
 };
 
-/* Zeroed: no checkpoints. */
+/* Checkpoints of one run; zeroed: none. */
 struct cs_checkpointer {
     struct cs_session *session; /* borrowed; NULL: none are made */
     struct cs_checkpoint_source source;
@@ -33,34 +38,35 @@ struct cs_checkpointer {
     struct cs_serialiser serialiser; /* owned: of the last frame, or of the last that was due */
 };
 
-/* Reads K, a number of frames, or Ks, of seconds. CS_ERR_USAGE. */
+/* Reads K (frames) or Ks (seconds). CS_ERR_USAGE. */
 enum cs_status cs_checkpointer_read_interval(const char *value,
                                              struct cs_checkpoint_interval *pace,
                                              struct cs_error *error);
 
-/* CS_ERR_USAGE where a pace in seconds would reach the state. */
+/* Refuses an interval in seconds for a method that restarts at checkpoints. CS_ERR_USAGE. */
 enum cs_status cs_checkpointer_check_interval(const struct cs_session *session,
                                               const struct cs_checkpoint_interval *pace,
                                               struct cs_error *error);
 
-/* Before the first frame. */
+/* Called before the first frame. Nothing is written. CS_ERR_FILE if the path is too long. */
 enum cs_status cs_checkpointer_begin(struct cs_checkpointer *resume, struct cs_session *session,
                                      const struct cs_checkpoint_source *of, const char *folder,
                                      const struct cs_checkpoint_interval *pace,
                                      struct cs_error *error);
 
-/* Goes on from the checkpoint in the folder, at its pace. CS_ERR_FILE says what differs;
- * CS_ERR_USAGE: it is of more than `frames` frames. */
+/* Resumes from the checkpoint in the folder, with its interval. CS_ERR_FILE names the fact that
+ * differs; CS_ERR_USAGE if it is beyond `frames`. */
 enum cs_status cs_checkpointer_load(struct cs_checkpointer *resume, uint32_t frames,
                                     struct cs_error *error);
 
-/* After each frame: keeps what it has come to; *due: it is to be written. */
+/* Called after each frame: captures the state if needed; *due: it should be written. */
 enum cs_status cs_checkpointer_capture(struct cs_checkpointer *resume, bool *due,
                                        struct cs_error *error);
-/* Once the files of that frame are there, and at the end of a run: nothing where the last one
- * kept is written already. */
+/* Writes the captured state once the files of its frame are complete, and at the end of a run.
+ * Does nothing if it is already written. */
 enum cs_status cs_checkpointer_write(struct cs_checkpointer *resume, struct cs_error *error);
 
+/* Frees the captured state; the file stays. */
 void cs_checkpointer_finish(struct cs_checkpointer *resume);
 
 #endif

@@ -1,9 +1,9 @@
-/* Reads what is to be exported, and exports a run. */
+/* Reads the options of exports, and exports a run. */
 #include "cli/run/job_state.h"
 
 #include <string.h>
 
-/* the bit of a word of so many letters; 0: it is none */
+/* Bit of a word of that length; 0: unknown. */
 static uint32_t bit_of(const char *word, size_t length, const char *const *names) {
     for (uint32_t k = 0; names[k]; k++)
         if (strlen(names[k]) == length && !strncmp(names[k], word, length))
@@ -21,6 +21,7 @@ static enum cs_status refuse(const char *option, const char *list, const char *c
                    list, known);
 }
 
+/* Reads a list with commas as a set of bits. */
 static enum cs_status read_set(const char *option, const char *list, const char *const *names,
                                uint32_t *set, struct cs_error *error) {
     for (const char *word = list; word;) {
@@ -59,7 +60,7 @@ void cs_run_export_print(const struct cs_export_settings *settings, struct cs_te
         cs_text_add(out, " none");
 }
 
-/* of the run as it stands: at its start, or where it goes on */
+/* Opens the export at the start of the run, or at the frame where it resumes. */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const bool goes_on = job->settings->resume;
@@ -80,6 +81,8 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     return cs_export_write_sample(&job->export, run->frame, run->t, run->x, run->v, error);
 }
 
+/* Before a checkpoint: the samples so far must be on disk, because a resumed run appends to
+ * them. */
 static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
     return cs_job_makes_checkpoints(job->settings) ? cs_export_sync(&job->export, error)
                                                    : CS_OK;

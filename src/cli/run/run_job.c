@@ -1,4 +1,4 @@
-/* Runs a scene frame by frame and hands out its pictures, states, hashes and report. */
+/* Runs a scene frame by frame and passes each frame to its outputs. */
 #include "cli/run/run_job.h"
 
 #include "base/clock.h"
@@ -14,7 +14,7 @@
 
 #include <stdlib.h>
 
-/* The scene with every value, its hash, and the method. */
+/* Prints the scene with every value, its hash, the method, and the provenance. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     struct cs_session *session = &job->session;
     cs_scene_print(&session->scene, &session->method.table, session->method.options, 2,
@@ -30,7 +30,7 @@ static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
                                    &job->provenance, error);
 }
 
-/* The state of the frame, and what is judged by it. */
+/* Hashes and judges the state of the frame. */
 static void look(struct cs_job *job) {
     const struct cs_run *run = &job->session.run;
     cs_hash_doubles(run->x, 6 * (size_t)job->session.system.view.n, job->hash);
@@ -38,13 +38,15 @@ static void look(struct cs_job *job) {
     cs_crossing_stats_add(&job->crossings, run);
 }
 
-/* The last checkpoint kept, once the files that it goes on with are there. */
+/* Writes the last captured checkpoint. The outputs finish their files first: a checkpoint on
+ * disk implies the files of all frames before it. */
 static enum cs_status write_checkpoint(struct cs_job *job, struct cs_error *error) {
     return cs_run_outputs_at(job, CS_RUN_SETTLE, error)
                ? error->status
                : cs_checkpointer_write(&job->checkpoints, error);
 }
 
+/* Captures the state after a frame, and writes it if one is due. */
 static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error) {
     bool due;
     return cs_checkpointer_capture(&job->checkpoints, &due, error) || !due
@@ -52,7 +54,7 @@ static enum cs_status make_checkpoint(struct cs_job *job, struct cs_error *error
                : write_checkpoint(job, error);
 }
 
-/* What the job keeps of the frames so far, for a checkpoint. */
+/* Serialises what the job accumulates over frames; one function for both directions. */
 static void record_job(void *ctx, struct cs_serialiser *record) {
     struct cs_job *job = ctx;
     CS_SERIALISER(record, job->monitor);
@@ -62,12 +64,13 @@ static void record_job(void *ctx, struct cs_serialiser *record) {
     cs_run_outputs_record(job, record);
 }
 
+/* "yes" or "no". */
 static const char *yes(bool fact) {
     return fact ? "yes" : "no";
 }
 
-/* Which files there will be, a line each: checkpoints are of use only where those of a run
- * would be the same ones. */
+/* Lists the outputs, one per line. A run may only resume with the same set: its files would
+ * otherwise be incomplete. */
 static void print_outputs(const struct cs_job_settings *settings, const char *renderer,
                           struct cs_text *out) {
     cs_text_add(out,
@@ -81,6 +84,7 @@ static void print_outputs(const struct cs_job_settings *settings, const char *re
     cs_text_add(out, "\n");
 }
 
+/* Prepares checkpoints with everything that a resumed run must have in common. */
 static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     print_outputs(settings, cs_text_get(&job->renderer), &job->outputs);
@@ -96,6 +100,7 @@ static enum cs_status begin_checkpoints(struct cs_job *job, struct cs_error *err
                                  &settings->checkpoint, error);
 }
 
+/* The loop over frames. */
 static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     struct cs_run *run = &job->session.run;
     struct cs_follow follow = {.run = run, .last = job->frames, .every = 1};
@@ -111,8 +116,8 @@ static enum cs_status run_frames(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
-/* Also of a run that failed: its last picture is of a frame that was fine, and so is the last
- * checkpoint. The first failure wins: a later one of drawing or writing changes nothing. */
+/* Ends the outputs, also of a run that failed: its last picture and checkpoint are valid. The
+ * first failure wins. */
 static void finish_files(struct cs_job *job, struct cs_error *error) {
     struct cs_error later = {0};
     write_checkpoint(job, &later);
@@ -121,7 +126,7 @@ static void finish_files(struct cs_job *job, struct cs_error *error) {
         *error = later;
 }
 
-/* A checkpoint that is refused leaves the rows of the run that it is of. */
+/* Begins or resumes. A refused checkpoint leaves the rows of its own run untouched. */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     if (cs_job_makes_checkpoints(job->settings) && begin_checkpoints(job, error))
         return error->status;
@@ -134,7 +139,7 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return cs_run_outputs_at(job, CS_RUN_BEGIN, error);
 }
 
-/* Bodies that nothing keeps apart: the first of three questions that has an answer. */
+/* Warns of bodies without effective contact: the first of three checks that finds something. */
 static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
     const struct cs_scene *scene = &job->session.scene;
     if (cs_overlap_warning_print(scene, job->frames / scene->time.fps, &job->warning, error))
@@ -146,7 +151,7 @@ static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
     return CS_OK;
 }
 
-/* The run, and the account that it keeps. */
+/* Opens the session with ledger, trace and automatic camera. */
 static enum cs_status open_session(struct cs_job *job, struct cs_error *error) {
     struct cs_session_settings settings = job->settings->session;
     const bool kept = job->settings->ledger != NULL;

@@ -1,4 +1,4 @@
-/* Prints run.json: what is needed to repeat a run and to see that it gave the same result. */
+/* Prints run.json: everything needed to repeat a run and to verify its result. */
 #include "base/ieee_check.h"
 #include "base/json_writer.h"
 #include "base/pool.h"
@@ -21,7 +21,7 @@ static void add_versions(const struct cs_job *job, struct cs_text *out) {
                   job->renderer.length ? cs_text_get(&job->renderer) : NULL, cs_pool_threads());
 }
 
-/* only where the hashes of the report are not to be compared with those of other builds */
+/* Present only if the hashes are not comparable with those of other builds. */
 static void add_arithmetic(struct cs_text *out) {
     const char *fault = cs_ieee_check();
     if (fault)
@@ -119,7 +119,7 @@ static void add_measures(const struct cs_run *run, struct cs_text *out) {
     cs_text_add(out, "],\n");
 }
 
-/* The only values that differ from one run of the same scene to the next. */
+/* The only values that differ between runs of the same scene. */
 static void add_seconds(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     cs_json_write(out, "  'seconds': {'wall': %g, 'method': %g", job->wall_seconds,
@@ -170,6 +170,7 @@ void cs_report_print_json(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "}\n");
 }
 
+/* Doubles the log until it has so many frames. Returns false if out of memory. */
 static bool has_room(struct cs_frame_log *kept, size_t frames) {
     if (frames <= kept->capacity)
         return true;

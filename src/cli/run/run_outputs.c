@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In the order in which a frame is handed to them: the report's row is there before a picture
- * notes in it what it shows. */
+/* Order of the calls per frame: the report's row must exist before a picture enters its range.
+ */
 static const struct cs_run_output *const outputs[] = {
     &cs_run_output_trail,  &cs_run_output_json,   &cs_run_output_watch,
     &cs_run_output_ledger, &cs_run_output_states, &cs_run_output_pictures,
@@ -19,7 +19,7 @@ enum { OUTPUTS = sizeof outputs / sizeof *outputs };
 _Static_assert((int)OUTPUTS <= (int)CS_RUN_OUTPUTS_MAX,
                "a run has no room for so many outputs");
 
-/* its file or folder; NULL: none */
+/* File or folder of an output; NULL: none. */
 static const char *path_of(const struct cs_job *job, const struct cs_run_output *output) {
     const char *path = NULL;
     if (output->option)
@@ -31,6 +31,7 @@ static void claim_input(void *ctx, const char *path, const char *what) {
     cs_file_conflicts_input(ctx, path, what);
 }
 
+/* Registers the files that the run reads: the scene's files and the modules. */
 static void claim_inputs(const struct cs_session *session,
                          struct cs_file_conflicts *conflicts) {
     cs_scene_each_file(&session->scene, claim_input, conflicts);
@@ -38,6 +39,7 @@ static void claim_inputs(const struct cs_session *session,
         cs_file_conflicts_input(conflicts, session->settings.plugins[k], "a module");
 }
 
+/* Registers all outputs; a conflict with an input or another output fails. */
 static enum cs_status check_claims(const struct cs_job *job, struct cs_error *error) {
     struct cs_file_conflicts *conflicts = calloc(1, sizeof *conflicts);
     if (!conflicts)

@@ -1,4 +1,7 @@
-/* Draws the pictures of a run while it goes on, and writes into each how it came about. */
+/* Draws the pictures of a run while it goes on, and writes the provenance into each.
+ *
+ * Three stages overlap on a machine with several processors: the run steps frame k + 1, the
+ * renderer draws frame k from a copy of the state, and the writer encodes frame k - 1. */
 #include "base/clock.h"
 #include "base/pool.h"
 #include "cli/run/job_state.h"
@@ -7,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* more than one, so that drawing and encoding can overlap the run */
+/* True if drawing and encoding can overlap the run. */
 static bool has_processors(void) {
     return cs_pool_processors(2) > 1;
 }
@@ -25,7 +28,8 @@ static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) 
                : CS_OK;
 }
 
-/* The recipe is known once a run has begun, or goes on at its pace of checkpoints. */
+/* The provenance of pictures is known once the run has begun, because a resumed run has the
+ * interval of its checkpoint. */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
     const struct cs_render *render = &job->session.scene.render;
@@ -57,7 +61,7 @@ static void print_range(const struct cs_job_picture *picture, const struct cs_sc
     cs_text_add(range, " %s", cs_look_kind(scene->render.look)->unit);
 }
 
-/* Hands the image taken last over, as frame_NUMBER.png. */
+/* Submits the last image as frame_NUMBER.png, with its texts. */
 static enum cs_status give(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_picture *picture = &job->has_begun;
     char frame[16], pixels[CS_HASH_DIGITS];
@@ -89,7 +93,7 @@ static enum cs_status give(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
-/* Waits for the picture under way and hands it over. */
+/* Waits for the picture in progress and submits it. */
 static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
     const double start = cs_clock_wall();
     if (!job->has_begun.number)
@@ -102,7 +106,7 @@ static enum cs_status end_picture(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
-/* The picture of this frame; that of the one before has been drawn in the meantime. */
+/* Begins the picture of this frame. The last one was drawn during the step. */
 static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     if (!job->writer || run->frame % job->settings->frame_interval || end_picture(job, error))
@@ -124,7 +128,7 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     return CS_OK;
 }
 
-/* Waits until every picture that was begun is a file. */
+/* Waits until every picture is a file. */
 static enum cs_status settle(struct cs_job *job, struct cs_error *error) {
     if (end_picture(job, error) || !job->writer)
         return error->status;

@@ -1,4 +1,4 @@
-/* Finds the range of colours in one run before the one that is drawn. */
+/* Finds the range of colours in a run before the one that is drawn. */
 #include "cli/run/run_range.h"
 
 #include "model/force/diagnostics.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the run before goes by, and what it finds. */
+/* The preliminary run and its figures. */
 struct search {
     struct cs_session session;
     double *scalar, *work; /* (n), (3,n) */
@@ -27,6 +27,7 @@ static enum cs_status take(struct search *search, uint32_t frames, struct cs_err
     return CS_OK;
 }
 
+/* Records the magnitude of each frame that will be drawn. */
 static enum cs_status sample_frame(struct search *search, uint32_t frames, uint32_t every,
                                    struct cs_error *error) {
     struct cs_run *run = &search->session.run;
@@ -39,6 +40,7 @@ static enum cs_status sample_frame(struct search *search, uint32_t frames, uint3
     return cs_follow_check(run, " while the range of colours was found", error);
 }
 
+/* Refuses --range for a look whose colours show no value. */
 static enum cs_status check(const struct cs_session *session, struct cs_error *error) {
     const struct cs_scene *scene = &session->scene;
     if (!cs_picture_is_coloured(scene))
@@ -48,7 +50,7 @@ static enum cs_status check(const struct cs_session *session, struct cs_error *e
     return CS_OK;
 }
 
-/* a value for render.range; empty where nothing moves */
+/* Finds a value for render.range; empty if nothing moves. */
 static enum cs_status search_range(const struct cs_job_settings *settings, char value[80],
                                    struct cs_error *error) {
     struct search search = {0};
@@ -74,6 +76,7 @@ static enum cs_status search_range(const struct cs_job_settings *settings, char 
     return error->status;
 }
 
+/* Reads "MIN,MAX" with MIN < MAX, and prints it with all digits. */
 static enum cs_status read_range(const char *text, char value[80], struct cs_error *error) {
     const char *comma = strchr(text, ',');
     double least, most;
@@ -91,6 +94,7 @@ static enum cs_status read_range(const char *text, char value[80], struct cs_err
                    text);
 }
 
+/* The override is appended after the user's own: the last one for a key wins. */
 enum cs_status cs_run_range_set(struct cs_run_range *range, const char *text,
                                 struct cs_job_settings *settings, struct cs_error *error) {
     struct cs_session_settings *session = &settings->session;

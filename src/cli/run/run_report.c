@@ -1,4 +1,4 @@
-/* Prints what a run did as a table: outcome, counts, energy, memory and times. */
+/* Prints the result of a run as a table: outcome, counts, energy, memory and times. */
 #include "cli/run/run_report.h"
 
 #include "base/pool.h"
@@ -39,6 +39,7 @@ void cs_report_print_outcome(const struct cs_job *job, struct cs_text *out) {
                     run->blow_up.bound);
 }
 
+/* Progress and outcome. */
 static void add_frames(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     struct cs_text outcome = {0};
@@ -48,7 +49,7 @@ static void add_frames(const struct cs_job *job, struct cs_text *out) {
     cs_text_finish(&outcome);
 }
 
-/* Only where the watch has something to say. */
+/* Only if the energy monitor found something. */
 static void add_watch(const struct cs_job *job, struct cs_text *out) {
     struct cs_text found = {0};
     cs_energy_monitor_print(&job->monitor, &job->session.system, &found);
@@ -57,7 +58,7 @@ static void add_watch(const struct cs_job *job, struct cs_text *out) {
     cs_text_finish(&found);
 }
 
-/* Only where they were counted. */
+/* Only if crossings were counted. */
 static void add_crossings(const struct cs_job *job, struct cs_text *out) {
     struct cs_text found = {0};
     if (!job->crossings.is_counted)
@@ -67,7 +68,7 @@ static void add_crossings(const struct cs_job *job, struct cs_text *out) {
     cs_text_finish(&found);
 }
 
-/* Only what was at work has a row. */
+/* Only parts that were active have a row. */
 static void add_counts(const struct cs_job *job, struct cs_text *out) {
     const struct cs_counts *c = &job->session.run.counts;
     add_row(out, "steps", "%llu, %llu rejected", (unsigned long long)c->steps,
@@ -89,6 +90,7 @@ static void add_counts(const struct cs_job *job, struct cs_text *out) {
                 (unsigned long long)c->strain_limit_moves);
 }
 
+/* Energies, strain and memory at the end. */
 static void add_measures(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
     const struct cs_energy energy = cs_diagnostics_energy(run->system, run->t, run->x, run->v);
@@ -110,12 +112,13 @@ static void add_stage(const struct cs_job *job, const char *name, double seconds
                 1e3 * seconds / (frames ? frames : 1));
 }
 
-/* bytes resident at the peak, libraries and all; 0 where the system does not say */
+/* Peak of the resident set in bytes, libraries included; 0 if unknown. ru_maxrss is in KiB. */
 static size_t peak_memory(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024 * (size_t)usage.ru_maxrss;
 }
 
+/* Times of the stages in total and per frame; stages of the model are a part of "simulate". */
 static void add_stages(const struct cs_job *job, struct cs_text *out) {
     cs_text_add(out, "%-*s%10s%14s\n", VALUE_COLUMN, "stage", "total [s]", "a frame [ms]");
     add_stage(job, "simulate", job->session.run.advance_seconds, out);
@@ -128,6 +131,7 @@ static void add_stages(const struct cs_job *job, struct cs_text *out) {
             (double)peak_memory() / (1 << 20));
 }
 
+/* Where the outputs are. */
 static void add_files(const struct cs_job *job, struct cs_text *out) {
     const struct cs_job_settings *settings = job->settings;
     if (job->n_drawn)

@@ -1,4 +1,4 @@
-/* run_report.h - how a run went: a table for people, JSON for programs. */
+/* run_report.h - reports a run as a table for readers and as JSON for programs. */
 #ifndef CS_RUN_REPORT_H
 #define CS_RUN_REPORT_H
 

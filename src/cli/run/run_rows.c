@@ -1,13 +1,14 @@
-/* Writes what a run is watched by: a row of a frame, its state, or its hash. */
+/* Writes the rows, states and hashes of frames. */
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 
+/* Rows are collected in memory and written at the end; lack of memory shows here. */
 static enum cs_status check(const struct cs_text *rows, struct cs_error *error) {
     return rows->failed ? cs_fail(error, CS_ERR_MEMORY, "out of memory for the rows of frames")
                         : CS_OK;
 }
 
-/* Whole or failed run: the first failure wins. */
+/* Writes the rows of a whole or failed run; the first failure wins. */
 static enum cs_status write_rows(const char *path, struct cs_text *rows,
                                  struct cs_error *error) {
     struct cs_error failure = {0};
@@ -22,6 +23,7 @@ static enum cs_status watch_frame(struct cs_job *job, struct cs_error *error) {
     return check(&job->watch_rows, error);
 }
 
+/* Column names and the start state; a resumed run has loaded its rows with the checkpoint. */
 static enum cs_status watch_begin(struct cs_job *job, struct cs_error *error) {
     if (job->settings->resume)
         return CS_OK;
@@ -51,7 +53,7 @@ static enum cs_status ledger_frame(struct cs_job *job, struct cs_error *error) {
     return check(&job->ledger_rows, error);
 }
 
-/* the account goes on from the state that was loaded */
+/* A resumed ledger continues from the loaded state. */
 static enum cs_status ledger_begin(struct cs_job *job, struct cs_error *error) {
     if (!job->settings->ledger)
         return CS_OK;
@@ -80,6 +82,7 @@ const struct cs_run_output cs_run_output_ledger = {.option = "--ledger",
                                                           [CS_RUN_END] = ledger_end},
                                                    .record = ledger_record};
 
+/* Writes x_NUMBER.npy and v_NUMBER.npy of the frame. */
 static enum cs_status states_frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const char *folder = job->settings->states;
@@ -88,7 +91,7 @@ static enum cs_status states_frame(struct cs_job *job, struct cs_error *error) {
                   : CS_OK;
 }
 
-/* those of the start are there where a run goes on */
+/* A resumed run has the states of its start already. */
 static enum cs_status states_begin(struct cs_job *job, struct cs_error *error) {
     return job->settings->resume ? CS_OK : states_frame(job, error);
 }
@@ -99,6 +102,7 @@ const struct cs_run_output cs_run_output_states = {
     .is_ours = cs_output_is_state,
     .at = {[CS_RUN_BEGIN] = states_begin, [CS_RUN_FRAME] = states_frame}};
 
+/* Prints "FRAME HASH" as soon as the frame is done. */
 static enum cs_status hash_frame(struct cs_job *job, struct cs_error *error) {
     struct cs_text line = {0};
     if (!job->settings->hash)

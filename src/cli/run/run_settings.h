@@ -1,4 +1,4 @@
-/* run_settings.h - what a run is asked for. */
+/* run_settings.h - settings of clothsim run. */
 #ifndef CS_RUN_SETTINGS_H
 #define CS_RUN_SETTINGS_H
 
@@ -9,13 +9,14 @@
 
 #include <math.h>
 
-/* --trace. Zeroed: none. Must stay where it is while the run lasts. */
+/* The option --trace; zeroed: none. Must not move in memory while the run lasts. */
 struct cs_run_trace {
     bool is_requested;
-    uint32_t frame; /* the frame of which everything is told; 0: the state of each frame */
+    uint32_t frame;        /* frame with a full trace; 0: the state of each frame */
     struct cs_trace trace; /* of the run's settings */
 };
 
+/* Request for a run; texts are borrowed. */
 struct cs_job_settings {
     struct cs_session_settings session;
     uint32_t frames;           /* 0: one second of them */
@@ -33,18 +34,19 @@ struct cs_job_settings {
     bool fast_render, hash, overwrite, quiet;
 };
 
-/* How many frames are simulated. */
+/* Number of frames to simulate; by default one second, at least one frame. */
 static inline uint32_t cs_job_frames(const struct cs_job_settings *settings,
                                      const struct cs_scene *scene) {
     const double second = floor(scene->time.fps + 0.5);
     return settings->frames ? settings->frames : second < 1 ? 1 : (uint32_t)second;
 }
 
-/* true where the run is written as JSON somewhere. */
+/* True if the report is written as JSON: beside pictures, or on request. */
 static inline bool cs_job_wants_json(const struct cs_job_settings *settings) {
     return settings->session.render || settings->json;
 }
 
+/* True if checkpoints are written or one is loaded. */
 static inline bool cs_job_makes_checkpoints(const struct cs_job_settings *settings) {
     return settings->checkpoint.frames || settings->checkpoint.seconds > 0 || settings->resume;
 }

@@ -1,4 +1,4 @@
-/* Writes the states of a run, or all that one frame computes, to standard output. */
+/* Writes the states of a run, or everything that one frame computes, to standard output. */
 #include "cli/run/job_state.h"
 
 #include <stdio.h>
@@ -9,6 +9,7 @@ static void take(void *ctx, const struct cs_trace_record *point) {
     cs_trace_stream_write(ctx, point);
 }
 
+/* Frames have at most 8 digits here, which strtoul reads without overflow. */
 enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
                                  struct cs_error *error) {
     const size_t length = strlen(value);
@@ -24,6 +25,7 @@ enum cs_status cs_run_trace_read(const char *value, struct cs_run_trace *trail,
                          value);
 }
 
+/* Writes x and v of the present frame as two records. */
 static void write_state(const struct cs_run *run) {
     struct cs_trace_record point = {.frame = run->frame,
                                     .step = run->counts.steps,
@@ -38,11 +40,12 @@ static void write_state(const struct cs_run *run) {
     cs_trace_stream_write(stdout, &point);
 }
 
-/* everything is told of one frame alone */
+/* Enables the full trace for the requested frame only. */
 static void expect_frame(struct cs_run_trace *trail, const struct cs_run *run) {
     trail->trace.enabled = trail->frame == run->frame + 1;
 }
 
+/* Begins the stream with the start state, before the first frame. */
 static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     if (!job->trace.is_requested)
@@ -53,6 +56,7 @@ static enum cs_status begin(struct cs_job *job, struct cs_error *error) {
     return error->status;
 }
 
+/* Writes the state after a frame: after every frame, or after the traced one only. */
 static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const struct cs_run_trace *trail = &job->trace;
@@ -66,7 +70,7 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
                : CS_OK;
 }
 
-/* when and where a run blew up */
+/* Writes when and where a run blew up. */
 static enum cs_status end(struct cs_job *job, struct cs_error *error) {
     const struct cs_run *run = &job->session.run;
     const double where[] = {run->blow_up.particle, run->blow_up.energy};

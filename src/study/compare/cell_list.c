@@ -1,10 +1,11 @@
-/* Keeps the cells of a comparison, those of a series together. */
+/* Keeps the cells of a comparison sorted by series. */
 #include "study/compare/cell_list.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Inserts a copy at an index; the capacity doubles when it is used up. */
 static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,
                              const struct cs_cell *cell, struct cs_error *error) {
     if (sweep->n == sweep->capacity) {
@@ -21,6 +22,7 @@ static enum cs_status insert(struct cs_cell_list *sweep, uint32_t at,
     return CS_OK;
 }
 
+/* Reports two different methods under one series name. */
 static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_cell *other,
                                     struct cs_error *error) {
     return cs_fail(error, CS_ERR_USAGE,
@@ -29,6 +31,8 @@ static enum cs_status refuse_series(const struct cs_cell *one, const struct cs_c
                    *other->fixed ? ":" : "", other->fixed);
 }
 
+/* Walks the whole series: a duplicate can be anywhere, and the place is before the first
+ * smaller value. */
 enum cs_status cs_cell_list_add(struct cs_cell_list *sweep, const struct cs_cell *cell,
                                 struct cs_error *error) {
     uint32_t at = sweep->n;
@@ -54,6 +58,7 @@ void cs_cell_refuse(struct cs_cell *cell, const char *why) {
     snprintf(cell->note, sizeof cell->note, "%.239s", why);
 }
 
+/* Replaces the cells of the series in place; the cells after it move up. */
 void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char *why) {
     const struct cs_cell *of = sweep->cells + first;
     struct cs_cell cell;
@@ -70,6 +75,8 @@ void cs_cell_list_refuse(struct cs_cell_list *sweep, uint32_t first, const char 
     sweep->cells[first] = cell;
 }
 
+/* A series is counted at its first cell that was not run, the one after a cell with an outcome.
+ */
 uint32_t cs_cell_list_drop_unrun(struct cs_cell_list *sweep, uint32_t *series) {
     uint32_t kept = 0;
     *series = 0;

@@ -1,4 +1,4 @@
-/* Expands a method into its steps or tolerances. */
+/* Expands a method to its steps or tolerances. */
 #include "study/compare/cell_list_expand.h"
 
 #include "base/options.h"
@@ -7,12 +7,15 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Steps of a default range, each half of the last; and the limit of cells in any range. */
 enum { DEFAULT_STEPS = 8, MOST_POINTS = 64 };
 
-/* First step of an explicit method in units of the safe bound 2/omega, which is up to 1.5 times
- * below the limit of the leap-frog and twice below that of Runge-Kutta. */
+/* First step of an explicit method in units of 2/omega. omega is an upper bound: the true limit
+ * is up to 1.5 times longer for the leap-frog, and about twice for Runge-Kutta methods. 2.2 is
+ * just beyond both, so a series begins with an unstable step. */
 #define BEYOND_LIMIT 2.2
 
+/* Appends "name=value" to a list of options. */
 static void add_option(char *options, size_t size, const char *name, double value) {
     struct cs_text number = {0};
     const size_t used = strlen(options);
@@ -22,6 +25,7 @@ static void add_option(char *options, size_t size, const char *name, double valu
     cs_text_finish(&number);
 }
 
+/* A cell with the options that all cells of the entry share. */
 static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *entry) {
     const struct cs_integrator *integrator = entry->method.integrator;
     cs_cell_init(cell, integrator->name);
@@ -33,6 +37,8 @@ static void init_cell(struct cs_cell *cell, const struct cs_cell_list_entry *ent
     snprintf(cell->options, sizeof cell->options, "%s", entry->fixed);
 }
 
+/* Adds the cell of one step or tolerance. An adaptive method without a given atol gets rtol
+ * times the size of the scene, within the range of the option. */
 static enum cs_status add_point(struct cs_cell_list *sweep,
                                 const struct cs_cell_list_entry *entry, double value,
                                 double size, struct cs_error *error) {
@@ -50,7 +56,8 @@ static enum cs_status add_point(struct cs_cell_list *sweep,
     return cs_cell_list_add(sweep, &cell, error);
 }
 
-/* what the default sweep goes over, largest first */
+/* Default range: rtol from 1e-2 to 1e-9 of an adaptive method; DEFAULT_STEPS steps from one
+ * frame down of a fixed one. Explicit methods begin just beyond their stability limit. */
 static void default_range(const struct cs_cell_list_entry *entry,
                           const struct cs_cell_list_settings *settings, double *high,
                           double *low) {

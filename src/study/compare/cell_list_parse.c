@@ -1,4 +1,4 @@
-/* Reads a list of methods with options and ranges, and makes the cells of each. */
+/* Reads a list of methods with options and ranges, and makes the cells of each method. */
 #include "study/compare/cell_list_parse.h"
 
 #include "base/options.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* "low..high" or one number: both ends are checked as one number is */
+/* Reads "LOW..HIGH" or one number. Both ends are checked as values of the option. */
 static enum cs_status set_range(struct cs_cell_list_entry *entry, const char *key,
                                 const char *value, struct cs_error *error) {
     const char *dots = strstr(value, "..");
@@ -27,6 +27,7 @@ static enum cs_status set_range(struct cs_cell_list_entry *entry, const char *ke
     return error->status;
 }
 
+/* Sets one option of the method, or the range of its control. */
 static enum cs_status set_option(struct cs_cell_list_entry *entry, const char *key,
                                  const char *value, struct cs_error *error) {
     return strcmp(key, entry->control)
@@ -34,7 +35,8 @@ static enum cs_status set_option(struct cs_cell_list_entry *entry, const char *k
                : set_range(entry, key, value, error);
 }
 
-/* Takes the method over. */
+/* Begins an entry with a method, which it owns from now on. The control is rtol of an adaptive
+ * method, else dt, if the method has it. */
 static enum cs_status begin_entry(struct cs_cell_list_entry *entry,
                                   struct cs_registry *registry, const struct cs_method *method,
                                   struct cs_error *error) {
@@ -51,7 +53,7 @@ static enum cs_status begin_entry(struct cs_cell_list_entry *entry,
     return CS_OK;
 }
 
-/* All options are set: they make the name, where the list gives none. */
+/* Names the series after method and options, unless the list gives a name. */
 static enum cs_status end_entry(struct cs_cell_list_entry *entry, const char *name,
                                 struct cs_error *error) {
     struct cs_text fixed = {0};
@@ -73,7 +75,7 @@ static enum cs_status end_entry(struct cs_cell_list_entry *entry, const char *na
     return error->status;
 }
 
-/* One method of the list, with its options. */
+/* Reads one item of the list, with its options, into cells. */
 static enum cs_status read_method(struct cs_cell_list *sweep, struct cs_registry *registry,
                                   const struct cs_cell_list_settings *settings, char *item,
                                   struct cs_error *error) {
@@ -96,6 +98,7 @@ static enum cs_status read_method(struct cs_cell_list *sweep, struct cs_registry
     return error->status;
 }
 
+/* Makes cells of all methods of the registry with their defaults. */
 static enum cs_status take_all(struct cs_cell_list *sweep, struct cs_registry *registry,
                                const struct cs_cell_list_settings *settings,
                                struct cs_error *error) {
@@ -147,7 +150,7 @@ enum cs_status cs_cell_list_add_modules(const char *list, struct cs_arena *arena
     while (rest) {
         char *item = cs_method_split(&rest), name[CS_SERIES_BYTES];
         const char *method = item;
-        struct cs_error unread = {0}; // told where the list is read
+        struct cs_error unread = {0}; // reported when the list is read
         if (cs_series_parse_name(&method, name, &unread))
             continue;
         item += method - item;

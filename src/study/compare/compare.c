@@ -1,4 +1,5 @@
-/* Compares methods on a scene: reference, cells, measurements, and the rows of compare.csv. */
+/* Compares methods on a scene: facts of the scene, cells, keys, reference, measurements,
+ * rounds. */
 #include "study/compare/compare.h"
 
 #include "base/file.h"
@@ -18,7 +19,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* m: the longest side of the scene's box, as a power of 10 */
+/* Longest side of the bounding box of the start in m, rounded to a power of 10; 1 for a point.
+ * Absolute tolerances scale with it, so another unit of length changes nothing. */
 static double size_of(const struct cs_recorded_run *recording) {
     const size_t n = recording->session.system.view.n;
     double longest = 0;
@@ -33,7 +35,7 @@ static double size_of(const struct cs_recorded_run *recording) {
     return longest > 0 ? pow(10, floor(log10(longest) + 0.5)) : 1;
 }
 
-/* The scene as it is, and what its smooth form comes to. */
+/* Reads the facts of the scene and of its smooth form (recorded_run.h). */
 static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_recorded_run_settings *settings = &compare->settings->run;
     struct cs_session_settings asked = settings->session;
@@ -64,7 +66,8 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
     return error->status;
 }
 
-/* The scene as it was given, with the options of its own method, and for how long. */
+/* Writes the scene as given, its own method and the number of frames as JSON: everything a row
+ * depends on besides its method. */
 static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_recorded_run_settings *recording = &compare->settings->run;
     const struct cs_session_settings *asked = &recording->session;
@@ -86,12 +89,14 @@ static enum cs_status print_origin(struct cs_compare *compare, struct cs_error *
     return error->status;
 }
 
+/* origin.json beside compare.csv, for compare_reproduce.h. */
 static enum cs_status write_origin(const struct cs_compare *compare, struct cs_error *error) {
     char path[4096];
     snprintf(path, sizeof path, "%s/origin.json", compare->settings->folder);
     return cs_file_write(path, compare->provenance.bytes, compare->provenance.length, error);
 }
 
+/* The settings of the reference, from those of the comparison. */
 static struct cs_compare_reference_settings ask_reference(const struct cs_compare *compare) {
     const struct cs_compare_settings *settings = compare->settings;
     return (struct cs_compare_reference_settings){
@@ -103,9 +108,12 @@ static struct cs_compare_reference_settings ask_reference(const struct cs_compar
         .ctx = settings->ctx};
 }
 
-/* Without a budget of the user's own, all cells together get a time. Steps are halved, so the
- * last run of a series that gets through takes as long as all before it; one more may be over
- * budget, and what got through is run once more in a round. */
+/* Budget of one run in s of processor time.
+ *
+ * Without a budget from the user all series together get CS_COMPARE_SECONDS. Steps are halved,
+ * so the last finished run of a series takes about as long as all before it (1/2 + 1/4 + ... =
+ * 1): twice the budget in total. One more run may exceed the budget, and each finished run is
+ * repeated once in a round: five budgets per series. */
 static void divide_time_budget(struct cs_compare *compare) {
     const struct cs_cell_list *sweep = &compare->cells;
     uint32_t n = 0;
@@ -118,7 +126,7 @@ static void divide_time_budget(struct cs_compare *compare) {
     compare->rounds_seconds = fmax(CS_COMPARE_ROUND_SECONDS, 5 * compare->settings->budget);
 }
 
-/* A method that cannot follow the scene, which others can, is left out: one row says why. */
+/* A method that refuses a scene which others accept becomes one row with the reason. */
 static void refuse(struct cs_cell_list *sweep, uint32_t first, struct cs_error *error) {
     if (error->status != CS_ERR_SCENE)
         return;
@@ -126,7 +134,8 @@ static void refuse(struct cs_cell_list *sweep, uint32_t first, struct cs_error *
     *error = (struct cs_error){0};
 }
 
-/* An option that a method does not have is known before anything runs. */
+/* Opens each series once without a run: unknown options and refusals are known before the
+ * reference, which may take long. */
 static enum cs_status check_methods(struct cs_compare *compare, struct cs_error *error) {
     struct cs_cell_list *sweep = &compare->cells;
     struct cs_session_settings asked = compare->settings->run.session;
@@ -145,7 +154,7 @@ static enum cs_status check_methods(struct cs_compare *compare, struct cs_error 
     return error->status;
 }
 
-/* The cells that this process is to run. */
+/* Keeps the cells of this process's shard only. */
 static void store_shard(struct cs_compare *compare) {
     struct cs_cell_list *sweep = &compare->cells;
     uint32_t kept = 0;
@@ -155,6 +164,7 @@ static void store_shard(struct cs_compare *compare) {
     sweep->n = kept;
 }
 
+/* Reads the list of methods and expands it to cells. */
 static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_session_settings *session = &compare->settings->run.session;
     const struct cs_cell_list_settings asked = {.list = compare->settings->methods,
@@ -170,8 +180,8 @@ static enum cs_status make_cells(struct cs_compare *compare, struct cs_error *er
     return error->status;
 }
 
-/* What a row depends on: reference (with scene, overrides, length), then method. The sweep has
- * put the hash of the module there. */
+/* Key of each row: hash of the reference (scene, overrides, duration), then hash of module,
+ * method and options. The list of cells has put the hash of the module into cell->key. */
 static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *error) {
     const struct cs_compare_reference_settings asked = ask_reference(compare);
     struct cs_compare_reference reference;
@@ -189,17 +199,19 @@ static enum cs_status make_keys(struct cs_compare *compare, struct cs_error *err
     return error->status;
 }
 
+/* Counts a row and passes it on. taken: from an earlier run. */
 static void report_row(struct cs_compare *compare, const struct cs_cell *cell, bool taken) {
     compare->n_done++;
     if (compare->settings->row)
         compare->settings->row(compare->settings->ctx, cell, taken);
 }
 
-/* Shorter steps and tighter tolerances take longer still: nothing behind it is run. */
+/* True if the cells after this one in the series need not be run: they take longer. */
 static bool is_ended(const struct cs_cell *cell) {
     return !*cell->outcome || !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
 }
 
+/* Reports rows of earlier runs, then runs the others and appends each row at once. */
 static enum cs_status measure_cells(struct cs_compare *compare,
                                     struct cs_compare_results *ledger, struct cs_error *error) {
     for (uint32_t k = 0; k < compare->cells.n; k++)
@@ -229,7 +241,7 @@ enum cs_status cs_compare_run(struct cs_compare *compare,
     *compare = (struct cs_compare){.settings = settings};
     cs_machine_name(compare->machine);
     const struct cs_compare_reference_settings reference = ask_reference(compare);
-    // the folder is looked at before the reference, which may take long
+    // the folder is checked before the reference, which may take long
     if (!read_scene_facts(compare, error) && !print_origin(compare, error) &&
         !make_cells(compare, error) && !make_keys(compare, error) &&
         !cs_compare_results_open(&ledger, compare, error) && !write_origin(compare, error) &&

@@ -6,8 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Columns that a file may have. */
 enum { FIELDS_MAX = 128 };
 
+/* Rows of the table of columns, named after their fields; only columns with a label can be
+ * drawn. */
 #define TEXT(field)                                                                            \
     {                                                                                          \
 #field, NULL, CS_CELL_TEXT, offsetof(struct cs_cell, field),                           \
@@ -71,6 +74,7 @@ const struct cs_column cs_columns[] = {
 };
 const uint32_t cs_n_columns = sizeof cs_columns / sizeof *cs_columns;
 
+/* Indices of cs_family_names. */
 enum { EXPLICIT, IMPLICIT, APPROXIMATE, EXPLICIT_ADAPTIVE, IMPLICIT_ADAPTIVE };
 const char *const cs_family_names[] = {"explicit",          "implicit",          "approximate",
                                        "adaptive explicit", "adaptive implicit", NULL};
@@ -132,7 +136,7 @@ bool cs_cell_is_finished(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_RUNNING));
 }
 
-/* Which column each field of a line belongs to; NULL: none that is known. */
+/* Assigns a column to each field of the first line; NULL for unknown names. */
 static uint32_t find_columns(char *names, const struct cs_column *columns[FIELDS_MAX]) {
     char *fields[FIELDS_MAX];
     const uint32_t n = names ? cs_csv_cut(names, ',', fields, FIELDS_MAX) : 0;
@@ -141,6 +145,7 @@ static uint32_t find_columns(char *names, const struct cs_column *columns[FIELDS
     return n;
 }
 
+/* Reads rows with as many fields as the first line has; others are dropped. */
 static void read_cells(struct cs_rows *rows, const struct cs_column *const *columns,
                        uint32_t n_columns, struct cs_cell *cells, uint32_t *n) {
     char *fields[FIELDS_MAX];

@@ -1,4 +1,5 @@
-/* compare_cell.h - one row of a comparison: a method at one step or tolerance, and its end. */
+/* compare_cell.h - one row of a comparison: a method at one step or tolerance, and its results.
+ */
 #ifndef CS_CELL_H
 #define CS_CELL_H
 
@@ -9,13 +10,13 @@
 #include "sim/series.h"
 #include "study/machine.h"
 
-/* Numbers that do not apply are NAN: an error beyond the horizon, an order that is not steady.
- */
+/* One row. All fields are values, so rows can be copied and moved. Figures that do not apply
+ * are NAN: an error beyond the horizon, an order that is not steady. */
 struct cs_cell {
     char series[CS_SERIES_BYTES]; /* its curve: a method with its options, under one name */
     char method[64];
     char fixed[192];   /* options that all cells of the series share */
-    char options[256]; /* all: "dt=0.001", as behind the method's name; "": nothing is set */
+    char options[256]; /* all of them: "dt=0.001"; "": all at their defaults */
     char control[16];  /* "dt", "rtol", or "" */
     char
         outcome[48]; /* "finished", "blew up: not finite", "over budget", "failed", "refused" */
@@ -51,33 +52,38 @@ struct cs_cell {
 extern const struct cs_column cs_columns[];
 extern const uint32_t cs_n_columns;
 
-/* Reads a file into malloc'd cells; columns are found by name, absent ones are empty, others
- * are ignored, and a last line without its end is dropped. CS_ERR_FILE, CS_ERR_MEMORY. */
+/* Reads a file into malloc'd cells (n), the caller's. Columns are found by name; absent ones
+ * leave their fields empty, unknown ones are ignored. A last line without its end is dropped:
+ * it was being written when the process ended. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_csv_read(const char *path, struct cs_cell **cells, uint32_t *n,
                            struct cs_error *error);
 
-/* Kinds of methods, closed by NULL: in the order of the legend. */
+/* Families of methods in the order of the legend, closed by NULL. */
 extern const char *const cs_family_names[];
+/* Family of a method, from its traits and fidelity. */
 const char *cs_family_of(const struct cs_integrator *integrator);
 
+/* Returns the column of that name, or NULL. */
 const struct cs_column *cs_column_find(const char *name);
 /* Names of the columns that can be drawn, closed by NULL. */
 const char *const *cs_column_axes(void);
+/* Value of a cell in a column of numbers. */
 double cs_cell_number(const struct cs_cell *cell, const struct cs_column *column);
 
-/* A cell of which nothing is known yet; its series is the plain method. */
+/* Makes a cell without results; its series is named after the method. */
 void cs_cell_init(struct cs_cell *cell, const char *method);
-/* Rows of another machine are a series of their own, "NAME@HOST": no time of theirs is held
- * against one of here. */
+/* Makes rows of another machine a series of their own, "NAME@HOST": times of two machines are
+ * not comparable. here: the name of this machine. */
 void cs_cell_name_machine(struct cs_cell *cell, const char *here);
-/* Whether two cells stand on one curve. */
+/* True if two cells are on one curve. */
 bool cs_cell_same_series(const struct cs_cell *a, const struct cs_cell *b);
+/* True if the run reached its last frame. */
 bool cs_cell_is_finished(const struct cs_cell *cell);
-/* Whether it was said where its energy went. */
+/* True if the energy ledger is known. Comparing a number with itself tests for NAN. */
 static inline bool cs_cell_has_ledger(const struct cs_cell *cell) {
     return cell->ledger[CS_WORK_INTEGRATOR] == cell->ledger[CS_WORK_INTEGRATOR];
 }
-/* Edges went through triangles in it; false where they were not counted. */
+/* True if edges went through triangles; false if they were not counted. */
 static inline bool cs_cell_has_crossings(const struct cs_cell *cell) {
     return cell->crossings > 0;
 }

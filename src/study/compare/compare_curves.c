@@ -1,4 +1,4 @@
-/* Chooses what a diagram of a comparison shows: curves, ranges, ticks, the front. */
+/* Chooses the content of a diagram of a comparison: curves, ranges, ticks, front. */
 #include "study/compare/compare_curves.h"
 
 #include <math.h>
@@ -7,9 +7,10 @@
 const char *const cs_curve_colours[CS_CURVE_COLOURS] = {
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9"};
 
-/* room for the crosses at the upper edge, as a share of the range */
+/* Room for crosses at the upper edge, as a fraction of the range. */
 #define CROSS_ROOM 0.06
 
+/* Only errors of position have an error bar of the reference. */
 static bool is_position_error(const struct cs_column *column) {
     return strstr(column->name, "error") && strstr(column->label, "in m") &&
            !strstr(column->label, "m/s");
@@ -41,6 +42,7 @@ bool cs_curves_cross(const struct cs_curves *curves, const struct cs_cell *cell,
     return true;
 }
 
+/* True for a column that smaller values make better: the front needs such an axis. */
 static bool is_cost(const struct cs_column *column) {
     static const char *const names[] = {"cpu",    "wall",       "work",   "evals", "jvps",
                                         "solves", "iterations", "setups", "steps", "newton"};
@@ -50,6 +52,7 @@ static bool is_cost(const struct cs_column *column) {
     return false;
 }
 
+/* Scans all cells for the cheapest one that is more accurate than the last: O(n) per cell. */
 bool cs_curves_front(const struct cs_curves *curves, uint32_t *k) {
     const struct cs_plot_settings *settings = curves->settings;
     double x, y, last = HUGE_VAL, least = HUGE_VAL, best = HUGE_VAL;
@@ -67,6 +70,7 @@ bool cs_curves_front(const struct cs_curves *curves, uint32_t *k) {
     return *k != UINT32_MAX;
 }
 
+/* Widens a range by a margin, and to at least a factor of four. */
 static void widen(double range[2]) {
     if (!(range[0] <= range[1]))
         range[0] = 0, range[1] = 1;
@@ -77,6 +81,7 @@ static void widen(double range[2]) {
     range[1] += margin + lacking / 2;
 }
 
+/* Extends a range by a value above 0. */
 static void include(double range[2], double value) {
     range[0] = fmin(range[0], log10(value));
     range[1] = fmax(range[1], log10(value));
@@ -111,7 +116,8 @@ static int family_of(const struct cs_cell *cell) {
     return 0;
 }
 
-/* How many times more than the cheapest cell that is as good a cell costs, as a logarithm. */
+/* Cost over that of the cheapest cell at least as accurate, as a decimal logarithm: 0 on the
+ * front. */
 static double excess_of(const struct cs_plot_settings *settings, const struct cs_cell *cell) {
     double x, y, other, error, least;
     if (!cs_curves_point(settings, cell, &x, &y))
@@ -123,6 +129,7 @@ static double excess_of(const struct cs_plot_settings *settings, const struct cs
     return log10(x / least);
 }
 
+/* Groups adjacent cells to curves and counts their marks. */
 static void find_curves(struct cs_curves *curves) {
     const struct cs_plot_settings *settings = curves->settings;
     for (uint32_t k = 0; k < settings->n; k++) {
@@ -151,12 +158,13 @@ static void find_curves(struct cs_curves *curves) {
                 k >= curves->list[c].first && k < curves->list[c].first + curves->list[c].n;
 }
 
+/* Priority of curves: cells on the front, then nearness to it. */
 static bool is_before(const struct cs_curve *a, const struct cs_curve *b) {
     return a->on_front != b->on_front ? a->on_front > b->on_front
                                       : a->log_cost_excess < b->log_cost_excess;
 }
 
-/* Marks the one that comes first of those that are left; false: none is. */
+/* Marks the best curve not yet marked. Returns false if there is none. */
 static bool choose(struct cs_curves *curves) {
     struct cs_curve *best = NULL;
     for (struct cs_curve *c = curves->list; c < curves->list + curves->n; c++)
@@ -202,7 +210,7 @@ double cs_curves_edge(const struct cs_curves *curves) {
     return pow(10, curves->y[1] - 0.02 * (curves->y[1] - curves->y[0]));
 }
 
-/* decades between two labels */
+/* Decades between two labels. */
 static int stride(double span) {
     return span > 20 ? 3 : span > 10 ? 2 : 1;
 }

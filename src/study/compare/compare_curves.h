@@ -1,6 +1,9 @@
-/* compare_curves.h - what every diagram of a comparison shows: which curves, in which style,
- * over which ranges, with which ticks, and the front.
- */
+/* compare_curves.h - the content of every diagram of a comparison: curves with their styles,
+ * ranges, ticks, and the Pareto front.
+ *
+ * Diagrams are log-log: error against cost. A method of order p with cost proportional to 1/h
+ * has the slope -p. Both printers (gnuplot and SVG) draw from this model, so they show the
+ * same. */
 #ifndef CS_COMPARE_CURVES_H
 #define CS_COMPARE_CURVES_H
 
@@ -14,6 +17,7 @@ enum {
     CS_CURVE_SHAPES = 5
 };
 
+/* Request for a diagram; pointers are borrowed. */
 struct cs_plot_settings {
     const struct cs_cell *cells; /* (n) */
     uint32_t n;
@@ -23,10 +27,10 @@ struct cs_plot_settings {
     const char *name; /* of the pictures, NAME.png, NAME.svg and NAME.pdf */
 };
 
-/* The cells of one series, which stand together. */
+/* The cells of one series, which are adjacent. */
 struct cs_curve {
     uint32_t first, n, is_drawn, on_front;
-    uint32_t bars, failed_marks; /* cells with quartiles; that did not get through */
+    uint32_t bars, failed_marks; /* cells with quartiles; cells that did not finish */
     double log_cost_excess; /* least cost over that of the front at its error, as a logarithm */
     uint32_t
         crossing_marks; /* cells that are drawn and in which edges went through triangles */
@@ -34,7 +38,7 @@ struct cs_curve {
     int style; /* colour and marker, in the order of the legend; below 0: it is not drawn */
 };
 
-/* Ranges are decimal logarithms, a little wider than the data. */
+/* Model of a diagram. Ranges are decimal logarithms, a little wider than the data. */
 struct cs_curves {
     const struct cs_plot_settings *settings;
     double x[2], y[2];
@@ -47,7 +51,7 @@ struct cs_curves {
  * is the eighth. */
 extern const char *const cs_curve_colours[CS_CURVE_COLOURS];
 #define CS_FRONT_COLOUR "#f0e442"
-/* of the ring about a cell in which edges went through triangles */
+/* Colour of the ring around a cell in which edges went through triangles. */
 #define CS_RING_COLOUR "#b00020"
 
 /* Crosses stand at the upper edge, for which there is room where there are any. Of more than
@@ -55,33 +59,35 @@ extern const char *const cs_curve_colours[CS_CURVE_COLOURS];
  * nearest to it; in the order of their families. */
 void cs_curves_make(struct cs_curves *curves, const struct cs_plot_settings *settings);
 
-/* Curves that have points and no room. */
+/* Number of curves with points for which there is no room. */
 uint32_t cs_curves_left_out(const struct cs_curves *curves);
-/* Whether the reference's own error is within the range. */
+/* True if the reference's own error is within the range. */
 bool cs_curves_show_bar(const struct cs_curves *curves);
-/* Where crosses stand. */
+/* y coordinate of crosses. */
 double cs_curves_edge(const struct cs_curves *curves);
 
-/* Where a cell stands; false: it is not drawn, such as below the reference's own error. */
+/* Position of a cell in data coordinates. Returns false if it is not drawn, for example below
+ * the reference's own error. */
 bool cs_curves_point(const struct cs_plot_settings *settings, const struct cs_cell *cell,
                      double *x, double *y);
-/* Whether it has quartiles of the processor time on the x axis. */
+/* True if the cell has quartiles of the processor time on the x axis. */
 bool cs_curves_quartiles(const struct cs_plot_settings *settings, const struct cs_cell *cell);
-/* Where the cross of a cell that did not get through stands; false: it has none. */
+/* Position of the cross of a cell that did not finish. Returns false if it has none. */
 bool cs_curves_cross(const struct cs_curves *curves, const struct cs_cell *cell, double *x);
 
-/* The next cell of the front after *k, from the cheapest to the most accurate; *k is UINT32_MAX
- * at first. false: there is none, or x is no cost. */
+/* Next cell of the front after *k, from the cheapest to the most accurate; *k is UINT32_MAX at
+ * first. Returns false at the end, or if x is no cost. */
 bool cs_curves_front(const struct cs_curves *curves, uint32_t *k);
 
-/* A tick at digit times 10^decade; label: it is written beside it. */
+/* A tick at digit times 10^decade. */
 struct cs_tick {
     double position; /* decimal logarithm */
     int digit, decade;
     bool label;
 };
-/* Decades have a label, within two of them 2 and 5 as well, and within one all digits; over ten
- * of them every second or third has. How many there are. */
+/* Fills the ticks of a range; returns their number. Decades have a label, within two of them 2
+ * and 5 as well, within one all digits; above ten decades only every second or third has one.
+ */
 uint32_t cs_curves_ticks(const double range[2], struct cs_tick ticks[CS_TICKS_MAX]);
 
 #endif

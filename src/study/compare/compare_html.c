@@ -1,4 +1,4 @@
-/* Prints a comparison as one HTML file without links to others. */
+/* Prints a comparison as one self-contained HTML file. */
 #include "study/compare/compare_html.h"
 
 #include "study/compare/compare_svg.h"
@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+/* Head of the page with its style. */
 static void add_head(const struct cs_compare *compare, struct cs_text *out) {
     cs_text_add(out, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
                      "<title>Error against run time: ");
@@ -21,7 +22,7 @@ static void add_head(const struct cs_compare *compare, struct cs_text *out) {
     cs_text_add(out, "</h1>\n");
 }
 
-/* A text of other printers, as it is; frees it. */
+/* Adds a text of another printer as it is; frees it. */
 static void add_preformatted(const char *title, struct cs_text *text, struct cs_text *out) {
     cs_text_add(out, "<h2>%s</h2>\n<pre>", title);
     cs_svg_add_text(out, cs_text_get(text));
@@ -30,6 +31,7 @@ static void add_preformatted(const char *title, struct cs_text *text, struct cs_
     cs_text_finish(text);
 }
 
+/* Error against the column x; energy error if the norm has no reference. */
 static void add_diagram(const struct cs_compare *compare, const struct cs_ranking *ranking,
                         const char *x, struct cs_text *out) {
     const bool known = cs_norm_is_known(ranking->norm, &compare->reference);
@@ -48,6 +50,7 @@ static void add_number(double value, struct cs_text *out) {
     cs_text_add(out, "</td>");
 }
 
+/* One row of the table; bold if it is on the front. */
 static void add_row(const struct cs_cell *cell, bool front, struct cs_text *out) {
     const double numbers[] = {cell->error,          cell->path_error,   cell->max_error,
                               cell->velocity_error, cell->energy_error, cell->order,
@@ -82,6 +85,7 @@ static void add_table(const struct cs_compare *compare, const struct cs_ranking 
     cs_text_add(out, "</table>\n");
 }
 
+/* Machine and build, as of the time of the report. */
 static void add_machine(struct cs_text *out) {
     struct cs_machine machine;
     struct cs_text text = {0};

@@ -4,7 +4,7 @@
 
 #include "study/compare/ranking.h"
 
-/* Adds it: command, reference, verdict, warnings, diagrams as SVG, tables, machine. */
+/* Adds the page: command, reference, verdict, warnings, diagrams as SVG, tables, machine. */
 void cs_html_print(const struct cs_compare *compare, const struct cs_ranking *ranking,
                    struct cs_text *out);
 

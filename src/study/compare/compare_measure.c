@@ -1,5 +1,5 @@
-/* Measures one cell by a recorded run, and finds observed orders, the slopes of error against
- * step. */
+/* Measures one cell by a recorded run, and finds observed orders: slopes of log error against
+ * log mean step. */
 #include "study/compare/compare_measure.h"
 
 #include "study/provenance_write.h"
@@ -10,13 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps that contact or a method itself cuts hardly depend on dt: below that ratio of mean
- * steps, where dt is halved, there is no slope. */
+/* Smallest ratio of successive mean steps that counts as a halving. Steps that contact or the
+ * method cuts hardly depend on dt: a slope would divide by nearly 0. */
 #define SHORTER 1.7
 
-/* Two successive slopes within that are steady. */
+/* Largest difference of two successive slopes that counts as steady. */
 #define STEADY 0.1
 
+/* Counts, costs and outcome of a run. The unit of work counts one force evaluation, one
+ * Jacobian product and one solver iteration as equal. */
 static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_result *end) {
     const struct cs_counts *counts = &end->counts;
     cell->steps = (double)counts->steps;
@@ -44,6 +46,8 @@ static void take_counts(struct cs_cell *cell, const struct cs_recorded_run_resul
     snprintf(cell->note, sizeof cell->note, "%s", end->note);
 }
 
+/* Errors against the reference. achieved: the error over what the tolerance asks for, rtol
+ * times the motion. */
 static void take_errors(const struct cs_compare *compare,
                         const struct cs_recorded_run *recording,
                         const struct cs_trajectory *track, struct cs_cell *cell) {
@@ -68,7 +72,7 @@ static void take_errors(const struct cs_compare *compare,
         cell->adaptive ? cell->error / (cell->value * reference->motion_scale) : (double)NAN;
 }
 
-/* Where its energy went, in a run that is not timed. */
+/* Runs the cell again from its initial state with an energy ledger. This run is not timed. */
 static enum cs_status take_ledger(struct cs_recorded_run *recording, struct cs_cell *cell,
                                   struct cs_error *error) {
     struct cs_system *system = &recording->session.system;
@@ -86,6 +90,7 @@ static enum cs_status take_ledger(struct cs_recorded_run *recording, struct cs_c
     return error->status;
 }
 
+/* Hash of the module's file: a rebuilt module makes a different row. */
 static void take_module(struct cs_session *session, struct cs_cell *cell) {
     struct cs_provenance_out_module module;
     cs_provenance_out_find_module(session, &module);
@@ -115,12 +120,14 @@ enum cs_status cs_compare_measure(const struct cs_compare *compare, struct cs_ce
     return error->status;
 }
 
+/* An error between 10 bars and a tenth of the motion. Nearer to the bar the reference's own
+ * error is measured; nearer to the motion the run has lost it. */
 static bool is_usable(const struct cs_cell *cell, double bar, double scale) {
     // near the bar the reference's own error is measured, near the motion everything is lost
     return cs_cell_is_finished(cell) && cell->error > 10 * bar && cell->error < 0.1 * scale;
 }
 
-/* NAN where there is none */
+/* d log(error) / d log(step) between two cells of one series; NAN if one is not usable. */
 static double slope(const struct cs_cell *a, const struct cs_cell *b, double bar,
                     double scale) {
     if (a->adaptive || b->adaptive || !cs_cell_same_series(a, b) || !is_usable(a, bar, scale) ||
@@ -129,6 +136,8 @@ static double slope(const struct cs_cell *a, const struct cs_cell *b, double bar
     return log(a->error / b->error) / log(a->step / b->step);
 }
 
+/* A slope needs a neighbour that agrees: a single one can have any value where errors of two
+ * orders cancel. */
 void cs_compare_find_orders(struct cs_cell *cells, uint32_t n, double bar, double scale) {
     for (uint32_t k = 0; k < n; k++) {
         const double here = k > 0 ? slope(cells + k - 1, cells + k, bar, scale) : (double)NAN;

@@ -1,10 +1,11 @@
-/* Describes the errors that a comparison can go by in one table. */
+/* Describes the error norms of a comparison in one table. */
 #include "study/compare/compare_norm.h"
 
 #include <math.h>
 
 const char *const cs_norm_names[] = {"error", "path", "largest", "velocity", "energy", NULL};
 
+/* One row per norm: text, unit, column, and whether it is a pointwise error. */
 static const struct norm {
     const char *words, *unit, *column;
     bool of_particles;

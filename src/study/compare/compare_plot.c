@@ -7,10 +7,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* circle, square, triangle, diamond, triangle on its tip */
+/* gnuplot's point types: circle, square, triangle, diamond, inverted triangle */
 static const int shapes[CS_CURVE_SHAPES] = {7, 5, 9, 13, 11};
 
-/* Labels of an axis as a list: gnuplot's own are bare on less than a decade. */
+/* Sets the labels of an axis as a list: gnuplot's own have no label on less than a decade. */
 static void print_ticks(const char *axis, const double range[2], struct cs_text *out) {
     struct cs_tick ticks[CS_TICKS_MAX];
     const uint32_t n = cs_curves_ticks(range, ticks);
@@ -28,6 +28,7 @@ static void print_ticks(const char *axis, const double range[2], struct cs_text 
     cs_text_add(out, ")\n");
 }
 
+/* Titles, axes, grid, and the grey area below the reference's own error. */
 static void print_head(const struct cs_curves *curves, struct cs_text *out) {
     const struct cs_plot_settings *settings = curves->settings;
     cs_text_add(out, "# gnuplot %s.gp makes %s.png, .svg and .pdf\n", settings->name,
@@ -51,6 +52,7 @@ static void print_head(const struct cs_curves *curves, struct cs_text *out) {
                     curves->error_bar);
 }
 
+/* One data point, with as many digits as it needs. */
 static void print_pair(double x, double y, const char *behind, struct cs_text *out) {
     cs_text_add_real(out, x);
     cs_text_add(out, " ");
@@ -58,7 +60,7 @@ static void print_pair(double x, double y, const char *behind, struct cs_text *o
     cs_text_add(out, "%s", behind);
 }
 
-/* the cells of curve c: points, quartiles, rings, crosses */
+/* Data blocks of curve c: points, quartiles, rings, crosses. Empty blocks are not plotted. */
 static void print_curve(const struct cs_curves *curves, uint32_t c, struct cs_text *out) {
     const struct cs_plot_settings *settings = curves->settings;
     const struct cs_curve *curve = curves->list + c;
@@ -85,6 +87,7 @@ static void print_curve(const struct cs_curves *curves, uint32_t c, struct cs_te
     cs_text_add(out, "END\n");
 }
 
+/* Data blocks of all curves and of the front. */
 static void print_data(const struct cs_curves *curves, struct cs_text *out) {
     const struct cs_plot_settings *settings = curves->settings;
     double x, y;
@@ -97,7 +100,7 @@ static void print_data(const struct cs_curves *curves, struct cs_text *out) {
     cs_text_add(out, "END\n");
 }
 
-/* What has no lines is left out: gnuplot would warn of it. */
+/* Plot elements of a curve. Empty blocks are left out, because gnuplot warns of them. */
 static void plot_curve(const struct cs_curves *curves, uint32_t c, struct cs_text *out) {
     const struct cs_curve *curve = curves->list + c;
     const int style = curve->style;
@@ -125,12 +128,12 @@ static void plot_curve(const struct cs_curves *curves, uint32_t c, struct cs_tex
                     c, colour);
 }
 
-/* a line of the legend without a curve */
+/* A line of the legend without a curve. */
 static void plot_words(const char *words, struct cs_text *out) {
     cs_text_add(out, " NaN with lines linecolor rgb \"white\" title \"%s\", \\\n", words);
 }
 
-/* The curves of a family below its name. */
+/* Plots the curves of a family below its name. */
 static void plot_family(const struct cs_curves *curves, int family, struct cs_text *out) {
     char words[64];
     bool named = false;
@@ -146,6 +149,7 @@ static void plot_family(const struct cs_curves *curves, int family, struct cs_te
     }
 }
 
+/* The plot command: the front first, because later elements are drawn above it. */
 static void print_plot(const struct cs_curves *curves, struct cs_text *out) {
     char words[64];
     uint32_t first = UINT32_MAX, crosses = 0, rings = 0;

@@ -1,4 +1,4 @@
-/* Writes compare.json with everything, for programs; compare.md, a report for people; and the
+/* Writes compare.json with everything for programs, compare.md as a report for readers, and the
  * diagrams. */
 #include "study/compare/compare_report.h"
 
@@ -57,7 +57,7 @@ static void add_rank(const struct cs_rank *rank, const struct cs_cell *cells,
                         rank->better_by_norm[norm] - cells);
 }
 
-/* best and next are indices of cells */
+/* Ranks as JSON; cells are given by index in the list "cells". */
 static void add_verdict(const struct cs_ranking *ranking, const struct cs_compare *compare,
                         struct cs_text *out) {
     const struct cs_cell *cells = compare->cells.cells;
@@ -75,6 +75,7 @@ static void add_verdict(const struct cs_ranking *ranking, const struct cs_compar
         cs_text_add(out, "null,\n");
 }
 
+/* All columns of a cell, from the table of columns. */
 static void add_json_cell(const struct cs_cell *cell, bool front, struct cs_text *out) {
     cs_json_write(out, ",\n    {'front': %d", front);
     for (uint32_t c = 0; c < cs_n_columns; c++) {
@@ -90,6 +91,7 @@ static void add_json_cell(const struct cs_cell *cell, bool front, struct cs_text
     cs_text_add(out, "}");
 }
 
+/* The whole comparison as one object. */
 static void print_json(const struct cs_compare *compare, const struct cs_ranking *ranking,
                        struct cs_text *out) {
     cs_json_write(out, "{\n  'schema': 1,\n  'scene': %s,\n", compare->scene);
@@ -109,6 +111,7 @@ static void print_json(const struct cs_compare *compare, const struct cs_ranking
 
 /* --- compare.md --- */
 
+/* Head of the report: scene, reference, machine, and how times were measured. */
 static void add_setting(const struct cs_compare *compare, struct cs_text *out) {
     struct cs_machine machine;
     cs_machine_detect(&machine);
@@ -136,6 +139,7 @@ static void add_field(struct cs_text *out, const char *format, double value) {
         cs_text_add(out, format[1] == 'f' ? "%.0f" : format[1] == 'o' ? "%.2f" : "%.2e", value);
 }
 
+/* One row of the Markdown table; bold if it is on the front. */
 static void add_line(const struct cs_cell *cell, bool front, struct cs_text *out) {
     cs_text_add(out, "| %s%s%s | %s", front ? "**" : "", cell->series, front ? "**" : "",
                 cell->options);
@@ -197,6 +201,8 @@ static void print_markdown(const struct cs_compare *compare, const struct cs_ran
 
 /* --- the files --- */
 
+/* Writes one diagram. Without pointwise errors the energy error is drawn, which remains valid
+ * beyond the horizon. */
 static enum cs_status draw(const struct cs_compare *compare, const char *name, const char *x,
                            bool *drawn, struct cs_error *error) {
     char title[400];

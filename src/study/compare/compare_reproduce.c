@@ -1,4 +1,4 @@
-/* Makes a row of a comparison again. */
+/* Reproduces a row of a comparison. */
 #include "study/compare/compare_reproduce.h"
 
 #include "study/compare/cell_list.h"
@@ -11,6 +11,7 @@
 
 enum { PATH_BYTES = 4096 };
 
+/* Refuses rows that no run can reproduce: over budget, refused, or without a state. */
 static enum cs_status check_row(const struct cs_cell *cell, const char *file, uint32_t row,
                                 struct cs_error *error) {
     const char *why = !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET))
@@ -37,6 +38,7 @@ static enum cs_status read_row(const char *file, uint32_t row, struct cs_cell *c
     return check_row(cell, file, row, error);
 }
 
+/* Reads origin.json beside the file: scene and number of frames. */
 static enum cs_status read_origin(struct cs_provenance *provenance, const char *file,
                                   char path[PATH_BYTES],
                                   struct cs_recorded_run_settings *settings,
@@ -52,6 +54,7 @@ static enum cs_status read_origin(struct cs_provenance *provenance, const char *
                : cs_fail(error, CS_ERR_FILE, "%s: expected \"frames\", from 1 on", path);
 }
 
+/* Notes what has changed since: version, module, files of the scene. */
 static void describe_row(const struct cs_provenance *provenance, struct cs_session *session,
                          const struct cs_cell *cell, struct cs_text *out) {
     struct cs_provenance_out_module module;
@@ -62,6 +65,7 @@ static void describe_row(const struct cs_provenance *provenance, struct cs_sessi
     cs_provenance_add_changed_files(provenance, out);
 }
 
+/* Exact comparison; only the first difference is reported. */
 static void compare_numbers(struct cs_reproduction *again, const char *what, double then,
                             double now) {
     if (!again->first_difference.length && then != now)
@@ -74,6 +78,7 @@ static void compare_texts(struct cs_reproduction *again, const char *what, const
         cs_text_add(&again->first_difference, "%s was %s, is %s", what, then, now);
 }
 
+/* Compares in the order outcome, time, steps, state: the first difference says most. */
 static void compare_ends(struct cs_reproduction *again, const struct cs_cell *cell,
                          const struct cs_recorded_run_result *end) {
     compare_texts(again, "the outcome", cell->outcome, cs_outcome_text(end->result.outcome));

@@ -1,4 +1,4 @@
-/* Takes over, appends and rewrites the rows of compare.csv. */
+/* Reads, appends and rewrites the rows of compare.csv. */
 #include "study/compare/compare_results.h"
 
 #include "base/file.h"
@@ -10,6 +10,7 @@
 
 static const char *const NAME = "compare.csv";
 
+/* Finds the cell of the same series and options. */
 static struct cs_cell *find(const struct cs_cell_list *sweep, const struct cs_cell *cell) {
     for (uint32_t k = 0; k < sweep->n; k++)
         if (cs_cell_same_series(sweep->cells + k, cell) &&
@@ -18,7 +19,8 @@ static struct cs_cell *find(const struct cs_cell_list *sweep, const struct cs_ce
     return NULL;
 }
 
-/* The cells, and behind them rows of the file that are none of them. */
+/* Writes the cells that have an outcome; with `others`, also rows of the file that match no
+ * cell. */
 static enum cs_status write_rows(const struct cs_compare_results *ledger,
                                  const struct cs_compare *compare, bool others,
                                  struct cs_error *error) {
@@ -33,7 +35,8 @@ static enum cs_status write_rows(const struct cs_compare_results *ledger,
     return cs_file_write_text(ledger->table.path, &text, error);
 }
 
-/* The rows of a file, where there is one. */
+/* Reads the rows of a file; a missing file has none. Rows of other machines get a series of
+ * their own. */
 static enum cs_status read_rows(const char *path, const char *machine, struct cs_cell **cells,
                                 uint32_t *n, struct cs_error *error) {
     *cells = NULL;
@@ -45,6 +48,7 @@ static enum cs_status read_rows(const char *path, const char *machine, struct cs
     return CS_OK;
 }
 
+/* Replaces the old rows by those of the file now. */
 static enum cs_status read_again(struct cs_compare_results *ledger,
                                  const struct cs_compare *compare, struct cs_error *error) {
     free(ledger->old_rows);
@@ -52,7 +56,7 @@ static enum cs_status read_again(struct cs_compare_results *ledger,
                      &ledger->n_old_rows, error);
 }
 
-/* A file that is none of ours, or of another comparison, is not written over. */
+/* Reads the rows and refuses a file of another comparison: it must not be overwritten. */
 static enum cs_status read_old(struct cs_compare_results *ledger,
                                const struct cs_compare *compare, struct cs_error *error) {
     if (read_again(ledger, compare, error))
@@ -73,14 +77,16 @@ static bool is_over_budget(const struct cs_cell *cell) {
     return !strcmp(cell->outcome, cs_outcome_text(CS_OVER_BUDGET));
 }
 
-/* What was stopped is run again where there is more time now, and what has no ledger where one
- * is asked for. */
+/* True if an earlier row need not be run again. A run over budget is repeated if it has more
+ * time now; a run without a ledger if one is requested. */
 static bool is_valid(const struct cs_cell *old, const struct cs_compare *compare) {
     if (compare->settings->ledger && cs_cell_is_finished(old) && !cs_cell_has_ledger(old))
         return false;
     return *old->outcome && (!is_over_budget(old) || old->cpu > 0.9 * compare->budget);
 }
 
+/* Takes over old rows by series, options and key. A row of the file that no cell asks for
+ * becomes a further cell. */
 static enum cs_status reuse_row(struct cs_compare_results *ledger, struct cs_compare *compare,
                                 struct cs_error *error) {
     struct cs_cell_list *sweep = &compare->cells;
@@ -150,7 +156,7 @@ void cs_compare_results_close(struct cs_compare_results *ledger) {
     *ledger = (struct cs_compare_results){0};
 }
 
-/* Adds the rows of one file. */
+/* Adds the rows of one file, after a check that all belong to one comparison. */
 static enum cs_status add_file(struct cs_compare *compare, const char *folder,
                                struct cs_error *error) {
     struct cs_cell_list *sweep = &compare->cells;

@@ -13,7 +13,7 @@
 
 enum { TILE_WIDTH = 400, TILE_HEIGHT = 300, TILES_MAX = 64, COLUMNS = 5 };
 
-/* The cells of one sheet, one a series at most. */
+/* The cells of one sheet, one per series at most. */
 struct sheet {
     const char *kind;
     const struct cs_cell *cells[TILES_MAX];
@@ -21,16 +21,18 @@ struct sheet {
     double range[2]; /* log10 m */
 };
 
+/* True for the first cell of a series. */
 static bool is_first_of_series(const struct cs_compare *compare, uint32_t k) {
     const struct cs_cell *cells = compare->cells.cells;
     return k == 0 || !cs_cell_same_series(cells + k, cells + k - 1);
 }
 
+/* True for a finished cell with that step, equal up to rounding of its text. */
 static bool has_step(const struct cs_cell *cell, double step) {
     return cs_cell_is_finished(cell) && !cell->adaptive && fabs(cell->value / step - 1) < 1e-6;
 }
 
-/* the step with most finished methods, the longer one of two */
+/* Chooses the step with most finished methods, of two the longer one. */
 static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
     const struct cs_cell_list *sweep = &compare->cells;
     double best = (double)NAN;
@@ -49,7 +51,7 @@ static void choose_step(struct sheet *sheet, const struct cs_compare *compare) {
             sheet->cells[sheet->n++] = sweep->cells + k;
 }
 
-/* The cheapest cells of the methods: the dearest of them is what all can keep. */
+/* Cost in s that every method can keep: the largest of the methods' cheapest cells. */
 static double common_cost(const struct cs_compare *compare) {
     const struct cs_cell_list *sweep = &compare->cells;
     double cost = 0, least = HUGE_VAL;
@@ -64,6 +66,7 @@ static double common_cost(const struct cs_compare *compare) {
     return cost;
 }
 
+/* Chooses the most expensive cell of each series within the common cost: its best result. */
 static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
     const struct cs_cell_list *sweep = &compare->cells;
     const double cost = common_cost(compare);
@@ -80,6 +83,7 @@ static void choose_cost(struct sheet *sheet, const struct cs_compare *compare) {
     }
 }
 
+/* Renders one tile with a scalar per particle. */
 static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_frame *frame,
                             const struct cs_posed_collider *obstacles,
                             enum cs_renderer_kind kind, const char *path,
@@ -111,7 +115,7 @@ static enum cs_status paint(struct cs_recorded_run *recording, const struct cs_f
     return error->status;
 }
 
-/* Runs a cell again and draws its last frame. */
+/* Runs a cell again and draws its last frame: a comparison stores no states of its cells. */
 static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell *cell,
                                 const struct cs_compare *compare, enum cs_renderer_kind kind,
                                 struct cs_error *error) {
@@ -157,6 +161,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     return error->status;
 }
 
+/* gnuplot script that assembles the tiles. */
 static void print_script(const struct sheet *sheet, const struct cs_compare *compare,
                          struct cs_text *out) {
     const uint32_t lines = (sheet->n + COLUMNS - 1) / COLUMNS;
@@ -185,6 +190,8 @@ static void print_script(const struct sheet *sheet, const struct cs_compare *com
     cs_text_add(out, "unset multiplot\n");
 }
 
+/* Range of colours in log10 m: from the smallest error, or the reference's bar, to the largest.
+ */
 static void set_range(struct sheet *sheet, const struct cs_compare *compare) {
     double least = HUGE_VAL, most = 0;
     for (uint32_t k = 0; k < sheet->n; k++) {

@@ -1,4 +1,4 @@
-/* compare_state.h - what a comparison is asked for, and what it has found so far. */
+/* compare_state.h - settings of a comparison, and its results so far. */
 #ifndef CS_COMPARE_STATE_H
 #define CS_COMPARE_STATE_H
 
@@ -17,6 +17,7 @@
 /* Leading characters of a row's key: the same for all rows of a scene, time and reference. */
 #define CS_COMPARE_DIGITS 16
 
+/* Request for a comparison. All pointers are borrowed. */
 struct cs_compare_settings {
     struct cs_recorded_run_settings run;
     const char *methods;       /* list as in cell_list.h; NULL: all */
@@ -24,7 +25,7 @@ struct cs_compare_settings {
     double accuracy;           /* m, see compare_reference.h */
     double budget;             /* s of processor time that one run may take; 0: see below */
     uint32_t runs;             /* rounds of timed runs, at most; up to CS_ROUNDS_MAX */
-    enum cs_norm ranking_norm; /* what the verdict goes by */
+    enum cs_norm ranking_norm; /* error norm of the ranking */
     const char *folder;        /* for compare.csv */
     const char *command;       /* that repeats it, for the report; may be NULL */
     bool html;                 /* one HTML file as well */
@@ -34,13 +35,13 @@ struct cs_compare_settings {
     bool overwrite;            /* an earlier compare.csv is written over */
     /* may be NULL; taken: the row is of an earlier run */
     void (*reference_progress)(void *ctx, uint32_t done, uint32_t total, const char *what);
-    void (*on_begin)(void *ctx); /* the reference is there, cells are not */
+    void (*on_begin)(void *ctx); /* after the reference, before the cells */
     void (*row)(void *ctx, const struct cs_cell *cell, bool taken);
     void (*on_round)(void *ctx, uint32_t done, uint32_t most); /* may be NULL */
     void *ctx;
 };
 
-/* Zeroed: empty. */
+/* A comparison and everything it owns; zeroed: empty. */
 struct cs_compare {
     const struct cs_compare_settings *settings; /* borrowed */
     struct cs_compare_reference reference;
@@ -49,15 +50,15 @@ struct cs_compare {
     char scene[256];         /* path as given */
     char machine[CS_MACHINE_NAME];
     struct cs_text switched_off; /* what was switched off, "" nothing */
-    struct cs_text provenance;   /* origin.json: what each row hangs on but its method */
-    bool contact;                /* by force: a part of the equation of motion */
+    struct cs_text provenance; /* origin.json: everything a row depends on besides its method */
+    bool contact;              /* by force: a part of the equation of motion */
     uint32_t particles, springs, n_event_times; /* cuts: times of events */
     double fps, omega, time, budget;
     double scene_size;         /* m, of the scene: a power of 10 */
     double rounds_seconds;     /* s that rounds may go on */
     uint32_t n_done, n_reused; /* cells; those of an earlier run */
     uint32_t n_ended_series,
-        n_not_run; /* series that went over budget, and their cells behind that */
+        n_not_run; /* series that exceeded the budget, and their cells after that */
 };
 
 #endif

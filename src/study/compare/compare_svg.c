@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Pixels of the picture and of the axes' box; y points down. */
 enum { WIDTH = 920, HEIGHT = 520, LEFT = 78, RIGHT = 640, TOP = 16, BOTTOM = 460 };
 void cs_svg_add_text(struct cs_text *out, const char *text) {
     for (; *text; text++)
@@ -25,15 +26,17 @@ void cs_svg_add_text(struct cs_text *out, const char *text) {
         }
 }
 
+/* Pixel of a decimal logarithm on the x axis. */
 static double to_x(const struct cs_curves *curves, double x) {
     return LEFT + (x - curves->x[0]) / (curves->x[1] - curves->x[0]) * (RIGHT - LEFT);
 }
 
+/* Pixel of a decimal logarithm on the y axis. */
 static double to_y(const struct cs_curves *curves, double y) {
     return BOTTOM - (y - curves->y[0]) / (curves->y[1] - curves->y[0]) * (BOTTOM - TOP);
 }
 
-/* where a cell stands, in pixels */
+/* Position of a cell in pixels; false: it is not drawn. */
 static bool place(const struct cs_curves *curves, const struct cs_cell *cell, double *x,
                   double *y) {
     if (!cs_curves_point(curves->settings, cell, x, y))
@@ -71,7 +74,7 @@ static void add_axis(const struct cs_curves *curves, bool vertical, struct cs_te
         add_tick(curves, vertical, ticks + k, out);
 }
 
-/* What the reference's own error hides. */
+/* Grey area below the reference's own error. */
 static void add_bar(const struct cs_curves *curves, struct cs_text *out) {
     if (!cs_curves_show_bar(curves))
         return;
@@ -95,6 +98,7 @@ static void add_front(const struct cs_curves *curves, struct cs_text *out) {
         cs_text_add(out, "\"/>\n");
 }
 
+/* A filled marker; shape and colour repeat with the number of the style. */
 static void add_marker(int style, double x, double y, struct cs_text *out) {
     static const char *const paths[CS_CURVE_SHAPES] = {
         "m-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0", "m-4 -4h8v8h-8z", "m0 -5l5 9h-10z",
@@ -103,6 +107,7 @@ static void add_marker(int style, double x, double y, struct cs_text *out) {
                 paths[style % CS_CURVE_SHAPES], cs_curve_colours[style % CS_CURVE_COLOURS]);
 }
 
+/* Horizontal bar between the quartiles of the processor time. */
 static void add_quartiles(const struct cs_curves *curves, const struct cs_cell *cell, double y,
                           const char *colour, struct cs_text *out) {
     if (cs_curves_quartiles(curves->settings, cell))
@@ -111,6 +116,7 @@ static void add_quartiles(const struct cs_curves *curves, const struct cs_cell *
                     colour);
 }
 
+/* Cross at the upper edge for a run that did not finish. */
 static void add_cross(const struct cs_curves *curves, const struct cs_cell *cell,
                       const char *colour, struct cs_text *out) {
     double x;
@@ -120,11 +126,12 @@ static void add_cross(const struct cs_curves *curves, const struct cs_cell *cell
                     colour);
 }
 
-/* about a cell in which edges went through triangles */
+/* A ring marks a cell in which edges went through triangles. */
 static void add_ring(double x, double y, struct cs_text *out) {
     cs_text_add(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"8\" class=\"r\"/>", x, y);
 }
 
+/* Line, bars, markers and rings of one series. Dashed lines distinguish repeated colours. */
 static void add_curve(const struct cs_curves *curves, const struct cs_curve *curve,
                       struct cs_text *out) {
     const char *colour = cs_curve_colours[curve->style % CS_CURVE_COLOURS];
@@ -149,6 +156,7 @@ static void add_curve(const struct cs_curves *curves, const struct cs_curve *cur
             add_cross(curves, cell, colour, out);
 }
 
+/* Entry of the legend. */
 static void add_key(const struct cs_curves *curves, const struct cs_curve *curve,
                     struct cs_text *out) {
     const double y = TOP + 10 + 20.0 * curve->style;
@@ -161,7 +169,7 @@ static void add_key(const struct cs_curves *curves, const struct cs_curve *curve
     cs_text_add(out, "</text>\n");
 }
 
-/* what a ring says, below the series */
+/* Explains the ring below the series. */
 static void add_ring_key(const struct cs_curves *curves, struct cs_text *out) {
     double y = TOP + 10;
     uint32_t rings = 0;
@@ -177,7 +185,7 @@ static void add_ring_key(const struct cs_curves *curves, struct cs_text *out) {
                 y + 4);
 }
 
-/* The series that there was no room for, by name. */
+/* Names the series that had no room. */
 static void add_omitted_series(const struct cs_curves *curves, struct cs_text *out) {
     bool any = false;
     for (uint32_t c = 0; c < curves->n; c++)
@@ -190,6 +198,7 @@ static void add_omitted_series(const struct cs_curves *curves, struct cs_text *o
                 any ? ". <code>clothsim plot --family</code> draws them.</p>\n" : "");
 }
 
+/* Box and labels of the axes. */
 static void add_frame(const struct cs_curves *curves, struct cs_text *out) {
     cs_text_add(out,
                 "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" "

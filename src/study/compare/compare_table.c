@@ -36,7 +36,7 @@ void cs_table_add_reference(const struct cs_compare *compare, struct cs_text *ou
         cs_text_add(out, "           statistics only: %s\n", reference->reason);
 }
 
-/* of the column of names: as wide as the longest, within reason */
+/* Width of the column of names: that of the longest, 20 to 48. */
 static int name_width(const struct cs_compare *compare) {
     size_t width = 20;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
@@ -51,6 +51,8 @@ void cs_table_add_head(const struct cs_compare *compare, struct cs_text *out) {
                 "error m", "largest", "energy", "work", "processor time", "");
 }
 
+/* Series and step or tolerance of a cell. The mean step is printed, which may differ from dt.
+ */
 static void add_control(const struct cs_cell *cell, int width, struct cs_text *out) {
     char control[32] = "";
     if (!strcmp(cell->control, "dt"))
@@ -61,6 +63,7 @@ static void add_control(const struct cs_cell *cell, int width, struct cs_text *o
     cs_text_add(out, "%-*s %-14s", width, cell->series, control);
 }
 
+/* A number in a column of the table; "-" for none. */
 static void add_number(struct cs_text *out, double value) {
     if (isfinite(value))
         cs_text_add(out, " %8.1e", value);
@@ -90,7 +93,8 @@ void cs_table_add_row(const struct cs_compare *compare, const struct cs_cell *ce
     cs_text_add(out, "\n");
 }
 
-/* what is said of one series: its cells */
+/* Summary of one series: finished cells, order, largest step, achieved over requested
+ * tolerance. */
 static void add_series(const struct cs_cell *cells, uint32_t n, int width,
                        struct cs_text *out) {
     double least = HUGE_VAL, most = 0, step = 0, low = HUGE_VAL, high = 0;
@@ -137,7 +141,7 @@ static const char *const works[] = {
 #undef X
 };
 
-/* what is 0 everywhere has no column, but for what the method makes */
+/* True if a column of the ledger has an entry; the method's own work is always shown. */
 static bool is_shown(const struct cs_cell_list *sweep, int work) {
     bool shown = false, any = false;
     for (uint32_t k = 0; k < sweep->n; k++) {

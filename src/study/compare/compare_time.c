@@ -1,4 +1,11 @@
-/* Times cells in rounds, in an order that is new in every round. */
+/* Times cells in rounds, in a new random order in every round.
+ *
+ *   1. Rank the cells by their times so far; contenders are those the verdict depends on.
+ *   2. Stop if there are none, or after LEAST_ROUNDS rounds if their ratios are narrow or the
+ *    time is over.
+ *   3. Run each contender once (round 0: each cell of a single run too) and record its time.
+ *   4. Update the cells' medians and quartiles, and go to 1.
+ * Contenders are chosen again in every round, because better times change the ranking. */
 #include "study/compare/compare_time.h"
 
 #include "base/clock.h"
@@ -8,27 +15,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Short runs are repeated in a round until they fill that time; one before them warms the
- * caches where it is short against them. */
+/* s of processor time. Short runs are repeated within a round until they fill it; a run
+ * expected to be shorter than WARM_SECONDS is first run once untimed, to warm the caches. */
 #define LEAST_SECONDS 0.01
 #define WARM_SECONDS  0.05
 
-/* Rounds that there are at least, where so many are allowed. */
+/* Rounds at least, if so many are allowed. */
 enum { LEAST_ROUNDS = 7 };
 
-/* A ratio is known well enough where its interval reaches no further to either side. */
+/* Half width of the pairs' interval at which a ratio is known well enough. More rounds would
+ * hardly narrow the whole interval, which BETWEEN_RUNS then dominates. */
 #define NARROW 0.02
 
-/* Times further from the median than that many median deviations are outliers; 1.4826 makes
- * the deviation of a normal distribution of it. A twentieth of the median is the clock's own
- * unrest. */
+/* A time further from the median than 3 standard deviations is an outlier. The median absolute
+ * deviation of a normal distribution is sigma / 1.4826. The bound is at least UNREST of the
+ * median, because clocks and schedulers alone cause such differences. */
 #define OUTLIER (3 * 1.4826)
 #define UNREST  0.05
 
-/* Memory of that many bytes or less is taken before a cell is opened, so that its arrays lie
- * elsewhere in every round: where they lie has an effect of its own. */
+/* Up to so many bytes are allocated before a cell is opened, which moves its arrays in every
+ * round: their position affects the speed through caches and pages, and would otherwise favour
+ * one method throughout. */
 enum { SHIFT_BYTES = 1 << 16 };
 
+/* Mean time in s of one run, over at least LEAST_SECONDS. expected: s, of earlier runs. */
 static enum cs_status run_warm(struct cs_recorded_run *recording, double expected,
                                double *seconds, struct cs_error *error) {
     struct cs_recorded_run_result end;
@@ -46,7 +56,8 @@ static enum cs_status run_warm(struct cs_recorded_run *recording, double expecte
     return CS_OK;
 }
 
-/* s of one run of a cell in this round */
+/* Opens the cell, runs it for this round and closes it. *seconds is that of one run. shift:
+ * bytes that displace its memory. */
 static enum cs_status time_cell(const struct cs_compare *compare, const struct cs_cell *cell,
                                 uint32_t shift, double *seconds, struct cs_error *error) {
     char integrator[CS_CELL_INTEGRATOR];
@@ -60,6 +71,7 @@ static enum cs_status time_cell(const struct cs_compare *compare, const struct c
     return error->status;
 }
 
+/* Sets median, quartiles and number of outliers of a cell from its n sorted times. */
 static void take_times(struct cs_cell *cell, const double *sorted, uint32_t n) {
     double away[CS_ROUNDS_MAX];
     cell->cpu = cs_quantile(sorted, n, 0.5);
@@ -75,6 +87,7 @@ static void take_times(struct cs_cell *cell, const double *sorted, uint32_t n) {
         cell->outliers += away[k] > bound;
 }
 
+/* Random order (Fisher-Yates): each permutation is equally likely, up to the generator. */
 static void shuffle(uint32_t *order, uint32_t n, uint64_t *state) {
     for (uint32_t k = n; k > 1; k--) {
         const uint32_t other = cs_rounds_draw(state, k), kept = order[k - 1];
@@ -83,7 +96,7 @@ static void shuffle(uint32_t *order, uint32_t n, uint64_t *state) {
     }
 }
 
-/* Times the cells of the list once. */
+/* Times the n cells of the list once, in its order. */
 static enum cs_status make_round(struct cs_compare *compare, const uint32_t *order, uint32_t n,
                                  uint64_t *state, struct cs_error *error) {
     struct cs_rounds *rounds = &compare->rounds;
@@ -99,7 +112,8 @@ static enum cs_status make_round(struct cs_compare *compare, const uint32_t *ord
     return CS_OK;
 }
 
-/* Whom this round is for; the first one is for cells of a single run too. */
+/* Lists the cells of the next round. *narrow: all ratios of contenders are known well enough.
+ */
 static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, uint32_t *n,
                              bool *narrow, struct cs_error *error) {
     struct cs_ranking ranking;
@@ -118,6 +132,7 @@ static enum cs_status choose(const struct cs_compare *compare, uint32_t *order, 
     return CS_OK;
 }
 
+/* Runs rounds until a stopping rule holds, see the head of this file. */
 static enum cs_status make_rounds(struct cs_compare *compare, uint32_t *order,
                                   struct cs_error *error) {
     const double begin = cs_clock_cpu();

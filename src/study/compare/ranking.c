@@ -1,50 +1,57 @@
-/* Finds the Pareto front and ranks of cells. */
+/* Finds the Pareto front and the ranks of cells. */
 #include "study/compare/ranking.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A cell that much dearer than the best, by its first times, is no contender; the next series
- * is one up to the second. */
+/* Cells up to FAR times the cost of the best, by their first times, are contenders; the
+ * runner-up is one up to FAR_NEXT times. Chosen by trial. */
 #define FAR      1.5
 #define FAR_NEXT 3
 
-/* Whom a rank is chosen from. */
+/* Criterion of a rank. */
 struct choice {
     const struct cs_compare *compare;
     enum cs_norm norm;
     double bound; /* of the error */
 };
 
+/* A predicate on cells; a rank is the cheapest cell that passes. */
 typedef bool passes(const struct cs_cell *cell, const struct choice *choice);
 
+/* Times of another machine are not comparable. */
 static bool is_timed_here(const struct cs_cell *cell, const struct choice *choice) {
     return cs_cell_is_finished(cell) && !strcmp(cell->machine, choice->compare->machine);
 }
 
+/* A cell with a cost and an error in the norm. */
 static bool is_ranked(const struct cs_cell *cell, const struct choice *choice) {
     return is_timed_here(cell, choice) && cell->cpu > 0 &&
            isfinite(cs_norm_of(choice->norm, cell, &choice->compare->reference));
 }
 
+/* A cell with an error of at most the bound; rounding may exceed it by 1e-9. */
 static bool is_accurate(const struct cs_cell *cell, const struct choice *choice) {
     return is_ranked(cell, choice) &&
            cs_norm_of(choice->norm, cell, &choice->compare->reference) <=
                choice->bound * (1 + 1e-9);
 }
 
+/* A cell with one step per frame: no more steps than frames, and those that end at events. */
 static bool takes_frames(const struct cs_cell *cell, const struct choice *choice) {
     return is_timed_here(cell, choice) && !cell->adaptive &&
            cell->steps <=
                choice->compare->settings->run.frames + choice->compare->n_event_times;
 }
 
-/* where energies are not known, getting through is all that can be asked for */
+/* A cell with one step per frame and a tolerable energy error. Where energies are not known,
+ * any finished cell passes: NAN fails the comparison. */
 static bool keeps_energy(const struct cs_cell *cell, const struct choice *choice) {
     return takes_frames(cell, choice) && !(cell->energy_error > CS_FRAME_ENERGY);
 }
 
+/* Marks the cells that no other one dominates, in O(n^2) for a few hundred cells. */
 static void mark_front(struct cs_ranking *ranking, const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
     const struct cs_cell *cells = compare->cells.cells;
@@ -62,7 +69,8 @@ static bool is_cheaper(const struct cs_cell *cell, const struct cs_cell *than) {
     return !than || cell->cpu < than->cpu;
 }
 
-/* How many times dearer, and whether that is told apart from 1. */
+/* Cost ratio of a cell to a base. Returns whether it differs from 1: by the interval of pairs
+ * if there is one, else by a factor of CS_APART_UNPAIRED at least. */
 static bool compare_costs(const struct cs_compare *compare, const struct cs_cell *cell,
                           const struct cs_cell *base, struct cs_ratio *ratio) {
     const struct cs_cell *cells = compare->cells.cells;
@@ -74,6 +82,8 @@ static bool compare_costs(const struct cs_compare *compare, const struct cs_cell
     return ratio->low > 1;
 }
 
+/* The cheapest cell that passes, of any series except that of `but` (NULL: of any). NULL: none.
+ */
 static const struct cs_cell *cheapest(const struct choice *choice, passes *pass,
                                       const struct cs_cell *but) {
     const struct cs_cell_list *sweep = &choice->compare->cells;
@@ -85,7 +95,7 @@ static const struct cs_cell *cheapest(const struct choice *choice, passes *pass,
     return found;
 }
 
-/* The best, the cheapest of each series that is not far from it, and the next. */
+/* Marks the best, the cheapest cell of each series that is near it, and the runner-up. */
 static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *rank,
                             const struct choice *choice, passes *pass) {
     const struct cs_cell_list *sweep = &choice->compare->cells;
@@ -104,7 +114,7 @@ static void mark_contenders(struct cs_ranking *ranking, const struct cs_rank *ra
         ranking->is_contender[rank->runner_up - sweep->cells] = true;
 }
 
-/* cheapest, and cheapest of another series, of the cells that pass */
+/* The cheapest cell that passes, and the cheapest one of another series. */
 static void find_best(struct cs_rank *rank, const struct choice *choice, passes *pass) {
     rank->best = cheapest(choice, pass, NULL);
     rank->runner_up = rank->best ? cheapest(choice, pass, rank->best) : NULL;
@@ -120,7 +130,8 @@ static void choose(struct cs_ranking *ranking, struct cs_rank *rank,
         mark_contenders(ranking, rank, choice, pass);
 }
 
-/* whether the winner changes with the error that is looked at */
+/* Finds for each other norm the cheapest cell that is no worse than the best and significantly
+ * cheaper. It shows whether the winner depends on the choice of the norm. */
 static void rank_by_other_norms(struct cs_rank *rank, const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
@@ -137,7 +148,8 @@ static void rank_by_other_norms(struct cs_rank *rank, const struct choice *choic
     }
 }
 
-/* the decade from which on an error says something */
+/* Largest decade in which an error is meaningful: a tenth of the motion, or the largest error
+ * if the norm has no scale. An error as large as the motion means nothing. */
 static int first_exponent(const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
     double most = 0;
@@ -150,6 +162,7 @@ static int first_exponent(const struct choice *choice) {
     return (int)floor(log10(fmax(isfinite(scale) ? 0.1 * scale : most, 1e-300)) + 1e-9);
 }
 
+/* One rank per decade, down to the first one that no cell reaches. */
 static void make_ranks(struct cs_ranking *ranking, struct choice *choice) {
     for (int exponent = first_exponent(choice); exponent > -16 && ranking->n < CS_RANKS_MAX;
          exponent--) {
@@ -163,6 +176,7 @@ static void make_ranks(struct cs_ranking *ranking, struct choice *choice) {
     }
 }
 
+/* Rank of the cells with one step per frame, and how many were tried and finished. */
 static void make_frame(struct cs_ranking *ranking, const struct choice *choice) {
     const struct cs_compare *compare = choice->compare;
     for (uint32_t k = 0; k < compare->cells.n; k++) {
@@ -208,6 +222,7 @@ void cs_ranking_finish(struct cs_ranking *ranking) {
     *ranking = (struct cs_ranking){0};
 }
 
+/* True if more rounds would not change the statement on this rank. */
 static bool is_narrow(const struct cs_rank *rank, double share) {
     const struct cs_ratio *ratio = &rank->ratio;
     if (!rank->runner_up || ratio->median > FAR_NEXT)

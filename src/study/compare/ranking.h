@@ -1,4 +1,9 @@
-/* ranking.h - of the rows of a comparison: for each error the cheapest, and by how much. */
+/* ranking.h - ranks the rows of a comparison: the cheapest for each error, and its margin.
+ *
+ * For each power of ten of the error the cheapest cell at or below it is the best, and the
+ * cheapest cell of another series the runner-up. Cost is the median processor time. The Pareto
+ * front holds the cells with no other one both cheaper and at least as accurate. Only cells
+ * that were timed on this machine are ranked. */
 #ifndef CS_RANKING_H
 #define CS_RANKING_H
 
@@ -6,11 +11,11 @@
 
 enum { CS_RANKS_MAX = 24 };
 
-/* Of two cells that were not timed in pairs, that many times the time is a difference. */
+/* Ratio from which two cells differ that were not timed in pairs. */
 #define CS_APART_UNPAIRED 1.5
 
-/* What one step a frame may do to the energy, as a share of the largest kinetic one, and still
- * be called stable. */
+/* Energy error, as a fraction of the largest kinetic energy, up to which one step per frame
+ * counts as stable. */
 #define CS_FRAME_ENERGY 0.1
 
 /* The cheapest cell with an error of at most 10^exponent, and that of the next series. */
@@ -19,9 +24,9 @@ struct cs_rank {
     const struct cs_cell *best,
         *runner_up;        /* borrowed; next NULL: no other series was run to it */
     struct cs_ratio ratio; /* next over best */
-    bool is_significant;   /* the two are told apart */
-    /* by another error: the cheapest cell that is no worse than best, where it is another
-     * series and told apart from it; NULL: best wins by that one too */
+    bool is_significant;   /* their costs differ significantly */
+    /* by another norm: the cheapest cell that is no worse than best, if it is another series
+     * and significantly cheaper; NULL: best wins by that norm too */
     const struct cs_cell *better_by_norm[CS_NORMS];
 };
 
@@ -37,14 +42,19 @@ struct cs_ranking {
     uint32_t frame_tried, frame_finished; /* cells with a dt of a frame; of these to the end */
 };
 
+/* Ranks the cells of a comparison by settings->ranking_norm. Ranks point into compare->cells,
+ * which must not change meanwhile. Returns CS_ERR_MEMORY; the ranking is then empty. */
 enum cs_status cs_ranking_make(struct cs_ranking *ranking, const struct cs_compare *compare,
                                struct cs_error *error);
+/* Frees the marks of cells; a zeroed ranking is allowed. */
 void cs_ranking_finish(struct cs_ranking *ranking);
 
-/* The cheapest row with an error of at most bound, and the next; best NULL: no row has. */
+/* Finds the cheapest row with an error of at most bound (unit of the norm) and its runner-up.
+ * best is NULL if there is none. */
 void cs_ranking_at(const struct cs_compare *compare, double bound, struct cs_rank *rank);
 
-/* Whether the pairs of each ratio of contenders leave open no more than that share. */
+/* True if the pairs of each ratio of contenders leave at most that fraction open to either
+ * side. Ratios above 3 count as narrow: they decide nothing. */
 bool cs_ranking_is_narrow(const struct cs_ranking *ranking, double share);
 
 #endif

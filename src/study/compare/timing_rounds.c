@@ -1,16 +1,20 @@
-/* Keeps the times of rounds, and finds ratios with bootstrap intervals over pairs. */
+/* Stores the times of rounds, and computes ratios with bootstrap intervals over pairs. */
 #include "study/compare/timing_rounds.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+/* Resamples of the bootstrap: about 25 of the medians lie outside the interval on either side.
+ */
 enum { RESAMPLES = 999 };
+/* Start of the generator: 2^64 divided by the golden ratio, an arbitrary number with mixed
+ * bits. */
 #define SEED UINT64_C(0x9e3779b97f4a7c15)
 
-/* The machine's state - clock, neighbours on the chip, where memory lies - differs from one
- * comparison to the next and favours one method over another by that share, which pairs of
- * seconds cannot show: half of a 95 % interval of its own, measured by whole comparisons that
- * were repeated on an idle machine, see docs/compare.md. */
+/* Half width of a 95 % interval between comparisons, as a fraction of the ratio. The state of
+ * the machine (clock, neighbours on the chip, position of memory) differs from one comparison
+ * to the next and favours one method over another. Pairs within seconds cannot show this.
+ * Measured by repeating whole comparisons on an idle machine, see docs/compare.md. */
 #define BETWEEN_RUNS 0.04
 
 enum cs_status cs_rounds_init(struct cs_rounds *rounds, uint32_t n_cells,
@@ -30,6 +34,7 @@ void cs_rounds_finish(struct cs_rounds *rounds) {
     *rounds = (struct cs_rounds){0};
 }
 
+/* Order of qsort; NAN does not occur. */
 static int by_size(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
@@ -56,7 +61,8 @@ uint32_t cs_rounds_times(const struct cs_rounds *rounds, uint32_t cell, double *
     return n;
 }
 
-/* xorshift64* (Marsaglia 2003; Vigna 2016): the high bits are the good ones */
+/* xorshift64* (Marsaglia 2003; Vigna 2016). The high 32 bits are the better ones; multiplying
+ * them by n and shifting maps them to 0..n-1 without a division. */
 uint32_t cs_rounds_draw(uint64_t *state, uint32_t n) {
     *state ^= *state >> 12;
     *state ^= *state << 25;
@@ -65,7 +71,8 @@ uint32_t cs_rounds_draw(uint64_t *state, uint32_t n) {
     return (uint32_t)((high * n) >> 32);
 }
 
-/* The median of n numbers drawn from the sorted ones, by counting how often each was drawn. */
+/* Median of n draws with replacement from the sorted numbers. Counts how often each was drawn,
+ * then walks to the middle of the counts: no second sort. */
 static double resampled_median(const double *sorted, uint32_t n, uint64_t *state) {
     uint32_t drawn[CS_ROUNDS_MAX] = {0}, seen = 0, k = 0;
     for (uint32_t i = 0; i < n; i++)
@@ -81,6 +88,7 @@ static double resampled_median(const double *sorted, uint32_t n, uint64_t *state
     return 0.5 * (sorted[k] + sorted[next]);
 }
 
+/* Collects log(cell / base) of the rounds that have both, sorted. Returns their number. */
 static uint32_t find_pairs(const struct cs_rounds *rounds, uint32_t cell, uint32_t base,
                            double *logs) {
     uint32_t n = 0;
@@ -93,20 +101,27 @@ static uint32_t find_pairs(const struct cs_rounds *rounds, uint32_t cell, uint32
     return n;
 }
 
-/* Resampling n numbers shows (n - 1)/n of their variance, and percentiles are those of a normal
- * distribution where Student's t is right: by how much an interval is too short (Hesterberg
- * 2015, sec. 4.2; t by its expansion in 1/(n - 1), Fisher, Cornish 1960). */
+/* Factor by which a percentile interval of n pairs is too short (Hesterberg 2015, sec. 4.2).
+ *
+ * Two causes: resamples have (n - 1)/n of the variance of the sample, and their percentiles are
+ * those of a normal distribution where Student's t with n - 1 degrees of freedom is right. The
+ * quantile of t is expanded in 1/(n - 1) up to the second order (Fisher, Cornish 1960):
+ *   t = z + (z^3 + z)/(4 d) + (5 z^5 + 16 z^3 + 3 z)/(96 d^2),  d = n - 1,  z = 1.959964.
+ * The factor is t/z sqrt(n/d): 1.56 for 5 pairs, 1.34 for 7, 1.10 for 20. */
 static double expansion(uint32_t n) {
     const double z = 1.959964, d = n - 1.0, z3 = z * z * z;
     const double t = z + (z3 + z) / (4 * d) + (5 * z3 * z * z + 16 * z3 + 3 * z) / (96 * d * d);
     return t / z * sqrt(n / d);
 }
 
-/* independent causes add as variances do */
+/* Variances of independent causes add; half widths go as their roots. */
 static double root_of_squares(double a, double b) {
     return sqrt(a * a + b * b);
 }
 
+/* All intervals are in the logarithm; exp at the end gives factors. pair_uncertainty leaves out
+ * the share between comparisons, because more rounds cannot reduce it: it decides when the
+ * rounds end. */
 bool cs_rounds_ratio(const struct cs_rounds *rounds, uint32_t cell, uint32_t base,
                      struct cs_ratio *ratio) {
     double logs[CS_ROUNDS_MAX], medians[RESAMPLES];

@@ -16,6 +16,8 @@ static void add_cell(const struct cs_cell *cell, struct cs_text *out) {
         cs_text_add(out, "%s", cell->series);
 }
 
+/* Margin of the best over the runner-up: none, with its interval, or roughly from single times.
+ */
 static void add_factor(const struct cs_rank *rank, const char *none, struct cs_text *out) {
     const struct cs_ratio *ratio = &rank->ratio;
     if (!rank->runner_up) {
@@ -33,7 +35,7 @@ static void add_factor(const struct cs_rank *rank, const char *none, struct cs_t
     cs_text_add(out, "\n");
 }
 
-/* what wins where another error is looked at; cells that win by several are said once */
+/* Names the winners by other norms; a cell that wins by several is named once. */
 static void add_others(const struct cs_rank *rank, const char *bullet, struct cs_text *out) {
     for (enum cs_norm norm = 0; norm < CS_NORMS; norm++) {
         const struct cs_cell *other = rank->better_by_norm[norm];
@@ -52,6 +54,7 @@ static void add_others(const struct cs_rank *rank, const char *bullet, struct cs
     }
 }
 
+/* One line for a range of decades with the same winner and runner-up. */
 static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *rank, int last,
                      const char *bullet, struct cs_text *out) {
     const char *unit = cs_norm_unit(ranking->norm);
@@ -65,7 +68,8 @@ static void add_rank(const struct cs_ranking *ranking, const struct cs_rank *ran
     add_others(rank, bullet, out);
 }
 
-/* A method that gets through is not praised where its motion is another one. */
+/* Result at one step per frame. Finishing alone is not praised: the energy error must be small.
+ */
 static void add_frame(const struct cs_ranking *ranking, const char *bullet,
                       const struct cs_compare *compare, struct cs_text *out) {
     const struct cs_cell *best = ranking->frame.best, *nearest = ranking->frame_nearest;
@@ -109,6 +113,7 @@ void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
     add_frame(ranking, bullet, compare, out);
 }
 
+/* The cell with the smallest error of the norm, of all that are ranked; NULL: none. */
 static const struct cs_cell *most_accurate(const struct cs_compare *compare) {
     const enum cs_norm norm = compare->settings->ranking_norm;
     const struct cs_cell *found = NULL;
@@ -149,10 +154,13 @@ void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct 
         cs_text_add(out, "no row got through\n");
 }
 
+/* Number of cells per kind of warning. */
 struct tally {
     uint32_t brief, unquiet, spread, over, failed, blown, below;
 };
 
+/* Counts the cells of each kind. Thresholds: 5 ms of processor time, a fifth of outliers,
+ * quartiles 10 % apart; chosen by trial. */
 static struct tally count(const struct cs_compare *compare) {
     struct tally stats = {0};
     for (uint32_t k = 0; k < compare->cells.n; k++) {

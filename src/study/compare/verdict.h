@@ -1,19 +1,18 @@
-/* verdict.h - a comparison in words: what its rows say, and what to mind. */
+/* verdict.h - states the results of a comparison in words, with warnings. */
 #ifndef CS_COMPARE_VERDICT_H
 #define CS_COMPARE_VERDICT_H
 
 #include "study/compare/ranking.h"
 
-/* Adds the ranking, a line each behind `bullet`. Each line is true of the rows that were run,
- * and says nothing of others. */
+/* Adds the ranking, one line per statement after `bullet`. A line states facts of the rows that
+ * were run, and claims nothing of others. */
 void cs_verdict_print(const struct cs_ranking *ranking, const char *bullet,
                       const struct cs_compare *compare, struct cs_text *out);
 
-/* Adds the answer to "what is the cheapest way to an error of at most bound": a line. */
+/* Adds a line: the cheapest way to an error of at most bound. */
 void cs_verdict_print_at(const struct cs_compare *compare, double bound, struct cs_text *out);
 
-/* The closed list of warnings, each with advice; adds one line a warning, each behind `bullet`.
- */
+/* Adds the warnings that apply, one per line after `bullet`, each with advice. */
 void cs_compare_warn(const struct cs_compare *compare, const char *bullet, struct cs_text *out);
 
 #endif

@@ -1,4 +1,4 @@
-/* Runs the checks of a card in order, and weighs them against the method's own claims. */
+/* Runs the checks of a card in order and compares them with the method's own claims. */
 #include "study/conform/conform.h"
 
 #include "study/conform/conform_checks.h"
@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+/* The checks in the order of the card, made from CS_CONFORM_LIST. */
 static const struct {
     const char *name, *what;
     enum cs_conform_of of;
@@ -17,6 +18,7 @@ static const struct {
 };
 enum { CHECKS = sizeof checks / sizeof *checks };
 
+/* True if the method's `fails` lists the check. */
 static bool is_named(const struct cs_integrator *method, const char *check) {
     for (const char *const *name = method->fails; name && *name; name++)
         if (!strcmp(*name, check))
@@ -24,8 +26,8 @@ static bool is_named(const struct cs_integrator *method, const char *check) {
     return false;
 }
 
-/* what the method says of itself turns a failure into an expected one, and a pass into a claim
- * that is no longer true */
+/* A failure that the method declares is an expected one. A declared failure that passes is
+ * stale: the declaration is no longer true. */
 static void apply_expected_failures(const struct cs_integrator *method,
                                     struct cs_conform_row *row) {
     if (!is_named(method, row->check))

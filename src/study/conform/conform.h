@@ -1,19 +1,23 @@
-/* conform.h - the conformance card of a method: what its descriptor claims, measured.
+/* conform.h - makes the conformance card of a method: measures the claims of its descriptor.
  *
- * Each check runs small scenes made in memory and compares a figure with a bound. Checks that
- * the descriptor names in `fails` are expected to fail; one that passes all the same is stale.
- */
+ * Each check runs small scenes that are made in memory and compares a figure with a bound. A
+ * claim of order p gives the bound: the error may be (h w)^p of the motion, where w is the rate
+ * of the scene, times its growth over the run. Checks that the descriptor lists in `fails` are
+ * expected to fail; one that passes nevertheless is stale.
+ *
+ *   method -> card -> per check: scene text -> probe (session) -> accuracy -> frames -> figure
+ *   -> row with its verdict -> report */
 #ifndef CS_CONFORM_H
 #define CS_CONFORM_H
 
 #include "study/conform/conform_card.h"
 
-/* Runs the checks in their order. Verdicts are counted; whether a claim failed is in
- * counts[CS_VERDICT_FAIL] and [CS_VERDICT_STALE]. CS_ERR_USAGE where `only` names no
- * check. */
+/* Runs the checks in order and reports each row. Counts the verdicts: claims that do not hold
+ * are in counts[CS_VERDICT_FAIL] and [CS_VERDICT_STALE], and are no error. Returns CS_ERR_USAGE
+ * if only_check names no check, CS_ERR_MEMORY if memory ran out in a check. */
 enum cs_status cs_conform_check(struct cs_conform *card, struct cs_error *error);
 
-/* Adds every check's name and what it shows, one a line: for --list. */
+/* Adds the name of every check and what it shows, one per line, for --list. */
 void cs_conform_print_checks(struct cs_text *out);
 
 #endif

@@ -1,9 +1,10 @@
-/* Keeps reference states by name, in a list: there are a few dozen. */
+/* Stores reference states by name in a linked list: there are a few dozen. */
 #include "study/conform/conform_cache.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* One reference; the newest is first in the list. */
 struct cs_conform_kept {
     struct cs_conform_kept *next;
     char name[64];
@@ -23,7 +24,7 @@ const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const 
 void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
                             const double *values, size_t n) {
     struct cs_conform_kept *kept = NULL;
-    // a name that is cut short could be another one's
+    // a truncated name could match another one
     if (cache && strlen(name) < sizeof kept->name)
         kept = malloc(sizeof *kept + n * sizeof *values);
     if (!kept)

@@ -1,7 +1,7 @@
-/* conform_cache.h - reference states, kept so that the cards of several methods share them.
+/* conform_cache.h - stores reference states, shared by the cards of several methods.
  *
- * A reference does not depend on the method that is looked at, so that one run of each serves
- * all cards that one command makes. */
+ * A reference does not depend on the tested method, so one run of each serves all cards that a
+ * command makes. */
 #ifndef CS_CONFORM_CACHE_H
 #define CS_CONFORM_CACHE_H
 
@@ -14,15 +14,17 @@ struct cs_conform_cache {
     struct cs_conform_kept *first; /* owned */
 };
 
-/* The n values kept under that name; NULL: there are none, or there is no cache. */
+/* Returns the n values stored under that name, which the cache owns, or NULL if there are none,
+ * if their number differs, or without a cache. */
 const double *cs_conform_cache_find(const struct cs_conform_cache *cache, const char *name,
                                     size_t n);
 
-/* Keeps a copy under that name. Without a cache, or out of memory, nothing is kept: the next
- * card runs the reference again. */
+/* Stores a copy under that name. Without a cache or out of memory nothing is stored, and the
+ * next card runs the reference again: therefore there is no error. */
 void cs_conform_cache_store(struct cs_conform_cache *cache, const char *name,
                             const double *values, size_t n);
 
+/* Frees all values; the cache is then empty. */
 void cs_conform_cache_finish(struct cs_conform_cache *cache);
 
 #endif

@@ -1,4 +1,4 @@
-/* Fills the rows of a card: of several figures the one that says most. */
+/* Fills the rows of a card. Of several figures it keeps the most significant one. */
 #include "study/conform/conform_card.h"
 
 #include <math.h>
@@ -19,7 +19,8 @@ static void note(struct cs_conform_row *row, const char *format, va_list args) {
     vsnprintf(row->note, sizeof row->note, format, args);
 }
 
-/* share of the bound that is used up; not a number counts as all of it and more */
+/* Used fraction of the bound. A figure that fails with a bound of 0, or is NAN, uses HUGE_VAL;
+ * a figure of 0 with a bound of 0 uses nothing. */
 static double used(double figure, double bound) {
     return !(figure <= bound) ? (figure > bound && bound > 0 ? figure / bound : HUGE_VAL)
            : bound > 0        ? figure / bound

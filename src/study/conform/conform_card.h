@@ -1,4 +1,4 @@
-/* conform_card.h - a card in the making: the method, its rows, and how a check states a result.
+/* conform_card.h - a card in the making: the method, its rows, and the statement of a result.
  */
 #ifndef CS_CONFORM_CARD_H
 #define CS_CONFORM_CARD_H
@@ -8,6 +8,7 @@
 
 #include <clothsim/integrator.h>
 
+/* X(name, text) of the verdicts on a claim. */
 #define CS_VERDICT_LIST(X)                                                                     \
     X(CS_VERDICT_PASS, "pass")                                                                 \
     X(CS_VERDICT_FAIL, "FAIL")                                                                 \
@@ -20,8 +21,10 @@ enum cs_verdict {
 #undef X
         CS_VERDICTS
 };
+/* Text of a verdict in reports. */
 const char *cs_verdict_text(enum cs_verdict verdict);
 
+/* Result of one check. */
 struct cs_conform_row {
     const char *check, *description; /* its name, and what it shows */
     enum cs_verdict verdict;
@@ -31,10 +34,11 @@ struct cs_conform_row {
 
 struct cs_conform_cache;
 
+/* A card: the tested method, its settings and the counts of verdicts. Pointers are borrowed. */
 struct cs_conform {
     const struct cs_integrator *method;
     const void *options; /* filled, before the checks' own; NULL: the defaults */
-    /* the method that CS_FIDELITY_IMPLICIT_EULER is held against; NULL: there is none */
+    /* the method that CS_FIDELITY_IMPLICIT_EULER is compared with; NULL: none */
     const struct cs_integrator *implicit_euler;
     const char *only_check; /* one check by its name; NULL: all */
     /* references that earlier cards have run, and where this one's go; NULL: none are kept */
@@ -47,13 +51,13 @@ struct cs_conform {
     uint32_t counts[CS_VERDICTS];
 };
 
-/* States a figure that must not be above its bound. Where a check states several, the row keeps
- * the first that fails, else the one nearest to its bound. */
+/* States a figure that must not exceed its bound; NAN fails. If a check states several, the row
+ * keeps the first that fails, else the one that uses most of its bound. */
 void cs_row_state(struct cs_conform_row *row, double figure, double bound, const char *format,
                   ...) __attribute__((format(printf, 4, 5)));
-/* The check does not apply, and why. */
+/* Marks the check as not applicable, with the reason. */
 void cs_row_skip(struct cs_conform_row *row, const char *reason);
-/* The check failed without a figure. */
+/* Marks the check as failed without a figure; an earlier failure stays. */
 void cs_row_fail(struct cs_conform_row *row, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

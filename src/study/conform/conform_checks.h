@@ -1,11 +1,24 @@
-/* conform_checks.h - the checks of a card, a group a file. */
+/* conform_checks.h - lists the checks of a card; each file of checks is a group.
+ *
+ *   motion    exact motions and conserved momenta               conform_motion.c
+ *   order     oscillators, order, tolerance, limit, events      conform_order.c
+ *   forces    each force alone, unequal masses, time            conform_forces.c
+ *   energy    symmetry in time, bounded energy                  conform_energy.c
+ *   contact   incline, rest, bounce                             conform_contact.c
+ *   rules     descriptor, options, commits, pins, failures      conform_rules.c
+ *   fidelity  the limit of a method's iterations                conform_fidelity.c
+ *   memory, threads, resume: the rules of the host              files of these names
+ *
+ * An error is measured against a closed form, an invariant or the independent method of
+ * conform_reference.h. It is never measured against the same method at a smaller step, because
+ * a wrong limit would then pass. */
 #ifndef CS_CONFORM_CHECKS_H
 #define CS_CONFORM_CHECKS_H
 
 #include "study/conform/conform_card.h"
 
-/* Whether a check holds a method against the motion of springs, which one of another model
- * (CS_FIDELITY_OTHER) does not follow. */
+/* CS_CONFORM_SPRINGS: the check compares with the motion of springs, which a method of another
+ * model (CS_FIDELITY_OTHER) does not follow. It is skipped for such a method. */
 enum cs_conform_of { CS_CONFORM_ANY, CS_CONFORM_SPRINGS };
 
 /* X(name, function, of, what it shows), in the order of the card */

@@ -1,5 +1,11 @@
-/* Checks contact by force against what is known of it in closed form: the incline, rest on a
- * floor, and the energy of a bounce. Its order is measured in conform_order.c. */
+/* Checks contact by force against closed forms: the incline, rest on a floor, and the energy of
+ * a bounce. conform_order.c measures its order.
+ *
+ * Friction is smoothed: its coefficient is mu v / sqrt(v^2 + ev^2) with ev = friction_speed. A
+ * block on a slope of tangent t < mu does not stop but creeps where the friction balances
+ * gravity:
+ *   mu v / sqrt(v^2 + ev^2) = t   =>   v = ev t / sqrt(mu^2 - t^2).
+ * On a steeper slope it accelerates by g (sin a - mu cos a), once v is large against ev. */
 #include "model/contact/barrier_law.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
@@ -13,15 +19,15 @@
 #define STIFF 95.0 /* N/m a particle */
 #define MASS  0.1  /* kg a particle */
 
-/* 1/s: friction of a block at rest decays at mu g/ev = 147/s, which the step must resolve */
+/* s; friction of a block at rest decays at mu g/ev = 147/s: h times this rate is 0.31. */
 #define STEP (1.0 / 480)
 
 #define CONTACT                                                                                \
     "\"contact\": {\"law\": \"force\", \"stiffness\": 95, \"damping\": 0.02,"                  \
     " \"friction_speed\": 0.02}, \"time\": {\"fps\": 20}"
 
-/* Four particles that all feel the same: a rigid body in any model. Turned by an angle about z,
- * and placed along the normal of the slope. */
+/* Four particles with equal forces: a rigid body in any model. Rotated by an angle about z, and
+ * placed along the normal of the slope. */
 #define BLOCK                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"size\": [0.1, 0.1], \"start\": \"flat\","  \
     " \"place\": {\"translate\": [%.17g, %.17g, 0], \"rotate\": [0, 0, %.17g, %.17g]}},"       \
@@ -29,7 +35,7 @@
     "0}}], \"colliders\": [{\"plane\": {\"point\": [0, 0, 0], \"normal\": [%.17g, %.17g, 0]}," \
     " \"thickness\": 0.1, \"friction\": 0.3}], " CONTACT "}"
 
-/* stretched, sliding, and above the height at which it will rest */
+/* Stretched, sliding, and above the height at which it will rest. */
 #define SHEET                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"start\": \"flat\", \"stretch\": [1.05, "   \
     "0.97], \"velocity\": [0.1, 0, 0.05], \"place\": {\"translate\": [0, 0.07, 0]}}, "         \
@@ -48,6 +54,7 @@
 #define BOUNCE_RATE 40 /* 1/s, of springs, and of contact where it is deepest */
 enum { BOUNCE_FRAMES = 25 };
 
+/* Skips methods that do not support contact by force, or whose accuracy cannot be set. */
 static bool takes_contact(const struct cs_conform *card, struct cs_conform_row *row) {
     if (card->method->traits & CS_EXPLICIT_OUTER) {
         cs_row_skip(row, "it is refused with contact by force");
@@ -56,7 +63,8 @@ static bool takes_contact(const struct cs_conform *card, struct cs_conform_row *
     return cs_probe_can_be_set(card, row);
 }
 
-/* where the law carries that force, by bisection */
+/* Distance in m at which the contact law carries the force in N, by bisection: the force falls
+ * monotonically with the distance. */
 static double height_of(double force) {
     double low = CS_BARRIER_CORE * RANGE, high = RANGE;
     for (int k = 0; k < 60; k++) {
@@ -66,7 +74,7 @@ static double height_of(double force) {
     return low;
 }
 
-/* mean velocity down the slope, towards +x */
+/* Mean velocity in m/s down the slope, towards +x. */
 static double sliding(const struct cs_probe *block, double a) {
     double sum = 0;
     for (size_t i = 0; i < block->n; i++)
@@ -74,6 +82,8 @@ static double sliding(const struct cs_probe *block, double a) {
     return sum / (double)block->n;
 }
 
+/* One slope of the given tangent. The first five frames let the start decay; the mean
+ * acceleration (t > mu) or the velocity (t < mu) of the next five is compared. */
 static void slide(const struct cs_conform *card, struct cs_conform_row *row, double tangent) {
     const double a = atan(tangent), d = height_of(MASS * G * cos(a));
     struct cs_probe block;
@@ -107,8 +117,8 @@ void cs_check_contact_incline(const struct cs_conform *card, struct cs_conform_r
     slide(card, row, 0.5);
 }
 
-/* A stretched sheet dropped on a floor: friction and damping are all that can stop it, and a
- * step too long for friction shows as chatter of the size of friction_speed. */
+/* A stretched sheet dropped on a floor: only friction and damping can stop it. A step too long
+ * for friction shows as chatter of the size of friction_speed. */
 void cs_check_contact_rest(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe sheet;
     double squares = 0;
@@ -126,7 +136,7 @@ void cs_check_contact_rest(const struct cs_conform *card, struct cs_conform_row 
     cs_probe_close(&sheet);
 }
 
-/* the lowest particle over the plane, as a share of the range */
+/* Distance of the lowest particle from the plane, as a fraction of the range. */
 static double lowest(const struct cs_probe *sheet) {
     double low = HUGE_VAL;
     for (size_t i = 2 * sheet->n; i < 3 * sheet->n; i++)
@@ -134,6 +144,8 @@ static double lowest(const struct cs_probe *sheet) {
     return (low + 0.25) / 0.2;
 }
 
+/* Contact without friction and damping is conservative: the total energy may not grow by more
+ * than half the expected error. The check fails if the sheet never came near the plane. */
 void cs_check_contact_energy(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe sheet;
     double start = (double)NAN, worst = 0, low = HUGE_VAL;

@@ -1,4 +1,5 @@
-/* Checks what symplectic methods promise, and what no method may do to energy. */
+/* Checks the promises of symplectic methods, and the limits that hold for the energy with any
+ * method. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_drum.h"
 
@@ -7,8 +8,10 @@
 
 enum { FRAMES = 50 }; /* five seconds: 50 periods of the fastest mode, 10 of the slowest */
 
-/* Runs to the end, turns all velocities round, and runs back. A symmetric method is at the
- * start again but for rounding. */
+/* Runs to the end, reverses all velocities, and runs back. A method is symmetric if a step of
+ * -h undoes a step of h (Hairer, Lubich, Wanner 2006); the equations are reversible, so a
+ * symmetric method returns to the start up to rounding. A symplectic method of order 1 is not
+ * symmetric. */
 void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *row) {
     static const struct cs_drum drum = {0};
     struct cs_probe there, back;
@@ -43,7 +46,8 @@ void cs_check_reversible(const struct cs_conform *card, struct cs_conform_row *r
     cs_probe_close(&back);
 }
 
-/* energy of the drum at rest: stretched, without its bump */
+/* Energy in J of the drum at rest: stretched, without its bump and velocity. It is subtracted
+ * to measure gains against the energy of the motion alone. */
 static double rest_energy(const struct cs_conform *card) {
     struct cs_probe rest;
     double energy = (double)NAN;
@@ -56,9 +60,12 @@ static double rest_energy(const struct cs_conform *card) {
     return energy;
 }
 
-/* Without damping, energy may fall (many implicit methods) but not grow beyond what a step's
- * error makes of it; where the method is symplectic it stays near its start for good. The run
- * is about 17 times as long as that of the tolerance: ten times the error are allowed there. */
+/* Without damping, energy may fall (many implicit methods dissipate) but not grow by more than
+ * the error of a step explains. With a symplectic method it stays near its start for good. Such
+ * a method conserves a modified energy, up to terms that are exponentially small in 1/h
+ * (Hairer, Lubich, Wanner 2006). The bound is (h w)^2, or h w for order 1. The run is 17 times
+ * as long as that of `tolerance`, so an adaptive method is allowed ten times its error there.
+ */
 void cs_check_energy(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     const bool both = method->traits & CS_SYMPLECTIC;

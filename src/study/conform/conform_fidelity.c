@@ -1,4 +1,8 @@
-/* Checks where a method's own iterations lead to, at one and the same step. */
+/* Checks the limit of a method's own iterations, at one fixed step.
+ *
+ * A method that iterates constraints or local steps does not converge to the solution of the
+ * ODE by iterations alone. Its descriptor claims their limit: implicit Euler, or another one.
+ */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_drum.h"
 
@@ -6,6 +10,8 @@
 
 static const struct cs_drum drum = {.damping = 0};
 
+/* Positions after CS_DRUM_FRAMES with a number of iterations per step. Returns false if the run
+ * ended early: the row says why. */
 static bool state_at(const struct cs_conform *card, const struct cs_integrator *method,
                      double iterations, double *state, struct cs_conform_row *row) {
     struct cs_probe probe;
@@ -22,7 +28,8 @@ static bool state_at(const struct cs_conform *card, const struct cs_integrator *
     return done;
 }
 
-/* With more and more iterations: the distance to implicit Euler must go to nothing. */
+/* The claim of implicit Euler: after 1000 iterations the state must agree to 1e-6 of the
+ * motion. */
 static void meets_implicit_euler(const struct cs_conform *card, struct cs_conform_row *row,
                                  const double *target, double motion) {
     double state[CS_DRUM_VALUES];
@@ -33,7 +40,9 @@ static void meets_implicit_euler(const struct cs_conform *card, struct cs_confor
                  card->implicit_euler->name);
 }
 
-/* What more iterations still change must be little against the distance to implicit Euler. */
+/* The claim of a limit other than implicit Euler: four times the iterations may change at most
+ * a tenth of the distance to implicit Euler. Then the distance is that of the limit, not of
+ * unfinished iterations. */
 static void has_converged(const struct cs_conform *card, struct cs_conform_row *row,
                           const double *target, double motion) {
     double many[CS_DRUM_VALUES], more[CS_DRUM_VALUES];
@@ -47,6 +56,7 @@ static void has_converged(const struct cs_conform *card, struct cs_conform_row *
                  card->implicit_euler->name, left / motion);
 }
 
+/* Both claims need implicit Euler at the same step as the target. */
 void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     double start[CS_DRUM_VALUES] = {0}, target[CS_DRUM_VALUES];
@@ -66,7 +76,7 @@ void cs_check_fidelity(const struct cs_conform *card, struct cs_conform_row *row
         cs_row_skip(row, "there is no integrator backward-euler to hold it against");
         return;
     }
-    /* the start gives the scale: distances are told as shares of the motion */
+    /* the start gives the scale: distances are fractions of the motion */
     struct cs_probe probe;
     if (cs_drum_open(&probe, card, method, &drum))
         for (size_t i = 0; i < CS_DRUM_VALUES; i++)

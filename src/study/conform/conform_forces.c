@@ -1,9 +1,11 @@
-/* Checks the motion under one force at a time, under unequal masses, and under forces that
+/* Checks the motion under one force at a time, with unequal masses, and under forces that
  * change with time, against the reference.
  *
- * With step h and the rate w of the scene, a method of order p may be off by (h w)^p of the
- * motion times w T, the length of the run; twice that is left to it. A force that is missed, or
- * taken twice, is off by all of the motion, at any step. */
+ * Bound: with step h and rate w of the scene, a method of order p has the local error (h
+ * w)^(p+1) of the motion. The T / h steps of a run of length T add up to (h w)^p w T. Twice
+ * that is allowed, and never less than 1e-10. A force that is missed or applied twice causes an
+ * error of the size of the motion at any step. Two levels of accuracy differ by 8 in h: a wrong
+ * order fails at the fine level. */
 #include "study/conform/conform_cache.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
@@ -15,21 +17,23 @@
 
 #define DURATION (CS_FORCE_FRAMES * CS_FORCE_FRAME)
 
-/* error of the reference: (h w)^4 w T / 120, near 1e-13 of the motion for w = 10/s */
+/* s; the error of the reference, (h w)^4 w T / 120, is near 1e-13 of the motion for w = 10/s */
 #define REFERENCE_STEP (CS_FORCE_FRAME / 1024)
 
-/* what rounding, inner solves and the reference may leave */
+/* Lower limit of every bound: rounding, inner solves and the error of the reference. */
 #define FLOOR 1e-10
 
-/* h w at the coarse level */
+/* h w of the coarse level */
 #define COARSE 0.1
 
+/* Reference solution of a scene, stored in the cache as an array of TRUTH doubles. */
 struct truth {
     double state[2 * CS_FORCE_VALUES];
     double scale[2]; /* root mean square of the move, and of the change of velocity */
 };
 enum { TRUTH = sizeof(struct truth) / sizeof(double) };
 
+/* Runs the reference over the scene; the changes since the start give the scales. */
 static bool run_reference(const struct cs_conform *card, const struct cs_force_scene *scene,
                           struct truth *truth, struct cs_conform_row *row) {
     double start[2 * CS_FORCE_VALUES];
@@ -49,6 +53,7 @@ static bool run_reference(const struct cs_conform *card, const struct cs_force_s
     return done;
 }
 
+/* Takes the reference from the cache or runs it. The description is the key: it is unique. */
 static bool compute_reference(const struct cs_conform *card, const struct cs_force_scene *scene,
                               struct truth *truth, struct cs_conform_row *row) {
     const double *kept = cs_conform_cache_find(card->cache, scene->description, TRUTH);
@@ -63,13 +68,15 @@ static bool compute_reference(const struct cs_conform *card, const struct cs_for
     return true;
 }
 
-/* How far the order's share is that a level of accuracy may be off. */
+/* Accuracy of a run, and the order its bound is computed with. */
 struct accuracy {
     uint32_t order;
     int level;
     bool fixed; /* steps of dt, also of a method that can choose its own */
 };
 
+/* Sets step or tolerance; returns the expected error (h w)^order, as cs_probe_set_level does.
+ */
 static double set_accuracy(struct cs_probe *probe, const struct cs_force_scene *scene,
                            const struct accuracy *accuracy) {
     const double h = COARSE / scene->rate;
@@ -80,6 +87,7 @@ static double set_accuracy(struct cs_probe *probe, const struct cs_force_scene *
     return pow(dt * scene->rate, accuracy->order);
 }
 
+/* Compares one run with the reference, positions and velocities relative to their changes. */
 static void follow(const struct cs_conform *card, struct cs_conform_row *row,
                    const struct cs_force_scene *scene, const struct accuracy *accuracy) {
     static const char *const parts[2] = {"position", "velocity"};
@@ -103,13 +111,14 @@ static void follow(const struct cs_conform *card, struct cs_conform_row *row,
     cs_probe_close(&probe);
 }
 
+/* True if the scene belongs to the check and suits the model of the method. */
 static bool is_for(const struct cs_conform *card, const struct cs_force_scene *scene,
                    const char *check) {
     return !strcmp(scene->check, check) &&
            !(scene->deforms && card->method->fidelity == CS_FIDELITY_OTHER);
 }
 
-/* All scenes of a check, at the method's order. */
+/* Runs all scenes of a check, at the order that the method claims for forces of that kind. */
 static void check_scenes(const struct cs_conform *card, struct cs_conform_row *row) {
     bool any = false;
     if (!cs_probe_can_be_set(card, row))
@@ -142,7 +151,8 @@ X(force_contact)
 X(unequal_masses)
 #undef X
 
-/* Whether forces are followed in time at all, whatever the order: see stage-times. */
+/* Tests whether forces are followed in time at all: at order 1, which also a method passes that
+ * evaluates a force at the wrong end of the step. stage-times tests the order. */
 void cs_check_time_dependence(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!cs_probe_can_be_set(card, row))
         return;
@@ -151,7 +161,8 @@ void cs_check_time_dependence(const struct cs_conform *card, struct cs_conform_r
             follow(card, row, cs_force_scenes + k, &(struct accuracy){.order = 1, .level = 1});
 }
 
-/* A stage that asks for its forces at another time than its own costs all orders but one. */
+/* A stage that evaluates forces at a time other than its own reduces the order to 1. Steps are
+ * fixed: a method that chooses its steps would compensate for the lost order. */
 void cs_check_stage_times(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!cs_method_has(card->method, "dt")) {
         cs_row_skip(row, card->method->traits & CS_ADAPTIVE

@@ -1,5 +1,5 @@
-/* Checks whether a method takes memory in a step, by the C library's own account of what it has
- * handed out over all of its arenas. */
+/* Checks whether a method allocates memory in a step, by the C library's count of bytes in use
+ * over all of its arenas. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -8,18 +8,20 @@
 #include <malloc.h>
 #endif
 
-/* The C library keeps a few freed pieces of each small size for the thread, and counts them as
- * handed out: memory taken and given back in a step would not show. With these shelves empty it
- * does, since what is given back then goes onto them. */
+/* glibc keeps a few freed blocks of each small size per thread and counts them as in use:
+ * memory allocated and freed within a step would not show. Therefore SHELF blocks of each of
+ * SIZES sizes are held during the frame. The thread's cache is then empty, and a block that the
+ * step frees goes into it: it still counts as in use. */
 enum { SIZES = 64, SIZE_STEP = 16, SHELF = 7, WARM_UP = 3, WATCHED = 5 };
 
+/* Blocks held during a watched frame, and the bytes in use. */
 struct ledger {
     void *held[SIZES][SHELF];
     size_t before; /* bytes handed out */
     size_t most;   /* more than that, at the end of a step */
 };
 
-/* bytes, 0 where there is no such account */
+/* Returns the bytes in use, 0 if the C library does not report them. */
 static size_t bytes_allocated(void) {
 #if defined(__GLIBC__) && defined(__GLIBC_PREREQ)
 #if __GLIBC_PREREQ(2, 33)
@@ -30,6 +32,7 @@ static size_t bytes_allocated(void) {
     return 0;
 }
 
+/* Called at each commit: records the largest increase since the frame began. */
 static bool count_allocations(struct cs_probe *probe, double t, double dt, double *x,
                               double *v) {
     (void)t, (void)dt, (void)x, (void)v;
@@ -40,6 +43,7 @@ static bool count_allocations(struct cs_probe *probe, double t, double dt, doubl
     return false;
 }
 
+/* Runs one frame with the thread's cache emptied, and compares the bytes in use. */
 static bool watched_frame(struct cs_probe *probe, struct ledger *ledger) {
     for (int k = 0; k < SIZES; k++)
         for (int j = 0; j < SHELF; j++)
@@ -55,6 +59,7 @@ static bool watched_frame(struct cs_probe *probe, struct ledger *ledger) {
     return done;
 }
 
+/* Some frames run first: the host and libraries may allocate at their first use. */
 void cs_check_allocation(const struct cs_conform *card, struct cs_conform_row *row) {
     static const char scene[] =
         "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6]}, \"mass\": {\"particle\": 0.05},"

@@ -1,5 +1,5 @@
-/* Checks motions that are known in advance: fall, translation, rotation, and the momenta of a
- * free sheet. */
+/* Checks motions that are known in closed form: free fall, translation, rotation, and the
+ * momenta of a free sheet. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
@@ -26,9 +26,10 @@
     " \"time\": {\"fps\": 10}}"
 #define FREE_OMEGA 60 /* 1/s, near the bound on its frequencies */
 
-/* what rounding and the inner solves may leave */
+/* Relative change that rounding and inner solves may cause. */
 #define SMALL 1e-9
 
+/* The lower of the claimed orders, for scenes that may or may not be damped. */
 static uint32_t lower_order(const struct cs_integrator *method) {
     return method->order < method->order_damped ? method->order : method->order_damped;
 }
@@ -42,6 +43,7 @@ static double deformation(const struct cs_probe *probe, const double shift[3]) {
     return most;
 }
 
+/* Mean displacement of all particles in one direction, in m. */
 static double mean_shift(const struct cs_probe *probe, size_t component) {
     double sum = 0;
     for (size_t i = component * probe->n; i < (component + 1) * probe->n; i++)
@@ -49,8 +51,8 @@ static double mean_shift(const struct cs_probe *probe, size_t component) {
     return sum / (double)probe->n;
 }
 
-/* One second from rest. Sums of constant acceleration are right to (h/T)^2, or h/T of it where
- * the order is 1, and all springs stay at their rest length. */
+/* One second from rest: the mean must fall by g/2, and no spring may deform. Step sums of a
+ * constant acceleration are exact to (h/T)^2, or h/T for order 1. Twice that is allowed. */
 static void check_free_fall(const struct cs_conform *card, struct cs_conform_row *row,
                             int level) {
     struct cs_probe sheet;
@@ -76,6 +78,8 @@ void cs_check_free_fall(const struct cs_conform *card, struct cs_conform_row *ro
     check_free_fall(card, row, 1);
 }
 
+/* Galilean invariance: a uniform velocity must not change anything. The path must be straight
+ * and undeformed to 1e-8 m at any step; methods that damp absolute velocity fail. */
 void cs_check_translation(const struct cs_conform *card, struct cs_conform_row *row) {
     const double speed[3] = {1, 2, 3};
     struct cs_probe sheet;
@@ -89,8 +93,8 @@ void cs_check_translation(const struct cs_conform *card, struct cs_conform_row *
     cs_probe_close(&sheet);
 }
 
-/* Two particles whose spring is pulled out by just what keeps them on their circle: m w^2 l/2 =
- * k (l - 1). */
+/* Two particles on a circle: the spring force k (l - 1) provides the centripetal force m w^2
+ * l/2. This gives w^2 = 2 k (l - 1) / (l m). */
 static void check_rotation(const struct cs_conform *card, struct cs_conform_row *row,
                            int level) {
     const double length = 1.1, w = sqrt(2 * 25 * (length - 1) / length / 0.5), time = 0.5;
@@ -123,7 +127,8 @@ void cs_check_rotation(const struct cs_conform *card, struct cs_conform_row *row
     check_rotation(card, row, 1);
 }
 
-/* p and l: momentum and angular momentum about the origin; scale: sums of magnitudes. */
+/* p: momentum in kg m/s; l: angular momentum about the origin in kg m2/s. scale: the sums of
+ * the magnitudes of all terms, which make changes relative even where the totals vanish. */
 static void momenta(const struct cs_probe *probe, double p[3], double l[3], double scale[2]) {
     const size_t n = probe->n;
     const double *x = probe->x, *v = probe->v, *mass = probe->session.system.mass;
@@ -140,12 +145,13 @@ static void momenta(const struct cs_probe *probe, double p[3], double l[3], doub
     }
 }
 
+/* Largest difference of a component. */
 static double farthest(const double a[3], const double b[3]) {
     return fmax(fmax(fabs(a[0] - b[0]), fabs(a[1] - b[1])), fabs(a[2] - b[2]));
 }
 
-/* Changes of momentum and angular momentum in half a second, relative; returns what an error of
- * the method's order may be, NAN where the run ended. */
+/* Relative changes of momentum and angular momentum in half a second without external forces.
+ * Returns the error that the method's order explains, NAN if the run ended early. */
 static double drift(const struct cs_conform *card, struct cs_conform_row *row, int level,
                     double change[2]) {
     double before[2][3], after[2][3], scale[2];
@@ -170,13 +176,14 @@ static double drift(const struct cs_conform *card, struct cs_conform_row *row, i
     return share;
 }
 
+/* Inner forces cancel in pairs, so any method that adds forces linearly conserves momentum. */
 void cs_check_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
     double change[2];
     if (!isnan(drift(card, row, 0, change)))
         cs_row_state(row, change[0], SMALL, "of the momentum lost or made in 0.5 s");
 }
 
-/* Exact for symplectic methods, at the method's order for the others. */
+/* Symplectic methods conserve the quadratic invariant exactly; other methods to their order. */
 void cs_check_angular_momentum(const struct cs_conform *card, struct cs_conform_row *row) {
     const bool exact = card->method->traits & CS_SYMPLECTIC;
     if (!exact && !cs_probe_can_be_set(card, row))

@@ -1,17 +1,30 @@
-/* Checks closed-form oscillators, the order of fixed steps, the tolerance of adaptive ones, and
- * both through an event. */
+/* Checks closed-form oscillators, the order of fixed steps, the tolerance of adaptive methods,
+ * and both through an event.
+ *
+ * Order: with the error e(h) = C h^p (1 + O(h)), the slope log2(e(h) / e(h/2)) tends to p. The
+ * slope is only evident between the region of large steps, where higher terms count, and the
+ * floor of rounding. Therefore the step is halved until two successive slopes agree with the
+ * claim.
+ *
+ * Tolerance: an adaptive method controls the local error per step. The global error is a
+ * multiple of the tolerance that depends on the scene. A factor CS_TOLERANCE_FACTOR is allowed,
+ * and the error must shrink with the tolerance. */
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_drum.h"
 
 #include <math.h>
 #include <string.h>
 
-/* the distance s beyond rest obeys s'' + 2 d s' + w^2 s = 0, w^2 = 2 k/m, d = c/m */
+/* A free pair of masses m: the elongation s obeys s'' + 2 d s' + w^2 s = 0 with w^2 = 2 k/m =
+ * 100/s^2 and d = c/m = 1.2/s, because the reduced mass is m/2. */
 #define OSCILLATOR                                                                             \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1]}, \"mass\": {\"particle\": 0.5},"             \
     " \"springs\": {\"stretch\": 25, \"damping\": 0.6, \"damping_model\": \"%s\"}}],"          \
     " \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": {\"fps\": 20}}"
 
+/* Compares the elongation at T = 1 s with s(T) = s0 exp(-d T) (cos(u T) + d/u sin(u T)), u^2 =
+ * w^2 - d^2, from rest at s0 = 0.1 m. The phase error of order (h w)^p accumulates over w T =
+ * 10 radians; half of that product is allowed. */
 static void check_oscillator(const struct cs_conform *card, struct cs_conform_row *row,
                              const char *model, int level) {
     const double d = 0.6 / 0.5, w = 10, u = sqrt(w * w - d * d), reach = 0.1;
@@ -34,6 +47,7 @@ static void check_oscillator(const struct cs_conform *card, struct cs_conform_ro
     cs_probe_close(&pair);
 }
 
+/* Both levels of accuracy. */
 static void oscillator(const struct cs_conform *card, struct cs_conform_row *row,
                        const char *model) {
     if (!cs_probe_can_be_set(card, row))
@@ -50,13 +64,15 @@ void cs_check_oscillator_relative(const struct cs_conform *card, struct cs_confo
     oscillator(card, row, "relative");
 }
 
-/* most halvings of the step, and the relative error below which rounding is seen */
+/* Maximum number of halvings; and the order above which the first step can already be at the
+ * floor of rounding. */
 enum { HALVINGS = 10, HIGH_ORDER = 5 };
+/* Relative error below which rounding would show as a slope. */
 #define FLOOR 2e-11
 
-/* Halves the step until two slopes in a row are within 0.1 of the stated order, or the last one
- * before rounding is: position and velocity, each the error's. A single slope could pass by as
- * it crosses the value. */
+/* Halves the step until two successive slopes are within 0.1 of the claimed order, or the last
+ * one above rounding is. Positions and velocities are both measured, each relative to its own
+ * change. A single slope is not enough: it can cross the value by chance. */
 static void measure_order(const struct cs_conform *card, struct cs_conform_row *row,
                           uint32_t order, const struct cs_drum *drum) {
     double reference[2 * CS_DRUM_VALUES], state[2 * CS_DRUM_VALUES], scale[2], error[2] = {0};
@@ -95,7 +111,7 @@ static void measure_order(const struct cs_conform *card, struct cs_conform_row *
                      slope[1]);
 }
 
-/* Achieved error over the asked tolerance at three tolerances, and that it falls with it. */
+/* Error over tolerance at three tolerances, and the decrease of the error between the ends. */
 static void measure_tolerance(const struct cs_conform *card, struct cs_conform_row *row,
                               const struct cs_drum *drum) {
     static const double tolerances[] = {1e-3, 1e-5, 1e-7};
@@ -114,8 +130,8 @@ static void measure_tolerance(const struct cs_conform *card, struct cs_conform_r
     cs_row_state(row, error[2] / error[0], 0.01, "of the error at rtol 1e-3 left at 1e-7");
 }
 
-/* An adaptive method may have a dt as well, which then makes its steps fixed: both paths are
- * looked at, since one can be right and the other wrong. */
+/* An adaptive method with an option dt has two code paths, fixed and controlled steps. Here the
+ * fixed one is tested; `tolerance` tests the other. */
 static void order_on(const struct cs_conform *card, struct cs_conform_row *row,
                      double damping) {
     const struct cs_drum drum = {.damping = damping, .fixed_steps = true};
@@ -135,6 +151,7 @@ void cs_check_order_damped(const struct cs_conform *card, struct cs_conform_row 
     order_on(card, row, 0.05);
 }
 
+/* On the damped drum. */
 void cs_check_tolerance(const struct cs_conform *card, struct cs_conform_row *row) {
     if (!(card->method->traits & CS_ADAPTIVE))
         cs_row_skip(row, "its step is fixed: see order");
@@ -142,6 +159,8 @@ void cs_check_tolerance(const struct cs_conform *card, struct cs_conform_row *ro
         measure_tolerance(card, row, &(struct cs_drum){.damping = 0.05});
 }
 
+/* On the drum whose velocities jump at the end of the first frame. A multistep method must
+ * discard its history there. */
 void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_drum kicked = {.has_velocity_jump = true};
     if (!cs_probe_can_be_set(card, row))
@@ -152,7 +171,8 @@ void cs_check_event(const struct cs_conform *card, struct cs_conform_row *row) {
         measure_order(card, row, cs_probe_order(card, false), &kicked);
 }
 
-/* The law is smooth: contact costs no order, and no tolerance. */
+/* The contact law is smooth in range: contact must cost neither order nor tolerance. Friction
+ * depends on the velocity, hence the damped order. */
 void cs_check_contact_order(const struct cs_conform *card, struct cs_conform_row *row) {
     static const struct cs_drum drum = {.has_contact = true};
     if (card->method->traits & CS_EXPLICIT_OUTER)
@@ -163,8 +183,11 @@ void cs_check_contact_order(const struct cs_conform *card, struct cs_conform_row
         measure_order(card, row, cs_probe_order(card, true), &drum);
 }
 
-/* Repeated extrapolation to h = 0: each column takes out one more power of h, from the order
- * on. states (LEVELS, values) is overwritten; the last row is the result. */
+/* Richardson extrapolation to h = 0. With e(h) = c_p h^p + c_(p+1) h^(p+1) + ..., the
+ * combination
+ *   S'(h/2) = S(h/2) + (S(h/2) - S(h)) / (2^p - 1)
+ * removes the term of h^p; each further column removes the next power. states (LEVELS, values)
+ * belongs to the steps h, h/2, h/4, ... and is overwritten; its last row is the result. */
 enum { LEVELS = 6 };
 static void extrapolate(double (*states)[2 * CS_DRUM_VALUES], uint32_t order) {
     for (int column = 1; column < LEVELS; column++) {
@@ -175,6 +198,9 @@ static void extrapolate(double (*states)[2 * CS_DRUM_VALUES], uint32_t order) {
     }
 }
 
+/* Compares the limit h -> 0 with the reference: order alone would not notice convergence to the
+ * solution of another equation. Six steps are extrapolated; an adaptive method runs once with a
+ * tight tolerance. The bound of 1e-8 is well above the error of the reference, 1e-12. */
 void cs_check_solution(const struct cs_conform *card, struct cs_conform_row *row) {
     static const struct cs_drum drum = {.damping = 0.05};
     const struct cs_integrator *method = card->method;

@@ -1,4 +1,4 @@
-/* Runs a small scene with one method for a check, at a set step or tolerance. */
+/* Runs a small scene with one method for a check, at a given step or tolerance. */
 #include "study/conform/conform_probe.h"
 
 #include "base/options.h"
@@ -11,10 +11,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* no check needs more processor time in one run; a method that crawls is told so */
+/* s of processor time for one run; a slower method fails the check. */
 #define BUDGET 60
 
-/* tight enough that what is measured is the method, loose enough to be reached in doubles */
+/* Tolerance and iterations of inner solves: tight enough to leave the error of the method,
+ * loose enough to be reachable in double precision. */
 #define INNER_RTOL 1e-12
 #define ITERATIONS 50
 
@@ -34,6 +35,9 @@ bool cs_probe_set(struct cs_probe *probe, const char *name, double value) {
     return true;
 }
 
+/* Sets the tolerances of inner solves. The iterations of an iteration-limited method are raised
+ * only if it claims implicit Euler as its limit; other fidelities are tested with the default.
+ */
 static void set_inner(struct cs_probe *probe) {
     cs_probe_set(probe, "linear_rtol", INNER_RTOL);
     cs_probe_set(probe, "newton_rtol", INNER_RTOL);
@@ -86,7 +90,7 @@ uint32_t cs_probe_order(const struct cs_conform *card, bool damped) {
     return (uint32_t)asked;
 }
 
-/* the check's own look at the state after each commit */
+/* Passes each commit on to the check's callback. */
 static bool observe(void *ctx, double t, double dt, double *x, double *v) {
     struct cs_probe *probe = ctx;
     return probe->on_commit && probe->on_commit(probe, t, dt, x, v);

@@ -1,14 +1,20 @@
-/* The reference method of conformance checks (Kutta 1901): y = (x, v), four stages
- * k_i = F(t + c_i h, y + c_i h k_(i-1)), c = 0, 1/2, 1/2, 1;
- * y' = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4). */
+/* The reference method of conformance checks (Kutta 1901).
+ *
+ * For y = (x, v) and F(t, y) = (v, M^-1 f(t, x, v)), four stages
+ *   k_i = F(t + c_i h, y + c_i h k_(i-1)),  c = 0, 1/2, 1/2, 1,
+ *   y' = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4).
+ * The module interface is used as a plugin would use it: memory in create, one commit per step.
+ * Steps divide an advance equally and are at most dt. */
 #include "study/conform/conform_reference.h"
 
 #include <math.h>
 
+/* s */
 struct options {
     double dt;
 };
 
+/* State of the method: no history, hence restart has nothing to do. */
 struct reference {
     const struct cs_host *host;
     double dt;
@@ -38,7 +44,7 @@ static enum cs_step restart(void *self, double t, const double *x, const double 
     return CS_STEP_OK;
 }
 
-/* slope = F(t, y) */
+/* slope = F(t, y); y and slope are (2, 3, n), positions or their rates first. */
 static void evaluate(struct reference *self, double t, const double *y) {
     const struct cs_host *host = self->host;
     const size_t n = host->view->n, half = 3 * n;
@@ -49,6 +55,8 @@ static void evaluate(struct reference *self, double t, const double *y) {
     }
 }
 
+/* One step from t: the slope of the last stage is reused in place, the weighted sum
+ * accumulates. */
 static void step(struct reference *self, double t, double h, double *y) {
     static const double places[4] = {0, 0.5, 0.5, 1}, weights[4] = {1, 2, 2, 1};
     const size_t length = 6 * (size_t)self->host->view->n;
@@ -63,6 +71,7 @@ static void step(struct reference *self, double t, double h, double *y) {
         y[i] += h / 6 * self->sum[i];
 }
 
+/* x and v are adjacent in memory, so one array y of 6n values serves both. */
 static enum cs_step advance(void *object, double t0, double t1, double *x, double *v) {
     (void)v; // is x + 3n
     struct reference *self = object;

@@ -1,11 +1,11 @@
-/* Checks that a run which goes on from a checkpoint is the unbroken one. */
+/* Checks that a run resumed from a checkpoint has the bits of the unbroken run. */
 #include "sim/run_record.h"
 #include "study/conform/conform_checks.h"
 #include "study/conform/conform_probe.h"
 
 #include <string.h>
 
-/* much of what changes between frames: values, pins, and contact */
+/* Many things change between frames: ramped values, released pins, gusts and contact. */
 #define EVENTFUL                                                                               \
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"bump\": 0.02}, \"mass\": {\"particle\": "  \
     "0.05}, \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1},"     \
@@ -16,9 +16,10 @@
     "\"key\": \"bodies[1].springs.stretch\", \"value\": 90}}, {\"from\": 0.01, \"to\": 0.14,"  \
     " \"wind\": {\"strength\": 3, \"direction\": [0, 0, 1]}}, {\"at\": 0.06, \"release\": {"   \
     "\"particles\": [\"top-left\"]}}]}"
+/* Frames of the run, and the frame after which the checkpoint is written. */
 enum { FRAMES = 10, BROKEN = 5 };
 
-/* Makes a record after BROKEN frames, or goes on from one. */
+/* Writes a record after BROKEN frames, or restores the run from one. */
 static bool pass_break(struct cs_probe *probe, struct cs_serialiser *record) {
     struct cs_run *run = &probe->session.run;
     if (!probe->has_ended && record->is_reading)
@@ -28,6 +29,7 @@ static bool pass_break(struct cs_probe *probe, struct cs_serialiser *record) {
     return !probe->has_ended;
 }
 
+/* True if state and counts agree exactly. */
 static bool is_same(const struct cs_probe *one, const struct cs_probe *two) {
     const struct cs_counts *a = &one->session.run.counts, *b = &two->session.run.counts;
     return !memcmp(one->x, two->x, 6 * one->n * sizeof *one->x) && a->steps == b->steps &&

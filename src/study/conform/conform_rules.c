@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* hung at two corners, pulled by gravity and wind, into a floor: all that commit does */
+/* Pinned at two corners, pulled by gravity and wind, and falling on a floor: uses all that a
+ * commit does. */
 #define HANGING                                                                                \
     "{\"bodies\": [{\"cloth\": {\"grid\": [6, 6], \"bump\": 0.02}, \"mass\": {\"particle\": "  \
     "0.05}, \"springs\": {\"stretch\": 60, \"shear\": 20, \"bend\": 5, \"damping\": 0.1,"      \
@@ -14,6 +15,7 @@
     " \"wind\": {\"direction\": [0, 0, 1], \"strength\": 2}}, \"time\": {\"fps\": 60}}"
 enum { HANGING_FRAMES = 30 };
 
+/* True if the name is one of the card's checks. */
 static bool is_check(const char *name) {
 #define X(check, function, of, what)                                                           \
     if (!strcmp(name, check))                                                                  \
@@ -23,7 +25,7 @@ static bool is_check(const char *name) {
     return false;
 }
 
-/* What opening a module does not look at, since a run does not need it. */
+/* Checks the descriptor where opening a module does not, because a run does not need it. */
 void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     const uint32_t needs = CS_NEED_JVP | CS_NEED_DIAGONAL | CS_NEED_ENERGY | CS_NEED_SPRINGS |
@@ -53,7 +55,8 @@ void cs_check_abi(const struct cs_conform *card, struct cs_conform_row *row) {
         cs_row_state(row, CS_ABI, CS_ABI, "interface of the module");
 }
 
-/* Makes the method with one option at the end of its range: it does, or it says why not. */
+/* Creates the method with one option at an end of its range. It must succeed, or fail with a
+ * reason. */
 static void try_option(const struct cs_conform *card, struct cs_conform_row *row,
                        const struct cs_option *option, double value) {
     struct cs_probe probe;
@@ -65,6 +68,7 @@ static void try_option(const struct cs_conform *card, struct cs_conform_row *row
     cs_probe_close(&probe);
 }
 
+/* Runs the method with its defaults, then creates it with each numeric option at both ends. */
 void cs_check_options(const struct cs_conform *card, struct cs_conform_row *row) {
     const struct cs_integrator *method = card->method;
     struct cs_probe plain;
@@ -84,12 +88,13 @@ void cs_check_options(const struct cs_conform *card, struct cs_conform_row *row)
                      method->n_options);
 }
 
-/* The steps as they were committed. */
+/* The committed steps. */
 struct ledger {
     double t;   /* s, the end of the last */
     double gap; /* s, the farthest that a step did not begin there */
 };
 
+/* Records at each commit the largest gap between successive steps. */
 static bool store_account(struct cs_probe *probe, double t, double dt, double *x, double *v) {
     (void)x, (void)v;
     struct ledger *ledger = probe->on_commit_ctx;
@@ -98,6 +103,7 @@ static bool store_account(struct cs_probe *probe, double t, double dt, double *x
     return false;
 }
 
+/* The committed steps must fill the time: each begins where the last one ended, to 1e-12 s. */
 void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe sheet;
     struct ledger ledger = {0};
@@ -112,6 +118,7 @@ void cs_check_commit(const struct cs_conform *card, struct cs_conform_row *row) 
     cs_probe_close(&sheet);
 }
 
+/* Pinned particles must keep the bits of their positions, and zero velocities. */
 void cs_check_pins(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe sheet;
     uint32_t moved = 0;
@@ -132,7 +139,7 @@ void cs_check_pins(const struct cs_conform *card, struct cs_conform_row *row) {
     cs_probe_close(&sheet);
 }
 
-/* Whether a run from a state that cannot go well ended as a finished one. */
+/* True if a run from an invalid state ended as finished with a state that is not finite. */
 static bool hides(struct cs_probe *probe) {
     bool finite = true;
     if (!cs_probe_run(probe, 10))
@@ -166,6 +173,7 @@ void cs_check_not_finite(const struct cs_conform *card, struct cs_conform_row *r
     cs_row_state(row, hidden, 0, "of 3 invalid runs were not reported as failures (%s)", which);
 }
 
+/* The host lets every linear solve fail: no frame may then be finished. */
 void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe sheet;
     if (!(card->method->needs & CS_NEED_SOLVE)) {
@@ -183,6 +191,8 @@ void cs_check_failed_solve(const struct cs_conform *card, struct cs_conform_row 
     cs_probe_close(&sheet);
 }
 
+/* Two runs in alternation must agree in all bits: no method may depend on addresses, on
+ * uninitialised memory, or on static variables. */
 void cs_check_same_bits(const struct cs_conform *card, struct cs_conform_row *row) {
     struct cs_probe one, two;
     cs_probe_open(&one, card, card->method, HANGING, "axial");

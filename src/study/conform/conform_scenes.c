@@ -1,13 +1,13 @@
-/* Holds small scenes as text, in a table at the end: a new force adds its own. */
+/* Holds small scenes as text, in a table at the end. A new force adds its own. */
 #include "study/conform/conform_scenes.h"
 
 #define FREE_OF_SPRINGS "\"springs\": {\"stretch\": 0, \"shear\": 0, \"bend\": 0}"
 #define FIVE_FRAMES     "\"time\": {\"fps\": 10}"
 #define NO_GRAVITY      "\"gravity\": [0, 0, 0]"
 
-/* Two sheets of four particles without springs, the second one turned and further back. All
- * particles of a sheet have the same mass, share of the area and normal, so that it moves as a
- * rigid body under any outer force, in any model. */
+/* Two sheets of four particles without springs, the second one rotated and further back. All
+ * particles of a sheet have equal mass, area fraction and normal: each sheet moves as a rigid
+ * body under any external force, in any model. */
 #define SHEETS_OF(first, second)                                                               \
     "\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [1, 2, -1]},"                   \
     " \"mass\": {\"particle\": " first "}, " FREE_OF_SPRINGS "},"                              \
@@ -20,7 +20,7 @@
     "{" SHEETS_OF("0.1", "0.1") ", \"forces\": {" forces "}, \"events\": [{" event             \
                                 "}], " FIVE_FRAMES "}"
 
-/* one sheet, stretched and turning, so that springs pull and normals change */
+/* One sheet, stretched and spinning: springs pull and normals change. */
 #define CLOTH                                                                                  \
     "\"cloth\": {\"grid\": [3, 3], \"stretch\": [1.1, 0.95], \"bump\": 0.1,"                   \
     " \"spin\": [0.5, 1, 0.3]}, \"mass\": {\"particle\": 0.1}"
@@ -28,7 +28,8 @@
     "{\"bodies\": [{" CLOTH ", \"springs\": {" values "}}], \"forces\": {" NO_GRAVITY          \
     "}, " FIVE_FRAMES "}"
 
-/* springs so soft that dampers do all; the pinned edge makes the velocities differ */
+/* Springs so soft that dampers determine the motion; a pinned edge causes relative velocities.
+ */
 #define DAMPERS(model)                                                                         \
     "{\"bodies\": [{\"cloth\": {\"grid\": [3, 3], \"velocity\": [0.4, -0.5, 0.6]},"            \
     " \"mass\": {\"particle\": 0.1}, \"pins\": [\"top\"], \"springs\": {\"stretch\": 0.001,"   \
@@ -43,8 +44,8 @@
           "0], \"fov\":"                                                                       \
           " 60, \"aspect\": 1.5}, \"force\": 0.8, " more "}"
 
-/* A sheet that comes near a plane it is parallel to, and slides: all its particles feel the
- * same. It stays in the range, where the force is smooth. */
+/* A sheet that approaches a parallel plane and slides: all particles get the same force. It
+ * stays in range, where the force is smooth. */
 #define CONTACT(friction, events)                                                              \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0.2, -0.3]},"            \
     " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
@@ -53,7 +54,8 @@
     "}], \"contact\": {\"law\": \"force\", \"stiffness\": 1, \"damping\": 0.02,"               \
     " \"friction_speed\": 0.2}, \"events\": [" events "], " FIVE_FRAMES "}"
 
-/* A sheet whose edges and diagonal slide over a thin pole, out of reach of its particles. */
+/* A sheet whose edges and diagonal slide over a thin pole out of reach of its particles: tests
+ * contact samples between particles. */
 #define POLE                                                                                   \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.3, 0, -0.3]},"              \
     " \"mass\": {\"particle\": 0.1}, " FREE_OF_SPRINGS "}], \"forces\": {" NO_GRAVITY          \
@@ -62,7 +64,7 @@
     " \"force\", \"stiffness\": 1, \"damping\": 0.02, \"friction_speed\": 0.2}, " FIVE_FRAMES  \
     "}"
 
-/* Two sheets that come near each other, and slide; they stay in the range. */
+/* Two sheets that approach each other and slide; they stay in range. */
 #define PAIRS(friction)                                                                        \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 2], \"velocity\": [0.15, 0.1, 0.1]},"            \
     " \"mass\": {\"particle\": 0.1}, \"thickness\": 0.4, " FREE_OF_SPRINGS "},"                \

@@ -1,4 +1,4 @@
-/* Checks that the state is the same to the last bit with any number of threads. */
+/* Checks that the state has the same bits with any number of threads. */
 #include "base/hash.h"
 #include "base/pool.h"
 #include "study/conform/conform_checks.h"
@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* a sheet whose rows, and a mesh whose springs, are shared by seven threads; vectors of several
- * blocks */
+/* A sheet whose rows, and a mesh whose springs, are divided among seven threads; its vectors
+ * have several blocks. Sums in an order that depends on the threads would show. */
 #define SHARED                                                                                 \
     "{\"bodies\": [{\"cloth\": {\"grid\": [40, 60], \"size\": [1, 1.5], \"bump\": 0.02},"      \
     " \"mass\": {\"total\": 0.5}, \"pins\": [\"top-left\", \"top-right\"], \"springs\":"       \
@@ -20,7 +20,7 @@
 
 enum { FRAMES = 2 };
 
-/* hash of the state after FRAMES; false: the row says why there is none */
+/* Hash of the state after FRAMES. Returns false if there is none: the row says why. */
 static bool hash_with(uint32_t threads, const struct cs_conform *card,
                       struct cs_conform_row *row, char hash[CS_HASH_DIGITS]) {
     struct cs_probe probe = {0};

@@ -11,6 +11,7 @@
 
 enum { HASH_FIELDS = 6, IMAGE_FIELDS = 7 };
 
+/* A golden table, read into memory; rows point into its lines. */
 struct table {
     char path[1024];
     const char *head; /* first line, without its end */
@@ -20,6 +21,7 @@ struct table {
     uint32_t n;
 };
 
+/* Cuts a line into fields, in place. */
 static enum cs_status read_row(const struct table *table, struct cs_golden_row *row, char *line,
                                struct cs_error *error) {
     char *fields[IMAGE_FIELDS];
@@ -55,6 +57,7 @@ static enum cs_status read_table(struct table *table, const char *folder, const 
     return error->status;
 }
 
+/* Prints a row as a line of the table. */
 static void add_line(const struct cs_golden_row *row, const char *hash, const char *note,
                      struct cs_text *text) {
     cs_text_add(text, "%s\t%s\t%s\t%u\t", row->run.scene, row->run.integrator,
@@ -64,6 +67,7 @@ static void add_line(const struct cs_golden_row *row, const char *hash, const ch
     cs_text_add(text, "%s\t%s\n", hash, note);
 }
 
+/* Writes all rows, and the added ones after the rows of the same run. */
 static enum cs_status write_table(const struct table *table, struct cs_error *error) {
     struct cs_text text = {0};
     cs_text_add(&text, "%s\n", table->head);
@@ -82,7 +86,8 @@ static void free_table(struct table *table) {
     cs_rows_close(&table->lines);
 }
 
-/* A row of a method whose bits are those of a library may hold for one version of it. */
+/* True if the row holds for this build. A method whose bits depend on a library has one row per
+ * version. */
 static bool is_for_this_build(struct cs_golden_row *row, const struct cs_integrator *method) {
     if (CS_HAS(method, library) && method->library)
         snprintf(row->library, sizeof row->library, "%s", method->library);
@@ -93,7 +98,7 @@ static bool is_for_this_build(struct cs_golden_row *row, const struct cs_integra
     return !row->skipped;
 }
 
-/* one state hash against its golden value */
+/* Compares one state hash with its golden value. */
 static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row *row,
                                  struct cs_error *error) {
     struct cs_session session;
@@ -115,12 +120,13 @@ static enum cs_status check_hash(struct cs_golden *golden, struct cs_golden_row 
     return CS_OK;
 }
 
+/* True if the row passes the filter by scene or integrator. */
 static bool is_wanted(const struct cs_golden *golden, const struct cs_golden_row *row) {
     return !golden->only_rows || strstr(row->run.scene, golden->only_rows) ||
            strstr(row->run.integrator, golden->only_rows);
 }
 
-/* whether the table has a row of the same run for the library of this build */
+/* True if the table has a row of the same run for the library of this build. */
 static bool is_in_table(const struct table *table, const struct cs_golden_row *row) {
     bool found = false;
     for (uint32_t k = 0; k < table->n; k++) {
@@ -150,7 +156,7 @@ static void count(struct cs_golden *golden, const struct cs_golden_row *row) {
         golden->failed++;
 }
 
-/* one table; check handles a row */
+/* Checks one table; check handles a row. */
 static enum cs_status
 check_table(struct cs_golden *golden, const char *name, const char *head, uint32_t n_fields,
             enum cs_status (*check)(struct cs_golden *golden, struct cs_golden_row *row,

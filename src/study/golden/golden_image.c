@@ -1,5 +1,5 @@
-/* Puts a picture through the two-level gate: pixel for pixel if the renderer is the golden's
- * own, else within the calibrated tolerance. */
+/* Checks a picture in two levels: exact pixels for the renderer of the golden image, a
+ * calibrated tolerance for others. */
 #include "study/golden/golden_image.h"
 
 #include "draw/image_diff.h"
@@ -23,7 +23,7 @@ static enum cs_status write_image(const struct cs_golden *golden,
     return cs_png_write(path, image, 6, NULL, 0, error);
 }
 
-/* what was drawn, and 16 times the difference, beside the golden image */
+/* Writes the picture and 16 times the difference beside the golden image. */
 static enum cs_status write_evidence(const struct cs_golden *golden,
                                      const struct cs_golden_row *row,
                                      const struct cs_image *found,
@@ -39,7 +39,7 @@ static enum cs_status write_evidence(const struct cs_golden *golden,
     return error->status;
 }
 
-/* fills row->message where the picture does not pass */
+/* Fills row->message if the picture does not pass. */
 static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row *row,
                             const struct cs_image *found, const char *renderer,
                             struct cs_error *error) {
@@ -70,8 +70,8 @@ static enum cs_status judge(const struct cs_golden *golden, struct cs_golden_row
     return error->status;
 }
 
-/* --accept: only the renderer whose pixels are the same everywhere may bless, so that goldens
- * are everyone's */
+/* Accepts the picture. Only the CPU renderer may, because its pixels are equal on all machines.
+ */
 static enum cs_status accept_image(const struct cs_golden *golden, struct cs_golden_row *row,
                                    const struct cs_image *found, struct cs_text *renderer,
                                    struct cs_error *error) {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* splits "path=value;path=value" in place; returns the number of overrides */
+/* Splits "path=value;path=value" in place. Returns the number of overrides. */
 static uint32_t split_overrides(char *text, struct cs_override *overrides, uint32_t most) {
     uint32_t n = 0;
     char *pair;

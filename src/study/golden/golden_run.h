@@ -1,4 +1,4 @@
-/* golden_run.h - a golden row, what is asked of it, and its run. */
+/* golden_run.h - a golden row, its settings, and its run. */
 #ifndef CS_GOLDEN_RUN_H
 #define CS_GOLDEN_RUN_H
 
@@ -7,12 +7,13 @@
 #include "draw/render.h"
 #include "study/session.h"
 
+/* The run of a row; texts are the table's. */
 struct cs_golden_run {
     char *scene, *integrator, *overrides; /* "-": none */
     uint32_t frames;
 };
 
-/* A line of a table: a run, and what belongs to it. Fields are the table's. */
+/* A line of a table: a run and its expected result. Fields are the table's. */
 struct cs_golden_row {
     struct cs_golden_run run;
     char *hash; /* of the state (hash.tsv) or of the pixels (image.tsv) */
@@ -22,11 +23,12 @@ struct cs_golden_row {
     char *image; /* name of the picture; NULL in hash.tsv */
     char found[CS_HASH_DIGITS], renderer[256];
     char library[64];       /* as in note, of this build; "": the bits are the program's own */
-    struct cs_text message; /* what differs, or why the row was skipped; empty: nothing */
+    struct cs_text message; /* the difference, or why the row was skipped; empty: equal */
     bool skipped;           /* the library is not in this build, or of another version */
     bool added;             /* accepted for that version, in a row of its own */
 };
 
+/* Settings and counts of a check; pointers are borrowed. */
 struct cs_golden {
     const char *folder;    /* "golden" */
     const char *only_rows; /* rows whose scene or integrator holds this text; NULL: all */
@@ -41,8 +43,8 @@ struct cs_golden {
     uint32_t passed, failed, skipped, accepted;
 };
 
-/* Steps a row's run to its last frame. The session is open on success, and closed by the
- * caller. */
+/* Steps a row's run to its last frame. On success the session is open and the caller closes it.
+ */
 enum cs_status cs_golden_step(const struct cs_golden *golden, const struct cs_golden_run *run,
                               bool render, struct cs_session *session, struct cs_error *error);
 

@@ -10,23 +10,25 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A family's own error explains a difference up to that many times itself, and agreement to
- * less than that share of the motion is asked of nobody. */
+/* Families agree if they differ by at most EXPLAINED times the larger of their own errors, or
+ * by FLOOR of the motion. */
 #define EXPLAINED 100
 #define FLOOR     1e-9
 
-/* Farther from the reference than so many times what the first family differs from itself, and
- * than rounding, the second family is the one that is off: another one is asked too. */
+/* The second family is in error if it is farther from the reference than ROUGH times the own
+ * error of the first family and than ROUNDING of the motion. The next candidate is then tried
+ * in its place. */
 #define ROUGH    10
 #define ROUNDING 1e-13
 
+/* Reports the progress; the horizon counts as one more run. */
 static void tell(const struct cs_compare_reference_settings *settings, uint32_t done,
                  const char *what) {
     if (settings->progress)
         settings->progress(settings->ctx, done, CS_COMPARE_REFERENCE_RUNS + 1, what);
 }
 
-/* Runs one of the four; *good: it got to the end. */
+/* Records run k of the four. *good: it reached its last frame. */
 static enum cs_status run_one(struct cs_compare_reference *reference, int k,
                               const struct cs_compare_reference_settings *settings,
                               struct cs_trajectory *track, bool *good, struct cs_error *error) {
@@ -44,7 +46,7 @@ static enum cs_status run_one(struct cs_compare_reference *reference, int k,
     return error->status;
 }
 
-/* largest RMS and particle distance of two runs at any frame */
+/* Largest RMS distance and largest particle distance of two runs over all frames, in m. */
 static void compare(const struct cs_system *system, const struct cs_trajectory *a,
                     const struct cs_trajectory *b, double *rms, double *largest) {
     *rms = *largest = 0;
@@ -55,6 +57,7 @@ static void compare(const struct cs_system *system, const struct cs_trajectory *
     }
 }
 
+/* Scales of the motion that make errors relative: displacement, kinetic energy, strain. */
 static void measure_motion(struct cs_compare_reference *reference,
                            const struct cs_system *system) {
     const struct cs_trajectory *track = &reference->trajectory;
@@ -69,6 +72,7 @@ static void measure_motion(struct cs_compare_reference *reference,
     }
 }
 
+/* Differences and error bars, as the header defines them. */
 static void measure_bar(struct cs_compare_reference *reference, const struct cs_system *system,
                         const struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS]) {
     double largest[3];
@@ -80,12 +84,14 @@ static void measure_bar(struct cs_compare_reference *reference, const struct cs_
     reference->error_bar_max = fmax(largest[0], largest[2]);
 }
 
+/* True if another second family should be tried. */
 static bool has_disagreement(const struct cs_compare_reference *reference) {
     const double *differences = reference->differences;
     return differences[2] > ROUGH * differences[0] &&
            differences[2] > ROUNDING * reference->motion_scale;
 }
 
+/* Decides whether the families agree. */
 static void judge(struct cs_compare_reference *reference) {
     const double *differences = reference->differences;
     const double own = fmax(differences[0], differences[1]);
@@ -100,6 +106,8 @@ static void judge(struct cs_compare_reference *reference) {
                  differences[2], differences[0], differences[1]);
 }
 
+/* Pointwise errors need families that agree, a horizon beyond the end, and an error bar below
+ * the requested accuracy. */
 static void judge_horizon(struct cs_compare_reference *reference) {
     const double time = reference->trajectory.frames / reference->trajectory.fps;
     const struct cs_horizon *horizon = &reference->horizon;
@@ -119,7 +127,8 @@ static void judge_horizon(struct cs_compare_reference *reference) {
         reference->pointwise = true;
 }
 
-/* Runs `from` to `to` of the four; false: one did not get to its end, or *error says why. */
+/* Records runs `from` to `to` - 1. Returns false if one of them ended early or *error is set.
+ */
 static bool run_some(struct cs_compare_reference *reference, int from, int to,
                      const struct cs_compare_reference_settings *settings,
                      struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
@@ -130,6 +139,7 @@ static bool run_some(struct cs_compare_reference *reference, int from, int to,
     return good;
 }
 
+/* Stores the settings of a family and those of its tighter twin. */
 static enum cs_status name_twins(struct cs_compare_reference *reference, int family,
                                  const char *chosen, struct cs_error *error) {
     char *const pair = reference->methods[(size_t)2 * (size_t)family];
@@ -138,7 +148,7 @@ static enum cs_status name_twins(struct cs_compare_reference *reference, int fam
                                         sizeof *reference->methods, error);
 }
 
-/* The second family; another one where it does not get to the end. */
+/* Runs the second family; if it does not finish, the replacement. */
 static bool run_second(struct cs_compare_reference *reference,
                        const struct cs_compare_reference_settings *settings,
                        struct cs_trajectory tracks[CS_COMPARE_REFERENCE_RUNS],
@@ -154,8 +164,9 @@ static bool run_second(struct cs_compare_reference *reference,
     return run_some(reference, 2, CS_COMPARE_REFERENCE_RUNS, settings, tracks, error);
 }
 
-/* A method of fixed steps loses its order where forces bend, such as in slow friction, and
- * says little of the reference: the next one takes its place if it comes nearer. */
+/* Tries the replacement as second family, and keeps it if it comes nearer. A method of fixed
+ * steps loses its order where the derivative of the force jumps, for example at slow friction,
+ * and then says little about the reference. */
 static enum cs_status ask_another(struct cs_compare_reference *reference,
                                   const struct cs_system *system,
                                   const struct cs_compare_reference_settings *settings,

@@ -1,4 +1,4 @@
-/* Keeps a reference in a file: its key, its header and its states. */
+/* Stores a reference in a file: header, then its states. */
 #include "study/reference/compare_reference_cache.h"
 
 #include "base/file.h"
@@ -12,7 +12,8 @@
 #define MAGIC "clothsim ref 1\n"
 enum { FILE_BYTES_MAX = 1 << 30 };
 
-/* Native byte order: a file of another machine fails the test of `one`. */
+/* Head of the file, in the byte order of the machine: on another one `one` is not 1, and the
+ * file counts as missing. */
 struct header {
     char magic[16];
     double one;
@@ -53,6 +54,7 @@ enum cs_status cs_compare_reference_key(const struct cs_compare_reference *refer
     return error->status;
 }
 
+/* Path of the file; 16 digits of the key suffice for its name. */
 static void file_path(const char *folder, const char *key, char *path, size_t size) {
     snprintf(path, size, "%s/reference-%.16s.state", folder, key);
 }
@@ -92,6 +94,8 @@ bool cs_compare_reference_read(struct cs_compare_reference *reference, const cha
     return good;
 }
 
+/* The file appears under its name only when it is complete, so parallel comparisons can share a
+ * cache. */
 enum cs_status cs_compare_reference_write(const struct cs_compare_reference *reference,
                                           const char *folder, const char *key,
                                           struct cs_error *error) {

@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Best first. %g stands for 2/omega, the longest stable step of the leap-frog. */
+/* Candidates, best first: explicit one-step methods; and implicit or multistep ones.
+ * velocity-verlet is the last resort of both families. "@" stands for 2/omega, the longest
+ * stable step of the leap-frog. */
 static const char *const one_step[] = {"ark-erk:order=8,rtol=1e-12,atol=1e-12",
                                        "ark-erk:rtol=1e-12,atol=1e-12",
                                        "dopri5:rtol=1e-12,atol=1e-12",
@@ -22,7 +24,7 @@ static const char *const other[] = {"gauss:order=8,rtol=1e-12,dt=@0.4",
                                     NULL};
 static const char *const *const families[2] = {one_step, other};
 
-/* "dt=@0.04": that share of 2/omega */
+/* Replaces "dt=@0.04" by that fraction of 2/omega in s. */
 static void fill_step(const char *pattern, double omega, char *out, size_t size) {
     const char *at = strchr(pattern, '@');
     struct cs_text number = {0};
@@ -32,6 +34,7 @@ static void fill_step(const char *pattern, double omega, char *out, size_t size)
     cs_text_finish(&number);
 }
 
+/* True if the method is available and accepts the scene. */
 static bool is_there(const struct cs_compare_reference_settings *settings,
                      const char *integrator) {
     struct cs_session session;
@@ -43,7 +46,7 @@ static bool is_there(const struct cs_compare_reference_settings *settings,
     return there;
 }
 
-/* omega of the smooth scene, by a method that asks for nothing */
+/* Bound on the frequencies of the smooth scene in 1/s, at least 1. */
 static enum cs_status measure_omega(const struct cs_compare_reference_settings *settings,
                                     double *omega, struct cs_error *error) {
     struct cs_recorded_run recording;
@@ -53,8 +56,8 @@ static enum cs_status measure_omega(const struct cs_compare_reference_settings *
     return error->status;
 }
 
-/* the first of a family that is there, from number *k on; *k is then the next, chosen "" where
- * there is none. One method cannot stand for both families. */
+/* Chooses the first available candidate of a family from number *k on; *k is then the next
+ * number, and the choice "" if there is none. One method must not stand for both families. */
 static void take_first(const struct cs_compare_reference_settings *settings, int family,
                        double omega, int *k, char chosen[2][256]) {
     for (bool found = false; !found && families[family][*k]; ++*k) {
@@ -67,6 +70,7 @@ static void take_first(const struct cs_compare_reference_settings *settings, int
     }
 }
 
+/* Takes both families from --reference. */
 static enum cs_status copy_given(const struct cs_compare_reference_settings *settings,
                                  char chosen[2][256], struct cs_error *error) {
     for (int k = 0; k < 2; k++)
@@ -103,10 +107,12 @@ enum cs_status cs_compare_reference_choose(const struct cs_compare_reference_set
     return CS_OK;
 }
 
+/* Options that set the accuracy. */
 static bool is_tightened(const char *key) {
     return !strcmp(key, "rtol") || !strcmp(key, "atol") || !strcmp(key, "dt");
 }
 
+/* Adds one option, tightened if it sets the accuracy. */
 static void tighten(const char *key, const char *text, struct cs_text *out) {
     double value;
     cs_text_add(out, "%s=", key);

@@ -1,4 +1,4 @@
-/* compare_reference_state.h - what a reference is asked for, and what it came to. */
+/* compare_reference_state.h - settings of a reference, and its result. */
 #ifndef CS_COMPARE_REFERENCE_STATE_H
 #define CS_COMPARE_REFERENCE_STATE_H
 
@@ -7,6 +7,7 @@
 
 enum { CS_COMPARE_REFERENCE_RUNS = 4 };
 
+/* Request for a reference; all pointers are borrowed. */
 struct cs_compare_reference_settings {
     const struct cs_recorded_run_settings *run;
     const char *methods[2]; /* "NAME:options" of the two families; NULL: the best there are */
@@ -17,13 +18,13 @@ struct cs_compare_reference_settings {
     void *ctx;
 };
 
-/* Zeroed: none. */
+/* A reference; zeroed: none. Owns its trajectory. */
 struct cs_compare_reference {
     struct cs_trajectory trajectory;
     char methods[CS_COMPARE_REFERENCE_RUNS][256]; /* family 1, its twin, family 2, its twin */
     char replacement[256]; /* for family 2 where the scene is too rough for it; "": none */
     double differences[3]; /* m: 1 against its twin, 2 against its twin, 1 against 2 */
-    double error_bar;      /* m, largest of them at any frame (RMS of particles) */
+    double error_bar;      /* m, RMS of particles at any frame: see compare_reference.h */
     double error_bar_max;  /* m, largest distance of a particle */
     double motion_scale;   /* m, largest RMS displacement from the start */
     double kinetic;        /* J, largest */

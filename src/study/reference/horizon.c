@@ -1,11 +1,13 @@
-/* Measures the predictability horizon: how fast runs from nearly equal starts move apart. */
+/* Measures the predictability horizon: how fast runs with nearly equal starts separate. */
 #include "study/reference/horizon.h"
 
 #include "study/trajectory_error.h"
 
 #include <math.h>
 
-/* the free particle in the middle of the list; false: all are pinned */
+/* Displaces the free particle in the middle of the list by CS_HORIZON_START, along the space
+ * diagonal: a displacement within a plane of symmetry would stay in it. Returns false if all
+ * particles are pinned. */
 static bool perturb_one(struct cs_recorded_run *recording) {
     const struct cs_view *view = &recording->session.system.view;
     uint32_t free = 0, seen = 0;
@@ -21,6 +23,7 @@ static bool perturb_one(struct cs_recorded_run *recording) {
     return false;
 }
 
+/* Distance of the two runs at each frame: time of the horizon and total growth. */
 static void compare(struct cs_horizon *horizon, const struct cs_recorded_run *recording,
                     const struct cs_trajectory *a, const struct cs_trajectory *b,
                     double accuracy) {
@@ -37,6 +40,7 @@ static void compare(struct cs_horizon *horizon, const struct cs_recorded_run *re
     horizon->growth = start > 0 ? horizon->separation / start : 0;
 }
 
+/* Runs the scene and its perturbed twin. *done: both reached their last frame. */
 static enum cs_status run_twins(struct cs_horizon *horizon, struct cs_recorded_run *recording,
                                 double accuracy, bool *done, struct cs_error *error) {
     struct cs_trajectory tracks[2] = {0};

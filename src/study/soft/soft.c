@@ -1,4 +1,4 @@
-/* Measures what spring networks and shape matching cost, over the size of a soft body. */
+/* Measures the cost of spring networks and shape matching over the size of a soft body. */
 #include "study/soft/soft.h"
 
 #include "base/clock.h"
@@ -14,7 +14,8 @@
 const char *const cs_soft_names[] = {"springs-small", "springs-large", "surface", "network",
                                      "implicit",      "matched",       NULL};
 
-/* Of the shape "limbs": 1586 and 6432 vertices, near the thesis's 1598 and 6308. */
+/* Details of the shape "limbs": 1586 and 6432 vertices, near the 1598 and 6308 of the thesis.
+ */
 enum { SMALL = 31, LARGE = 62, FRAMES_MAX = 60, PICTURES = 5 };
 static const uint32_t densities[] = {0, 1, 2, 4, 8, 16, 32};
 static const uint32_t details[] = {12, 16, 22, 31, 44, 62, 88, 124};
@@ -48,13 +49,15 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* Median of n samples, which are sorted in place. */
 static double median(double *values, uint32_t n) {
     qsort(values, n, sizeof *values, ascending);
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
-/* Frames until the time is up, two at least: the first one warms up. What an implicit step
- * takes depends on the motion, so that of a fall, a blow and a rest is wanted. */
+/* Times frames until the time is used up; the first frame warms up and does not count. The cost
+ * of an implicit step depends on the motion: that series runs all FRAMES_MAX frames, to cover
+ * fall, impact and rest. */
 static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
                                  struct cs_soft_row *row, struct cs_error *error) {
     double samples[FRAMES_MAX];
@@ -79,6 +82,7 @@ static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
     return error->status;
 }
 
+/* Median wall time of PICTURES pictures of the last state, after one to warm up. */
 static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_row *row,
                                     struct cs_error *error) {
     struct cs_picture picture = {0};
@@ -104,7 +108,7 @@ static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_r
     return error->status;
 }
 
-/* The scene with the body as the row has it. */
+/* Runs the scene with the body of the row. Overrides of the user come last and win. */
 static enum cs_status run_row(const struct cs_soft *soft, struct cs_soft_row *row,
                               uint32_t detail, uint32_t density, struct cs_error *error) {
     char number[2][16];
@@ -142,6 +146,7 @@ static enum cs_status run_row(const struct cs_soft *soft, struct cs_soft_row *ro
     return error->status;
 }
 
+/* Measures one row and appends it. */
 static enum cs_status add_row(struct cs_soft *soft, enum cs_soft_series series, uint32_t detail,
                               uint32_t density, struct cs_error *error) {
     struct cs_soft_row *row = soft->rows + soft->n;

@@ -1,18 +1,18 @@
-/* soft.h - what soft bodies cost: spring networks beside shape matching, over the number of
- * springs and of vertices.
+/* soft.h - measures the cost of soft bodies: spring networks and shape matching, over the
+ * number of springs and of vertices.
  *
- * One scene, whose first body is a generated mesh with a spring network, is run with that body
- * more or less finely divided and more or less densely filled, and with its springs replaced by
- * shape matching. The soft-body thesis (ch. 5, its two graphs) measures pictures a second with
- * one step a picture, however long a step the springs bear; here that stands beside the steps
- * that a frame needs to be stable.
- */
+ * The first body of one scene is a generated mesh with a spring network. It is run with varying
+ * resolution and density, and with shape matching in place of its springs. The soft-body thesis
+ * (ch. 5) counts pictures per second with one step per picture, although stable steps may be
+ * shorter. Here both are measured: one step per picture, and the steps that a frame needs to be
+ * stable. */
 #ifndef CS_SOFT_H
 #define CS_SOFT_H
 
 #include "base/text.h"
 #include "study/session.h"
 
+/* Series of the diagrams. */
 enum cs_soft_series {
     CS_SOFT_SMALL,    /* over springs: the smaller body */
     CS_SOFT_LARGE,    /* over springs: the larger body */
@@ -34,12 +34,14 @@ struct cs_soft_row {
     enum cs_outcome outcome;
 };
 
-/* Pictures a second with one step each, as the thesis counts, and with the steps of a frame. */
+/* Pictures per second with one step each, as the thesis counts; and with the steps of a frame.
+ */
 double cs_soft_rate_one_step(const struct cs_soft_row *row);
 double cs_soft_rate(const struct cs_soft_row *row);
 
 enum { CS_SOFT_ROWS_MAX = 64 };
 
+/* Request and results; pointers are borrowed. */
 struct cs_soft {
     struct cs_session_settings session; /* scene, overrides, plugins, stop */
     double seconds;                     /* processor time that a row is measured for, about */
@@ -50,15 +52,15 @@ struct cs_soft {
     uint32_t n;
 };
 
-/* Whether the scene has such a body: CS_ERR_SCENE, or what reading it came to. */
+/* Checks that the scene has such a body. CS_ERR_SCENE, or the errors of reading it. */
 enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error);
 
-/* Measures all rows of a checked scene, one after the other. CS_ERR_MODULE without a renderer;
- * CS_ERR_INTERRUPT leaves the rows that were done. */
+/* Measures all rows of a checked scene in sequence. CS_ERR_MODULE without a renderer;
+ * CS_ERR_INTERRUPT keeps the finished rows. */
 enum cs_status cs_soft_run(struct cs_soft *soft, struct cs_error *error);
 
-/* Exponent p of time = c x^p through a series, by least squares of the logarithms; x is the
- * springs, or the vertices of CS_SOFT_MATCHED. NAN with fewer than two different x. */
+/* Exponent p of time = c x^p over a series, by least squares of the logarithms. x is the number
+ * of springs, or of vertices for CS_SOFT_MATCHED. NAN with fewer than two different x. */
 double cs_soft_growth(const struct cs_soft *soft, enum cs_soft_series series);
 
 #endif

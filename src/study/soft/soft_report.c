@@ -37,7 +37,7 @@ static void add_row(const struct cs_soft_row *row, bool drawn, struct cs_text *o
                 row->outcome == CS_RUNNING ? "" : cs_outcome_text(row->outcome));
 }
 
-/* the row of a series with the given number of vertices, or NULL */
+/* The row of a series with that number of vertices, or NULL. */
 static const struct cs_soft_row *find(const struct cs_soft *soft, enum cs_soft_series series,
                                       uint32_t vertices) {
     for (uint32_t k = 0; k < soft->n; k++)
@@ -47,6 +47,7 @@ static const struct cs_soft_row *find(const struct cs_soft *soft, enum cs_soft_s
     return NULL;
 }
 
+/* Exponents of the cost per step. */
 static void add_growth(const struct cs_soft *soft, struct cs_text *out) {
     for (int s = 0; s < CS_SOFT_SERIES; s++) {
         const double growth = cs_soft_growth(soft, (enum cs_soft_series)s);
@@ -56,7 +57,7 @@ static void add_growth(const struct cs_soft *soft, struct cs_text *out) {
     }
 }
 
-/* the largest body that all series over vertices have */
+/* The largest body that all series over vertices have, or NULL. */
 static const struct cs_soft_row *largest(const struct cs_soft *soft) {
     for (uint32_t k = soft->n; k-- > 0;) {
         const struct cs_soft_row *row = soft->rows + k;
@@ -69,7 +70,7 @@ static const struct cs_soft_row *largest(const struct cs_soft *soft) {
     return NULL;
 }
 
-/* what matching costs beside springs */
+/* Cost of shape matching relative to springs. */
 static void add_ratios(const struct cs_soft *soft, struct cs_text *out) {
     const struct cs_soft_row *matched = largest(soft);
     if (!matched)

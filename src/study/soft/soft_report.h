@@ -1,4 +1,4 @@
-/* soft_report.h - the rows of soft.h as tables and in words, as CSV, and as a diagram. */
+/* soft_report.h - prints the rows of soft.h as tables, CSV and a diagram. */
 #ifndef CS_SOFT_REPORT_H
 #define CS_SOFT_REPORT_H
 

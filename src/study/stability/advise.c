@@ -1,4 +1,4 @@
-/* Finds a safe step for each method from linear theory, and confirms it by runs. */
+/* Finds a safe step for each method from linear theory, and confirms it by probe runs. */
 #include "study/stability/advise.h"
 
 #include "study/process_pool.h"
@@ -6,17 +6,19 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Samples of a probe run, and halvings of a step that proved unstable. */
 enum { SAMPLES = 32, HALVINGS = 6 };
-#define PERTURBATION 1e-4 /* of the shortest spring */
-#define MARGIN       0.9  /* of the limit that is advised */
-#define GROWTH_SEEN  1e-7 /* in a step; less is rounding */
+#define PERTURBATION 1e-4 /* lengths of the shortest spring */
+#define MARGIN       0.9  /* fraction of the limit that is advised */
+#define GROWTH_SEEN  1e-7 /* growth per step that counts; less is rounding */
 
+/* Context of the worker tasks. */
 struct work {
     struct cs_advise *advise;
     struct cs_process_pool workers;
 };
 
-/* A run with the advised step: its verdict and what a frame costs. */
+/* Probe run with the advised step: sets its verdict, and steps and cost per frame. */
 static enum cs_status try_safe(struct cs_advice *row,
                                const struct cs_sampled_run_settings *settings,
                                const struct cs_reference *reference, double frame,
@@ -39,8 +41,8 @@ static enum cs_status try_safe(struct cs_advice *row,
     return CS_OK;
 }
 
-/* The safe step, or a shorter one: what the watch of its own run calls unstable is not advised.
- */
+/* Probes the safe step and halves it until a run is stable. After HALVINGS attempts no step is
+ * advised. */
 static enum cs_status try_shorter(struct cs_advice *row,
                                   const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference, double frame,
@@ -58,7 +60,8 @@ static enum cs_status try_shorter(struct cs_advice *row,
     return CS_OK;
 }
 
-/* Theory has no limit: one step a frame is tried, and what is wrong with it is bisected. */
+/* Theory has no limit: probes one step per frame. If it is unstable, large motions limit the
+ * step, and the border is bisected. */
 static enum cs_status try_frame(struct cs_advice *row,
                                 const struct cs_sampled_run_settings *settings,
                                 const struct cs_reference *reference, double frame,
@@ -87,8 +90,8 @@ static enum cs_status try_frame(struct cs_advice *row,
     return try_shorter(row, settings, reference, frame, error);
 }
 
-/* If even a part of theory's limit is unstable, the stable step is bisected: a motion that is
- * large from the start passes the bound with less growth than theory allows. */
+/* The margin below the limit of theory is unstable: bisects the border. A motion that is large
+ * from the start exceeds the verdict's limits with less growth than theory allows. */
 static enum cs_status try_lower(struct cs_advice *row,
                                 const struct cs_sampled_run_settings *settings,
                                 const struct cs_reference *reference, double frame,
@@ -107,6 +110,8 @@ static enum cs_status try_lower(struct cs_advice *row,
     return try_shorter(row, settings, reference, frame, error);
 }
 
+/* Bisects the border for comparison with theory, starting from 1.5 times the theoretical limit.
+ */
 static enum cs_status check_limit(struct cs_advice *row,
                                   const struct cs_sampled_run_settings *settings,
                                   const struct cs_reference *reference,
@@ -115,6 +120,8 @@ static enum cs_status check_limit(struct cs_advice *row,
                                  error);
 }
 
+/* Advice for a method with option dt, in the order of advise.h. Steps above 1e100 s stand for
+ * no limit. */
 static enum cs_status advise_fixed(struct cs_advice *row,
                                    const struct cs_sampled_run_settings *settings, double frame,
                                    bool check, struct cs_error *error) {
@@ -144,7 +151,9 @@ static enum cs_status advise_fixed(struct cs_advice *row,
     return try_lower(row, settings, &reference, frame, error);
 }
 
-/* What theory calls stable may grow, if too slowly to show in the time of the advice. */
+/* Growth rate in 1/s of the worst mode at the advised step, ln(radius) / dt. Theory calls a
+ * mode stable if it grows too slowly to show in the time of the advice; the growth is reported.
+ */
 static enum cs_status measure_growth(struct cs_advice *row, const struct cs_method *method,
                                      struct cs_error *error) {
     const struct cs_amplification amplify = {method->integrator, method->options, 0};
@@ -158,6 +167,8 @@ static enum cs_status measure_growth(struct cs_advice *row, const struct cs_meth
     return CS_OK;
 }
 
+/* Advice for a method that chooses its steps: no reference and no limits, so only a blow-up, a
+ * failure or the budget can show. */
 static enum cs_status advise_adaptive(struct cs_advice *row,
                                       const struct cs_sampled_run_settings *settings,
                                       double frame, struct cs_error *error) {
@@ -167,7 +178,8 @@ static enum cs_status advise_adaptive(struct cs_advice *row,
     return try_safe(row, settings, &none, frame, error);
 }
 
-/* A method that cannot follow the scene, which was opened with its own before, is a row. */
+/* A method that refuses the scene becomes a row with the reason. The scene itself was accepted
+ * before, with its own method. */
 static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
     if (error->status != CS_ERR_SCENE)
         return error->status;
@@ -177,6 +189,7 @@ static enum cs_status refuse(struct cs_advice *row, struct cs_error *error) {
     return CS_OK;
 }
 
+/* Runs in a worker process: advice for one method. */
 static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *error) {
     struct work *work = ctx;
     struct cs_advise *advise = work->advise;
@@ -209,6 +222,7 @@ static void report(void *ctx, uint32_t ticks) {
         advise->progress(advise->ctx, ticks, advise->n);
 }
 
+/* The requested methods, or all of the registry. */
 static enum cs_status list_methods(struct cs_advise *advise, struct cs_error *error) {
     advise->names = advise->methods;
     advise->n = advise->n_methods;

@@ -1,9 +1,19 @@
-/* advise.h - which step each method takes safely on a scene, what limits it, what it costs. */
+/* advise.h - finds the largest safe time step of each method on a scene, its cause and its
+ * cost.
+ *
+ * For a method with a fixed step:
+ *   1. Reference run by velocity-verlet, and the limit of linear theory along it (theory.h).
+ *   2. Advised step: 0.9 of the limit, at most one frame and 10 s.
+ *   3. Probe run with this step over the time of the reference, judged like a cell of a map.
+ *   4. If it is unstable, the border is bisected by probe runs and 0.9 of it is advised.
+ * Without a limit in theory one step per frame is tried, and bisected if unstable. An adaptive
+ * method gets a probe run only, for its cost and verdict. */
 #ifndef CS_ADVISE_H
 #define CS_ADVISE_H
 
 #include "study/stability/stability_boundary.h"
 
+/* Origin of an advised step. */
 enum cs_advice_kind {
     CS_ADVICE_THEORY,   /* the limit of linear theory along a trusted run */
     CS_ADVICE_LOWERED,  /* 0.9 of theory's limit was tried and is unstable: bisected */
@@ -14,6 +24,7 @@ enum cs_advice_kind {
     CS_ADVICE_REFUSED   /* message says why */
 };
 
+/* Advice for one method. */
 struct cs_advice {
     const char *method;
     enum cs_advice_kind kind;
@@ -29,11 +40,13 @@ struct cs_advice {
     char message[320];
 };
 
-/* What the watch of its own run calls unstable is never advised. */
+/* True if the probe run was unstable: such a step is never advised. A run out of budget is not.
+ */
 static inline bool cs_advice_is_unstable(const struct cs_advice *row) {
     return !cs_stability_is_stable(row->verdict) && row->verdict != CS_STABILITY_OVER_BUDGET;
 }
 
+/* Request and results; pointers of the request are borrowed. */
 struct cs_advise {
     struct cs_session_settings session; /* of the scene; integrator is not used */
     const char *const *methods;         /* (n_methods); 0: all that can be used */
@@ -54,7 +67,11 @@ struct cs_advise {
     uint32_t n;
 };
 
+/* Fills rows for all methods, distributed over worker processes. A method that cannot follow
+ * the scene is a row, not an error. Returns the errors of the scene and of unknown methods,
+ * CS_ERR_MEMORY, CS_ERR_INTERRUPT. cs_advise_finish must be called in any case. */
 enum cs_status cs_advise_run(struct cs_advise *advise, struct cs_error *error);
+/* Frees rows and registry and closes the session; the object is then zeroed. */
 void cs_advise_finish(struct cs_advise *advise);
 
 #endif

@@ -1,4 +1,4 @@
-/* Prints advice: a line a method, and below it what limits the step. */
+/* Prints advice: one line per method, and below it what limits the step. */
 #include "study/stability/advise_print.h"
 
 #include "scene/body_pairs.h"
@@ -6,11 +6,13 @@
 
 #include <math.h>
 
+/* The stiffest spring at a particle. */
 struct spring {
     double stiffness; /* N/m; 0: none */
     uint32_t kind;
 };
 
+/* Finds the spring that most likely causes a mode which is localised at the particle. */
 static struct spring stiffest_at(const struct cs_system *system, uint32_t particle) {
     struct spring found = {0};
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
@@ -25,7 +27,10 @@ static struct spring stiffest_at(const struct cs_system *system, uint32_t partic
     return found;
 }
 
-/* "particle 12 (body 0, column 4, row 1) swings at 4158 /s on stretch springs of 1000 N/m" */
+/* "particle 12 (body 0, column 4, row 1) swings at 4158 /s on stretch springs of 1000 N/m".
+ *
+ * s'' + r s' + q s = 0 is over-damped if r^2 > 4 q: then only the rate is printed. A mode
+ * beyond the bounds of the springs must be due to contact. */
 static void add_binding(const struct cs_system *system, const struct cs_mode *mode,
                         struct cs_text *out) {
     static const char *const kinds[CS_SPRING_KINDS] = {"stretch", "shear", "bend"};
@@ -46,6 +51,7 @@ static void add_binding(const struct cs_system *system, const struct cs_mode *mo
                     kinds[spring.kind], spring.stiffness);
 }
 
+/* The reason of an advised step, and remarks on its probe run. */
 static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
                     struct cs_text *out) {
     switch (row->kind) {
@@ -86,6 +92,7 @@ static void add_why(const struct cs_advise *advise, const struct cs_advice *row,
         cs_text_add(out, " after %.3g s: not watched longer", row->checked_seconds);
 }
 
+/* A number, or "-" for none: 0, NAN or no limit. */
 static void add_number(struct cs_text *out, double value, int width) {
     if (value > 0 && value < 1e100)
         cs_text_add(out, "%*.4g", width, value);
@@ -93,6 +100,7 @@ static void add_number(struct cs_text *out, double value, int width) {
         cs_text_add(out, "%*s", width, "-");
 }
 
+/* Notes on contact, with the fastest speed of all reference runs. */
 static void add_contact(const struct cs_advise *advise, struct cs_text *out) {
     const struct cs_system *system = &advise->was_opened.system;
     double speed = 0;

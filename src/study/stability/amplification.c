@@ -7,24 +7,28 @@
 #include <math.h>
 #include <string.h>
 
-/* the free particle at 0, where its place is the stretch to the last bit; mass 1; frames of h
- */
+/* Scene of one spring. The pinned particle is at x = -1, the free one of mass 1 at 0, so its x
+ * is the elongation without rounding. Rest length 1; stiffness and damping are set by
+ * set_spring; a frame is one step. */
 #define SCENE                                                                                  \
     "{\"bodies\": [{\"cloth\": {\"grid\": [2, 1], \"place\": {\"translate\": [-0.5, 0, 0]}},"  \
     " \"mass\": {\"particle\": 1}, \"springs\": {\"stretch\": 1, \"damping\": 0}, "            \
     "\"pins\": [0]}], \"forces\": {\"gravity\": [0, 0, 0]}, \"time\": {\"fps\": 64}}"
 #define FRAME 0x1p-6
-/* small against the rest length of 1, so that a clamped matrix is the exact one */
+/* Amplitude of the motion, small against the rest length of 1: a matrix whose terms are clamped
+ * by strain is then the exact one. */
 #define SMALL 0x1p-20
 
-/* A method that remembers more than (s, w) is looked at between two later steps, when its start
- * is forgotten; the number of steps between is a power of 2. */
+/* A method that remembers more than (s, w) is measured between two later steps, when its start
+ * is forgotten. The number of steps in between is a power of 2, for roots by sqrt. */
 enum { STEPS_BEFORE = 8, STEPS_BETWEEN = 16 };
-/* two steps are the square of one to this part of what a step does where nothing is
- * remembered */
+/* Tolerance of the test that two steps are the square of one, relative to the effect of a
+ * step. */
 #define SAME 1e-6
 
-/* one run from (s, h w) = start; looks[k] = (s, h w) after steps[k]; false: it blew up */
+/* Runs from (s, h w) = start; looks[k] = (s, h w) after steps[k] steps. Returns false if the
+ * method blew up or refused. Only lack of memory is passed on in *error: a refusal is a result
+ * here. */
 static bool run_once(struct cs_session *session, const double start[2], const uint32_t steps[2],
                      double looks[2][2], struct cs_error *error) {
     struct cs_follow follow = {.run = &session->run};
@@ -45,13 +49,16 @@ static bool run_once(struct cs_session *session, const double start[2], const ui
     return !refused.status && session->run.outcome == CS_RUNNING;
 }
 
-/* Spectral radius of the 2x2 matrix of trace and determinant. */
+/* Spectral radius of a 2x2 matrix from its trace t and determinant d. The eigenvalues solve l^2
+ * - t l + d = 0. A complex pair has |l|^2 = d; real ones have |l| = |t|/2 + sqrt(t^2/4 - d). */
 static double radius_of(double trace, double determinant) {
     const double root = trace * trace / 4 - determinant;
     return root < 0 ? sqrt(determinant) : fabs(trace) / 2 + sqrt(root);
 }
 
-/* columns of what is between two looks; false where the earlier one says nothing */
+/* Solves m E = L for the matrix m between two looks with the columns E (earlier) and L (later),
+ * by Cramer's rule. Returns false if E is singular, as after complete decay. All matrices are
+ * stored by columns. */
 static bool matrix_between(double earlier[2][2], double later[2][2], double m[2][2]) {
     const double det = earlier[0][0] * earlier[1][1] - earlier[0][1] * earlier[1][0];
     if (!(fabs(det) > 0))
@@ -67,7 +74,7 @@ static double radius_of_matrix(double m[2][2]) {
     return radius_of(m[0][0] + m[1][1], m[0][0] * m[1][1] - m[0][1] * m[1][0]);
 }
 
-/* true if the second look is what the matrix of the first does to itself */
+/* True if the second look is the square of the first matrix, to `same` of its squared size. */
 static bool is_square(double one[2][2], double two[2][2], double same) {
     double off = 0, size = 0;
     for (int c = 0; c < 2; c++)
@@ -78,7 +85,8 @@ static bool is_square(double one[2][2], double two[2][2], double same) {
     return off <= same * size * size;
 }
 
-/* runs from both unit vectors: looks[k] has their images as columns; false: it blew up */
+/* Runs from both unit vectors; looks[k] has their images as columns. Returns false if a run
+ * blew up. */
 static bool measure_columns(struct cs_session *session, const uint32_t steps[2],
                             double looks[2][2][2], struct cs_error *error) {
     static const double starts[2][2] = {{1, 0}, {0, 1}};
@@ -92,6 +100,9 @@ static bool measure_columns(struct cs_session *session, const uint32_t steps[2],
     return true;
 }
 
+/* Spectral radius per step; HUGE_VAL after a blow-up. First tries one step as the whole matrix;
+ * a method with memory is measured between later steps. Four square roots take the 16th root.
+ */
 static void measure(struct cs_session *session, double same, double *radius,
                     struct cs_error *error) {
     static const uint32_t first[2] = {1, 2};
@@ -116,6 +127,7 @@ struct oscillator {
     double square, rate;
 };
 
+/* Edits the checked scene: with mass 1 the stiffness is the square, the damping the rate. */
 static void set_spring(struct cs_scene *scene, void *ctx) {
     const struct oscillator *oscillator = ctx;
     struct cs_spring_law *law = &cs_scene_bodies(scene)->springs;
@@ -124,6 +136,9 @@ static void set_spring(struct cs_scene *scene, void *ctx) {
     law->shear = law->bend = 0;
 }
 
+/* The frame keeps its length because only h^2 square and h rate matter: both are scaled
+ * instead. The tolerance of the squaring test shrinks with the step, because a short step does
+ * little: a fixed one would take any method for one without memory. */
 enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, double h,
                                         double square, double rate, double *radius,
                                         struct cs_error *error) {
@@ -144,8 +159,9 @@ enum cs_status cs_amplification_measure(const struct cs_amplification *amplify, 
     return error->status;
 }
 
-/* growth beyond rounding, which is larger for a method with history, and beyond what is allowed
- */
+/* *out: the radius exceeds 1 by more than rounding and the allowed growth per step, growth h.
+ * The allowance for rounding was chosen by trial. It is larger for multistep methods, whose
+ * matrix is a quotient of later states. */
 static enum cs_status is_growing(const struct cs_amplification *amplify, double h,
                                  double square, double rate, bool *out,
                                  struct cs_error *error) {

@@ -1,4 +1,5 @@
-/* Says how contact enters linear theory and runs, and what it takes to cross an obstacle. */
+/* Notes whether linear theory and runs include contact, and how much energy crosses a collider.
+ */
 #include "study/stability/contact_note.h"
 
 #include "model/contact/barrier_law.h"
@@ -16,6 +17,7 @@ void cs_contact_note_add(const struct cs_scene *scene, const char *before,
                         : "contact is off in linear theory; in runs it acts after each step");
 }
 
+/* True if a collider has a friction coefficient above 0. */
 static bool any_friction(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
         if (cs_scene_colliders(scene)[c].friction > 0)
@@ -23,6 +25,9 @@ static bool any_friction(const struct cs_scene *scene) {
     return false;
 }
 
+/* The barrier energy is that from the edge of the range to its core, below which the law ends.
+ * Near rest the friction force is about mu N v / friction_speed: a damping rate of mu N / (m
+ * friction_speed), which an explicit step must resolve. */
 void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
                                   struct cs_text *out) {
     const struct cs_scene *scene = system->scene;

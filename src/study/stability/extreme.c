@@ -12,19 +12,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PERTURBATION 1e-4 /* of the shortest spring */
+#define PERTURBATION 1e-4 /* lengths of the shortest spring */
 
-/* what a run is judged by when it has ended */
+/* Facts about the end of a run that its verdict does not hold. */
 struct ending {
     bool refused, silent; /* silent: not finite, and the run did not say so */
     double theory;        /* s, limit at the start; HUGE_VAL: none */
 };
 
+/* Sets the message of a row, cut to its size. */
 static void say(struct cs_extreme_row *row, const char *text) {
     snprintf(row->message, sizeof row->message, "%.310s", text);
 }
 
-/* steps to the end, a verdict or the end of the budget */
+/* Steps to the end, a verdict or the end of the budget. The energy monitor samples each frame.
+ * A blow-up that the run reports takes precedence over the monitor's verdict. */
 static void step(struct cs_extreme_row *row, struct cs_session *session, double seconds,
                  struct ending *ending, struct cs_error *error) {
     struct cs_run *run = &session->run;
@@ -52,10 +54,14 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
     cs_text_finish(&text);
 }
 
+/* True for a verdict that the expectation "blows up" accepts. */
 static bool is_blown(enum cs_stability_verdict verdict) {
     return verdict == CS_STABILITY_GLOBAL || verdict == CS_STABILITY_NOT_FINITE;
 }
 
+/* Compares the outcome with the expectation. Within 10 % of the theoretical limit both outcomes
+ * are accepted: "bounded" below 1.1 times the limit, "blown" above 0.9 times. A silent
+ * non-finite state never meets an expectation. */
 static bool is_met(const struct cs_extreme_row *row, double dt, const struct ending *ending) {
     const bool bounded = cs_stability_is_stable(row->verdict);
     const bool finite = bounded || row->verdict == CS_STABILITY_LOCAL;
@@ -75,6 +81,8 @@ static bool is_met(const struct cs_extreme_row *row, double dt, const struct end
             row->verdict == CS_STABILITY_OVER_BUDGET);
 }
 
+/* Step limit in s at the start. Modes that grow by less than a factor e^7 = 1100 during the run
+ * count as stable, because the perturbation of 1e-4 needs about that to show. */
 static enum cs_status find_theory(struct cs_session *session, double seconds, double *limit,
                                   struct cs_error *error) {
     struct cs_theory theory;
@@ -88,7 +96,8 @@ static enum cs_status find_theory(struct cs_session *session, double seconds, do
     return error->status;
 }
 
-/* A scene or a method that is refused before the first step is an outcome as well. */
+/* A scene or method that is refused before the first step is an outcome too. Errors of the
+ * command, of memory and interruption stay errors. */
 static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *ending,
                                    struct cs_error *error) {
     if (error->status == CS_ERR_MEMORY || error->status == CS_ERR_INTERRUPT ||
@@ -101,6 +110,7 @@ static enum cs_status take_refusal(struct cs_extreme_row *row, struct ending *en
     return CS_OK;
 }
 
+/* Runs one scene with one method: open, perturb, predict, step, judge. */
 static enum cs_status run_row(const struct cs_extreme *extreme,
                               const struct cs_extreme_scene *scene, struct cs_extreme_row *row,
                               struct cs_error *error) {
@@ -137,6 +147,7 @@ static enum cs_status run_row(const struct cs_extreme *extreme,
     return error->status;
 }
 
+/* A run over the catalogue: scenes times methods, and the rows in shared memory. */
 struct catalogue {
     struct cs_extreme *extreme;
     struct cs_extreme_scene *scenes;
@@ -146,13 +157,14 @@ struct catalogue {
     uint32_t n_scenes, n_methods;
 };
 
+/* Task k is row k of the table (n_scenes, n_methods). */
 static enum cs_status run_task(void *ctx, uint32_t task, struct cs_error *error) {
     struct catalogue *catalogue = ctx;
     return run_row(catalogue->extreme, catalogue->scenes + task / catalogue->n_methods,
                    catalogue->rows + task, error);
 }
 
-/* the names that are asked for, or all that can be used and follow the motion of springs */
+/* The requested names, or all methods of the registry that follow the motion of springs. */
 static enum cs_status list_methods(struct catalogue *catalogue, struct cs_registry *registry,
                                    struct cs_error *error) {
     const struct cs_extreme *extreme = catalogue->extreme;
@@ -164,7 +176,7 @@ static enum cs_status list_methods(struct catalogue *catalogue, struct cs_regist
     return error->status;
 }
 
-/* keeps the scenes whose name holds the text */
+/* Removes the scenes whose name does not contain the text (NULL: keeps all). */
 static void filter_scenes(struct catalogue *catalogue, const char *part) {
     uint32_t kept = 0;
     for (uint32_t k = 0; k < catalogue->n_scenes; k++)
@@ -173,7 +185,8 @@ static void filter_scenes(struct catalogue *catalogue, const char *part) {
     catalogue->n_scenes = kept;
 }
 
-/* rows whose turn it is, in their order; all: also those that were left */
+/* Reports the finished rows in order. all: unfinished rows are reported as over budget too;
+ * their worker was stopped in a step that never ended. */
 static void report_rows(struct catalogue *catalogue, bool all) {
     struct cs_extreme *extreme = catalogue->extreme;
     const uint32_t n = catalogue->n_scenes * catalogue->n_methods;

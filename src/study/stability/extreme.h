@@ -1,24 +1,27 @@
-/* extreme.h - the catalogue of extreme scenes: what each method class must make of them.
+/* extreme.h - runs the catalogue of extreme scenes against the outcome expected of each method
+ * class.
  *
- * A scene of the catalogue is a scene file with a key of its own at the root:
+ * A scene of the catalogue is a scene file with an additional key at the root:
  *   "x-extreme": {"seconds": 0.5, "dt": 0.1, "explicit": "theory", "implicit": "bounded",
- *                 "adaptive": "bounded|refused"}
- * dt (0 or absent: the method's own) is that of methods with a fixed step. What is expected:
- *   bounded   the run ends, and its energy is physically possible (energy_monitor.h)
- *   finite    the run ends, and its state is finite
- *   blows up  the energy leaves all bound, and that is said
- *   refused   the method gives up and says why
- *   over budget  the time allowed may run out
- *   theory    blows up where linear theory at the start says so (by 10 %), else bounded
- * A method that is not like its class has a line in "methods": {"xpbd": "blows up"}.
- * Several are joined by "|". Whatever is expected: no state that is not finite may pass unsaid.
- */
+ *               "adaptive": "bounded|refused"}
+ * dt (0 or absent: the method's default) is used by methods with a fixed step. Outcomes:
+ *   bounded      the run ends, and its energy is physically possible (energy_monitor.h)
+ *   finite       the run ends, and its state is finite
+ *   blows up     the energy exceeds its limit, and the run reports it
+ *   refused      the method gives up with a reason
+ *   over budget  the allowed time may run out
+ *   theory       blows up if linear theory at the start predicts it (within 10 %), else bounded
+ * Several outcomes are joined by "|". A method that differs from its class has an entry in
+ * "methods": {"xpbd": "blows up"}. In any case a non-finite state must be reported, never
+ * passed over. */
 #ifndef CS_EXTREME_H
 #define CS_EXTREME_H
 
 #include "study/energy_monitor.h"
 #include "study/stability/stability_reference.h"
 
+/* Result of one scene with one method. Lives in memory shared with the workers; texts are those
+ * of the catalogue and the registry. */
 struct cs_extreme_row {
     const char *scene; /* file name without folder and ending */
     const char *method;
@@ -29,6 +32,7 @@ struct cs_extreme_row {
     double seconds;    /* wall time */
 };
 
+/* Request and counts. All pointers are borrowed. */
 struct cs_extreme {
     const char *folder;
     const char *only_scene;     /* part of a name, NULL: all */
@@ -44,7 +48,9 @@ struct cs_extreme {
     uint32_t n_met, n_missed; /* out */
 };
 
-/* Runs every scene with every method. CS_ERR_CHECK where an expectation was not met. */
+/* Runs every scene with every method and reports the rows in order. Returns CS_ERR_CHECK if an
+ * expectation was not met, CS_ERR_USAGE if no scene matches only_scene; further CS_ERR_FILE,
+ * CS_ERR_SCENE, CS_ERR_MEMORY, CS_ERR_INTERRUPT. */
 enum cs_status cs_extreme_run(struct cs_extreme *extreme, struct cs_error *error);
 
 #endif

@@ -1,4 +1,5 @@
-/* Reads the scenes of the catalogue, and what each expects of every class of methods. */
+/* Reads the scenes of the catalogue and the outcomes that each expects of every method class.
+ */
 #include "study/stability/extreme_scene.h"
 
 #include "base/file.h"
@@ -20,6 +21,7 @@ enum cs_class cs_class_of(const struct cs_integrator *integrator) {
     return integrator->traits & CS_IMPLICIT ? CS_CLASS_IMPLICIT : CS_CLASS_EXPLICIT;
 }
 
+/* Compares whole words between "|": "bounded" must not match a part of another word. */
 bool cs_extreme_expects(const char *expected, const char *word) {
     const size_t length = strlen(word);
     while (*expected) {
@@ -31,6 +33,7 @@ bool cs_extreme_expects(const char *expected, const char *word) {
     return false;
 }
 
+/* Rejects unknown outcomes: a misspelt one could never be met. */
 static enum cs_status check_words(const char *expected, const char *path,
                                   struct cs_error *error) {
     static const char *const words[] = {"bounded", "finite", "blows up",
@@ -52,7 +55,7 @@ static enum cs_status check_words(const char *expected, const char *path,
     return CS_OK;
 }
 
-/* "methods": {NAME: EXPECTED, ...}, which may be absent */
+/* Reads "methods": {NAME: EXPECTED, ...}, which is optional. */
 static enum cs_status take_own(struct cs_extreme_scene *scene, const struct cs_json *values,
                                struct cs_error *error) {
     const uint32_t most = sizeof scene->per_method / sizeof *scene->per_method;
@@ -82,6 +85,7 @@ const char *cs_extreme_expected(const struct cs_extreme_scene *scene,
     return scene->expected[cs_class_of(integrator)];
 }
 
+/* Reads "x-extreme": seconds, dt, and one expectation per class. */
 static enum cs_status take_values(struct cs_extreme_scene *scene, const struct cs_json *root,
                                   struct cs_error *error) {
     const struct cs_json *values = cs_json_find(root, "x-extreme");
@@ -109,6 +113,7 @@ static enum cs_status take_values(struct cs_extreme_scene *scene, const struct c
     return take_own(scene, values, error);
 }
 
+/* Parses the file for "x-extreme" only; the session reads the scene itself later. */
 enum cs_status cs_extreme_scene_read(struct cs_extreme_scene *scene, const char *folder,
                                      const char *file, struct cs_error *error) {
     char *text;
@@ -134,6 +139,7 @@ static int by_name(const void *a, const void *b) {
                   ((const struct cs_extreme_scene *)b)->name);
 }
 
+/* True for a name with the ending .json and a stem. */
 static bool is_scene(const char *name) {
     const size_t length = strlen(name);
     return length > 5 && !strcmp(name + length - 5, ".json");

@@ -1,4 +1,4 @@
-/* extreme_scene.h - a scene of the catalogue: its file, and what it expects of whom. */
+/* extreme_scene.h - reads a scene of the catalogue and its expected outcomes. */
 #ifndef CS_EXTREME_SCENE_H
 #define CS_EXTREME_SCENE_H
 
@@ -6,10 +6,14 @@
 
 #include <clothsim/integrator.h>
 
+/* Method classes with one expectation each. Adaptive methods form one class, explicit or not.
+ */
 enum cs_class { CS_CLASS_EXPLICIT, CS_CLASS_IMPLICIT, CS_CLASS_ADAPTIVE, CS_CLASSES };
 extern const char *const cs_class_names[]; /* closed by NULL */
+/* Class of a method, from its traits. */
 enum cs_class cs_class_of(const struct cs_integrator *integrator);
 
+/* Head of a catalogue scene. Texts are copied: a scene can be moved in memory. */
 struct cs_extreme_scene {
     char path[512], name[64];
     double seconds, dt; /* s */
@@ -20,15 +24,18 @@ struct cs_extreme_scene {
     uint32_t n_per_method;
 };
 
-/* Reads "x-extreme" of a scene file. CS_ERR_FILE, CS_ERR_SCENE. */
+/* Reads FOLDER/FILE and checks its "x-extreme". CS_ERR_FILE, CS_ERR_SCENE; *scene is then
+ * incomplete. */
 enum cs_status cs_extreme_scene_read(struct cs_extreme_scene *scene, const char *folder,
                                      const char *file, struct cs_error *error);
 
-/* The scenes of a folder by name, malloc'd. CS_ERR_FILE where there are none. */
+/* Reads all scenes (*.json) of a folder, sorted by name. *scenes is malloc'd (n) and the
+ * caller's, after a failure too. Returns CS_ERR_FILE if there are none; CS_ERR_SCENE,
+ * CS_ERR_MEMORY. */
 enum cs_status cs_extreme_scenes(const char *folder, struct cs_extreme_scene **scenes,
                                  uint32_t *n, struct cs_error *error);
 
-/* What a scene expects of a method: under its own name, else of its class. */
+/* Expected outcome of a method: the entry under its name, else that of its class. */
 const char *cs_extreme_expected(const struct cs_extreme_scene *scene,
                                 const struct cs_integrator *integrator);
 

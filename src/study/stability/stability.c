@@ -1,4 +1,5 @@
-/* Makes a stability map; its columns are shared among worker processes. */
+/* Makes a stability map. Its columns are distributed over worker processes, which write their
+ * results to shared memory. */
 #include "study/stability/stability.h"
 
 #include "base/clock.h"
@@ -9,9 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Samples of the state per run; and runs that a bisected border counts as in the progress. */
 enum { SAMPLES = 32, TRIALS_OF_BORDER = 7 };
-/* largest move at the start in lengths of the shortest spring: what an instability grows from
- */
+/* Largest displacement at the start, in lengths of the shortest spring: the seed from which an
+ * instability grows. */
 #define PERTURBATION 1e-4
 
 /* A map in the making. */
@@ -20,8 +22,8 @@ struct work {
     struct cs_process_pool workers;
 };
 
-/* between the highest row that is stable with all below it and the next one; a row that was not
- * run to the end does not stand for a stable one */
+/* Bisects between the highest row that is stable with all rows below and the next one. A row
+ * that was too short to judge does not count as stable, so its step is no lower bracket. */
 static enum cs_status find_border(struct cs_stability_column *column, uint32_t n_rows,
                                   const struct cs_sampled_run_settings *trial,
                                   struct cs_error *error) {
@@ -42,7 +44,8 @@ static enum cs_status find_border(struct cs_stability_column *column, uint32_t n
                                  &column->boundary, error);
 }
 
-/* All cells of a column are judged by it: it may take the time of all. */
+/* All cells of a column are judged by its reference, so the reference may take their total
+ * budget. */
 static enum cs_status find_reference(const struct cs_stability *map,
                                      const struct cs_sampled_run_settings *trial,
                                      struct cs_stability_column *column,
@@ -56,6 +59,7 @@ static enum cs_status find_reference(const struct cs_stability *map,
     return CS_OK;
 }
 
+/* Runs one cell, or marks it as not judged if the column has no reference. */
 static enum cs_status try_cell(const struct cs_sampled_run_settings *trial,
                                const struct cs_stability_column *column, double dt,
                                struct cs_stability_cell *cell, struct cs_error *error) {
@@ -68,6 +72,8 @@ static enum cs_status try_cell(const struct cs_sampled_run_settings *trial,
     return CS_OK;
 }
 
+/* Work of one task: reference, cells by rising dt, border. Results that the journal had are
+ * kept. Each result is journalled at once, so an interrupted map loses one run at most. */
 static enum cs_status make_column(struct work *work, struct cs_stability_column *column,
                                   struct cs_arena *arena, struct cs_error *error) {
     const struct cs_stability *map = work->map;
@@ -77,7 +83,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     trial.session.perturbation =
         PERTURBATION * cs_springs_shortest(&map->session.system.springs);
     trial.session.run.budget = map->settings->budget;
-    /* springs get shorter as columns are added, and so must the perturbation */
+    /* springs get shorter as columns are added: the perturbation keeps its ratio to them */
     if (map->settings->axis == CS_AXIS_RESOLUTION && column->value > 0)
         trial.session.perturbation *= map->scene_value / column->value;
     const uint32_t number = (uint32_t)(column - map->columns);
@@ -100,6 +106,7 @@ static enum cs_status make_column(struct work *work, struct cs_stability_column 
     return error->status;
 }
 
+/* Runs in a worker process. A column of another shard only advances the progress. */
 static enum cs_status make_task(void *ctx, uint32_t task, struct cs_error *error) {
     struct work *work = ctx;
     struct cs_arena arena = {0};
@@ -120,6 +127,7 @@ static void report(void *ctx, uint32_t ticks) {
                                 map->n_columns * (map->n_rows + TRIALS_OF_BORDER));
 }
 
+/* Runs all columns on the process pool; the pool stops at the first error or on request. */
 static enum cs_status distribute(struct cs_stability *map, struct cs_error *error) {
     struct work work = {map,
                         {.n_workers = map->settings->workers,
@@ -142,12 +150,15 @@ static enum cs_status name_series(struct cs_stability *map, struct cs_error *err
     return cs_series_name(&map->session.method, "dt", map->series, error);
 }
 
+/* Value i of n from `from` to `to`, in equal ratios. */
 static double share(double from, double to, uint32_t i, uint32_t n) {
     return n > 1 ? from * pow(to / from, (double)i / (n - 1)) : from;
 }
 
-/* From a quarter of the step that the Gershgorin bound allows at the stiff end to eight times
- * the one at the soft end. */
+/* Range of dt in s: from a quarter of the Gershgorin limit 2/omega at the stiff end of the axis
+ * (0.5/omega) to eight times the limit at the soft end (16/omega). omega goes as sqrt(k/m). 60
+ * 1/s stands in for a scene without springs. The damped end of a damping axis gets a factor of
+ * 8, because explicit damping shortens the limit. */
 static struct cs_range choose_dt(const struct cs_stability *map, struct cs_range values) {
     const struct cs_view *view = &map->session.system.view;
     double fast = view->omega > 0 ? view->omega : 60, slow = fast;
@@ -167,6 +178,8 @@ static size_t bytes_of(const struct cs_stability *map) {
     return map->n_columns * (sizeof *map->columns + map->n_rows * sizeof *map->columns->cells);
 }
 
+/* Allocates columns and cells as one block of shared memory, and fills in values and steps.
+ * Values of a resolution axis are rounded to whole numbers. */
 static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) {
     const struct cs_stability_settings *settings = map->settings;
     const bool whole = settings->axis == CS_AXIS_RESOLUTION;
@@ -197,7 +210,7 @@ static enum cs_status lay_out(struct cs_stability *map, struct cs_error *error) 
     return error->status;
 }
 
-/* a map that judges nothing is none */
+/* Fails if no column has a reference: such a map judges nothing. */
 static enum cs_status check_references(const struct cs_stability *map, struct cs_error *error) {
     const struct cs_stability_column *without = NULL;
     for (uint32_t c = 0; c < map->n_columns; c++) {
@@ -215,7 +228,7 @@ static enum cs_status check_references(const struct cs_stability *map, struct cs
                    : CS_OK;
 }
 
-/* Columns of other shards may be there too, by way of the journal. */
+/* True if all columns of other shards are known too, from the journal. */
 static bool is_complete(const struct cs_stability *map) {
     for (uint32_t c = 0; c < map->n_columns; c++)
         if (!cs_shard_holds(&map->settings->shard, c) && !map->columns[c].has_boundary)

@@ -1,15 +1,25 @@
-/* stability.h - which steps a method survives: cells of dt against an axis of the scene, each
- * with a verdict; the border between, bisected; and linear theory's curves beside it. */
+/* stability.h - maps the stable time steps of a method.
+ *
+ * The map has cells of dt against an axis of the scene. Each cell is one run with a verdict
+ * (stability_verdict.h) relative to the reference of its column. The border between stable and
+ * unstable cells is bisected, and the limits of linear theory are computed for comparison
+ * (theory.h).
+ *
+ *   settings -> session -> columns and rows -> journal -> per column, in a worker process:
+ *   reference and limits -> cells by rising dt -> border -> journal -> report */
 #ifndef CS_STABILITY_H
 #define CS_STABILITY_H
 
 #include "study/stability/stability_state.h"
 
-/* Makes the map. CS_ERR_USAGE where the integrator has no fixed dt or the axis no meaning in
- * the scene. settings outlive the map; cs_stability_finish is to be called either way. */
+/* Makes the map. Returns CS_ERR_USAGE if the integrator has no fixed dt, if the scene has no
+ * value on the axis, or if no column has a reference; further CS_ERR_SCENE, CS_ERR_FILE,
+ * CS_ERR_MEMORY, CS_ERR_INTERRUPT. settings must outlive the map. cs_stability_finish must be
+ * called in any case. */
 enum cs_status cs_stability_run(struct cs_stability *map,
                                 const struct cs_stability_settings *settings,
                                 struct cs_error *error);
+/* Frees the map and closes its session; a zeroed map is allowed. */
 void cs_stability_finish(struct cs_stability *map);
 
 #endif

@@ -12,6 +12,7 @@ const char *cs_axis_unit(enum cs_axis axis) {
     return units[axis];
 }
 
+/* The stiffest of the three kinds of springs stands for all: they are scaled together. */
 double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis) {
     const struct cs_body *body = cs_scene_bodies(system->scene);
     switch (axis) {
@@ -26,6 +27,8 @@ double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis) {
     }
 }
 
+/* Two decades to either side of the scene's value. Exceptions: the resolution, a whole number,
+ * and damping in a scene without any, which ends at 2 sqrt(k m), critical for one spring. */
 struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis) {
     const double own = cs_axis_scene_value(system, axis);
     if (axis == CS_AXIS_RESOLUTION)
@@ -39,7 +42,7 @@ struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis)
     return (struct cs_range){own / 100, own * 100};
 }
 
-/* the overrides of a session on their way into a longer list */
+/* Override list of a session while entries are appended. */
 struct growing {
     struct cs_override *list; /* owned by the arena */
     uint32_t n;
@@ -48,6 +51,7 @@ struct growing {
     struct cs_error *error;
 };
 
+/* Appends the override "bodies[body].key" = value; both texts are copied to the arena. */
 static void add(struct growing *to, const char *key, const char *value) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u].%s", to->body, key);
@@ -56,6 +60,7 @@ static void add(struct growing *to, const char *key, const char *value) {
     to->n++;
 }
 
+/* Appends a number with as many digits as it needs to be read back unchanged. */
 static void add_real(struct growing *to, const char *key, double value) {
     struct cs_text text = {0};
     cs_text_add_real(&text, value);
@@ -66,6 +71,7 @@ static void add_real(struct growing *to, const char *key, double value) {
     cs_text_finish(&text);
 }
 
+/* Scales both counts of a grid, rounded, so bodies keep their proportions; at least 1. */
 static void add_grid(struct growing *to, const int64_t *grid, double factor) {
     char value[64];
     snprintf(value, sizeof value, "[%.0f, %.0f]",
@@ -74,6 +80,8 @@ static void add_grid(struct growing *to, const int64_t *grid, double factor) {
     add(to, "cloth.grid", value);
 }
 
+/* Appends the overrides of one body: its values on the axis times factor. Values that the scene
+ * does not set (NAN) stay unset, so the key that the scene uses for mass decides. */
 static void add_scaled(struct growing *to, const struct cs_body *body, enum cs_axis axis,
                        double value, double factor) {
     const struct cs_spring_law *law = &body->springs;

@@ -1,11 +1,13 @@
-/* stability_axis.h - what a map of stability goes over: a value of the scene. */
+/* stability_axis.h - varies one value of a scene over the columns of a stability map. */
 #ifndef CS_STABILITY_AXIS_H
 #define CS_STABILITY_AXIS_H
 
 #include "study/session.h"
 
+/* Values that a map can vary. */
 enum cs_axis { CS_AXIS_STIFFNESS, CS_AXIS_DAMPING, CS_AXIS_MASS, CS_AXIS_RESOLUTION, CS_AXES };
 extern const char *const cs_axis_names[]; /* closed by NULL */
+/* Unit of the axis, as text. */
 const char *cs_axis_unit(enum cs_axis axis);
 
 /* Values from..to; 0, 0: chosen by the scene. */

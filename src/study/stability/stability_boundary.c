@@ -3,11 +3,15 @@
 
 #include <math.h>
 
+/* Searches by a factor of 4 cover 4^12 = 1.7e7. A bracket of a factor 4 needs log2(ln 4 / ln
+ * 1.01) = 7.1 halvings of its logarithm; 14 allow for wider rows of a map. */
 enum { MOST_SEARCHES = 12, BISECTIONS = 14 };
 #define RESOLUTION 1.01 /* of the border: unstable step / stable step */
+/* s; a step that is longer says nothing about cloth */
 #define LONGEST_DT 10
 
-/* over the time of the reference, but most_seconds at most */
+/* Runs and judges one step, over the time of the reference but at most most_seconds (s). The
+ * limits are relative to the reference, so the same criterion holds for all steps. */
 static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
                                const struct cs_reference *reference, double dt,
                                double most_seconds, struct cs_stability_cell *cell,
@@ -32,7 +36,7 @@ static enum cs_status try_step(const struct cs_sampled_run_settings *settings,
     /* drift compares the energies at the end, which both runs must have reached */
     if (trial.result.outcome == CS_RUNNING && asked.seconds >= reference->seconds)
         cell->drift = cs_stability_drift(&trial, &reference->run);
-    /* the time that is told is that of the first sign, not that of the end */
+    /* the reported time is that of the first sign, not that of the end */
     if (cell->verdict == CS_STABILITY_GLOBAL && trial.exceeded_limit)
         cell->time = trial.exceeded_time;
     else if (cell->verdict == CS_STABILITY_LOCAL)
@@ -46,7 +50,8 @@ enum cs_status cs_stability_run_cell(const struct cs_sampled_run_settings *setti
     return try_step(settings, reference, dt, CS_CELL_STEPS * dt, cell, error);
 }
 
-/* Steps by a factor of 4 until both sides are known; *known is false where a budget ran out. */
+/* Multiplies or divides the step by 4 until a stable and an unstable step are known. *known
+ * becomes false if the budget of a run ended: nothing is then known of the step. */
 static enum cs_status bracket(const struct cs_sampled_run_settings *settings,
                               const struct cs_reference *reference, double *stable,
                               double *unstable, bool *known, struct cs_error *error) {

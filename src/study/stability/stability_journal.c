@@ -1,4 +1,4 @@
-/* Appends what is found of a map to a file, and reads it back. */
+/* Appends the results of a map to a file as binary records, and reads them back. */
 #include "study/stability/stability_journal.h"
 
 #include "base/hash.h"
@@ -12,9 +12,11 @@
 
 #define ENDING ".partial"
 
+/* Values of record.kind. They are in files: new kinds go to the end. */
 enum kind { REFERENCE, CELL, BORDER };
 
-/* One that is of another map is passed over. */
+/* One result. A record with the key of a different map is skipped. Its layout is that of the
+ * machine; the size of a record is a part of the key. */
 struct record {
     char key[CS_HASH_DIGITS];
     uint32_t kind, column, row;
@@ -25,6 +27,8 @@ struct record {
     } of;
 };
 
+/* Hash of everything a result depends on: version, scene with the method's options, start
+ * state, record size, axis, times, steps and values. */
 static enum cs_status make_key(const struct cs_stability *map, char key[CS_HASH_DIGITS],
                                struct cs_error *error) {
     const struct cs_stability_settings *settings = map->settings;
@@ -50,6 +54,8 @@ static enum cs_status make_key(const struct cs_stability *map, char key[CS_HASH_
     return error->status;
 }
 
+/* Stores one record in the map. Records beyond its columns or rows, or with another key, are
+ * ignored. */
 static void take(struct cs_stability *map, const struct record *record) {
     if (record->column >= map->n_columns || record->row >= map->n_rows ||
         strncmp(record->key, map->journal.key, sizeof record->key) != 0)
@@ -66,6 +72,7 @@ static void take(struct cs_stability *map, const struct record *record) {
     }
 }
 
+/* Reads all records under the lock of the table. A missing file is an empty one. */
 static enum cs_status read_back(struct cs_stability *map, struct cs_error *error) {
     struct cs_rows rows;
     struct record record;
@@ -96,6 +103,7 @@ enum cs_status cs_journal_open(struct cs_stability *map, struct cs_error *error)
     return error->status;
 }
 
+/* Appends one record with the key of the map; nothing without a journal. */
 static enum cs_status append(const struct cs_stability *map, struct record *record,
                              struct cs_error *error) {
     if (!*map->journal.table.path)
@@ -130,12 +138,14 @@ void cs_journal_remove(const struct cs_stability *map) {
         unlink(map->journal.table.path);
 }
 
+/* True for a file name with the ending of journals and a stem. */
 static bool is_journal(const char *name) {
     const size_t length = strlen(name);
     return length >= sizeof ENDING && !strcmp(name + length + 1 - sizeof ENDING, ENDING);
 }
 
-/* Records say themselves what they are of: those of two files may stand behind each other. */
+/* Each record names its map and cell, so records of several files can be concatenated. The last
+ * record is dropped if it is incomplete. */
 static enum cs_status append_file(const char *folder, const char *name, const char *out,
                                   struct cs_error *error) {
     struct cs_row_table table;

@@ -1,4 +1,12 @@
-/* Runs a trusted reference, and follows the limits of linear theory along its trajectory. */
+/* Runs a trusted reference, and tracks the limits of linear theory along its trajectory.
+ *
+ * Order of the work:
+ *   1. Open the scene with the method whose limits are wanted; extend the time to 200 steps at
+ *    the limit 2/omega, because an instability near the border grows slowly.
+ *   2. Limits at the unperturbed start: worst mode, and Gershgorin bounds.
+ *   3. Run velocity-verlet at half of its Gershgorin limit from the perturbed start. At each
+ *    sample: tighten the limit of the worst mode, and the bounds that depend on the state.
+ *   4. If the run is not stable, reset the limits to those of the start and halve the step. */
 #include "study/stability/stability_reference.h"
 
 #include "model/force/spectral_bounds.h"
@@ -7,11 +15,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Halvings of the step before a scene counts as having no reference. */
+/* Attempts, each with half the step of the last one, before a scene has no reference. */
 enum { MOST_HALVINGS = 4 };
-/* at the limit, that an instability needs to show */
+/* Steps at the limit 2/omega that the run lasts at least. */
 enum { STEPS = 200 };
 
+/* Context of the samples of one run. */
 struct way {
     struct cs_theory *theory; /* NULL: no limits are asked for */
     struct cs_reference *reference;
@@ -19,22 +28,26 @@ struct way {
     struct cs_error *error;
 };
 
+/* Tightens the limits at one sample. Bounds other than those of contact hold for the whole run,
+ * so only state-dependent bounds are evaluated again. */
 static void sample_theory(void *ctx, const struct cs_run *run, const struct cs_energy *energy) {
     struct way *way = ctx;
     (void)energy;
     if (!way->theory || way->error->status)
         return;
-    // of the run: its obstacles move, and its ramps go on
+    // of the run: its colliders move, and its ramps continue
     way->theory->modes.system = run->system;
     way->theory->modes.t = run->t;
     cs_theory_tighten(way->theory, run->x, &way->reference->smallest_limit, way->error);
-    // other bounds than those of contact hold for the whole run
+    // bounds other than those of contact hold for the whole run
     if (!way->error->status && cs_spectral_bounds_depend_on_state(run->system))
         cs_theory_gershgorin(way->theory, run->x, &way->reference->gershgorin_limit,
                              way->error);
 }
 
-/* one run; false: it was not stable by what it can be judged without a reference */
+/* Runs once with the step dt in s, without limits on energy or speed: there is no reference yet
+ * to derive them from. Returns false if the run blew up, failed or had an error. The limits
+ * that a failed run collected are discarded. */
 static bool run_once(struct cs_reference *reference,
                      const struct cs_sampled_run_settings *settings, double dt, struct way *way,
                      struct cs_error *error) {
@@ -44,13 +57,15 @@ static bool run_once(struct cs_reference *reference,
     asked.limits = (struct cs_sampled_run_limits){HUGE_VAL, HUGE_VAL, HUGE_VAL};
     asked.on_sample = sample_theory;
     asked.ctx = way;
-    // what a run that failed went through does not count
+    // limits along a failed run do not count
     reference->smallest_limit = reference->start_limit;
     reference->gershgorin_limit = way->gershgorin;
     return !cs_sampled_run_execute(&reference->run, &asked, error) && !way->error->status &&
            reference->run.result.outcome == CS_RUNNING;
 }
 
+/* Halves the step until a run succeeds. A run out of budget ends the attempts, because a
+ * shorter step costs more. */
 static void run_reference(struct cs_reference *reference,
                           const struct cs_sampled_run_settings *settings, double dt,
                           struct way *way, struct cs_error *error) {
@@ -65,8 +80,9 @@ static void run_reference(struct cs_reference *reference,
                  reference->run.result.message);
 }
 
-/* Growth that a run cannot show: from the perturbation to the length of a spring in its time.
- */
+/* Growth rate in 1/s that the run cannot show: ln(length / perturbation) / seconds, from the
+ * perturbation to the length of the longest spring within the time of the run. 0 without a
+ * perturbation. */
 static double growth_of(const struct cs_system *system,
                         const struct cs_sampled_run_settings *settings) {
     double length = 0;
@@ -78,14 +94,21 @@ static double growth_of(const struct cs_system *system,
                : 0;
 }
 
-/* The step of the reference: half of what the Gershgorin bound allows, and at least one a
- * sample. */
+/* Step of the reference in s: half of the Gershgorin limit, at most one sample (`space`) and 10
+ * s.
+ *
+ * With square = w^2 and rate = r, a symplectic step with explicit damping has trace 2 - h r -
+ * (h w)^2 and determinant 1 - h r. It is stable while |trace| <= 1 + determinant: (h w)^2 + 2 h
+ * r <= 4. The positive root is h = 4 / (r + sqrt(r^2 + 4 w^2)), 2/w without damping. Half of it
+ * also satisfies the condition of velocity-verlet, whose damping uses a predicted velocity: (h
+ * w)^2 + 4 h r <= 4. */
 static double choose_dt(const struct cs_system *system, double space) {
     const double w = system->view.omega, r = 2 * system->view.delta;
     const double limit = 4 / (r + sqrt(r * r + 4 * w * w));
     return fmin(fmin(0.5 * limit, space), 10);
 }
 
+/* Limits at the start, then the run. theory stays empty for a method without option dt. */
 static enum cs_status run_with(struct cs_reference *reference, struct cs_session *session,
                                const struct cs_sampled_run_settings *settings,
                                struct cs_error *error) {

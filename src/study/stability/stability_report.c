@@ -12,15 +12,15 @@
 
 enum { NAME_WIDTH = 16, CELL_WIDTH = 10, TABLE_MAX = 64 };
 
-/* Half the width of a single column or row, as a factor. */
+/* Half the extent of a single column or row in a diagram, as a factor. */
 #define ALONE 1.3
 
-/* Every so many columns or rows of a large map are in the table. */
+/* Every stride-th column or row of a large map is printed, TABLE_MAX at most. */
 static uint32_t stride(uint32_t n) {
     return (n + TABLE_MAX - 1) / TABLE_MAX;
 }
 
-/* a step in seconds, or what stands for none */
+/* A step in seconds, or a word for none, no limit or unknown. */
 static void add_dt(struct cs_text *out, double dt) {
     if (isnan(dt))
         cs_text_add(out, "%*s", CELL_WIDTH, "?");
@@ -32,6 +32,7 @@ static void add_dt(struct cs_text *out, double dt) {
         cs_text_add(out, "%*.4g", CELL_WIDTH, dt);
 }
 
+/* One row of the map: its dt and the letters of its cells. */
 static void add_row(const struct cs_stability *map, uint32_t row, struct cs_text *out) {
     cs_text_add(out, "%-*.4g", NAME_WIDTH, map->dt[row]);
     for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
@@ -42,6 +43,7 @@ static void add_row(const struct cs_stability *map, uint32_t row, struct cs_text
 
 enum line { LINE_BORDER, LINE_WORST, LINE_REST, LINE_ROW_SUMS, LINES };
 
+/* Step in s of one line below the table. */
 static double value_of(const struct cs_stability_column *column, enum line line) {
     const struct cs_reference *reference = &column->reference;
     switch (line) {
@@ -56,6 +58,7 @@ static double value_of(const struct cs_stability_column *column, enum line line)
     }
 }
 
+/* Border and limits of theory, and the ratio of measured to predicted border. */
 static void add_lines(const struct cs_stability *map, struct cs_text *out) {
     static const char *const names[LINES] = {"border", "worst on way", "at the start",
                                              "Gershgorin"};
@@ -77,7 +80,7 @@ static void add_lines(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "\n");
 }
 
-/* of the largest step that is stable with all below it: energy drift, or crossings */
+/* Energy drift or crossings of the largest step that is stable with all below it; NAN: none. */
 static double last_stable(const struct cs_stability *map, uint32_t c, bool crossings) {
     double last = (double)NAN;
     for (uint32_t r = 0; r < map->n_rows; r++) {
@@ -90,6 +93,7 @@ static double last_stable(const struct cs_stability *map, uint32_t c, bool cross
     return last;
 }
 
+/* Energy drift of the largest stable step, in per cent. */
 static void add_drift(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "energy drift");
     for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
@@ -100,6 +104,7 @@ static void add_drift(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "\n");
 }
 
+/* Crossings of the largest stable step, if the scene counts them. */
 static void add_crossings(const struct cs_stability *map, struct cs_text *out) {
     if (!map->session.plan.rows[CS_FEATURE_CROSSINGS].built)
         return;
@@ -112,6 +117,7 @@ static void add_crossings(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "\n");
 }
 
+/* Explains the letters that occur. */
 static void add_legend(const struct cs_stability *map, struct cs_text *out) {
     for (int v = 0; v < CS_STABILITY_VERDICTS; v++) {
         bool there = false;
@@ -126,7 +132,7 @@ static void add_legend(const struct cs_stability *map, struct cs_text *out) {
     }
 }
 
-/* columns that have no reference, and why */
+/* Names the columns without a reference, and why. */
 static void add_unjudged(const struct cs_stability *map, struct cs_text *out) {
     for (uint32_t c = 0; c < map->n_columns; c++)
         if (!map->columns[c].reference.exists)
@@ -137,7 +143,7 @@ static void add_unjudged(const struct cs_stability *map, struct cs_text *out) {
                         map->columns[c].reference.message);
 }
 
-/* For how long the border was watched: a column has as long as its slowest limit needs. */
+/* Duration of the runs of each column: at least 200 steps at the limit of its stiffest mode. */
 static void add_watch(const struct cs_stability *map, struct cs_text *out) {
     cs_text_add(out, "%-*s", NAME_WIDTH, "watched for [s]");
     for (uint32_t c = 0; c < map->n_columns; c += stride(map->n_columns))
@@ -174,22 +180,25 @@ void cs_stability_print_table(const struct cs_stability *map, struct cs_text *ou
 
 /* --- CSV and JSON --- */
 
-/* the middle between two neighbours on a logarithmic scale, and as far beyond the ends; without
- * neighbours so many times the value */
+/* Edge of a cell towards a neighbour on a logarithmic axis: the geometric mean of the two. At
+ * the end of the axis the cell is symmetric; without neighbours it has the factor `alone`. */
 static double edge(double before, double here, double after, double alone) {
     if (before > 0)
         return sqrt(before * here);
     return after > 0 ? here * sqrt(here / after) : here * alone;
 }
 
+/* Value of a column; 0 beyond the last one. */
 static double value_at(const struct cs_stability *map, uint32_t c) {
     return c < map->n_columns ? map->columns[c].value : 0;
 }
 
+/* Step of a row; 0 beyond the last one. */
 static double dt_at(const struct cs_stability *map, uint32_t r) {
     return r < map->n_rows ? map->dt[r] : 0;
 }
 
+/* One CSV row: value, dt, verdict, figures, and the rectangle of the cell. */
 static void add_cell(const struct cs_stability *map, uint32_t c, uint32_t r,
                      struct cs_text *out) {
     const struct cs_stability_cell *cell = map->columns[c].cells + r;
@@ -231,7 +240,7 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
         const double dts[] = {column->boundary, reference->smallest_limit.dt,
                               reference->start_limit.dt, reference->gershgorin_limit};
         cs_text_add_real(out, column->value);
-        /* 0 stands for no stable step, which no logarithmic scale shows */
+        /* 0 means no stable step, which a logarithmic scale cannot show */
         for (int k = 0; k < 4; k++)
             cs_csv_add_number(out, dts[k] > 0 ? dts[k] : HUGE_VAL);
         cs_csv_add_number(out, mode->omega_squared > 0 ? sqrt(mode->omega_squared) : 0);
@@ -242,6 +251,7 @@ void cs_stability_print_borders_csv(const struct cs_stability *map, struct cs_te
     }
 }
 
+/* One column with its limits and cells. */
 static void add_json_column(const struct cs_stability *map, uint32_t c, struct cs_text *out) {
     const struct cs_stability_column *column = map->columns + c;
     const struct cs_reference *reference = &column->reference;
@@ -285,6 +295,7 @@ static const char *const colours[CS_STABILITY_VERDICTS] = {
     [CS_STABILITY_FAILED] = "#7f858d",  [CS_STABILITY_OVER_BUDGET] = "#dfe1e4",
     [CS_STABILITY_UNJUDGED] = "#f4f4f4"};
 
+/* Settings of the diagram: terminal, title, axes, key. */
 static void add_head(const struct cs_stability *map, const char *name, struct cs_text *out) {
     const enum cs_axis axis = map->settings->axis;
     cs_text_add(out,
@@ -312,6 +323,7 @@ static void add_head(const struct cs_stability *map, const char *name, struct cs
                     : "border lc rgb '#ffffff'");
 }
 
+/* Ranges that end at the outer edges of the cells, as `edge` draws them. */
 static void add_ranges(const struct cs_stability *map, struct cs_text *out) {
     const uint32_t nc = map->n_columns, nr = map->n_rows;
     const double x0 = map->columns[0].value, x1 = map->columns[nc - 1].value;
@@ -322,6 +334,7 @@ static void add_ranges(const struct cs_stability *map, struct cs_text *out) {
                 y0 / dy, y1 * dy);
 }
 
+/* True if a cell of the map has the verdict. */
 static bool is_there(const struct cs_stability *map, int verdict) {
     for (uint32_t c = 0; c < map->n_columns; c++)
         for (uint32_t r = 0; r < map->n_rows; r++)

@@ -1,4 +1,4 @@
-/* stability_state.h - what a map is asked for, and what it has found so far. */
+/* stability_state.h - settings of a stability map, and its results so far. */
 #ifndef CS_STABILITY_STATE_H
 #define CS_STABILITY_STATE_H
 
@@ -8,6 +8,7 @@
 #include "study/stability/stability_axis.h"
 #include "study/stability/stability_boundary.h"
 
+/* Request for a map. Texts and arrays are borrowed for the life of the map. */
 struct cs_stability_settings {
     struct cs_session_settings session; /* integrator: NAME or NAME:key=value,... */
     const char *folder; /* where an unfinished map is kept to go on from; NULL: nowhere */
@@ -23,8 +24,10 @@ struct cs_stability_settings {
     void (*progress)(void *ctx, uint32_t done, uint32_t total);
     void *ctx;
 };
+/* Columns and rows that a map may have at most, each. */
 enum { CS_MAP_CELLS_MAX = 1024 };
 
+/* One column: a value on the axis, its reference, its cells and their border. */
 struct cs_stability_column {
     double value;                     /* of the axis */
     struct cs_reference reference;    /* with the curves of theory */
@@ -39,6 +42,7 @@ struct cs_journal {
     char key[CS_HASH_DIGITS];
 };
 
+/* A map and everything it owns; zeroed: empty. */
 struct cs_stability {
     const struct cs_stability_settings *settings; /* borrowed */
     const struct cs_integrator *integrator;       /* of the session below */

@@ -1,4 +1,13 @@
-/* Finds the largest eigenvalue of M^-1/2 (a K + b C) M^-1/2 by restarted Lanczos steps. */
+/* Finds the largest eigenvalue of M^-1/2 (a K + b C) M^-1/2 by a restarted Lanczos process.
+ *
+ * One restart, from the unit vector q_0:
+ *   1. Krylov basis: w = A q_k, orthogonalised against q_0..q_k; q_(k+1) = w / |w|.
+ *   2. Projection H = Q^T A Q, (count,count) and symmetric.
+ *   3. Eigenvectors of H by Jacobi rotations; y belongs to the largest eigenvalue.
+ *   4. The Ritz vector Q y starts the next restart; its Ritz value is the eigenvalue of H.
+ * New vectors are orthogonalised against the whole basis, not only the last two as in the
+ * three-term recurrence of Lanczos. Rounding otherwise destroys the orthogonality once a Ritz
+ * value has converged (Golub and Van Loan 2013, sec. 10.3). */
 #include "study/stability/stiffest_modes.h"
 
 #include "model/force/terms.h"
@@ -6,7 +15,10 @@
 #include <math.h>
 #include <string.h>
 
+/* Bounds of the two loops; both normally end by their tolerances. */
 enum { MOST_RESTARTS = 12, MOST_SWEEPS = 40 };
+/* Relative change of the Ritz value between restarts that ends the search. The step limit goes
+ * as value^(-1/2) without damping, hence half of this error. */
 #define TOLERANCE 1e-4
 
 enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes,
@@ -33,6 +45,7 @@ void cs_stiffest_modes_finish(struct cs_stiffest_modes *modes) {
     *modes = (struct cs_stiffest_modes){0};
 }
 
+/* Sums in index order: one result on all machines. */
 static double dot(size_t n, const double *p, const double *q) {
     double sum = 0;
     for (size_t i = 0; i < n; i++)
@@ -40,7 +53,7 @@ static double dot(size_t n, const double *p, const double *q) {
     return sum;
 }
 
-/* false where p is 0 or not finite */
+/* Scales p to unit length. Returns false, with p unchanged, if p is 0 or not finite. */
 static bool normalise(size_t n, double *p) {
     const double length = sqrt(dot(n, p, p));
     if (!(length > 0 && length < HUGE_VAL))
@@ -50,7 +63,10 @@ static bool normalise(size_t n, double *p) {
     return true;
 }
 
-/* y = M^-1/2 (a K + b C) M^-1/2 p; the velocities are taken as 0 */
+/* y = M^-1/2 (a K + b C) M^-1/2 p at zero velocity, all (3,n).
+ *
+ * One Jacobian-vector product gives both terms: df = -K dx - C dv with dx = -a M^-1/2 p and dv
+ * = -b M^-1/2 p. A term with factor 0 is not evaluated. */
 static void apply(struct cs_stiffest_modes *modes, const double *x, double a, double b,
                   const double *p, double *y) {
     const struct cs_system *system = modes->system;
@@ -76,7 +92,12 @@ static void apply(struct cs_stiffest_modes *modes, const double *x, double a, do
             y[c * n + i] *= modes->root[i];
 }
 
-/* a start that no motion of a symmetric scene is missing from */
+/* Start vector: the last result with 2 % of noise, or noise alone.
+ *
+ * Noise has a component along every mode. A regular start can be orthogonal to the wanted mode
+ * of a symmetric scene, which would then never appear in the Krylov space. The noise is a
+ * linear congruential sequence modulo 2^64, its top 53 bits mapped to -1..1. Pinned particles
+ * stay 0. */
 static void start(struct cs_stiffest_modes *modes, double *p) {
     const size_t length = 3 * (size_t)modes->system->view.n;
     uint64_t bits = 1;
@@ -91,8 +112,9 @@ static void start(struct cs_stiffest_modes *modes, double *p) {
             p[c * modes->system->view.n + modes->system->pinned[k]] = 0;
 }
 
-/* takes from p what the basis holds, twice for orthogonality to rounding; parts (count) added
- */
+/* Removes from p its components along the first `count` basis vectors (modified Gram-Schmidt).
+ * The second pass restores orthogonality to rounding where the first one cancelled most of p.
+ * parts (count) receives the sum of both passes: the column of Q^T A Q. */
 static void orthogonalise(const struct cs_stiffest_modes *modes, uint32_t count, size_t length,
                           double *p, double *parts) {
     memset(parts, 0, sizeof *parts * count);
@@ -106,8 +128,11 @@ static void orthogonalise(const struct cs_stiffest_modes *modes, uint32_t count,
         }
 }
 
-/* Fills the basis from its first vector on, and the projection h (count,count); returns count.
- */
+/* Extends the basis from its first vector and projects: h (count,count) = Q^T A Q. Returns
+ * count.
+ *
+ * Ends early if a remainder is below 1e-12 of the first Rayleigh quotient: the basis then spans
+ * an invariant subspace, and its Ritz values are eigenvalues. */
 static uint32_t build_basis(struct cs_stiffest_modes *modes, const double *x, double a,
                             double b,
                             double h[CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS]) {
@@ -133,6 +158,7 @@ static uint32_t build_basis(struct cs_stiffest_modes *modes, const double *x, do
     return count;
 }
 
+/* Sum of squares below the diagonal: what the rotations still have to remove. */
 static double off_diagonal(uint32_t n, const double *a) {
     double sum = 0;
     for (uint32_t i = 0; i < n; i++)
@@ -141,6 +167,8 @@ static double off_diagonal(uint32_t n, const double *a) {
     return sum;
 }
 
+/* Sum of squares on the diagonal, the scale of the stopping test: 1e-28 of squares is a
+ * relative 1e-14 of the entries. */
 static double diagonal(uint32_t n, const double *a) {
     double sum = 0;
     for (uint32_t i = 0; i < n; i++)
@@ -155,7 +183,12 @@ static void givens_rotate(double *k, double *l, double c, double s) {
     *l = s * old + c * *l;
 }
 
-/* the rotation of rows and columns p and q that makes a[p][q] zero */
+/* Rotation in the plane (p, q) that makes a[p][q] zero, applied from both sides and to the
+ * vectors.
+ *
+ * With theta = (a_qq - a_pp) / (2 a_pq), tan t is the smaller root of t^2 + 2 theta t - 1 = 0.
+ * This root keeps the angle below 45 degrees, and its form here has no cancellation (Golub and
+ * Van Loan 2013, sec. 8.5). */
 static void rotate(uint32_t n, double *a, double *vectors, uint32_t p, uint32_t q) {
     const double apq = a[p * n + q];
     if (apq == 0)
@@ -187,7 +220,8 @@ static void diagonalise(uint32_t n, double *a, double *vectors) {
     }
 }
 
-/* the combination of the basis with the largest value becomes modes->last */
+/* Makes modes->last_vector the Ritz vector of the largest Ritz value, which is returned. h
+ * (count,count) is overwritten. */
 static double take_largest(struct cs_stiffest_modes *modes, uint32_t count, double *h) {
     const size_t length = 3 * (size_t)modes->system->view.n;
     double vectors[CS_STIFFEST_MODES_BASIS * CS_STIFFEST_MODES_BASIS];
@@ -203,7 +237,9 @@ static double take_largest(struct cs_stiffest_modes *modes, uint32_t count, doub
     return h[best * count + best];
 }
 
-/* what the motion found last is like */
+/* Rayleigh quotients of the last vector, one product each, and the particle that moves most.
+ * basis is used as scratch: the next search begins it again. participation: with |q| = 1, the
+ * squares of a particle's components are its fraction of the kinetic energy. */
 static struct cs_mode describe(struct cs_stiffest_modes *modes, const double *x) {
     const size_t n = modes->system->view.n;
     const double *p = modes->last_vector;

@@ -1,16 +1,25 @@
-/* stiffest_modes.h - the stiffest modes of a system, which limit the step: frequency and
- * damping.
+/* stiffest_modes.h - finds the stiffest modes of a system, which limit the step: their
+ * frequency and damping.
  *
- * With K = -df/dx and C = -df/dv of springs, dampers, drag and contact by force at
- * one state, with every velocity 0 (friction as of what rests), and p of length 1
- * in the masses (p^T M p = 1), a motion along p swings with square = p^T K p and is damped at
- * rate = p^T C p, as in s'' + rate s' + square s = 0.
- */
+ * K = -df/dx and C = -df/dv are the matrices of springs, dampers, drag and contact by force at
+ * one state with zero velocity; friction is in its static state. For p of unit length in the
+ * masses, p^T M p = 1, the Rayleigh quotients
+ *   square = p^T K p,  rate = p^T C p
+ * describe a motion along p: s'' + rate s' + square s = 0.
+ *
+ * The wanted p maximises a square + b rate. It belongs to the largest eigenvalue of the pencil
+ * (a K + b C, M), or with q = M^1/2 p to that of the symmetric matrix
+ *   A = M^-1/2 (a K + b C) M^-1/2.
+ * Pinned particles have inverse mass 0, hence zero rows and columns in A.
+ *
+ * By Courant's minimax principle a Rayleigh quotient never exceeds the largest eigenvalue. The
+ * search therefore approaches the eigenvalue from below, and the step limit from above. */
 #ifndef CS_STIFFEST_MODES_H
 #define CS_STIFFEST_MODES_H
 
 #include "model/system/system.h"
 
+/* A direction of motion, described by its Rayleigh quotients. */
 struct cs_mode {
     double omega_squared; /* 1/s2; below 0: the state is not stable there */
     double damping_rate;  /* 1/s */
@@ -29,16 +38,23 @@ struct cs_stiffest_modes {
     bool has_start;
     struct cs_arena arena;
 };
+/* Vectors of the Krylov space per restart; each costs one product with the Jacobian and one
+ * (3,n) array. */
 enum { CS_STIFFEST_MODES_BASIS = 24 };
 
-/* CS_ERR_MEMORY. */
+/* Allocates for the particles of the system, which is borrowed. Returns CS_ERR_MEMORY; the
+ * object is then empty. */
 enum cs_status cs_stiffest_modes_init(struct cs_stiffest_modes *modes,
                                       const struct cs_system *system, struct cs_error *error);
+/* Frees all arrays; a zeroed object is allowed. */
 void cs_stiffest_modes_finish(struct cs_stiffest_modes *modes);
 
-/* The motion with the largest a square + b rate at the positions x, by power iteration
- * accelerated over its Krylov space (Lanczos 1950; Golub and Van Loan 2013, ch. 10), to a
- * relative 1e-4. Starts where the last search ended. Only + - * / sqrt: the same everywhere. */
+/* Finds the motion with the largest a square + b rate at the positions x (3,n) in m.
+ *
+ * Power iteration accelerated over its Krylov space (Lanczos 1950; Golub and Van Loan 2013, ch.
+ * 10), restarted with the best vector until the value changes by less than a relative 1e-4.
+ * Starts from the result of the last search, with a little noise. Uses + - * / sqrt only, so
+ * all machines get the same bits. Does not fail: without free particles all figures are 0. */
 struct cs_mode cs_stiffest_modes_largest(struct cs_stiffest_modes *modes, const double *x,
                                          double a, double b);
 

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+/* Turns of the search direction per start; the search usually ends earlier, at a gain below 0.1
+ * %. */
 enum { MOST_TURNS = 5 };
 
 enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
@@ -19,6 +21,9 @@ void cs_theory_finish(struct cs_theory *theory) {
     cs_stiffest_modes_finish(&theory->modes);
 }
 
+/* The bound view.delta is half of the largest damping rate, hence 2 delta. The undamped limit
+ * is taken too, because damping lengthens the limit of some methods and modes need not have all
+ * of it. */
 enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
                                     struct cs_error *error) {
     const struct cs_stiffest_modes *modes = &theory->modes;
@@ -47,7 +52,13 @@ static enum cs_status consider(struct cs_theory *theory, const struct cs_mode *m
     return CS_OK;
 }
 
-/* the search turns to the normal of the stable set just outside the limit */
+/* Turns the search direction to the outward normal of the stable set at the limit.
+ *
+ * The normal is the gradient of the spectral radius. It is taken at 1.002 h, just outside the
+ * border: inside, the radius of a symplectic method is 1 everywhere and its gradient vanishes.
+ * With (n1, n2) in the plane (h^2 square, h rate) the functional on (square, rate) is a = h^2
+ * n1, b = h n2. Only the ratio a : b matters for the eigenvector; the division removes the
+ * scale. */
 static enum cs_status update_search_direction(struct cs_theory *theory,
                                               const struct cs_theory_limit *limit,
                                               struct cs_error *error) {
@@ -66,11 +77,13 @@ static enum cs_status update_search_direction(struct cs_theory *theory,
     return CS_OK;
 }
 
+/* True for a limit that is neither "no stable step" (0) nor "no limit" (HUGE_VAL). */
 static bool has_limit(const struct cs_theory_limit *limit) {
     return limit->dt > 0 && limit->dt < HUGE_VAL;
 }
 
-/* From one direction on, as long as turning it finds a smaller limit. */
+/* Alternates from the direction (a, b) between the largest eigenvalue and the normal at the
+ * limit of its mode. Ends when a turn gains less than 0.1 %. */
 static enum cs_status descend(struct cs_theory *theory, const double *x, double a, double b,
                               struct cs_theory_limit *limit, struct cs_error *error) {
     theory->stiffness_damping_direction[0] = a;
@@ -90,6 +103,8 @@ static enum cs_status descend(struct cs_theory *theory, const double *x, double 
     return error->status;
 }
 
+/* The damped start comes first. Its limit is kept unless the elastic start finds a smaller one;
+ * the direction left behind belongs to the smaller of the two. */
 enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
                             struct cs_theory_limit *limit, struct cs_error *error) {
     *limit = (struct cs_theory_limit){.dt = HUGE_VAL};

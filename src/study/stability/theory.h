@@ -1,20 +1,36 @@
-/* theory.h - the largest stable step of a method on a system, as linear theory has it.
+/* theory.h - computes the largest stable step of a method on a system by linear theory.
  *
- * Each motion of the linearised system is a damped oscillator (stiffest_modes.h); the method's
- * own 2x2 matrix says which steps are stable for one (amplification.h). The mode that limits
- * the step is not always the fastest: it is searched along the normal of the method's stable
- * set.
- */
+ * The system is linearised at one state: M x'' + C x' + K x = 0. Along a direction p of unit
+ * length in the masses the motion is a damped oscillator with square = p^T K p and rate = p^T C
+ * p (stiffest_modes.h). The reduction is exact where p is an eigenvector of both matrices, for
+ * example without damping. Elsewhere it is the Rayleigh-Ritz projection on one degree of
+ * freedom.
+ *
+ * A step h is stable for the oscillator if the point (h^2 square, h rate) is in a set S of the
+ * plane. S depends on the method only; its border is measured by amplification.h. The limit of
+ * the system is the smallest limit over all p.
+ *
+ * The mode with the smallest limit is not always the fastest one. explicit-euler for example
+ * has the border h square = rate: the mode with the least damping for its stiffness limits it.
+ * Therefore the search follows the outward normal (n1, n2) of S at the current border point.
+ * For fixed h and convex S the worst p maximises
+ *   n1 h^2 p^T K p + n2 h p^T C p,
+ * the largest eigenvalue of a K + b C with a = n1 h^2 and b = n2 h. The search alternates
+ * between this eigenvalue problem and the normal at the new limit. */
 #ifndef CS_THEORY_H
 #define CS_THEORY_H
 
 #include "study/stability/amplification.h"
 #include "study/stability/stiffest_modes.h"
 
+/* Search state of the limits of one method on one system. */
 struct cs_theory {
+    /* the method, and the growth rate that still counts as stable */
     struct cs_amplification amplification;
+    /* the system, and the workspace of the eigenvalue search */
     struct cs_stiffest_modes modes;
-    double stiffness_damping_direction[2]; /* of the search: a square + b rate */
+    /* (a, b) of the eigenvalue search: a square + b rate is maximised; |a| + |b| / h = 1 */
+    double stiffness_damping_direction[2];
 };
 
 /* A step limit and the motion that sets it. */
@@ -23,24 +39,37 @@ struct cs_theory_limit {
     struct cs_mode mode;
 };
 
-/* The system is read whenever a limit is asked for; it may be built anew in between, as long as
- * it is the same scene. CS_ERR_MEMORY. */
+/* Allocates the workspace. integrator, options and system are borrowed. growth in 1/s: slower
+ * growth of a mode counts as stable; 0: none does.
+ *
+ * The system is read at each request of a limit. It may be rebuilt in between from the same
+ * scene. Returns CS_ERR_MEMORY; the object is then empty. */
 enum cs_status cs_theory_init(struct cs_theory *theory, const struct cs_system *system,
                               const struct cs_integrator *integrator, const void *options,
                               double growth, struct cs_error *error);
+/* Frees the workspace; a zeroed object is allowed. */
 void cs_theory_finish(struct cs_theory *theory);
 
-/* Lowers *dt to the limit by Gershgorin bounds: of springs and dampers while no spring is
- * shorter than half its rest length, and of contact by force as it is at the positions x, with
- * friction as of what rests. The smaller of the limits with and without damping. */
+/* Lowers *dt (s) to the limit by Gershgorin bounds, with and without damping, whichever is
+ * smaller.
+ *
+ * The bounds of springs and dampers hold while no spring is shorter than half its rest length.
+ * The bound of contact by force holds at the positions x (3,n) in m, with friction in its
+ * static state. Needs no eigenvalue search and is never longer than the limit of the worst mode
+ * within these bounds. Errors: those of cs_amplification_limit; *dt is then unchanged. */
 enum cs_status cs_theory_gershgorin(struct cs_theory *theory, const double *x, double *dt,
                                     struct cs_error *error);
 
-/* At the positions x: of all motions the one with the smallest limit. */
+/* Finds at the positions x (3,n) in m the motion with the smallest limit. Two searches start
+ * from pure damping (a, b) = (0, 1) and pure stiffness (1, 0); the smaller result wins. *limit
+ * has dt = HUGE_VAL if no motion has a limit. Errors: those of cs_amplification_limit; *limit
+ * is then undefined. */
 enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
                             struct cs_theory_limit *limit, struct cs_error *error);
 
-/* Lowers *limit where a motion at x has a smaller one: one search, for states on a way. */
+/* Lowers *limit if a motion at x has a smaller one. Costs one search, from the direction and
+ * mode of the last one: meant for successive states of a trajectory. Without a finite limit
+ * nothing happens. */
 enum cs_status cs_theory_tighten(struct cs_theory *theory, const double *x,
                                  struct cs_theory_limit *limit, struct cs_error *error);
 
