@@ -25,8 +25,7 @@ void cs_camera_fit_begin(struct cs_camera_fit *fit, const struct cs_camera *came
                          const int64_t size[2]);
 
 /* Writes a camera whose direction is the fit's and whose picture holds the n points x (3,n) in
- * m: they fill the fraction `share` of its height, or 0.96 of its width if that comes first.
- * The camera is that of the fit if no point is finite. */
+ * m: they fill the fraction `share` of its height, or 0.96 of its width if that comes first. */
 void cs_camera_fit_solve(const struct cs_camera_fit *fit, size_t n, const double *x,
                          double share, struct cs_camera *camera);
 

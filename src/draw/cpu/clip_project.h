@@ -25,10 +25,9 @@ struct cs_clip_transform {
 struct cs_clip_vertex {
     float clip[4]; /* x, y, z, w */
     float attributes[CS_ATTRIBUTES];
-    float x, y, z; /* pixels from the bottom left, depth 0..1; set if w >= near */
-    float inverse; /* 1/w; set if w >= near */
-    uint32_t
-        clip_mask; /* bits of the planes that it is outside: near, left, right, below, above */
+    float x, y, z;      /* pixels from the bottom left, depth 0..1; set if w >= near */
+    float inverse;      /* 1/w; set if w >= near */
+    uint32_t clip_mask; /* bits: outside the near plane, left, right, below, above */
 };
 
 /* Depth 1 in steps: 2^24 - 1. */
