@@ -23,34 +23,26 @@ static inline double cs_core_from_point(const double p[3], const double centre[3
     return length;
 }
 
-/* axes[1] is there: sets the others at right angles to it, right-handed. */
-void cs_core_complete_axes(double axes[3][3]);
 /* Completes a right-handed orthonormal frame about the given unit vector axes[1]. */
+void cs_core_complete_axes(double axes[3][3]);
 
-/* x = p in the own frame, out = its way there from the core's nearest point; true: it is in the
- * core. */
 /* Sets x = p in the own frame, and out = the vector to it from the nearest point of the core.
  * Returns true if p is in the core; out is then 0. */
 bool cs_core_holds(const struct cs_posed_collider *collider, const double p[3], double x[3],
                    double out[3]);
 
-/* Distance from the surface of a point that is not in the core, and the normal there. */
+/* Returns the distance in m of a point outside the core from the surface, and sets the normal n
+ * in the world; `out` as of cs_core_holds. */
 double cs_core_beyond(const struct cs_posed_collider *collider, const double out[3],
-                      /* Returns the distance in m of a point outside the core from the surface,
-                       * and sets the normal n in the world; `out` as of cs_core_holds. */
                       double n[3]);
 
-/* The axis along which x, of the own frame, is nearest to a face of the core. */
-int cs_core_nearest_face(const struct cs_posed_collider *collider, const double x[3]);
 /* Returns the axis along which x, of the own frame, is nearest to a face of the core. */
+int cs_core_nearest_face(const struct cs_posed_collider *collider, const double x[3]);
 
-/* Three times the height of a chord of one diagonal, for cloth seen at a slant. */
-static inline double
-cs_core_chord_depth(const struct cs_posed_collider *collider,
-                    /* Three times the height of a chord of one diagonal, for cloth seen at a
-                     * slant, but at most a quarter of the radius. A chord of length l lies l^2
-                     * / (8 r) deep; here l^2 = 2 cell^2. */
-                    double cell) {
+/* Three times the height of a chord of one diagonal, for cloth seen at a slant, but at most a
+ * quarter of the radius. A chord of length l lies l^2 / (8 r) deep; here l^2 = 2 cell^2. */
+static inline double cs_core_chord_depth(const struct cs_posed_collider *collider,
+                                         double cell) {
     return fmin(3 * cell * cell / (4 * collider->radius), collider->radius / 4);
 }
 
