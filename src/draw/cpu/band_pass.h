@@ -12,7 +12,7 @@ struct cs_band_pass {
     struct cs_shading_material *materials; /* (surfaces), owned by an arena */
 
     struct cs_triangles triangles;    /* squares of planes, other colliders, bodies */
-    size_t n_ground_squares, n_fixed; /* triangles of squares; of all colliders */
+    size_t n_ground_squares, n_fixed; /* of squares; of all colliders */
     struct cs_bins bins;
 
     struct cs_grid grid;

@@ -17,7 +17,7 @@ struct cs_bins {
     bool failed; /* out of memory: the bins are empty */
 };
 
-/* Makes bins for a picture of `height` rows; they are filled anew per picture.
+/* Makes bins for a picture of `height` rows; they are filled again per picture.
  * CS_ERR_MEMORY. */
 enum cs_status cs_bins_init(struct cs_bins *bins, int height, struct cs_error *error);
 /* Sets all counts to 0. */
