@@ -10,9 +10,8 @@
 /* Lists of all bands in one block of memory. */
 struct cs_bins {
     uint32_t bands;
-    size_t
-        *band_ends; /* (bands + 1), owned: end of each band's list, which is the next's start */
-    uint32_t *list; /* (capacity), owned */
+    size_t *band_ends; /* (bands + 1), owned: end of each band's list, start of the next */
+    uint32_t *list;    /* (capacity), owned */
     size_t capacity;
     bool failed; /* out of memory: the bins are empty */
 };
