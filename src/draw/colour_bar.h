@@ -1,5 +1,5 @@
-/* colour_bar.h - the colour bar beside a picture: quantity, unit, and labels at round
- * values. */
+/* colour_bar.h - the colour bar beside a picture: quantity, unit, and labels at round values.
+ */
 #ifndef CS_DRAW_COLOUR_BAR_H
 #define CS_DRAW_COLOUR_BAR_H
 

@@ -1,5 +1,5 @@
-/* light_frustum.h - the frustum of the shadow map: a cone or box of light around all
- * casters. */
+/* light_frustum.h - the frustum of the shadow map: a cone or box of light around all casters.
+ */
 #ifndef CS_DRAW_LIGHT_FRUSTUM_H
 #define CS_DRAW_LIGHT_FRUSTUM_H
 

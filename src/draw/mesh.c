@@ -172,8 +172,8 @@ static void sum_normals(struct cs_mesh *mesh, uint32_t n, const double *x) {
     }
 }
 
-/* Sums, for each corner, the normals of its particle's triangles on the same side of the
- * box. */
+/* Sums, for each corner, the normals of its particle's triangles on the same side of the box.
+ */
 static void sum_creased(struct cs_mesh *mesh, uint32_t n, const double *x) {
     const struct cs_trimesh *box = mesh->range.mesh;
     memset(mesh->normals, 0, 3 * sizeof *mesh->normals * mesh->n_indices);

@@ -40,8 +40,7 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
 /* Fills the vertices from a frame of n particles. The value is one of:
  *   - the frame's value, scaled to 0..1 over its range; marks of triangles: 0 or 1;
  *   - with has_curvature, the slope of the walls of a groove as curved as the surface, at the
- *     radius: above 0 if the front is the inside. Ambient light in the middle of such a groove
- * is
+ *     radius: above 0 if the front is the inside. Ambient light in such a groove's middle is
  *     1 / sqrt(1 + value^2), its view factor to the sky between straight walls.
  * A smooth normal is the sum of the normals of its triangles, weighted by area; on a box only
  * of those on the same side. Positions that are not finite, or far off after a blow-up, are

@@ -13,8 +13,8 @@ static void grow(double low[3], double high[3], const double place[3]) {
     }
 }
 
-/* Extends a box by a shape with a core: the core's half sizes along its axes, and the
- * radius. */
+/* Extends a box by a shape with a core: the core's half sizes along its axes, and the radius.
+ */
 static void grow_by(double low[3], double high[3], const struct cs_posed_collider *obstacle) {
     for (int i = 0; i < 3; i++) {
         double reach = obstacle->radius;

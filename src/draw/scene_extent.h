@@ -7,8 +7,8 @@
 #include "model/system/system.h"
 
 /* Returns a sphere around the particles at x (3,n) and the visible colliders
- * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at
- * least. */
+ * (scene->colliders.n) but planes: around their bounding box, with a radius of 1 mm at least.
+ */
 struct cs_bounding_sphere cs_scene_extent_solid(const struct cs_system *system, const double *x,
                                                 const struct cs_posed_collider *colliders);
 

@@ -67,8 +67,8 @@ CS_INLINE uint32_t cs_srgb_blend(uint32_t under, uint32_t over, uint32_t share) 
     return out;
 }
 
-/* cs_srgb_mean for samples with transparency: the mean weighted by opacity, and mean
- * opacity. */
+/* cs_srgb_mean for samples with transparency: the mean weighted by opacity, and mean opacity.
+ */
 uint32_t cs_srgb_mean_clear(const struct cs_srgb *tone, const uint32_t samples[4]);
 
 /* The mean of four samples' linear light, not of their bytes: a surface that covers half of a

@@ -25,8 +25,8 @@ struct cs_subprocess {
     pid_t pid;    /* 0: none */
     FILE *output; /* its standard output, owned */
 };
-/* Starts arguments[0], searched on PATH; arguments end with NULL. CS_ERR_FILE,
- * CS_ERR_MEMORY. */
+/* Starts arguments[0], searched on PATH; arguments end with NULL. CS_ERR_FILE, CS_ERR_MEMORY.
+ */
 enum cs_status cs_subprocess_open(struct cs_subprocess *program, const char *const *arguments,
                                   bool quiet, struct cs_error *error);
 /* Waits for its end; kills it first if its output was not read to the end. Returns its exit

@@ -1,8 +1,8 @@
 /* The mesh `limbs`: a rounded body with limbs, as a level set of metaballs (Blinn 1982) that is
  * meshed by surface nets (Gibson 1998).
  *
- * Field: each blob b is an ellipsoid with centre m and radii a; with r^2 = sum_c ((p - m)_c /
- * a_c)^2
+ * Field: each blob b is an ellipsoid with centre m and radii a. With
+ *   r_b^2 = sum_c ((p - m)_c / a_c)^2
  *   F(p) = sum_b w(r_b^2) - 1/4,   w(r^2) = (1 - r^2 / 2)^2 for r^2 < 2, else 0.
  * The surface is F = 0. A blob alone has w(1) = 1/4: its surface is its ellipsoid r = 1. Where
  * blobs overlap their sum exceeds 1/4 earlier, which blends them smoothly. Value and slope of w
@@ -35,7 +35,8 @@ static const double blobs[][6] = {
 static const double reach[3] = {0.42, 0.5, 0.24};
 
 /* Samples of F, and the numbering of the vertices. Point (i, j, k) has the index
- * (k n[1] + j) n[0] + i; its cell reaches to (i + 1, j + 1, k + 1). */
+ *   (k n[1] + j) n[0] + i;
+ * its cell reaches to (i + 1, j + 1, k + 1). */
 struct lattice {
     uint32_t n[3];    /* points along each axis; even, for symmetry about 0 */
     double step;      /* spacing of the points: 1 / detail */
@@ -85,11 +86,9 @@ static void fill_field(struct lattice *lattice) {
 /* Removes the two patterns of signs for which surface nets give no manifold, by moving one
  * outside point of each inside:
  *   - a lattice face whose diagonals differ in sign, with four crossings: four quads would
- * share
- *     the edge between the two cells at the face;
+ *     share the edge between the two cells at the face;
  *   - a cell in which two opposite corners alone differ from the six others: its one vertex
- * would
- *     join two sheets.
+ *     would join two sheets.
  * One pass over all cells; returns true if it changed a point, since that may make a new
  * pattern. Points only ever change to inside, so repeated passes end. */
 static bool join_touching(struct lattice *lattice) {

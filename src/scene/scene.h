@@ -219,8 +219,7 @@ struct cs_wind {
 enum cs_drag_unit { CS_DRAG_PARTICLE, CS_DRAG_AREA };
 
 /* X(key, unit, help): numbers of `forces` that each belong to one force of
- * model/force/term_NAME.c; 0 if absent. Such a key needs nothing but its
- * row. */
+ * model/force/term_NAME.c; 0 if absent. Such a key needs nothing but its row. */
 #define CS_FORCE_NUMBERS(X) X(drag, "N s/m or Pa s/m", "force of still air: -drag * v")
 
 /* External forces of the whole scene. */

@@ -24,8 +24,8 @@ static const struct cs_option cuboid_rows[] = {
 const struct cs_table cs_box_keys = {ROWS(cuboid_rows), .size = sizeof(struct cs_cuboid),
                                      .optional = true};
 
-/* Fills an absent radius, a twentieth of the shortest edge, and refuses one above half of
- * it. */
+/* Fills an absent radius, a twentieth of the shortest edge, and refuses one above half of it.
+ */
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {
     struct cs_cuboid *box = &collider->box;

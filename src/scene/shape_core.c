@@ -1,8 +1,8 @@
 /* The distance from a core - a segment or a box - less a radius: exactly, and smoothed for the
  * force.
  *
- * In the collider's own frame, with the half sizes c of the core, the radius r and
- * o_i = |x_i| - c_i:
+ * In the collider's own frame, with the half sizes c of the core, the radius r and o_i = |x_i|
+ * - c_i:
  *   exact    d = |max(o, 0)| + min(max_i o_i, 0) - r
  * Outside the core the gradient is max(o_i, 0) sign(x_i) / |max(o, 0)|; inside a box it is
  * sign(x_i) along the axis of the largest o_i, the nearest face. The gradient jumps inside the

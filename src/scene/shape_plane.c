@@ -74,8 +74,8 @@ static bool meets_line(const struct cs_posed_collider *plane, const double from[
     return distance < 0 || distance + share * cs_vec3_dot(normal, way) < 0;
 }
 
-/* Makes the square that is drawn, of half side `extent`, in the plane y = 0 of its own
- * frame. */
+/* Makes the square that is drawn, of half side `extent`, in the plane y = 0 of its own frame.
+ */
 static enum cs_status triangles(const struct cs_posed_collider *plane, struct cs_trimesh *mesh,
                                 struct cs_arena *arena, struct cs_error *error) {
     static const signed char signs[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};

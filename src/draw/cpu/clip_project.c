@@ -1,5 +1,4 @@
-/* clip_project.c - projection, and clipping after Sutherland and Hodgman (1974) in clip
- * coordinates.
+/* clip_project.c - projection, and clipping (Sutherland, Hodgman 1974) in clip coordinates.
  *
  * A point is inside the near plane if w >= near, and inside the side planes if |x|, |y| are at
  * most 16 w. Before the division by w these are linear, so an edge from a to b with signed

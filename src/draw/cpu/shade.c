@@ -20,8 +20,8 @@
 
 enum { N = CS_FRAGMENTS };
 
-/* Intermediate results of one call, 22 KiB. Some arrays serve twice: facing holds |n|^2
- * before n.l, share holds the visibility or |n.v|, cover the roots of the highlight before the
+/* Intermediate results of one call, 22 KiB. Some arrays serve twice: facing holds |n|^2 before
+ * n.l, share holds the visibility or |n.v|, cover the roots of the highlight before the
  * opacity. */
 struct work {
     float place[3][N], view[3][N], normal[3][N], light[3][N];

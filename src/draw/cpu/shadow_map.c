@@ -74,8 +74,8 @@ void cs_shadow_map_draw(struct cs_shadow_map *map, uint32_t stripe,
         }
 }
 
-/* Minimum and maximum of each 2 x 2 block: the first level that the 6 x 6 bounds are made
- * of. */
+/* Minimum and maximum of each 2 x 2 block: the first level that the 6 x 6 bounds are made of.
+ */
 CS_CLONES static void bound_pairs(struct cs_shadow_map *map) {
     for (size_t y = 0; y < HALF; y++) {
         const float *row = map->depth + 2 * y * CS_SHADOW_MAP_STRIDE;

@@ -8,9 +8,9 @@
 
 #include <math.h>
 
-/* Pixels of row y that the strip around a line touches. In a row the strip's middle is at
- * x + (y - y_0) u_x / u_y, and its half width is (extent + 1) / |u_y|. A line nearly along the
- * row (|u_y| < 0.05) gains nothing by it. */
+/* Pixels of row y that the strip around a line touches. In a row the strip has
+ *   middle x + (y - y_0) u_x / u_y,   half width (extent + 1) / |u_y|.
+ * A line nearly along the row (|u_y| < 0.05) gains nothing by it. */
 static void row_of(const struct cs_thick_line *s, int y, int *left, int *right) {
     const float down = (float)y + 0.5f - s->y, ux = s->direction[0], uy = s->direction[1];
     const float slant = uy < 0 ? -uy : uy, capacity = (s->extent + 1) / (slant > 0 ? slant : 1);

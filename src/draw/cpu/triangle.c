@@ -1,5 +1,4 @@
-/* triangle.c - triangle set-up: corners on a grid of 1/256 pixel, planes of depth and
- * attributes.
+/* triangle.c - triangle set-up: corners on a grid of 1/256 pixel, planes of depth, attributes.
  *
  * Coverage (Pineda 1988). Edge k goes from corner k to corner k + 1; its edge function
  *   E_k(x, y) = dx_k (y - y_k) - dy_k (x - x_k)
@@ -11,8 +10,7 @@
  * side of the edge, or on it (raster.c, top-left rule), therefore belongs to exactly one of
  * them. In floating point the two would round differently, which leaves gaps and double hits.
  *
- * Why planes: perspective division maps x, y, z, w to x/w, y/w, z/w. Over the plane of a
- * triangle
+ * Why planes: perspective division maps x, y, z, w to x/w, y/w, z/w. Over a triangle's plane
  *   a attribute + b x + c y + d w = 0   =>   attribute/w is linear in x/w and y/w.
  * The attribute 1 gives 1/w. The planes hold those two; shading divides one by the other.
  */

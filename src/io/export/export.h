@@ -42,8 +42,8 @@ enum cs_status cs_export_open(struct cs_export *export,
 enum cs_status cs_export_write_sample(struct cs_export *export, uint32_t frame, double t,
                                       const double *x, const double *v, struct cs_error *error);
 
-/* Flushes to the disk, before a checkpoint, what a run that continues from it takes up
- * again. */
+/* Flushes to the disk, before a checkpoint, what a run that continues from it takes up again.
+ */
 enum cs_status cs_export_sync(const struct cs_export *export, struct cs_error *error);
 
 /* Completes the files at the end of a run, however it ended; goes_on: it may be continued. */

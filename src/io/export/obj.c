@@ -75,8 +75,8 @@ static void add_items(const struct cs_export_mesh *skin, struct uv_list *list,
     }
 }
 
-/* Prints all that follows the positions: texture coordinates, a group per body, faces,
- * lines. */
+/* Prints all that follows the positions: texture coordinates, a group per body, faces, lines.
+ */
 static enum cs_status print_tail(const struct cs_export_mesh *skin, struct cs_text *tail,
                                  struct cs_error *error) {
     struct cs_text faces = {0};

@@ -23,8 +23,8 @@ struct cs_zip {
     struct cs_zip_member members[CS_ZIP_MEMBERS_MAX];
 };
 
-/* Begins a member of exactly `bytes` bytes, which cs_zip_put then writes. The name is
- * copied. */
+/* Begins a member of exactly `bytes` bytes, which cs_zip_put then writes. The name is copied.
+ */
 void cs_zip_begin(struct cs_zip *zip, const char *name, uint64_t bytes);
 /* Appends n bytes to the member. */
 void cs_zip_put(struct cs_zip *zip, const void *bytes, size_t n);
