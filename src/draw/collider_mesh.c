@@ -1,5 +1,6 @@
-/* Draws spheres as caps, shapes with a core as smooth lattices, and all others by their
- * triangles with one normal each, so that the edges of a mesh are visible. */
+/* Makes the drawn triangles of colliders: caps of spheres, smooth lattices of shapes with a
+ * core. All others keep their triangles with one normal each, which shows the edges of a mesh.
+ */
 #include "draw/collider_mesh.h"
 
 #include "draw/matrix.h"

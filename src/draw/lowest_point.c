@@ -1,7 +1,7 @@
-/* Bounds how low bodies can hang. Every pin holds a particle: it is no lower than
- *   max over pins of (height of the pin - 1.1 distance at rest)
- * and the bound of a body is the lowest of its particles. In a sheet at rest the straight line
- * is the shortest way to a pin; 1.1 allows for springs that stretch. */
+/* Bounds how low bodies can hang. Every pin holds a particle, which is therefore no lower than
+ *   max over pins of (height of the pin - 1.1 distance at rest).
+ * The bound of a body is that of its lowest particle. In a sheet at rest the straight line is
+ * the shortest way to a pin; 1.1 allows for springs that stretch. */
 #include "draw/lowest_point.h"
 
 #include "draw/scene_extent.h"

@@ -1,7 +1,7 @@
 /* mipmap.c - trilinear filtering (Williams 1983): two levels, four texels of each.
  *
  * A pixel that covers rho texels of level 0 in width takes the level log2(rho), where a texel
- * is about a pixel wide, and interpolates linearly between the two nearest whole levels. The
+ * is about a pixel wide. It interpolates linearly between the two nearest whole levels. The
  * caller passes rho^2, which needs no root: log2(rho) = log2(rho^2) / 2.
  */
 #include "draw/mipmap.h"

@@ -101,7 +101,7 @@ void cs_wireframe_draw_springs(const struct cs_wireframe *net, struct cs_lines *
 
 void cs_wireframe_draw_pins(const struct cs_wireframe *net, struct cs_lines *lines,
                             const double *x, const double *inv_mass) {
-    // a light disc with a dark rim
+    // a light disc with a dark border
     static const uint32_t colours[2] = {0x1d2733, 0xffd34d};
     for (int pass = 0; pass < 2; pass++) {
         struct cs_line_style style = {.alpha = 1, .depth_offset = 2 * net->depth_offset};

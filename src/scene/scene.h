@@ -387,8 +387,8 @@ static inline const struct cs_event *cs_scene_events(const struct cs_scene *scen
  * elsewhere must not open other files. */
 bool cs_scene_is_below(const char *file);
 
-/* Checks conditions that single ranges cannot express (pins exist, one kind of mass, a size
- * that fits in memory, a camera that looks somewhere, ...), and normalises directions and
+/* Checks conditions that single ranges cannot express: pins exist, one kind of mass, a size
+ * that fits in memory, a camera that looks somewhere, and others. Normalises directions and
  * quaternions. Fails with CS_ERR_SCENE; *path_out (CS_TEXT_MAX bytes) then holds the JSON path
  * of the faulty value, from which the caller finds its place in the file. *error's message goes
  * after it. */

@@ -3,8 +3,8 @@
  * The ground is a plane y = height. A pixel's ray eye + t d meets it at t = (height - eye_y) /
  * d_y; no triangle's planes are needed. The opacity of its ink is
  *   near^2 (dark + (1 - dark) 0.55 lines)
- * where near falls from 1 in the centre to 0 at the radius of the fade disc, dark is the
- * shadow's strength times the fraction of hidden light, and lines the coverage by the grid.
+ * near falls from 1 in the centre to 0 at the radius of the fade disc; dark is the shadow's
+ * strength times the fraction of hidden light; lines is the coverage by the grid.
  *
  * Lines are a pixel wide at any distance: the ground's extent per pixel is measured as in
  * OpenGL, by differences in blocks of 2 x 2 pixels from the bottom. */
