@@ -3,7 +3,8 @@
  * The queue is a ring of slots. `given` counts frames that the caller submitted, `written`
  * those that the worker finished; slot k % depth holds frame k. The caller draws into slot
  * given % depth, the worker encodes slot written % depth. They never touch the same slot, since
- * acquire waits until given - written < depth. Only the two counters need the lock.
+ * acquire waits until given - written < depth. The lock guards the counters, the first error
+ * and `closing`.
  *
  * Two images suffice: one is drawn while the other is encoded. More never gained time. */
 #include "io/frame_writer.h"

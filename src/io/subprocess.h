@@ -20,7 +20,7 @@ struct cs_subprocess_result {
 enum cs_status cs_subprocess_run(const char *folder, const char *const *arguments, bool quiet,
                                  struct cs_subprocess_result *end, struct cs_error *error);
 
-/* A running program whose standard output is read. */
+/* A child process whose standard output is read through a pipe. */
 struct cs_subprocess {
     pid_t pid;    /* 0: none */
     FILE *output; /* its standard output, owned */

@@ -53,7 +53,7 @@ static int compare_keys(const void *a, const void *b) {
                  : (first->valueint > second->valueint) - (first->valueint < second->valueint);
 }
 
-/* Finds a repeated key of one object by sorting: n log n also for hostile files. */
+/* Finds a repeated key of one object by sorting: comparing all pairs takes n^2. */
 static enum cs_status check_keys(const cJSON *object, struct cs_json_fault *fault) {
     size_t n = 0;
     for (const cJSON *child = object->child; child; child = child->next)

@@ -14,7 +14,7 @@ static struct {
     bool read;
 } input;
 
-/* Reads pieces to the end; a failure leaves the input unread. */
+/* Reads pieces to the end, and only then marks the input as read. */
 static enum cs_status read_all(size_t max, struct cs_error *error) {
     enum { PIECE = 1 << 16 };
     while (!feof(stdin)) {
